@@ -1,0 +1,12 @@
+# CMake package: find_package(fresco COMPONENTS surface filters registration texture).
+include(CMakePackageConfigHelpers)
+set(config_dir "${CMAKE_INSTALL_LIBDIR}/cmake/fresco")
+configure_package_config_file("${PROJECT_SOURCE_DIR}/cmake/frescoConfig.cmake.in" "${PROJECT_BINARY_DIR}/frescoConfig.cmake"
+                              INSTALL_DESTINATION "${config_dir}")
+write_basic_package_version_file("${PROJECT_BINARY_DIR}/frescoConfigVersion.cmake" COMPATIBILITY SameMinorVersion)
+install(FILES "${PROJECT_BINARY_DIR}/frescoConfig.cmake" "${PROJECT_BINARY_DIR}/frescoConfigVersion.cmake"
+        DESTINATION "${config_dir}")
+install(EXPORT frescoTargets NAMESPACE fresco:: DESTINATION "${config_dir}")
+install(FILES "${PROJECT_SOURCE_DIR}/package.xml" DESTINATION "${CMAKE_INSTALL_DATADIR}/fresco")
+install(FILES "${PROJECT_SOURCE_DIR}/LICENSE" "${PROJECT_SOURCE_DIR}/README.md"
+        DESTINATION "${CMAKE_INSTALL_DATADIR}/doc/fresco")

@@ -1,0 +1,26 @@
+# Build-wide settings: build type, output folders, compiler cache.
+if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
+  set(CMAKE_BUILD_TYPE Release CACHE STRING "Debug, Release, RelWithDebInfo or MinSizeRel" FORCE)
+endif()
+set(CMAKE_RUNTIME_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/bin")
+set(CMAKE_LIBRARY_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/lib")
+set(CMAKE_ARCHIVE_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/lib")
+set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+set(CMAKE_INSTALL_RPATH "$ORIGIN/../${CMAKE_INSTALL_LIBDIR};$ORIGIN")
+set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+
+find_program(FRESCO_CCACHE ccache)
+if(FRESCO_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
+  set(CMAKE_CXX_COMPILER_LAUNCHER "${FRESCO_CCACHE}")
+endif()
+
+# Warnings for our own targets only.
+add_library(fresco_warnings INTERFACE)
+target_compile_options(fresco_warnings INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wno-unknown-pragmas)
+
+set(FRESCO_SANITIZE "" CACHE STRING "Sanitizers to build with, as in -fsanitize=..., e.g. address,undefined")
+if(FRESCO_SANITIZE)
+  add_compile_options(-fsanitize=${FRESCO_SANITIZE} -fno-omit-frame-pointer)
+  add_link_options(-fsanitize=${FRESCO_SANITIZE})
+  add_compile_definitions(EIGEN_MALLOC_ALREADY_ALIGNED=1) # PCL's own allocations are taken for foreign ones otherwise
+endif()

@@ -1,0 +1,44 @@
+# Sourced by ./demo and ./check: installs what is missing on Debian 12 and builds into build/.
+
+fresco_packages=(
+  g++ cmake ninja-build ccache pkg-config ca-certificates
+  libpcl-dev libvtk9-dev libopencv-dev libeigen3-dev libflann-dev libboost-dev libtbb-dev libembree-dev
+  libtinygltf-dev nlohmann-json3-dev libgtest-dev libbenchmark-dev libnanoflann-dev
+  libegl-dev libglew-dev libegl-mesa0 libgl1-mesa-dri
+)
+
+fresco_say() { printf '== %s\n' "$*" >&2; }
+
+# Packages of the list that are not installed.
+fresco_missing() {
+  local name
+  for name in "${fresco_packages[@]}"; do
+    dpkg-query -W -f '${Status}' "$name" 2>/dev/null | grep -q '^install ok installed' || echo "$name"
+  done
+}
+
+fresco_install() {
+  if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
+    fresco_say "no apt here: install the packages that README.md lists by hand"
+    return
+  fi
+  local missing as_root=()
+  mapfile -t missing < <(fresco_missing)
+  [ "${#missing[@]}" -eq 0 ] && return
+  if [ "$(id -u)" -ne 0 ]; then
+    command -v sudo >/dev/null || { fresco_say "missing packages, and neither root nor sudo: ${missing[*]}"; exit 1; }
+    as_root=(sudo)
+  fi
+  fresco_say "installing: ${missing[*]}"
+  "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -q update
+  "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -q -y install --no-install-recommends "${missing[@]}"
+}
+
+# fresco_build TARGET...: configures build/ (Release, unless it is configured already) and builds.
+fresco_build() {
+  fresco_say "building into build/"
+  [ -f build/CMakeCache.txt ] || cmake -S . -B build -G Ninja -DCMAKE_BUILD_TYPE=Release >build-configure.log 2>&1 ||
+    { cat build-configure.log >&2; rm -rf build build-configure.log; exit 1; }
+  [ -f build-configure.log ] && mv build-configure.log build/configure.log
+  cmake --build build --parallel "$(nproc)" --target "$@"
+}

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include <cstddef>
+#include <string>
+#include <string_view>
+namespace fresco {
+/// An output that is whole or absent: written beside its name (`.STEM.part.EXTENSION` in the same folder), flushed,
+/// then renamed. Destroyed without commit(): nothing remains and an older file of that name is untouched.
+class OutputFile {
+public:
+  /// @throws std::runtime_error naming the file and the reason if the folder is missing or not writable
+  explicit OutputFile(std::string path);
+  ~OutputFile();
+  OutputFile(const OutputFile&) = delete;
+  OutputFile& operator=(const OutputFile&) = delete;
+
+  /// Where a library that wants a file name writes; it then does not call write().
+  const std::string& temporaryPath() const { return temporary_; }
+
+  /// Buffered append. @throws std::runtime_error naming the file and the reason (disk full ...)
+  void write(const void* data, std::size_t bytes);
+  void write(std::string_view text) { write(text.data(), text.size()); }
+
+  /// @throws std::runtime_error naming the file and the reason; nothing is left behind then
+  void commit();
+
+private:
+  void flush();
+  std::string path_, temporary_, buffer_;
+  int descriptor_ = -1;
+};
+
+/// Whole content. @throws std::runtime_error naming the file if it is missing, a folder, empty or unreadable
+std::string readFile(const std::string& path);
+
+/// Extension in lower case with its dot, "" if none.
+std::string extension(const std::string& path);
+
+/// Creates a folder and its parents. @throws std::runtime_error naming it if that fails or it cannot be written to
+void makeFolder(const std::string& path);
+} // namespace fresco

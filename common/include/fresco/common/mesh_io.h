@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include <fresco/common/mesh.h>
+#include <fresco/common/textured_mesh.h>
+#include <string>
+namespace fresco {
+/// PLY (ASCII, both binary orders, polygons, triangle strips), OBJ, legacy VTK polydata by extension. Polygons are
+/// triangulated as fans. Normals, colours and further scalars per vertex are kept. Coordinates too large for float are
+/// kept exact through `origin`.
+/// @throws std::runtime_error "PATH: reason" if the file is missing, empty, truncated, malformed or has no vertex;
+///         faces may be absent
+TriangleMesh readMesh(const std::string& path);
+
+/// PLY (binary), OBJ or legacy VTK (binary) by extension; whole or not at all.
+void writeMesh(const std::string& path, const TriangleMesh& mesh);
+
+/// OBJ + MTL + PNG (`NAME.obj`, `NAME.mtl`, `NAME.png` or `NAME_0.png` ...) or binary glTF (`.glb`), by extension.
+void writeTexturedMesh(const std::string& path, const TexturedMesh& model);
+
+/// What writeTexturedMesh() writes, and OBJ + MTL of others.
+TexturedMesh readTexturedMesh(const std::string& path);
+} // namespace fresco

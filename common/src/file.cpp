@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <cctype>
+#include <cerrno>
+#include <cstring>
+#include <fcntl.h>
+#include <filesystem>
+#include <fresco/common/file.h>
+#include <fresco/common/require.h>
+#include <fstream>
+#include <sys/stat.h>
+#include <unistd.h>
+namespace fresco {
+namespace {
+[[noreturn]] void fail(const std::string& path, const std::string& reason)
+{
+  throw std::runtime_error(path + ": " + reason);
+}
+
+std::string besides(const std::string& path)
+{
+  const std::filesystem::path whole(path);
+  // The extension stays last, since libraries choose a format by it.
+  return (whole.parent_path() / ("." + whole.stem().string() + ".part" + whole.extension().string())).string();
+}
+
+constexpr std::size_t buffer_size = std::size_t{1} << 20;
+} // namespace
+
+OutputFile::OutputFile(std::string path) : path_(std::move(path)), temporary_(besides(path_))
+{
+  if (std::filesystem::path(path_).filename().empty() || std::filesystem::is_directory(path_))
+    fail(path_, "is a folder, not a file to write to");
+  descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  if (descriptor_ < 0)
+    fail(path_, std::string("cannot be written (") + std::strerror(errno) + ")");
+}
+
+OutputFile::~OutputFile()
+{
+  if (descriptor_ < 0)
+    return;
+  ::close(descriptor_);
+  ::unlink(temporary_.c_str());
+}
+
+void OutputFile::write(const void* data, std::size_t bytes)
+{
+  const char* from = static_cast<const char*>(data);
+  if (buffer_.size() + bytes > buffer_size)
+    flush();
+  if (bytes < buffer_size) {
+    buffer_.append(from, bytes);
+    return;
+  }
+  while (bytes > 0) {
+    const ssize_t done = ::write(descriptor_, from, bytes);
+    if (done < 0 && errno == EINTR)
+      continue;
+    if (done < 0)
+      fail(path_, std::string("cannot be written (") + std::strerror(errno) + ")");
+    from += done;
+    bytes -= static_cast<std::size_t>(done);
+  }
+}
+
+void OutputFile::flush()
+{
+  std::size_t at = 0;
+  while (at < buffer_.size()) {
+    const ssize_t done = ::write(descriptor_, buffer_.data() + at, buffer_.size() - at);
+    if (done < 0 && errno == EINTR)
+      continue;
+    if (done < 0)
+      fail(path_, std::string("cannot be written (") + std::strerror(errno) + ")");
+    at += static_cast<std::size_t>(done);
+  }
+  buffer_.clear();
+}
+
+void OutputFile::commit()
+{
+  flush();
+  // A library may have replaced the file behind the descriptor, so the name is what counts.
+  const bool stored = ::fsync(descriptor_) == 0 || errno == EINVAL;
+  if (!stored || ::rename(temporary_.c_str(), path_.c_str()) != 0)
+    fail(path_, std::string("cannot be written (") + std::strerror(errno) + ")");
+  ::close(descriptor_);
+  descriptor_ = -1;
+}
+
+std::string readFile(const std::string& path)
+{
+  std::error_code error;
+  if (!std::filesystem::exists(path, error))
+    fail(path, "no such file");
+  if (std::filesystem::is_directory(path, error))
+    fail(path, "is a folder, not a file");
+  std::ifstream file(path, std::ios::binary);
+  if (!file)
+    fail(path, std::string("cannot be read (") + std::strerror(errno) + ")");
+  std::string content;
+  const auto size = std::filesystem::file_size(path, error);
+  content.resize(error ? 0 : size);
+  file.read(content.data(), static_cast<std::streamsize>(content.size()));
+  content.resize(static_cast<std::size_t>(file.gcount()));
+  if (content.empty())
+    fail(path, "the file is empty");
+  return content;
+}
+
+std::string extension(const std::string& path)
+{
+  std::string text = std::filesystem::path(path).extension().string();
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return text;
+}
+
+void makeFolder(const std::string& path)
+{
+  std::error_code error;
+  std::filesystem::create_directories(path, error);
+  if (error || !std::filesystem::is_directory(path))
+    fail(path, "the folder cannot be made (" + (error ? error.message() : "a file of that name is there") + ")");
+  if (::access(path.c_str(), W_OK | X_OK) != 0)
+    fail(path, std::string("the folder cannot be written to (") + std::strerror(errno) + ")");
+}
+} // namespace fresco

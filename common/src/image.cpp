@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fresco/common/file.h>
+#include <fresco/common/image.h>
+#include <fresco/common/require.h>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+namespace fresco {
+namespace {
+[[noreturn]] void fail(const std::string& path, const std::string& reason)
+{
+  throw std::runtime_error(path + ": " + reason);
+}
+
+/// Decoders fill in what a cut file lacks; its end tells whether it is whole.
+bool isWhole(const std::string& bytes)
+{
+  const auto starts = [&](const std::string& mark) { return bytes.compare(0, mark.size(), mark) == 0; };
+  if (starts("\x89PNG"))
+    return bytes.size() > 12 &&
+           bytes.find("IEND", bytes.size() - std::min<std::size_t>(bytes.size(), 64)) != std::string::npos;
+  if (starts("\xff\xd8"))
+    return bytes.rfind("\xff\xd9") != std::string::npos && bytes.rfind("\xff\xd9") > bytes.size() / 2;
+  return true;
+}
+
+cv::Mat decode(const std::string& path, int flags)
+{
+  const std::string bytes = readFile(path);
+  if (!isWhole(bytes))
+    fail(path, "the image is truncated");
+  const cv::Mat raw(1, static_cast<int>(bytes.size()), CV_8U, const_cast<char*>(bytes.data()));
+  cv::Mat image;
+  try {
+    image = cv::imdecode(raw, flags);
+  } catch (const cv::Exception&) { // its text names no file
+    fail(path, "no image that can be read");
+  }
+  if (image.empty())
+    fail(path, "no image that can be read");
+  return image;
+}
+
+cv::Mat toOpenCv(const Image& image)
+{
+  require(image.width > 0 && image.height > 0 && (image.channels == 1 || image.channels == 3 || image.channels == 4) &&
+              image.data.size() == static_cast<std::size_t>(image.width) * image.height * image.channels,
+          "image: ", image.width, "x", image.height, " with ", image.channels, " channels and ", image.data.size(),
+          " bytes");
+  const cv::Mat view(image.height, image.width, CV_8UC(image.channels), const_cast<std::uint8_t*>(image.data.data()));
+  if (image.channels == 1)
+    return view;
+  cv::Mat swapped;
+  cv::cvtColor(view, swapped, image.channels == 3 ? cv::COLOR_RGB2BGR : cv::COLOR_RGBA2BGRA);
+  return swapped;
+}
+} // namespace
+
+Image readImage(const std::string& path)
+{
+  const cv::Mat bgr = decode(path, cv::IMREAD_COLOR | cv::IMREAD_IGNORE_ORIENTATION);
+  Image image(bgr.cols, bgr.rows, 3);
+  cv::Mat rgb(bgr.rows, bgr.cols, CV_8UC3, image.data.data());
+  cv::cvtColor(bgr, rgb, cv::COLOR_BGR2RGB);
+  return image;
+}
+
+Image16 readImage16(const std::string& path)
+{
+  const cv::Mat depth = decode(path, cv::IMREAD_UNCHANGED);
+  if (depth.type() != CV_16UC1)
+    fail(path, "not a 16-bit image with one channel");
+  Image16 image{depth.cols, depth.rows, {}};
+  image.data.reserve(depth.total());
+  for (int y = 0; y < depth.rows; ++y)
+    image.data.insert(image.data.end(), depth.ptr<std::uint16_t>(y), depth.ptr<std::uint16_t>(y) + depth.cols);
+  return image;
+}
+
+std::vector<std::uint8_t> encodeImage(const Image& image, const std::string& extension, int quality)
+{
+  require(quality >= 0 && quality <= 100, "image: quality ", quality, " is not in 0..100");
+  require(extension == ".png" || extension == ".jpg" || extension == ".jpeg", "image: '", extension,
+          "' is not .png, .jpg or .jpeg");
+  std::vector<std::uint8_t> bytes;
+  const std::vector<int> settings = extension == ".png" ? std::vector<int>{cv::IMWRITE_PNG_COMPRESSION, 4}
+                                                        : std::vector<int>{cv::IMWRITE_JPEG_QUALITY, quality};
+  cv::imencode(extension, toOpenCv(image), bytes, settings);
+  return bytes;
+}
+
+void writeImage(const std::string& path, const Image& image, int quality)
+{
+  const std::vector<std::uint8_t> bytes = encodeImage(image, extension(path), quality);
+  OutputFile file(path);
+  file.write(bytes.data(), bytes.size());
+  file.commit();
+}
+} // namespace fresco

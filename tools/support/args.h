@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include <functional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+namespace fresco {
+/// Wrong usage: the tool exits with 2.
+struct UsageError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// `-h` was given: usage() has been printed, the tool exits with 0.
+struct HelpShown {};
+
+/// Command line in the style of PCL's tools: `fresco_x INPUT OUTPUT -option value`, parsed strictly: an unknown option,
+/// a missing or malformed value or a wrong number of files is a UsageError. Negative numbers are values, not options.
+class Args {
+public:
+  /// @param synopsis    "fresco_filter IN OUT [options]"
+  /// @param description what the tool does, one or more lines
+  Args(std::string synopsis, std::string description);
+
+  /// Declares `-name value...`; the values given replace what the variables hold, which the help shows as the default.
+  /// @param help text with unit and range
+  void option(const std::string& name, int& value, const std::string& help);
+  void option(const std::string& name, float& value, const std::string& help);
+  void option(const std::string& name, double& value, const std::string& help);
+  void option(const std::string& name, std::string& value, const std::string& help);
+  /// `-name` without a value sets true.
+  void flag(const std::string& name, bool& value, const std::string& help);
+  /// `-name A B C`: exactly as many values as `placeholders` has words; `apply` gets them and may throw UsageError.
+  void values(const std::string& name, const std::string& placeholders, const std::string& help,
+              std::function<void(const std::vector<std::string>&)> apply);
+
+  /// Text printed at the end of the help (examples).
+  void note(const std::string& text) { notes_ += text + "\n"; }
+
+  /// @return the words that belong to no option: the files
+  /// @throws UsageError, HelpShown
+  std::vector<std::string> parse(int argc, char** argv, std::size_t least, std::size_t most);
+  std::vector<std::string> parse(int argc, char** argv, std::size_t files) { return parse(argc, argv, files, files); }
+
+  bool given(const std::string& name) const; ///< whether the option stood on the command line
+  std::string usage() const;
+
+  static double number(const std::string& name, const std::string& text);     ///< @throws UsageError unless finite
+  static long long integer(const std::string& name, const std::string& text); ///< @throws UsageError
+
+private:
+  struct Option {
+    std::string name, placeholders, help, shown_default;
+    std::size_t count;
+    std::function<void(const std::vector<std::string>&)> apply;
+    bool given = false;
+  };
+  std::size_t readOption(const std::vector<std::string>& words, std::size_t at);
+  std::string synopsis_, description_, notes_;
+  std::vector<Option> options_;
+};
+} // namespace fresco

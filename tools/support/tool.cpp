@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "support/tool.h"
+#include <atomic>
+#include <cmath>
+#include <csignal>
+#include <iostream>
+#include <memory>
+#include <mutex>
+#include <new>
+#include <unistd.h>
+namespace fresco {
+namespace {
+std::atomic<bool> stop_asked{false};
+
+// The first signal asks to stop at the next step; the second ends the process as usual.
+void askToStop(int signal)
+{
+  stop_asked = true;
+  std::signal(signal, SIG_DFL);
+}
+
+std::string oneLine(std::string text)
+{
+  for (char& c : text)
+    if (c == '\n' || c == '\r')
+      c = ' ';
+  return text;
+}
+
+class Printer {
+public:
+  explicit Printer(bool quiet) : quiet_(quiet), terminal_(isatty(STDERR_FILENO) != 0) {}
+
+  bool operator()(std::string_view step, double fraction)
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (!quiet_)
+      print(std::string(step), fraction);
+    return !stop_asked;
+  }
+
+private:
+  void print(const std::string& step, double fraction)
+  {
+    const int percent = static_cast<int>(std::lround(100 * fraction));
+    if (terminal_) {
+      const int filled = percent * 30 / 100;
+      std::cerr << "\r\033[K[" << std::string(static_cast<std::size_t>(filled), '#')
+                << std::string(static_cast<std::size_t>(30 - filled), '.') << "] " << percent << " % " << step
+                << (percent >= 100 ? "\n" : "") << std::flush;
+    } else if (step != last_) {
+      std::cerr << step << " (" << percent << " %)\n";
+    }
+    last_ = step;
+  }
+
+  bool quiet_, terminal_;
+  std::string last_;
+  std::mutex mutex_;
+};
+} // namespace
+
+void CommonOptions::declare(Args& args)
+{
+  args.option("threads", threads, "number of threads, 0 = all cores; never changes the result");
+  args.flag("quiet", quiet, "print nothing but errors");
+}
+
+Progress printProgress(bool quiet)
+{
+  const auto printer = std::make_shared<Printer>(quiet);
+  return [printer](std::string_view step, double fraction) { return (*printer)(step, fraction); };
+}
+
+void inform(bool quiet, const std::string& line)
+{
+  if (!quiet)
+    std::cerr << line << std::endl;
+}
+
+int runTool(const std::string& name, const std::function<void()>& body)
+try {
+  std::signal(SIGINT, askToStop);
+  std::signal(SIGTERM, askToStop);
+  body();
+  return 0;
+} catch (const HelpShown&) {
+  return 0;
+} catch (const UsageError& error) {
+  std::cerr << name << ": " << oneLine(error.what()) << " (see " << name << " -h)\n";
+  return 2;
+} catch (const std::bad_alloc&) {
+  std::cerr << name << ": not enough memory\n";
+  return 1;
+} catch (const std::exception& error) {
+  std::cerr << name << ": " << oneLine(error.what()) << "\n";
+  return 1;
+}
+} // namespace fresco

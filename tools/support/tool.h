@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include "support/args.h"
+#include <fresco/common/progress.h>
+#include <functional>
+namespace fresco {
+/// Options that every tool has: -threads, -quiet.
+struct CommonOptions {
+  int threads = 0;
+  bool quiet = false;
+  void declare(Args& args);
+};
+
+/// Listener that draws a bar on a terminal and prints a plain line per step elsewhere, both on stderr; answers false
+/// once the process has been asked to stop (SIGINT, SIGTERM). Silent where `quiet` is set.
+Progress printProgress(bool quiet);
+
+/// One line on stderr, unless `quiet`.
+void inform(bool quiet, const std::string& line);
+
+/// Runs `body` and turns its end into an exit status: 0 done; 1 could not do it, with one line on stderr
+/// "NAME: reason"; 2 wrong usage, with one line and a hint at -h. Asks `body` to stop on SIGINT and SIGTERM.
+int runTool(const std::string& name, const std::function<void()>& body);
+} // namespace fresco
