@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "texture_io_image.h"
 #include <fresco/common/file.h>
 #include <fresco/common/image.h>
 #include <fresco/common/require.h>
@@ -16,8 +17,7 @@ bool isWhole(const std::string& bytes)
 {
   const auto starts = [&](const std::string& mark) { return bytes.compare(0, mark.size(), mark) == 0; };
   if (starts("\x89PNG"))
-    return bytes.size() > 12 &&
-           bytes.find("IEND", bytes.size() - std::min<std::size_t>(bytes.size(), 64)) != std::string::npos;
+    return detail::isIntactPng(reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size());
   if (starts("\xff\xd8"))
     return bytes.rfind("\xff\xd9") != std::string::npos && bytes.rfind("\xff\xd9") > bytes.size() / 2;
   return true;
@@ -27,7 +27,7 @@ cv::Mat decode(const std::string& path, int flags)
 {
   const std::string bytes = readFile(path);
   if (!isWhole(bytes))
-    fail(path, "the image is truncated");
+    fail(path, "the image is truncated or damaged");
   const cv::Mat raw(1, static_cast<int>(bytes.size()), CV_8U, const_cast<char*>(bytes.data()));
   cv::Mat image;
   try {

@@ -14,9 +14,14 @@ TriangleMesh readMesh(const std::string& path);
 /// PLY (binary), OBJ or legacy VTK (binary) by extension; whole or not at all.
 void writeMesh(const std::string& path, const TriangleMesh& mesh);
 
-/// OBJ + MTL + PNG (`NAME.obj`, `NAME.mtl`, `NAME.png` or `NAME_0.png` ...) or binary glTF (`.glb`), by extension.
-void writeTexturedMesh(const std::string& path, const TexturedMesh& model);
+/// OBJ + MTL + PNG (`NAME.obj`, `NAME.mtl`, `NAME.png` or `NAME_0.png` ...) or binary glTF (`.glb`, images inside,
+/// unlit), by extension. The set of files is whole or absent; the .obj appears last.
+/// @param jpeg_quality of the images inside a .glb, 1..100; 0: PNG, without loss
+/// @throws std::invalid_argument as validateTexturedMesh(), std::runtime_error "PATH: reason" if it cannot be written
+void writeTexturedMesh(const std::string& path, const TexturedMesh& model, int jpeg_quality = 0);
 
-/// What writeTexturedMesh() writes, and OBJ + MTL of others.
+/// What writeTexturedMesh() writes, and OBJ + MTL and .glb of others. Faces whose material has no image, or whose
+/// corners have no texture coordinates, are without texture. From a .glb, vertices at the same place become one.
+/// @throws std::runtime_error "PATH: reason" if the model or a file that it names is missing, truncated or malformed
 TexturedMesh readTexturedMesh(const std::string& path);
 } // namespace fresco

@@ -13,4 +13,9 @@ struct TexturedMesh {
   Eigen::VectorXi face_atlas;      ///< F, index into atlases; -1 where a face has no texture
   std::vector<Image> atlases;      ///< RGB
 };
+
+/// @throws std::invalid_argument unless the mesh is valid, every face has an atlas and three texture coordinates that
+/// exist
+///         or neither, texture coordinates are finite and atlases that faces use are RGB images
+void validateTexturedMesh(const TexturedMesh& model);
 } // namespace fresco

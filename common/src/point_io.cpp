@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "obj.h"
+#include "pcd.h"
+#include "ply.h"
+#include "point_io_parse.h"
+#include "vtk_file.h"
+#include "xyz.h"
+#include <fresco/common/point_io.h>
+namespace fresco {
+namespace {
+bool isTextCloud(const std::string& type) { return type == ".xyz" || type == ".txt" || type == ".asc"; }
+} // namespace
+
+namespace detail {
+PointTable readTable(const std::string& path)
+{
+  const std::string type = extension(path);
+  if (type == ".pcd")
+    return parseFile(path, parsePcd);
+  if (type == ".ply")
+    return parseFile(path, [](std::string_view content) { return parsePly(content).vertices; });
+  if (type == ".vtk")
+    return parseFile(path, [](std::string_view content) { return parseVtk(content).vertices; });
+  if (type == ".obj")
+    return parseFile(path, [](std::string_view content) { return objVertices(parseObj(content)); });
+  if (isTextCloud(type))
+    return parseFile(path, parseXyz);
+  throw std::runtime_error(path + ": not a file of points: expected .pcd, .ply, .vtk, .obj, .xyz, .txt or .asc");
+}
+
+void writeTable(const std::string& path, const PointTable& table, bool compressed)
+{
+  const std::string type = extension(path);
+  if (type == ".pcd")
+    writePcd(path, table, compressed);
+  else if (type == ".ply")
+    writePly(path, table, Faces());
+  else if (isTextCloud(type))
+    writeXyz(path, table);
+  else
+    throw std::runtime_error(path + ": cannot write this type of file of points: use .pcd, .ply or .xyz");
+}
+} // namespace detail
+
+PointSet readPoints(const std::string& path)
+{
+  const detail::PointTable table = detail::readTable(path);
+  try {
+    return detail::tableToPoints(table);
+  } catch (const std::exception& error) {
+    throw std::runtime_error(path + ": " + error.what());
+  }
+}
+
+void writePoints(const std::string& path, const PointSet& set) { detail::writeTable(path, detail::pointsToTable(set)); }
+} // namespace fresco
