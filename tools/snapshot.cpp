@@ -1,0 +1,287 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "picture/indoor_view.h"
+#include "picture/picture.h"
+#include "support/args.h"
+#include "support/tool.h"
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <filesystem>
+#include <fresco/common/file.h>
+#include <fresco/common/mesh_io.h>
+#include <fresco/common/point_io.h>
+#include <fresco/common/require.h>
+#include <fresco/surface/core/mesh_distance.h>
+#include <optional>
+#include <sstream>
+#include <variant>
+
+namespace {
+using namespace fresco;
+
+struct Request {
+  std::string model, output, reference, view = "corner";
+  std::vector<Shading> shadings{Shading::Gouraud};
+  std::optional<Eigen::Vector3d> eye, look, up;
+  std::optional<double> angle;
+  PictureOptions picture;
+  CommonOptions common;
+};
+
+using Model = std::variant<TriangleMesh, TexturedMesh, PointSet>;
+
+Eigen::Vector3d vector(const std::string& name, const std::vector<std::string>& words)
+{
+  return {Args::number(name, words[0]), Args::number(name, words[1]), Args::number(name, words[2])};
+}
+
+std::string joined(const std::vector<std::string>& words)
+{
+  std::string text;
+  for (const std::string& word : words)
+    text += (text.empty() ? "" : ", ") + word;
+  return text;
+}
+
+void setSize(PictureOptions& picture, const std::string& text)
+{
+  const std::size_t cross = text.find('x');
+  if (cross == std::string::npos)
+    throw UsageError("-size: '" + text + "' is not WIDTHxHEIGHT");
+  const long long width = Args::integer("size", text.substr(0, cross));
+  const long long height = Args::integer("size", text.substr(cross + 1));
+  if (width < 1 || height < 1 || width > 65536 || height > 65536)
+    throw UsageError("-size: '" + text + "' is not within 1x1 and 65536x65536");
+  picture.width = static_cast<int>(width);
+  picture.height = static_cast<int>(height);
+}
+
+std::vector<Shading> parseShadings(const std::string& text)
+{
+  std::vector<Shading> shadings;
+  std::istringstream words(text);
+  for (std::string word; std::getline(words, word, ',');)
+    try {
+      shadings.push_back(shadingByName(word));
+    } catch (const std::invalid_argument&) {
+      throw UsageError("-shading: '" + word + "' is none of " + joined(shadingNames()));
+    }
+  if (shadings.empty())
+    throw UsageError("-shading: no name given");
+  return shadings;
+}
+
+void setBackground(PictureOptions& picture, const std::vector<std::string>& words)
+{
+  for (std::size_t c = 0; c < 3; ++c) {
+    const long long value = Args::integer("background", words[c]);
+    if (value < 0 || value > 255)
+      throw UsageError("-background: " + words[c] + " is not in 0..255");
+    picture.background[c] = static_cast<std::uint8_t>(value);
+  }
+}
+
+void declareView(Args& args, Request& request)
+{
+  args.option(
+      "view", request.view,
+      "where to look from: " + joined(viewNames()) +
+          " (the whole model is in the picture), inside (a room, at eye height), above (a room, its ceiling and "
+          "near walls left out)");
+  const auto point = [&](const std::string& name, std::optional<Eigen::Vector3d>& value, const std::string& help) {
+    args.values(name, "X Y Z", help, [&value, name](const auto& words) { value = vector(name, words); });
+  };
+  point("eye", request.eye, "position of the eye, unit of the model; replaces -view");
+  point("look", request.look, "point in the middle of the picture, with -eye (default: middle of the model)");
+  point("up", request.up, "upright direction (default: 0 0 1; with -view inside and above: found from the model)");
+  args.values("angle", "DEG", "vertical opening angle, 1..170 degrees (default: 30; with -view inside: 62)",
+              [&](const auto& words) { request.angle = Args::number("angle", words[0]); });
+  args.flag("cull", request.picture.cull_back_faces, "leave out faces seen from behind (always with -view above)");
+}
+
+void declareLook(Args& args, Request& request)
+{
+  PictureOptions& picture = request.picture;
+  args.values("shading", "NAME[,NAME...]",
+              joined(shadingNames()) + " (default: gouraud); of several, each goes into its own file OUT_NAME",
+              [&](const auto& words) { request.shadings = parseShadings(words[0]); });
+  args.option("reference", request.reference, "mesh that error shading measures the distance to");
+  args.option("limit", picture.error_limit,
+              "distance that error shading paints blue, unit of the model; 0 = 99 % of the vertices lie below");
+  args.option("unit", picture.unit, "unit of the model for the scale bar of error shading, for example m");
+  args.values("size", "WxH", concat("pixels (default: ", picture.width, "x", picture.height, ")"),
+              [&](const auto& words) { setSize(picture, words[0]); });
+  args.values("background", "R G B", "colour behind the model, 0..255 each (default: white)",
+              [&](const auto& words) { setBackground(picture, words); });
+  args.flag("transparent", picture.transparent, "no background: PNG with alpha");
+  args.option("crease", picture.crease_angle, "edges that bend by more look sharp with gouraud, 0..180 degrees");
+  args.option("point_size", picture.point_size, "size of points, pixels; 0 = by their number");
+  args.option("oversampling", picture.oversampling, "pixels drawn per pixel along each side, 1..4: finer, slower");
+}
+
+void checkRequest(const Request& request, const Args& args)
+{
+  if (args.given("view") && request.eye)
+    throw UsageError("-view and -eye exclude each other");
+  if (request.look && !request.eye)
+    throw UsageError("-look needs -eye");
+  const auto& names = viewNames();
+  const bool indoor = request.view == "inside" || request.view == "above";
+  if (!indoor && std::find(names.begin(), names.end(), request.view) == names.end())
+    throw UsageError("-view: '" + request.view + "' is none of " + joined(names) + ", inside, above");
+  const bool error = std::count(request.shadings.begin(), request.shadings.end(), Shading::Error) > 0;
+  if (error == request.reference.empty())
+    throw UsageError(error ? "error shading needs -reference" : "-reference is for error shading only");
+  const std::string end = extension(request.output);
+  if (end != ".png" && end != ".jpg" && end != ".jpeg")
+    throw UsageError("'" + request.output + "' ends neither in .png nor in .jpg");
+  if (request.picture.transparent && end != ".png")
+    throw UsageError("-transparent needs a .png");
+}
+
+Request parse(int argc, char** argv)
+{
+  Request request;
+  Args args("fresco_snapshot MODEL OUT.png|OUT.jpg [options]",
+            "Picture of a mesh (PLY, OBJ, VTK, glTF) or a point cloud (PCD, PLY, VTK, OBJ, XYZ). Needs no display.");
+  declareLook(args, request);
+  declareView(args, request);
+  request.common.declare(args);
+  args.note("Examples:");
+  args.note("  fresco_snapshot model.obj room.png -shading texture -view inside -size 1920x1080");
+  args.note("  fresco_snapshot result.ply out.png -shading normals,gouraud,error -reference truth.obj -unit mm");
+  const std::vector<std::string> files = args.parse(argc, argv, 2);
+  request.model = files[0];
+  request.output = files[1];
+  request.picture.threads = request.common.threads;
+  checkRequest(request, args);
+  return request;
+}
+
+Model readModel(const Request& request)
+{
+  const std::string end = extension(request.model);
+  const bool textured = std::count(request.shadings.begin(), request.shadings.end(), Shading::Texture) > 0;
+  if (end == ".pcd" || end == ".xyz" || end == ".txt" || end == ".asc")
+    return readPoints(request.model);
+  if (end == ".glb" || (textured && end == ".obj"))
+    return readTexturedMesh(request.model);
+  TriangleMesh mesh = readMesh(request.model);
+  if (mesh.faceCount() == 0)
+    return readPoints(request.model);
+  return mesh;
+}
+
+const TriangleMesh* meshOf(const Model& model)
+{
+  if (const auto* textured = std::get_if<TexturedMesh>(&model))
+    return &textured->mesh;
+  return std::get_if<TriangleMesh>(&model);
+}
+
+Eigen::Vector3d middle(const Model& model)
+{
+  const auto* set = std::get_if<PointSet>(&model);
+  const Points& points = set ? set->points : meshOf(model)->vertices;
+  Eigen::AlignedBox3d box;
+  for (Index i = 0; i < points.cols(); ++i)
+    if (points.col(i).allFinite())
+      box.extend(points.col(i).cast<double>());
+  require(!box.isEmpty(), "the model has no finite point");
+  return (set ? set->origin : meshOf(model)->origin) + box.center();
+}
+
+Viewpoint wholeModelView(const Request& request, const Model& model)
+{
+  Framing framing;
+  framing.up = request.up.value_or(framing.up);
+  framing.direction = viewDirection(request.view, framing.up);
+  framing.angle = request.angle.value_or(framing.angle);
+  framing.aspect = static_cast<double>(request.picture.width) / request.picture.height;
+  const auto* set = std::get_if<PointSet>(&model);
+  return set ? frameView(*set, framing) : frameView(*meshOf(model), framing);
+}
+
+Viewpoint indoorView(const Request& request, const Model& model)
+{
+  const TriangleMesh* mesh = meshOf(model);
+  require(mesh, "-view ", request.view, " needs a mesh with faces");
+  IndoorOptions options;
+  options.up = request.up;
+  options.threads = request.common.threads;
+  options.aspect = static_cast<double>(request.picture.width) / request.picture.height;
+  Viewpoint view;
+  if (request.view == "above") {
+    view = aboveView(*mesh, options);
+  } else {
+    const std::optional<Viewpoint> inside = insideView(*mesh, options);
+    require(inside.has_value(), "no free space found inside the model: give -eye and -look");
+    view = *inside;
+  }
+  view.angle = request.angle.value_or(view.angle);
+  return view;
+}
+
+Viewpoint chooseView(const Request& request, const Model& model)
+{
+  if (request.view == "inside" || request.view == "above")
+    return indoorView(request, model);
+  if (!request.eye)
+    return wholeModelView(request, model);
+  Viewpoint view;
+  view.eye = *request.eye;
+  view.look = request.look ? *request.look : middle(model);
+  view.up = request.up.value_or(view.up);
+  view.angle = request.angle.value_or(view.angle);
+  return view;
+}
+
+Image draw(const Request& request, const Model& model, const PictureOptions& options)
+{
+  if (options.shading != Shading::Error)
+    return std::visit([&](const auto& m) { return renderPicture(m, options); }, model);
+  const TriangleMesh* mesh = meshOf(model);
+  require(mesh && mesh->faceCount() > 0, "error shading needs a mesh with faces");
+  const TriangleMesh reference = readMesh(request.reference);
+  return renderErrorPicture(*mesh, vertexDistances(*mesh, reference, options.threads), options);
+}
+
+std::string outputName(const Request& request, Shading shading)
+{
+  if (request.shadings.size() == 1)
+    return request.output;
+  const std::filesystem::path path(request.output);
+  const std::string name = shadingNames()[static_cast<std::size_t>(shading)];
+  return (path.parent_path() / (path.stem().string() + "_" + name + path.extension().string())).string();
+}
+
+void run(int argc, char** argv)
+{
+  const Request request = parse(argc, argv);
+  const Progress progress = printProgress(request.common.quiet);
+  report(progress, "read", 0.0);
+  const Model model = readModel(request);
+  std::vector<Image> pictures;
+  try {
+    PictureOptions options = request.picture;
+    options.cull_back_faces |= request.view == "above";
+    options.view = chooseView(request, model);
+    for (const Shading shading : request.shadings) {
+      report(progress, "draw " + shadingNames()[static_cast<std::size_t>(shading)],
+             0.2 + 0.7 * static_cast<double>(pictures.size()) / static_cast<double>(request.shadings.size()));
+      options.shading = shading;
+      pictures.push_back(draw(request, model, options));
+    }
+  } catch (const std::invalid_argument& error) {
+    throw std::runtime_error(request.model + ": " + error.what());
+  }
+  report(progress, "write", 0.9);
+  for (std::size_t i = 0; i < pictures.size(); ++i)
+    writeImage(outputName(request, request.shadings[i]), pictures[i]);
+  report(progress, "done", 1.0);
+}
+} // namespace
+
+int main(int argc, char** argv)
+{
+  return fresco::runTool("fresco_snapshot", [&] { run(argc, argv); });
+}
