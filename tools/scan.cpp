@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "support/tool.h"
+#include "virtual/dataset.h"
+#include <cstdio>
+using namespace fresco;
+
+namespace {
+void readImageSize(const std::string& text, DatasetOptions& options)
+{
+  int width = 0, height = 0;
+  char rest = 0;
+  if (std::sscanf(text.c_str(), "%dx%d%c", &width, &height, &rest) != 2 || width < 16 || height < 16 || width > 20000 ||
+      height > 20000)
+    throw UsageError("-images: " + text + " is not WxH with 16 to 20000 pixels each");
+  options.width = width;
+  options.height = height;
+}
+
+struct Switches {
+  bool no_veil = false, no_images = false;
+  int seed = 1;
+};
+
+void declare(Args& args, DatasetOptions& options, Switches& switches)
+{
+  args.option("stations", options.stations, "laser stations, 1..1000");
+  args.option("points", options.laser.points, "laser points per station, about");
+  args.option("noise", options.laser.noise, "deviation of the range at 4 m, metres; it grows with range and incidence");
+  args.flag("no_veil", switches.no_veil, "thin laser beams: no mixed points at depth jumps");
+  args.option("max_range", options.laser.max_range, "of the laser, metres; 0 = 30 in rooms, without limit for meshes");
+  args.option("seed", switches.seed, "of all random numbers; same seed, same bytes; >= 0");
+  args.values("images", "WxH",
+              "size of the photographs, pixels; default " + std::to_string(options.width) + "x" +
+                  std::to_string(options.height),
+              [&options](const std::vector<std::string>& words) { readImageSize(words[0], options); });
+  args.option("views", options.views, "photographs");
+  args.flag("no_images", switches.no_images, "no photographs");
+  args.option("exposure", options.exposure_spread,
+              "spread of the photographs' brightness, 0..0.9; white balance a quarter of it");
+  args.option("sensor_noise", options.sensor_noise, "of the photographs, grey levels of 255");
+  args.option("quality", options.jpeg_quality, "of the JPEG files, 1..100");
+  args.flag("truth_images", options.truth_images, "also photographs without exposure differences and noise (PNG)");
+  args.option("edge", options.max_edge, "longest side of a face of the rooms' truth, metres, 0.02..10");
+  args.note(
+      "SCENE is conference_room, apartment (two rooms and a door) or a mesh file (PLY, OBJ, VTK).\n"
+      "Writes scans/scan_NN.pcd, images/view_NNN.jpg, cameras/ (COLMAP text), truth.ply, exposures.txt, poses.txt.\n"
+      "Example: fresco_scan conference_room room -stations 6 -noise 0.003 -images 1280x960");
+}
+} // namespace
+
+int main(int argc, char** argv)
+{
+  return runTool("fresco_scan", [&] {
+    DatasetOptions options;
+    Switches switches;
+    CommonOptions common;
+    Args args("fresco_scan SCENE OUT_DIR [options]", "Virtual laser scanner and camera with known truth.");
+    declare(args, options, switches);
+    common.declare(args);
+    const auto files = args.parse(argc, argv, 2);
+    if (switches.seed < 0)
+      throw UsageError("-seed: " + std::to_string(switches.seed) + " is negative");
+    options.seed = static_cast<std::uint64_t>(switches.seed);
+    options.laser.veil = !switches.no_veil;
+    options.threads = common.threads;
+    if (switches.no_images)
+      options.views = 0;
+    writeDataset(files[0], files[1], options, printProgress(common.quiet));
+  });
+}
