@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include <fresco/common/point_set.h>
+#include <fresco/common/progress.h>
+namespace fresco {
+struct NormalOptions {
+  int k = 16;            ///< neighbours of the plane fit, the point included, >= 3; where `radius` is 0
+  float radius = 0;      ///< length, >= 0; > 0: neighbours within it, but at least the 6 nearest
+  bool edges = true;     ///< fit beside an edge to the side that the point lies on
+  Index image_width = 0; ///< > 0: the points are an image, row by row, and `k` neighbours come from around the pixel
+  int threads = 0;       ///< 0 = all cores; the result does not depend on it
+};
+
+/// By point of the input; NaN (confidence 0) for points that are not finite and where no direction can be told: fewer
+/// than three points or a line, unless a viewpoint tells it.
+struct NormalField {
+  Points normals;              ///< 3xN, unit
+  Eigen::VectorXf curvatures;  ///< N, share of the smallest of the three variances of the neighbourhood, 0..1/3
+  Eigen::VectorXf confidences; ///< N, 0..1: 1 = seen at a right angle on a surface with enough neighbours
+};
+
+/// Normals of a surface from its points: least squares planes of neighbourhoods (Hoppe et al. 1992, "Surface
+/// reconstruction from unorganized points"); next to an edge, the fit is repeated with the points that lie on the
+/// flattest plane nearby that holds the point. Normals point to where the point was seen from (set.viewpoints); where
+/// no viewpoints are known, orientNormals() turns them.
+/// @throws std::invalid_argument if an option is out of range, the set is malformed or a viewpoint is not finite
+/// @throws Cancelled
+NormalField estimateNormals(const PointSet& set, const NormalOptions& options = {}, const Progress& progress = {});
+} // namespace fresco

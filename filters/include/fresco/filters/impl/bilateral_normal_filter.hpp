@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include <fresco/common/pcl_conversions.h>
+#include <fresco/filters/bilateral_normal_filter.h>
+#include <pcl/common/io.h>
+namespace fresco {
+template <typename PointNT>
+void BilateralNormalFilter<PointNT>::applyFilter(PointCloud& output)
+{
+  const PointSet set = toPointSet(*this->input_, *this->indices_);
+  const BilateralResult result = smoothNormals(set.points, set.normals, options_);
+  if (this->fake_indices_)
+    output = *this->input_;
+  else
+    pcl::copyPointCloud(*this->input_, *this->indices_, output);
+  for (Index i = 0; i < set.size(); ++i) {
+    PointNT& point = output[static_cast<std::size_t>(i)];
+    point.getVector3fMap() = result.points.col(i);
+    point.getNormalVector3fMap() = result.normals.col(i);
+  }
+  this->removed_indices_->clear();
+}
+} // namespace fresco

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include <fresco/common/pcl_conversions.h>
+#include <fresco/common/require.h>
+#include <fresco/filters/core/neighbors.h>
+#include <fresco/filters/oriented_normal_estimation.h>
+#include <pcl/common/copy_point.h>
+#include <pcl/common/point_tests.h>
+namespace fresco {
+/// As the base class does, but without a tree, and with a default of k.
+template <typename PointInT, typename PointOutT>
+bool OrientedNormalEstimation<PointInT, PointOutT>::initCompute()
+{
+  if (!pcl::PCLBase<PointInT>::initCompute())
+    return false;
+  require(this->k_ == 0 || this->search_radius_ == 0, "normals: both radius and k are set");
+  if (this->input_->empty())
+    return false;
+  if (!this->surface_) {
+    this->fake_surface_ = true;
+    this->surface_ = this->input_;
+  }
+  return true;
+}
+
+template <typename PointInT, typename PointOutT>
+PointSet OrientedNormalEstimation<PointInT, PointOutT>::scanOf(const pcl::PointCloud<PointInT>& cloud) const
+{
+  PointSet set = toPointSet(cloud);
+  if (viewpoint_)
+    set.viewpoints = *viewpoint_;
+  else if (unknown_)
+    set.viewpoints.resize(3, 0);
+  return set;
+}
+
+/// For each index, the point of the surface whose normal it takes; -1 for non-finite points.
+template <typename PointInT, typename PointOutT>
+std::vector<Index> OrientedNormalEstimation<PointInT, PointOutT>::placesOnSurface(const PointSet& surface) const
+{
+  std::vector<Index> places;
+  if (this->surface_ == this->input_) {
+    for (const auto index : *this->indices_) {
+      require(index >= 0 && index < surface.size(), "normals: index ", index, " is not in 0..", surface.size() - 1);
+      places.push_back(index);
+    }
+    return places;
+  }
+  const PointTree tree(surface.points, options_.threads);
+  const PointSet wanted = toPointSet(*this->input_, *this->indices_);
+  for (Index i = 0; i < wanted.size(); ++i)
+    places.push_back(tree.nearest(wanted.points.col(i)).index);
+  return places;
+}
+
+template <typename PointInT, typename PointOutT>
+void OrientedNormalEstimation<PointInT, PointOutT>::computeFeature(PointCloudOut& output)
+{
+  NormalOptions options = options_;
+  if (this->search_radius_ != 0)
+    options.radius = static_cast<float>(this->search_radius_);
+  else if (this->k_ != 0)
+    options.k = this->k_;
+  if (this->surface_->isOrganized())
+    options.image_width = this->surface_->width;
+  const PointSet surface = scanOf(*this->surface_);
+  const std::vector<Index> places = placesOnSurface(surface);
+  const NormalField field = estimateNormals(surface, options);
+  output.sensor_origin_ = this->input_->sensor_origin_;
+  output.sensor_orientation_ = this->input_->sensor_orientation_;
+  confidences_.setZero(static_cast<Index>(places.size()));
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    PointOutT& point = output[i];
+    pcl::copyPoint((*this->input_)[static_cast<std::size_t>((*this->indices_)[i])], point);
+    const bool found = places[i] >= 0;
+    point.getNormalVector3fMap() =
+        found ? Eigen::Vector3f(field.normals.col(places[i])) : Eigen::Vector3f::Constant(NAN);
+    point.curvature = found ? field.curvatures[places[i]] : NAN;
+    confidences_[static_cast<Index>(i)] = found ? field.confidences[places[i]] : 0.f;
+    output.is_dense = output.is_dense && pcl::isNormalFinite(point);
+  }
+}
+} // namespace fresco

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include <fresco/common/pcl_conversions.h>
+#include <fresco/filters/veil_point_removal.h>
+namespace fresco {
+template <typename PointT>
+void VeilPointRemoval<PointT>::applyFilter(pcl::Indices& indices)
+{
+  const PointSet set = toPointSet(*this->input_, *this->indices_);
+  const Points viewpoints = viewpoint_ ? Points(*viewpoint_) : set.viewpoints;
+  std::vector<char> stays(static_cast<std::size_t>(set.size()), 0);
+  for (const Index i : withoutVeil(set.points, viewpoints, options_))
+    stays[static_cast<std::size_t>(i)] = 1;
+  indices.clear();
+  this->removed_indices_->clear();
+  for (Index i = 0; i < set.size(); ++i) {
+    const bool wanted = (stays[static_cast<std::size_t>(i)] != 0) != this->negative_ && set.points.col(i).allFinite();
+    if (wanted)
+      indices.push_back((*this->indices_)[static_cast<std::size_t>(i)]);
+    else if (this->extract_removed_indices_)
+      this->removed_indices_->push_back((*this->indices_)[static_cast<std::size_t>(i)]);
+  }
+}
+
+template <typename PointT>
+void VeilPointRemoval<PointT>::applyFilter(PointCloud& output)
+{
+  pcl::FilterIndices<PointT>::applyFilter(output);
+  if (!this->keep_organized_)
+    output.is_dense = true; // non-finite points are gone
+}
+} // namespace fresco

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include "plane_fit.h"
+#include <fresco/filters/core/neighbors.h>
+#include <vector>
+namespace fresco {
+/// Points in an order good for loops, with their neighbours.
+struct Neighborhoods {
+  Points points;            ///< finite ones, or all of an image
+  std::vector<int> columns; ///< of the input
+  NeighborLists lists;      ///< each with the point itself
+};
+
+/// Least squares planes of the lists; centres are offsets from the point.
+std::vector<PlaneFit> fitLists(const Neighborhoods& all, int threads);
+
+/// Beside an edge a neighbourhood holds points of both sides and its plane is a mean of theirs. There the fit is
+/// replaced: of the planes of the neighbours, the flattest that holds the point is taken and fitted again to the
+/// neighbours of both that lie near it. Done twice: the first time reaches the points whose neighbours lie on one side,
+/// the second time those nearer to the edge.
+void refitAtEdges(const Neighborhoods& all, std::vector<PlaneFit>& fits, int threads);
+} // namespace fresco

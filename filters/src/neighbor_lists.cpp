@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <cmath>
+#include <fresco/common/parallel.h>
+#include <fresco/common/require.h>
+#include <fresco/filters/core/neighbors.h>
+#include <iterator>
+#include <limits>
+#include <utility>
+namespace fresco {
+namespace {
+using Keys = std::vector<PointTree::Key>;
+
+/// An upper bound of the squared distance from `to` to its k-th neighbour, from that of a point nearby.
+float boundFromNearby(const Eigen::Vector3f& from, float squared_distance, const Eigen::Vector3f& to)
+{
+  const float distance = (std::sqrt(squared_distance) + (to - from).norm()) * (1 + 1e-5f);
+  return distance * distance;
+}
+
+NeighborLists evenLists(Index n, Index k)
+{
+  NeighborLists lists;
+  lists.begin.resize(static_cast<std::size_t>(n) + 1);
+  for (Index i = 0; i <= n; ++i)
+    lists.begin[i] = i * k;
+  lists.index.resize(static_cast<std::size_t>(n * k));
+  return lists;
+}
+
+/// Lists found range by range (lists_of_range.index, and counts in lists_of_range.begin) joined to one.
+NeighborLists joinLists(std::vector<NeighborLists> ranges, int threads)
+{
+  NeighborLists all;
+  all.begin.push_back(0);
+  std::vector<std::int64_t> first;
+  for (const auto& range : ranges) {
+    first.push_back(all.begin.back());
+    for (const auto count : range.begin)
+      all.begin.push_back(all.begin.back() + count);
+  }
+  all.index.resize(static_cast<std::size_t>(all.begin.back()));
+  parallelFor(
+      static_cast<Index>(ranges.size()), threads,
+      [&](Index r) {
+        std::copy(ranges[r].index.begin(), ranges[r].index.end(), all.index.begin() + first[r]);
+        ranges[r] = {}; // frees memory on the way
+      },
+      1);
+  return all;
+}
+
+/// find(i, found) for i = 0..n-1, `found` empty at first.
+template <typename Find>
+NeighborLists gatherLists(Index n, int threads, const Find& find)
+{
+  constexpr Index chunk = 2048;
+  std::vector<NeighborLists> ranges(static_cast<std::size_t>((n + chunk - 1) / chunk));
+  parallelRanges(
+      n, threads,
+      [&](Index begin, Index end) {
+        NeighborLists& range = ranges[static_cast<std::size_t>(begin / chunk)];
+        std::vector<int> found;
+        for (Index i = begin; i < end; ++i) {
+          found.clear();
+          find(i, found);
+          range.begin.push_back(static_cast<std::int64_t>(found.size()));
+          range.index.insert(range.index.end(), found.begin(), found.end());
+        }
+      },
+      chunk);
+  return joinLists(std::move(ranges), threads);
+}
+
+/// Every m-th of `keys`, and the one of `self`.
+void thinKeys(const Keys& keys, std::size_t most, int self, std::vector<int>& found)
+{
+  if (keys.size() <= most) {
+    for (const auto key : keys)
+      found.push_back(PointTree::position(key));
+    return;
+  }
+  found.push_back(self);
+  const double step = static_cast<double>(keys.size()) / static_cast<double>(most);
+  for (std::size_t j = 0; j < most; ++j) {
+    const int position = PointTree::position(keys[static_cast<std::size_t>((static_cast<double>(j) + 0.5) * step)]);
+    if (position != self)
+      found.push_back(position);
+  }
+}
+} // namespace
+
+NeighborLists nearestLists(const PointTree& tree, int k, int threads)
+{
+  require(k > 0, "neighbour search: k ", k, " is below 1");
+  const Index each = std::min<Index>(k, tree.size());
+  NeighborLists lists = evenLists(tree.size(), each);
+  parallelRanges(tree.size(), threads, [&](Index begin, Index end) {
+    Keys keys;
+    float bound = std::numeric_limits<float>::infinity();
+    for (Index i = begin; i < end; ++i) {
+      const Eigen::Vector3f query = tree.point(i);
+      if (i > begin)
+        bound = boundFromNearby(tree.point(i - 1), bound, query);
+      tree.nearestKeys(query, static_cast<int>(each), keys, bound);
+      std::sort(keys.begin(), keys.end());
+      // Distances beyond the range of float are not found; such a point is its own neighbour instead.
+      keys.resize(static_cast<std::size_t>(each), PointTree::key(std::numeric_limits<float>::infinity(), i));
+      bound = PointTree::squaredDistance(keys.back());
+      std::transform(keys.begin(), keys.end(), lists.index.begin() + lists.begin[i], PointTree::position);
+    }
+  });
+  return lists;
+}
+
+NeighborLists radiusLists(const PointTree& tree, const Eigen::VectorXf& radii, int most, int threads)
+{
+  require(most > 0, "neighbour search: ", most, " neighbours at most");
+  require(radii.size() == 1 || radii.size() == tree.size(), "neighbour search: ", radii.size(), " radii for ",
+          tree.size(), " points");
+  require(radii.size() == 0 || radii.minCoeff() >= 0, "neighbour search: a radius is negative or NaN");
+  return gatherLists(tree.size(), threads, [&](Index i, std::vector<int>& found) {
+    thread_local Keys keys;
+    tree.withinKeys(tree.point(i), radii[radii.size() == 1 ? 0 : i], keys);
+    thinKeys(keys, static_cast<std::size_t>(most), static_cast<int>(i), found);
+  });
+}
+
+NeighborLists imageLists(const Points& points, Index width, int k, int threads)
+{
+  require(k > 0, "neighbour search: k ", k, " is below 1");
+  require(width > 0 && points.cols() % width == 0, "neighbour search: no image of width ", width, " has ",
+          points.cols(), " points");
+  const Index height = points.cols() / width;
+  // A window of twice k pixels holds the k nearest unless the surface is seen at a grazing angle.
+  const Index reach = static_cast<Index>(std::ceil((std::sqrt(2.0 * k) - 1) / 2));
+  return gatherLists(points.cols(), threads, [&](Index i, std::vector<int>& found) {
+    thread_local Keys keys;
+    keys.clear();
+    const Eigen::Vector3f center = points.col(i);
+    if (!center.allFinite())
+      return;
+    const Index u = i % width, v = i / width;
+    for (Index y = std::max<Index>(0, v - reach); y <= std::min(height - 1, v + reach); ++y)
+      for (Index x = std::max<Index>(0, u - reach); x <= std::min(width - 1, u + reach); ++x) {
+        const float squared_distance = (points.col(y * width + x) - center).squaredNorm();
+        if (std::isfinite(squared_distance))
+          keys.push_back(PointTree::key(squared_distance, y * width + x));
+      }
+    std::sort(keys.begin(), keys.end());
+    keys.resize(std::min(keys.size(), static_cast<std::size_t>(k)));
+    std::transform(keys.begin(), keys.end(), std::back_inserter(found), PointTree::position);
+  });
+}
+} // namespace fresco

@@ -1,0 +1,265 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <fresco/common/parallel.h>
+#include <fresco/common/require.h>
+#include <fresco/filters/core/neighbors.h>
+namespace fresco {
+struct PointTree::Item {
+  float x[3];
+  int column;
+};
+
+/// Leaves begin .. end - 1, to be cut in two by nodes_[node].
+struct PointTree::Part {
+  Index node, begin, end;
+  Index middle() const { return begin + (end - begin + 1) / 2; }
+};
+
+PointTree::PointTree(const Points& points, int threads)
+{
+  require(points.cols() < std::numeric_limits<int>::max(), "neighbour search: ", points.cols(), " points are too many");
+  std::vector<Item> items;
+  items.reserve(static_cast<std::size_t>(points.cols()));
+  for (Index i = 0; i < points.cols(); ++i)
+    if (points.col(i).allFinite())
+      items.push_back({{points(0, i), points(1, i), points(2, i)}, static_cast<int>(i)});
+  leaves_ = (static_cast<Index>(items.size()) + leaf_size - 1) / leaf_size;
+  nodes_.resize(static_cast<std::size_t>(std::max<Index>(0, leaves_ - 1)));
+  build(items, threads);
+  columns_.resize(items.size());
+  coordinates_.assign(static_cast<std::size_t>(leaves_ * 3 * leaf_size), std::numeric_limits<float>::infinity());
+  parallelFor(size(), threads, [&](Index i) {
+    columns_[i] = items[i].column;
+    for (int axis = 0; axis < 3; ++axis)
+      coordinates_[(i / leaf_size * 3 + axis) * leaf_size + i % leaf_size] = items[i].x[axis];
+  });
+}
+
+/// Cuts level by level in parallel until there are parts enough, then each part to the end.
+void PointTree::build(std::vector<Item>& items, int threads)
+{
+  std::vector<Part> parts;
+  if (leaves_ > 1)
+    parts.push_back({0, 0, leaves_});
+  for (int level = 0; level < 7 && !parts.empty(); ++level) {
+    std::vector<std::vector<Part>> halves(parts.size());
+    parallelFor(
+        static_cast<Index>(parts.size()), threads, [&](Index p) { split(items, parts[p], halves[p]); }, 1);
+    parts.clear();
+    for (const auto& two : halves)
+      parts.insert(parts.end(), two.begin(), two.end());
+  }
+  parallelFor(
+      static_cast<Index>(parts.size()), threads,
+      [&](Index p) {
+        std::vector<Part> open = {parts[p]};
+        while (!open.empty()) {
+          const Part part = open.back();
+          open.pop_back();
+          split(items, part, open);
+        }
+      },
+      1);
+}
+
+void PointTree::split(std::vector<Item>& items, const Part& part, std::vector<Part>& parts)
+{
+  const auto begin = items.begin() + part.begin * leaf_size, middle = items.begin() + part.middle() * leaf_size;
+  const auto end = items.begin() + std::min<Index>(part.end * leaf_size, static_cast<Index>(items.size()));
+  float low[3], high[3];
+  for (int axis = 0; axis < 3; ++axis)
+    low[axis] = high[axis] = begin->x[axis];
+  for (auto item = begin; item != end; ++item)
+    for (int axis = 0; axis < 3; ++axis) {
+      low[axis] = std::min(low[axis], item->x[axis]);
+      high[axis] = std::max(high[axis], item->x[axis]);
+    }
+  int axis = 0;
+  for (int other = 1; other < 3; ++other)
+    if (high[other] - low[other] > high[axis] - low[axis])
+      axis = other;
+  const auto less = [axis](const Item& a, const Item& b) { return a.x[axis] < b.x[axis]; };
+  std::nth_element(begin, middle, end, less);
+  nodes_[part.node] = {std::max_element(begin, middle, less)->x[axis], middle->x[axis], axis};
+  if (part.middle() - part.begin > 1)
+    parts.push_back({part.node + 1, part.begin, part.middle()});
+  if (part.end - part.middle() > 1)
+    parts.push_back({part.node + part.middle() - part.begin, part.middle(), part.end});
+}
+
+Points PointTree::points() const
+{
+  Points sorted(3, size());
+  for (Index i = 0; i < size(); ++i)
+    sorted.col(i) = point(i);
+  return sorted;
+}
+
+float PointTree::squaredDistance(Key key)
+{
+  const auto bits = static_cast<std::uint32_t>(key >> 32);
+  float value;
+  std::memcpy(&value, &bits, sizeof value);
+  return value;
+}
+
+PointTree::Key PointTree::key(float squared_distance, Index position)
+{
+  std::uint32_t bits;
+  std::memcpy(&bits, &squared_distance, sizeof bits);
+  return static_cast<Key>(bits) << 32 | static_cast<std::uint32_t>(position);
+}
+
+namespace {
+
+/// The squared distances of a leaf are offered to a collector, which keeps what is closer than its `bound`.
+struct NearestOne {
+  float bound;
+  Index position = -1;
+  void offer(const float* squared_distances, Index first, Index count)
+  {
+    for (Index i = 0; i < count; ++i)
+      if (squared_distances[i] < bound) {
+        bound = squared_distances[i];
+        position = first + i;
+      }
+  }
+};
+
+struct NearestFew {
+  std::vector<PointTree::Key>& keys; ///< as large as it may become
+  std::size_t k;
+  float bound;
+  std::size_t size = 0;
+  void offer(const float* squared_distances, Index first, Index count)
+  {
+    if (size + static_cast<std::size_t>(count) > keys.size())
+      shrink();
+    for (Index i = 0; i < count; ++i) {
+      keys[size] = PointTree::key(squared_distances[i], first + i);
+      size += squared_distances[i] < bound;
+    }
+  }
+  void shrink()
+  {
+    if (size <= k)
+      return;
+    std::nth_element(keys.begin(), keys.begin() + static_cast<std::ptrdiff_t>(k) - 1,
+                     keys.begin() + static_cast<std::ptrdiff_t>(size));
+    size = k;
+    bound = PointTree::squaredDistance(keys[k - 1]);
+  }
+};
+
+struct AllWithin {
+  std::vector<PointTree::Key>& keys;
+  float bound;
+  void offer(const float* squared_distances, Index first, Index count)
+  {
+    for (Index i = 0; i < count; ++i)
+      if (squared_distances[i] < bound)
+        keys.push_back(PointTree::key(squared_distances[i], first + i));
+  }
+};
+} // namespace
+
+/// Visits the leaves that may hold points closer than collector.bound, the near side first. The distance to a box is
+/// updated with each cut (Arya & Mount 1993, "Algorithms for fast vector quantization").
+template <typename Collector>
+void PointTree::search(const Eigen::Vector3f& query, Collector& collector) const
+{
+  struct Open {
+    Part part;
+    float outside[3], squared_distance; // squared, per axis and in all
+  };
+  if (size() == 0 || !query.allFinite())
+    return;
+  Open stack[64];
+  int height = 0;
+  stack[height++] = {{0, 0, leaves_}, {0, 0, 0}, 0};
+  while (height > 0) {
+    Open open = stack[--height];
+    if (!(open.squared_distance < collector.bound))
+      continue;
+    while (open.part.end - open.part.begin > 1) {
+      const Node& node = nodes_[open.part.node];
+      const Index middle = open.part.middle();
+      const float x = query[node.axis];
+      const Part left = {open.part.node + 1, open.part.begin, middle};
+      const Part right = {open.part.node + middle - open.part.begin, middle, open.part.end};
+      const bool left_first = x + x < node.low + node.high;
+      const float gap = left_first ? node.high - x : x - node.low;
+      Open& other = stack[height];
+      other = open;
+      other.part = left_first ? right : left;
+      if (gap > 0) {
+        other.squared_distance += std::max(0.f, gap * gap - other.outside[node.axis]);
+        other.outside[node.axis] = std::max(other.outside[node.axis], gap * gap);
+      }
+      // Rounding must not cut off a point that is as near as the bound.
+      height += other.squared_distance * (1.f - 1e-6f) < collector.bound;
+      open.part = left_first ? left : right;
+    }
+    const float* leaf = coordinates_.data() + open.part.begin * 3 * leaf_size;
+    float squared_distances[leaf_size];
+    for (Index i = 0; i < leaf_size; ++i) {
+      const float dx = leaf[i] - query[0], dy = leaf[leaf_size + i] - query[1], dz = leaf[2 * leaf_size + i] - query[2];
+      squared_distances[i] = dx * dx + dy * dy + dz * dz;
+    }
+    collector.offer(squared_distances, open.part.begin * leaf_size, leaf_size);
+  }
+}
+
+Neighbor PointTree::nearest(const Eigen::Vector3f& query, float max_distance) const
+{
+  NearestOne collector{max_distance * max_distance};
+  search(query, collector);
+  return {collector.position < 0 ? -1 : columns_[collector.position], collector.bound};
+}
+
+void PointTree::nearestKeys(const Eigen::Vector3f& query, int k, std::vector<Key>& found, float bound) const
+{
+  require(k > 0, "neighbour search: k ", k, " is below 1");
+  found.resize(static_cast<std::size_t>(std::min<Index>(k, size())) * 3 + 64);
+  NearestFew collector{found, static_cast<std::size_t>(k),
+                       std::nextafter(bound, std::numeric_limits<float>::infinity())};
+  search(query, collector);
+  collector.shrink();
+  found.resize(collector.size);
+}
+
+void PointTree::withinKeys(const Eigen::Vector3f& query, float radius, std::vector<Key>& found) const
+{
+  require(radius >= 0, "neighbour search: radius ", radius, " is negative or NaN");
+  found.clear();
+  AllWithin collector{found, std::nextafter(radius * radius, std::numeric_limits<float>::infinity())};
+  search(query, collector);
+  std::sort(found.begin(), found.end(), [](Key a, Key b) { return position(a) < position(b); });
+}
+
+namespace {
+void toNeighbors(std::vector<PointTree::Key>& keys, const std::vector<int>& columns, std::vector<Neighbor>& found)
+{
+  std::sort(keys.begin(), keys.end());
+  found.clear();
+  for (const auto key : keys)
+    found.push_back({columns[PointTree::position(key)], PointTree::squaredDistance(key)});
+}
+} // namespace
+
+void PointTree::nearest(const Eigen::Vector3f& query, int k, std::vector<Neighbor>& found) const
+{
+  thread_local std::vector<Key> keys;
+  nearestKeys(query, k, keys);
+  toNeighbors(keys, columns_, found);
+}
+
+void PointTree::within(const Eigen::Vector3f& query, float radius, std::vector<Neighbor>& found) const
+{
+  thread_local std::vector<Key> keys;
+  withinKeys(query, radius, keys);
+  toNeighbors(keys, columns_, found);
+}
+} // namespace fresco

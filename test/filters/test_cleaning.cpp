@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "virtual_scan.h"
+#include <algorithm>
+#include <array>
+#include <fresco/common/point_io.h>
+#include <fresco/filters/core/outliers.h>
+#include <fresco/filters/core/veil_points.h>
+#include <fresco/filters/core/voxel_thinning.h>
+#include <map>
+#include <numeric>
+namespace fresco {
+namespace {
+using test::nan;
+
+std::vector<Index> allIndices(Index n)
+{
+  std::vector<Index> indices(static_cast<std::size_t>(n));
+  std::iota(indices.begin(), indices.end(), Index(0));
+  return indices;
+}
+
+TEST(Outliers, LonePointsGoAndTheSurfaceStays)
+{
+  Points points = test::unitSphere(5000, 1).points;
+  points.leftCols(5) = 2 + 3 * test::randomPoints(5, 3).array().abs();
+  for (const bool relative : {false, true}) {
+    OutlierOptions options;
+    options.sigma = 5;
+    options.relative = relative;
+    const auto kept = withoutOutliers(points, options);
+    EXPECT_GT(kept.size(), 4960u);
+    EXPECT_GE(kept.front(), 5) << relative;
+    options.threads = 3;
+    EXPECT_EQ(withoutOutliers(points, options), kept);
+  }
+}
+
+TEST(Outliers, RelativeJudgementKeepsTheSparseHalf)
+{
+  Points points = test::flatSquare(20000, 1).points;
+  for (Index i = 0; i < 200; ++i)
+    points(0, i) += 3; // a part that is a hundred times sparser
+  OutlierOptions options;
+  options.sigma = 3;
+  const auto sparse = [](const std::vector<Index>& kept) {
+    return std::count_if(kept.begin(), kept.end(), [](Index i) { return i < 200; });
+  };
+  EXPECT_LT(sparse(withoutOutliers(points, options)), 20);
+  options.relative = true;
+  EXPECT_GT(sparse(withoutOutliers(points, options)), 180);
+}
+
+TEST(Outliers, OddInput)
+{
+  EXPECT_TRUE(withoutOutliers(Points(3, 0)).empty());
+  EXPECT_EQ(withoutOutliers(Points::Zero(3, 1)).size(), 1u);
+  EXPECT_EQ(withoutOutliers(Points::Ones(3, 100)).size(), 100u);
+  Points points = test::randomPoints(10, 1);
+  points(1, 4) = nan;
+  const auto kept = withoutOutliers(points); // k exceeds the number of points
+  EXPECT_EQ(std::count(kept.begin(), kept.end(), 4), 0);
+  OutlierOptions options;
+  options.k = 0;
+  EXPECT_THROW(withoutOutliers(points, options), std::invalid_argument);
+  options = {};
+  options.sigma = nan;
+  EXPECT_THROW(withoutOutliers(points, options), std::invalid_argument);
+}
+
+TEST(VeilPoints, TheVeilGoesAndLegsAndEdgesStay)
+{
+  const auto scan = test::scanWithVeil(0.005f, 0.002f, 1);
+  const auto kept = withoutVeil(scan.points, Eigen::Vector3f::Zero());
+  std::vector<bool> stays(scan.veil.size(), false);
+  for (const Index i : kept)
+    stays[static_cast<std::size_t>(i)] = true;
+  Index veil = 0, found = 0, wrong = 0, legs = 0, lost_legs = 0;
+  for (std::size_t i = 0; i < stays.size(); ++i) {
+    veil += scan.veil[i];
+    found += scan.veil[i] && !stays[i];
+    wrong += !scan.veil[i] && !stays[i];
+    legs += scan.leg[i];
+    lost_legs += scan.leg[i] && !stays[i];
+  }
+  EXPECT_GT(veil, 100);
+  EXPECT_GT(found, 0.9 * veil);
+  EXPECT_LT(wrong, 0.05 * found);
+  EXPECT_GT(legs, 100);
+  EXPECT_EQ(lost_legs, 0);
+}
+
+TEST(VeilPoints, GrazingSurfacesStay)
+{
+  Points floor = 4 * test::flatSquare(40000, 5).points;
+  floor.row(2).setConstant(-0.8f);
+  Points noisy = floor;
+  std::mt19937 generator(1);
+  std::normal_distribution<float> normal(0, 0.002f);
+  for (Index i = 0; i < noisy.cols(); ++i)
+    noisy.col(i) *= 1 + normal(generator) / noisy.col(i).norm();
+  EXPECT_GT(withoutVeil(noisy, Eigen::Vector3f::Zero()).size(), 39960u);
+}
+
+TEST(VeilPoints, FollowMotionThreadsAndViewpoints)
+{
+  const auto scan = test::scanWithVeil(0.01f, 0.002f, 1);
+  const auto kept = withoutVeil(scan.points, Eigen::Vector3f::Zero());
+  VeilOptions options;
+  options.threads = 4;
+  EXPECT_EQ(withoutVeil(scan.points, Eigen::Vector3f::Zero(), options), kept);
+  // Two scans from two places: each is judged by itself.
+  const Index n = scan.points.cols();
+  const Eigen::Isometry3f motion = test::someMotion();
+  Points both(3, 2 * n), viewpoints = Points::Zero(3, 2 * n);
+  both << scan.points, (motion.linear() * scan.points).colwise() + motion.translation();
+  viewpoints.rightCols(n).colwise() = Eigen::Vector3f(motion.translation());
+  const auto two = withoutVeil(both, viewpoints);
+  const auto first = std::count_if(two.begin(), two.end(), [n](Index i) { return i < n; });
+  EXPECT_EQ(first, static_cast<std::ptrdiff_t>(kept.size()));
+  EXPECT_NEAR(static_cast<double>(two.size()), 2.0 * static_cast<double>(kept.size()), 4);
+}
+
+TEST(VeilPoints, OddInput)
+{
+  const Points origin = Eigen::Vector3f::Zero();
+  EXPECT_TRUE(withoutVeil(Points(3, 0), origin).empty());
+  EXPECT_EQ(withoutVeil(Points::Zero(3, 300), origin).size(), 300u);
+  EXPECT_EQ(withoutVeil(Points::Ones(3, 300), origin).size(), 300u);
+  Points points = test::randomPoints(300, 1);
+  points(0, 7) = nan;
+  const auto kept = withoutVeil(points, points.cwiseAbs().array().isNaN().select(0, points)); // a viewpoint each
+  EXPECT_EQ(kept.size(), 299u);
+  EXPECT_THROW(withoutVeil(points, Points(3, 0)), std::invalid_argument);
+  EXPECT_THROW(withoutVeil(points, Points::Constant(3, 1, nan)), std::invalid_argument);
+  const auto rejects = [&](auto change) {
+    VeilOptions options;
+    change(options);
+    EXPECT_THROW(withoutVeil(points, origin, options), std::invalid_argument);
+  };
+  rejects([](VeilOptions& o) { o.angle = 0; });
+  rejects([](VeilOptions& o) { o.angle = 90; });
+  rejects([](VeilOptions& o) { o.noise = -1; });
+  rejects([](VeilOptions& o) { o.k = 3; });
+}
+
+TEST(VoxelThinning, OnePointPerCellTheNearestToTheCentroid)
+{
+  Points points = test::randomPoints(5000, 1);
+  points.col(17).setConstant(nan);
+  const float cell = 0.2f;
+  const VoxelThinning thin = thinByVoxel(points, cell);
+  Eigen::Vector3f low = Eigen::Vector3f::Constant(9);
+  for (Index i = 0; i < points.cols(); ++i)
+    if (i != 17)
+      low = low.cwiseMin(points.col(i));
+  const auto cellOf = [&](Index i) {
+    const Eigen::Vector3i c = ((points.col(i) - low) / cell).array().floor().cast<int>();
+    return std::array{c[0], c[1], c[2]};
+  };
+  std::map<std::array<int, 3>, std::vector<Index>> cells;
+  for (const Index i : allIndices(points.cols()))
+    if (i != 17)
+      cells[cellOf(i)].push_back(i);
+  ASSERT_EQ(thin.kept.size(), cells.size());
+  EXPECT_TRUE(std::is_sorted(thin.kept.begin(), thin.kept.end()));
+  for (std::size_t v = 0; v < thin.kept.size(); ++v) {
+    const auto& members = cells[cellOf(thin.kept[v])];
+    Eigen::Vector3f mean = Eigen::Vector3f::Zero();
+    for (const Index i : members)
+      mean += points.col(i) / static_cast<float>(members.size());
+    EXPECT_LT((mean - thin.centroids.col(static_cast<Index>(v))).norm(), 1e-5f);
+    for (const Index i : members)
+      EXPECT_LE((points.col(thin.kept[v]) - mean).norm(), (points.col(i) - mean).norm() + 1e-5f);
+  }
+}
+
+TEST(VoxelThinning, OddInput)
+{
+  EXPECT_TRUE(thinByVoxel(Points(3, 0), 1).kept.empty());
+  EXPECT_TRUE(thinByVoxel(Points::Constant(3, 9, nan), 1).kept.empty());
+  EXPECT_EQ(thinByVoxel(Points::Ones(3, 50), 0.1f).kept, std::vector<Index>{0});
+  const Points points = test::randomPoints(50, 1);
+  EXPECT_EQ(thinByVoxel(points, 100).kept.size(), 1u);
+  EXPECT_THROW(thinByVoxel(points, 0), std::invalid_argument);
+  EXPECT_THROW(thinByVoxel(points, nan), std::invalid_argument);
+  EXPECT_THROW(thinByVoxel(points, 1e-7f), std::invalid_argument);
+  EXPECT_EQ(thinByVoxel(points, 0.3f, 1).kept, thinByVoxel(points, 0.3f, 4).kept);
+}
+
+TEST(VeilPoints, RealScanLosesFewPoints)
+{
+  FRESCO_NEED_DATA("lobby/room_scan1.pcd");
+  const PointSet set = readPoints(test::dataFolder() + "/lobby/room_scan1.pcd");
+  const auto kept = withoutVeil(set.points, set.viewpoints);
+  EXPECT_GT(kept.size(), 0.95 * static_cast<double>(set.size()));
+  EXPECT_LT(kept.size(), static_cast<std::size_t>(set.size()));
+}
+} // namespace
+} // namespace fresco

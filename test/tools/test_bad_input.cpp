@@ -1,0 +1,253 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Every tool against what users get wrong: exit status 1 or 2, one line on stderr that names file and reason, no output
+// left behind, no death by a signal.
+#include "common/shapes.h"
+#include "test_data.h"
+#include <algorithm>
+#include <fresco/common/colmap.h>
+#include <fresco/common/file.h>
+#include <fresco/common/image.h>
+#include <fresco/common/mesh_io.h>
+#include <fresco/common/point_io.h>
+#include <fresco/common/poses.h>
+#include <fstream>
+#include <sys/wait.h>
+namespace {
+using namespace fresco;
+namespace fs = std::filesystem;
+
+struct Outcome {
+  int status = 0; ///< exit status, or 128 + signal
+  std::string out, err;
+};
+
+void put(const std::string& path, const std::string& text) { std::ofstream(path, std::ios::binary) << text; }
+
+std::string get(const std::string& path)
+{
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+/// Runs `fresco_NAME ARGUMENTS` in the folder.
+Outcome run(const std::string& folder, const std::string& command)
+{
+  const std::string bin = std::string(FRESCO_BINARY_DIR) + "/bin/fresco_";
+  const std::string log = folder + "/.log";
+  const std::string line = "cd '" + folder + "' && '" + bin + command.substr(0, command.find(' ')) + "'" +
+                           command.substr(std::min(command.size(), command.find(' '))) + " >" + log + ".out 2>" + log +
+                           ".err </dev/null";
+  const int status = std::system(line.c_str());
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), get(log + ".out"), get(log + ".err")};
+}
+
+/// Files in the folder and below, hidden ones included, without the logs.
+std::vector<std::string> listing(const std::string& folder)
+{
+  std::vector<std::string> names;
+  for (const auto& entry : fs::recursive_directory_iterator(folder))
+    if (entry.is_regular_file() && entry.path().filename().string().rfind(".log", 0) != 0)
+      names.push_back(entry.path().string());
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+/// A folder with sound files: mesh.ply, cloud.pcd (with normals), poses.txt, cameras/, images/.
+std::string soundFolder()
+{
+  std::string folder = test::scratchFolder();
+  writeMesh(folder + "/mesh.ply", test::sphere(1.f, 3));
+  PointSet cloud;
+  cloud.points = test::sphere(1.f, 3).vertices;
+  cloud.normals = cloud.points;
+  cloud.viewpoints = Points::Zero(3, 1);
+  writePoints(folder + "/cloud.pcd", cloud);
+  writePoses(folder + "/poses.txt", {Eigen::Matrix4d::Identity().eval()});
+  CameraSet cameras;
+  cameras.cameras = {{64, 48, 60, 60, 32, 24, 0, 0, 0, 0}};
+  View view;
+  view.image = "a.png";
+  view.T_camera_world.translation().z() = 4;
+  cameras.views = {view};
+  writeColmap(folder + "/cameras", cameras);
+  fs::create_directory(folder + "/images");
+  writeImage(folder + "/images/a.png", Image(64, 48, 3, 128));
+  put(folder + "/empty.ply", "");
+  put(folder + "/empty.pcd", "");
+  const std::string mesh = get(folder + "/mesh.ply"), points = get(folder + "/cloud.pcd");
+  put(folder + "/cut.ply", mesh.substr(0, mesh.size() * 2 / 3));
+  put(folder + "/cut.pcd", points.substr(0, points.size() * 2 / 3));
+  put(folder + "/noise.ply", std::string("\x01\x02 this is no file of any kind \xff\x00\x80", 33));
+  put(folder + "/noise.pcd", std::string("\x01\x02 this is no file of any kind \xff\x00\x80", 33));
+  put(folder + "/pointless.pcd", "VERSION .7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 0\nHEIGHT 1\n"
+                                 "VIEWPOINT 0 0 0 1 0 0 0\nPOINTS 0\nDATA ascii\n");
+  put(folder + "/pointless.ply", "ply\nformat ascii 1.0\nelement vertex 0\nproperty float x\nproperty float y\n"
+                                 "property float z\nend_header\n");
+  put(folder + "/mesh.doc", "mesh");
+  return folder;
+}
+
+/// `command` ends with 1, says one line that contains `name`, and leaves the folder as it was.
+void expectRefused(const std::string& folder, const std::string& command, const std::string& name)
+{
+  const auto before = listing(folder);
+  const Outcome outcome = run(folder, command + " -quiet");
+  EXPECT_EQ(outcome.status, 1) << command << "\n" << outcome.err;
+  EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << command << "\n" << outcome.err;
+  EXPECT_NE(outcome.err.find(name), std::string::npos) << command << "\n" << outcome.err;
+  EXPECT_EQ(listing(folder), before) << command;
+}
+
+const std::vector<std::string>& tools()
+{
+  static const std::vector<std::string> all = {"scan",    "filter",  "normals",  "register", "reconstruct",
+                                               "texture", "compare", "snapshot", "model"};
+  return all;
+}
+
+TEST(Tools, HelpIsPrintedAndWrongUsageIsTwo)
+{
+  const std::string folder = soundFolder();
+  for (const std::string& tool : tools()) {
+    const Outcome help = run(folder, tool + " -h");
+    EXPECT_EQ(help.status, 0) << tool;
+    EXPECT_EQ(help.err, "") << tool;
+    for (const char* part : {"usage: fresco_", "-threads", "-quiet"})
+      EXPECT_NE(help.out.find(part), std::string::npos) << tool << ": " << part;
+    for (const char* wrong : {"", " -nonsense 1 a b c d", " a b c d e f g -threads", " a b c d -threads x"}) {
+      const Outcome outcome = run(folder, tool + wrong);
+      EXPECT_EQ(outcome.status, 2) << tool << wrong << "\n" << outcome.err;
+      EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << tool << wrong << "\n" << outcome.err;
+    }
+  }
+}
+
+TEST(Tools, BadClouds)
+{
+  const std::string folder = soundFolder();
+  for (const std::string bad :
+       {"missing.pcd", "empty.pcd", "cut.pcd", "noise.pcd", "pointless.pcd", "cut.ply", "mesh.doc", "images"})
+    for (const std::string command :
+         {"filter BAD out.pcd", "normals BAD out.pcd", "reconstruct BAD out.ply", "register BAD cloud.pcd -o out"}) {
+      std::string line = command;
+      line.replace(line.find("BAD"), 3, bad);
+      expectRefused(folder, line, bad);
+    }
+}
+
+TEST(Tools, BadMeshes)
+{
+  const std::string folder = soundFolder();
+  for (const std::string bad :
+       {"missing.ply", "empty.ply", "cut.ply", "noise.ply", "pointless.ply", "mesh.doc", "images"})
+    for (const std::string command : {"compare BAD mesh.ply", "compare mesh.ply BAD", "snapshot BAD out.png",
+                                      "texture BAD cameras images out.obj", "scan BAD out"}) {
+      std::string line = command;
+      line.replace(line.find("BAD"), 3, bad);
+      expectRefused(folder, line, bad);
+    }
+  expectRefused(folder, "compare cloud.pcd mesh.ply", "cloud.pcd");
+  expectRefused(folder, "snapshot mesh.ply out.png -shading error -reference missing.ply", "missing.ply");
+  expectRefused(folder, "snapshot mesh.ply out.png -shading texture", "mesh.ply");
+}
+
+TEST(Tools, UnwritableOutput)
+{
+  const std::string folder = soundFolder();
+  put(folder + "/file", "in the way");
+  fs::create_directories(folder + "/in/scans");
+  fs::copy(folder + "/cloud.pcd", folder + "/in/scans");
+  for (const char* name : {"cameras", "images", "poses.txt"})
+    fs::copy(folder + "/" + name, folder + "/in/" + name);
+  for (const std::string command :
+       {"filter cloud.pcd none/out.pcd", "normals cloud.pcd none/out.pcd",
+        "reconstruct cloud.pcd none/out.ply -depth 4", "texture mesh.ply cameras images none/out.obj",
+        "texture mesh.ply cameras images none/out.glb", "snapshot mesh.ply none/out.png",
+        "compare mesh.ply mesh.ply -json none/out.json", "compare mesh.ply mesh.ply -colored none/out.ply"})
+    expectRefused(folder, command, "none/out");
+  for (const std::string command :
+       {"register cloud.pcd -o file", "scan mesh.ply file -stations 1", "model in file -poses"})
+    expectRefused(folder, command, "file");
+  EXPECT_EQ(get(folder + "/file"), "in the way");
+}
+
+TEST(Tools, WrongKindOfOutput)
+{
+  const std::string folder = soundFolder();
+  for (const std::string command :
+       {"filter cloud.pcd out.doc", "normals cloud.pcd out.doc", "reconstruct cloud.pcd out.doc -depth 4",
+        "texture mesh.ply cameras images out.doc", "snapshot mesh.ply out.doc"}) {
+    const auto before = listing(folder);
+    const Outcome outcome = run(folder, command + " -quiet");
+    EXPECT_TRUE(outcome.status == 1 || outcome.status == 2) << command << outcome.status;
+    EXPECT_NE(outcome.err.find("out.doc"), std::string::npos) << command << outcome.err;
+    EXPECT_EQ(listing(folder), before) << command;
+  }
+}
+
+TEST(Tools, PointsThatAreNotFinite)
+{
+  const std::string folder = soundFolder();
+  PointSet cloud = readPoints(folder + "/cloud.pcd");
+  cloud.points.col(5).setConstant(std::numeric_limits<float>::quiet_NaN());
+  cloud.points(1, 9) = std::numeric_limits<float>::infinity();
+  cloud.normals.col(20).setConstant(std::numeric_limits<float>::quiet_NaN());
+  writePoints(folder + "/some.pcd", cloud);
+  for (const std::string command :
+       {"filter some.pcd out.pcd -outliers 8 2", "normals some.pcd out.pcd", "reconstruct some.pcd out.ply -depth 4"})
+    EXPECT_EQ(run(folder, command).status, 0) << command;
+  cloud.points.setConstant(std::numeric_limits<float>::quiet_NaN());
+  writePoints(folder + "/all.pcd", cloud);
+  fs::remove(folder + "/out.pcd");
+  fs::remove(folder + "/out.ply");
+  for (const std::string command :
+       {"normals all.pcd out.pcd", "reconstruct all.pcd out.ply", "register all.pcd cloud.pcd -o out"}) {
+    const Outcome outcome = run(folder, command + " -quiet");
+    EXPECT_TRUE(outcome.status == 1 || (outcome.status == 0 && command[0] == 'n')) << command << outcome.err;
+  }
+}
+
+TEST(Tools, CloudWithoutNormalsCannotBeReconstructed)
+{
+  const std::string folder = soundFolder();
+  PointSet bare;
+  bare.points = test::sphere(1.f, 3).vertices;
+  writePoints(folder + "/bare.pcd", bare);
+  expectRefused(folder, "reconstruct bare.pcd out.ply", "bare.pcd");
+}
+
+TEST(Tools, PhotographsThatDoNotFit)
+{
+  const std::string folder = soundFolder();
+  writeImage(folder + "/images/a.png", Image(32, 24, 3, 128));
+  expectRefused(folder, "texture mesh.ply cameras images out.obj", "a.png");
+  put(folder + "/images/a.png", "no image");
+  expectRefused(folder, "texture mesh.ply cameras images out.obj", "a.png");
+  fs::remove(folder + "/images/a.png");
+  expectRefused(folder, "texture mesh.ply cameras images out.obj", "a.png");
+  expectRefused(folder, "texture mesh.ply images images out.obj", "images");
+  put(folder + "/cameras/images.txt", "1 0 0 0 0 0 0 4 1 a.png\n\n");
+  expectRefused(folder, "texture mesh.ply cameras images out.obj", "images.txt");
+}
+
+TEST(Tools, ModelInputThatDoesNotFit)
+{
+  const std::string folder = soundFolder();
+  expectRefused(folder, "model missing out", "missing");
+  expectRefused(folder, "model images out", "images");
+  fs::create_directories(folder + "/in/scans");
+  expectRefused(folder, "model in out", "scans");
+  fs::copy(folder + "/cloud.pcd", folder + "/in/scans/scan_00.pcd");
+  expectRefused(folder, "model in out", "cameras");
+  expectRefused(folder, "model in out -poses", "poses.txt");
+  fs::copy(folder + "/cameras", folder + "/in/cameras");
+  expectRefused(folder, "model in out", "a.png");
+  writePoses(folder + "/in/poses.txt", {Pose(), Pose()});
+  expectRefused(folder, "model in out", "poses.txt");
+  fs::create_directory(folder + "/rgbd");
+  put(folder + "/rgbd/camera-intrinsics.txt", "585 0 320\n0 585 240\n0 0 1\n");
+  expectRefused(folder, "model rgbd out", "rgbd");
+  put(folder + "/rgbd/frame-000000.depth.png", "no image");
+  expectRefused(folder, "model rgbd out", "depth.png");
+}
+} // namespace

@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "support/tool.h"
+#include <algorithm>
+#include <cstring>
+#include <fresco/common/cloud_file.h>
+#include <fresco/common/require.h>
+#include <fresco/filters/core/outliers.h>
+#include <fresco/filters/core/veil_points.h>
+#include <fresco/filters/core/voxel_thinning.h>
+#include <numeric>
+using namespace fresco;
+
+namespace {
+struct FilterOptions {
+  OutlierOptions outliers;
+  VeilOptions veil;
+  float cell = 0; // metres
+  Eigen::Vector3d viewpoint = Eigen::Vector3d::Zero();
+  bool centroid = false, keep_organized = false, removed = false;
+  void declare(Args& args);
+};
+
+void FilterOptions::declare(Args& args)
+{
+  args.values(
+      "outliers", "K SIGMA",
+      "remove points whose mean distance to their K neighbours exceeds the mean of all points by more than SIGMA "
+      "standard deviations",
+      [this](const std::vector<std::string>& words) {
+        outliers.k = static_cast<int>(std::clamp(Args::integer("outliers", words[0]), 0LL, 1000000LL));
+        outliers.sigma = static_cast<float>(Args::number("outliers", words[1]));
+      });
+  args.flag("relative", outliers.relative,
+            "for -outliers: judge distances against those of the neighbours, so that sparse parts of a scan stay");
+  args.option(
+      "veil", veil.angle,
+      "remove the points in the air that a laser leaves at depth jumps: those whose way to nearly all neighbouring "
+      "beams' points leaves their own beam at less than this angle, degrees, above 0 and below 90");
+  args.option("noise", veil.noise, "for -veil: deviation of the ranges, metres; 0 = measured from the scan");
+  args.values("viewpoint", "X Y Z",
+              "for -veil: where the scanner stood; default: fields vp_x vp_y vp_z, else the header of the file",
+              [this](const std::vector<std::string>& words) {
+                for (int axis = 0; axis < 3; ++axis)
+                  viewpoint[axis] = Args::number("viewpoint", words[axis]);
+              });
+  args.option("voxel", cell, "keep one point per cube of this side, metres: the one nearest to the centroid");
+  args.flag("centroid", centroid, "for -voxel: move the point kept to the centroid");
+  args.flag("keep_organized", keep_organized, "removed points become NaN in their place");
+  args.flag("removed", removed, "write the points that would be removed instead");
+  args.note(
+      "The steps run in the order veil, outliers, voxel; only those given run. Points that are not finite are always\n"
+      "removed. Every field of the points that stay is kept.\n"
+      "Example: fresco_filter scan.pcd clean.pcd -veil 10 -outliers 16 2 -voxel 0.005");
+}
+
+void validate(const Args& args, const FilterOptions& options)
+{
+  if (args.given("outliers") && options.outliers.k < 1)
+    throw UsageError("-outliers: K " + std::to_string(options.outliers.k) + " is below 1");
+  if (!(options.veil.angle > 0 && options.veil.angle < 90))
+    throw UsageError("-veil: " + std::to_string(options.veil.angle) + " is not above 0 and below 90 degrees");
+  if (!(options.veil.noise >= 0))
+    throw UsageError("-noise: " + std::to_string(options.veil.noise) + " is negative");
+  if (args.given("voxel") && !(options.cell > 0))
+    throw UsageError("-voxel: " + std::to_string(options.cell) + " is not above 0");
+}
+
+/// The points of a cloud that are left, with their places in it.
+struct Remaining {
+  PointSet set;
+  std::vector<Index> columns;
+
+  void keep(const std::vector<Index>& indices)
+  {
+    set = selectPoints(set, indices);
+    std::vector<Index> kept;
+    for (const Index i : indices)
+      kept.push_back(columns[i]);
+    columns.swap(kept);
+  }
+};
+
+std::vector<Index> finitePoints(const PointSet& set)
+{
+  std::vector<Index> finite;
+  for (Index i = 0; i < set.size(); ++i)
+    if (set.points.col(i).allFinite())
+      finite.push_back(i);
+  return finite;
+}
+
+/// Writes `value` into field `name`, of type float or double, of a point.
+void setValue(pcl::PCLPointCloud2& cloud, Index point, const std::string& name, double value)
+{
+  for (const auto& field : cloud.fields)
+    if (field.name == name) {
+      auto* at = cloud.data.data() + static_cast<std::size_t>(point) * cloud.point_step + field.offset;
+      const auto narrow = static_cast<float>(value);
+      if (field.datatype == pcl::PCLPointField::FLOAT64)
+        std::memcpy(at, &value, sizeof value);
+      else if (field.datatype == pcl::PCLPointField::FLOAT32)
+        std::memcpy(at, &narrow, sizeof narrow);
+      else
+        throw std::runtime_error("field " + name + " is neither float nor double");
+    }
+}
+
+void setPosition(pcl::PCLPointCloud2& cloud, Index point, const Eigen::Vector3d& position)
+{
+  const char* const names[] = {"x", "y", "z"};
+  for (int axis = 0; axis < 3; ++axis)
+    setValue(cloud, point, names[axis], position[axis]);
+}
+
+/// Keeps the points named by `columns`, ascending.
+void keepPoints(pcl::PCLPointCloud2& cloud, const std::vector<Index>& columns)
+{
+  std::vector<std::uint8_t> data;
+  data.reserve(columns.size() * cloud.point_step);
+  for (const Index column : columns) {
+    const auto first = cloud.data.begin() + static_cast<std::ptrdiff_t>(column) * cloud.point_step;
+    data.insert(data.end(), first, first + cloud.point_step);
+  }
+  cloud.data.swap(data);
+  cloud.width = static_cast<std::uint32_t>(columns.size());
+  cloud.height = 1;
+  cloud.row_step = cloud.width * cloud.point_step;
+  cloud.is_dense = 1;
+}
+
+void blankOthers(pcl::PCLPointCloud2& cloud, const std::vector<Index>& columns)
+{
+  std::size_t next = 0;
+  const Index n = static_cast<Index>(cloud.width) * cloud.height;
+  for (Index i = 0; i < n; ++i)
+    if (next < columns.size() && columns[next] == i)
+      ++next;
+    else
+      setPosition(cloud, i, Eigen::Vector3d::Constant(NAN));
+  cloud.is_dense = static_cast<Index>(columns.size()) == n;
+}
+
+std::vector<Index> complement(const std::vector<Index>& columns, const std::vector<Index>& all)
+{
+  std::vector<Index> others;
+  std::set_difference(all.begin(), all.end(), columns.begin(), columns.end(), std::back_inserter(others));
+  return others;
+}
+
+void removeVeil(Remaining& rest, const std::string& file, const Args& args, const FilterOptions& options)
+{
+  if (args.given("viewpoint"))
+    rest.set.viewpoints = (options.viewpoint - rest.set.origin).cast<float>();
+  if (rest.set.viewpoints.cols() == 0)
+    throw std::runtime_error(file + ": the viewpoint is not known, give -viewpoint X Y Z");
+  if (!rest.set.viewpoints.allFinite())
+    throw std::runtime_error(file + ": a viewpoint is not finite");
+  rest.keep(withoutVeil(rest.set.points, rest.set.viewpoints, options.veil));
+}
+
+void thin(Remaining& rest, pcl::PCLPointCloud2& cloud, const FilterOptions& options)
+{
+  const VoxelThinning thinning = thinByVoxel(rest.set.points, options.cell, options.veil.threads);
+  rest.keep(thinning.kept);
+  if (options.centroid)
+    for (Index i = 0; i < rest.set.size(); ++i)
+      setPosition(cloud, rest.columns[i], rest.set.origin + thinning.centroids.col(i).cast<double>());
+}
+
+/// Runs the steps given; says on stderr what each leaves.
+void filterCloud(CloudFile& file, const std::string& name, const Args& args, const FilterOptions& options, bool quiet)
+{
+  const Progress progress = printProgress(quiet);
+  Remaining rest{toPointSet(file), {}};
+  rest.columns.resize(static_cast<std::size_t>(rest.set.size()));
+  std::iota(rest.columns.begin(), rest.columns.end(), Index(0));
+  std::vector<std::string> lines = {std::to_string(rest.set.size()) + " points"};
+  rest.keep(finitePoints(rest.set));
+  if (rest.columns.empty())
+    throw std::runtime_error(name + ": no finite points");
+  const std::vector<Index> finite = rest.columns;
+  const auto step = [&](const char* option, double fraction, const auto& run) {
+    if (!args.given(option))
+      return;
+    report(progress, option, fraction);
+    const std::size_t before = rest.columns.size();
+    run();
+    lines.push_back(std::string(option) + " removed " + std::to_string(before - rest.columns.size()));
+  };
+  step("veil", 0.2, [&] { removeVeil(rest, name, args, options); });
+  step("outliers", 0.5, [&] { rest.keep(withoutOutliers(rest.set.points, options.outliers)); });
+  step("voxel", 0.8, [&] { thin(rest, file.cloud, options); });
+  std::vector<Index> columns = options.removed ? complement(rest.columns, finite) : rest.columns;
+  if (columns.empty())
+    throw std::runtime_error(name + ": no points are left");
+  options.keep_organized ? blankOthers(file.cloud, columns) : keepPoints(file.cloud, columns);
+  lines.push_back(std::to_string(columns.size()) + " points written");
+  for (const auto& line : lines)
+    inform(quiet, line);
+}
+} // namespace
+
+int main(int argc, char** argv)
+{
+  return runTool("fresco_filter", [&] {
+    FilterOptions options;
+    CommonOptions common;
+    Args args("fresco_filter IN OUT [-outliers K SIGMA] [-veil DEG] [-voxel M] [options]",
+              "Removes isolated points and veil points of a scan, and thins it by voxel.\n"
+              "IN: PCD, PLY, VTK, OBJ, XYZ; OUT: PCD, PLY, XYZ.");
+    options.declare(args);
+    common.declare(args);
+    const auto files = args.parse(argc, argv, 2);
+    validate(args, options);
+    options.outliers.threads = options.veil.threads = common.threads;
+    CloudFile file = readCloud(files[0]);
+    filterCloud(file, files[0], args, options, common.quiet);
+    writeCloud(files[1], file);
+  });
+}
