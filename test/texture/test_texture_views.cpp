@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "texture/texture_scene.h"
+#include <gtest/gtest.h>
+namespace fresco::test {
+namespace {
+/// Waves with detail that corners can be found in.
+Eigen::Vector3d detailed(const Eigen::Vector3d& p)
+{
+  const double checks =
+      std::sin(17 * p.x() + 3 * p.y()) * std::sin(13 * p.y() - 5 * p.z()) * std::sin(15 * p.z() + 4 * p.x() + 1);
+  return 0.7 * waves(p).array() + 40 + 70 * std::tanh(4 * checks);
+}
+
+TEST(TextureViews, ExposureIsBroughtTogether)
+{
+  const TriangleMesh mesh = cube();
+  const auto soft = [](const Eigen::Vector3d& p) { return Eigen::Vector3d(0.6 * waves(p).array() + 30); };
+  std::vector<TextureView> views = photographsAround(mesh, soft);
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> factor(0.8, 1.2);
+  Points inverse(3, static_cast<Index>(views.size()));
+  for (std::size_t v = 0; v < views.size(); ++v) {
+    const Eigen::Vector3d gain(factor(random), factor(random), factor(random));
+    views[v] = photograph(mesh, soft, views[v].camera, views[v].T_camera_world, gain);
+    inverse.col(static_cast<Index>(v)) = gain.cwiseInverse().cast<float>();
+  }
+  const TextureResult result = reconstructTexture(mesh, views);
+  ASSERT_EQ(result.gains.cols(), inverse.cols());
+  EXPECT_LT(result.gains.array().log().rowwise().mean().abs().maxCoeff(), 1e-3);
+  for (int c = 0; c < 3; ++c) { // found up to one factor per channel
+    const Eigen::ArrayXf ratio = (result.gains.row(c).array() / inverse.row(c).array()).transpose();
+    EXPECT_LT(ratio.maxCoeff() / ratio.minCoeff(), 1.03f) << c;
+  }
+}
+
+TEST(TextureViews, SeamsAreLevelled)
+{
+  const TriangleMesh mesh = cube();
+  const auto grey = [](const Eigen::Vector3d&) { return Eigen::Vector3d(120, 120, 120); };
+  std::vector<TextureView> views = photographsAround(mesh, grey);
+  for (std::size_t v = 0; v < views.size(); ++v) // vignetting, which no gain takes away
+    for (int y = 0; y < 200; ++y)
+      for (int x = 0; x < 200; ++x) {
+        const double r2 = (std::pow(x - 100, 2) + std::pow(y - 100, 2)) / 1e4;
+        for (int c = 0; c < 3; ++c)
+          views[v].image.pixel(x, y)[c] = static_cast<std::uint8_t>(views[v].image.pixel(x, y)[c] * (1 - 0.3 * r2));
+      }
+  TextureOptions options;
+  options.smoothness = 0;
+  const auto worstStep = [&](bool level) {
+    options.level = level;
+    const TextureResult result = reconstructTexture(mesh, views, options);
+    double step = 0;
+    forPlaces(mesh, 500, [&](Index f, const Eigen::Vector3d& w) {
+      const Eigen::Vector3d beside = (w + 0.02 * (Eigen::Vector3d::Constant(1.0 / 3) - w));
+      step = std::max(step, (colorAt(result.model, f, w) - colorAt(result.model, f, beside)).cwiseAbs().maxCoeff());
+    });
+    return step;
+  };
+  EXPECT_LT(worstStep(true), 0.7 * worstStep(false));
+}
+
+/// Cameras turned and shifted at random, and of another focal length than they have.
+std::vector<TextureView> disturbed(std::vector<TextureView> views)
+{
+  std::mt19937 random(5);
+  std::normal_distribution<double> normal;
+  for (TextureView& view : views) {
+    const Eigen::Vector3d turn = 0.004 * Eigen::Vector3d(normal(random), normal(random), normal(random));
+    const Eigen::Vector3d shift = 0.01 * Eigen::Vector3d(normal(random), normal(random), normal(random));
+    Eigen::Isometry3d change = Eigen::Isometry3d::Identity();
+    change.linear() = Eigen::AngleAxisd(turn.norm(), turn.normalized()).toRotationMatrix();
+    change.translation() = shift;
+    view.T_camera_world = change * view.T_camera_world;
+    view.camera.fx *= 1.03;
+    view.camera.fy *= 1.03;
+  }
+  return views;
+}
+
+TEST(TextureViews, CamerasAreRefined)
+{
+  const TriangleMesh mesh = cube();
+  const auto views = photographsAround(mesh, detailed, 3.2, camera(320, 320, 420));
+  TextureOptions given;
+  given.refine = false;
+  const TextureResult without = reconstructTexture(mesh, disturbed(views), given),
+                      with = reconstructTexture(mesh, disturbed(views));
+  EXPECT_GT(with.disagreement_before, 1.5);
+  EXPECT_LT(with.disagreement_after, 0.5);
+  EXPECT_NEAR(with.cameras[0].camera.fx, 420, 6);
+  EXPECT_LT(colorError(with.model, detailed).mean, 0.6 * colorError(without.model, detailed).mean);
+  EXPECT_EQ(without.cameras[0].camera.fx, 420 * 1.03);
+  EXPECT_EQ(without.disagreement_before, 0);
+}
+
+TEST(TextureViews, RightCamerasAreLeftAlone)
+{
+  const TriangleMesh mesh = cube();
+  const auto views = photographsAround(mesh, detailed, 3.2, camera(320, 320, 420));
+  const TextureResult result = reconstructTexture(mesh, views);
+  EXPECT_LT(result.disagreement_before, 0.5);
+  for (std::size_t v = 0; v < views.size(); ++v)
+    EXPECT_EQ(result.cameras[v].T_camera_world.matrix(), views[v].T_camera_world.matrix());
+}
+
+TEST(TextureViews, RefinementDoesNotDependOnThreads)
+{
+  const TriangleMesh mesh = cube();
+  const auto views = disturbed(photographsAround(mesh, detailed, 3.2, camera(200, 200, 260)));
+  EXPECT_TRUE(
+      sameAtlases(reconstructTexture(mesh, views, withThreads(1)), reconstructTexture(mesh, views, withThreads(4))));
+}
+
+TEST(TextureViews, AViewKeptOutAddsNoColour)
+{
+  const TriangleMesh mesh = cube();
+  auto views = photographsAround(mesh, waves);
+  const TextureResult without = reconstructTexture(mesh, views);
+  views.push_back(views.front());
+  views.back().image = Image(200, 200, 3, 255);
+  views.back().paint = false;
+  const TextureResult with = reconstructTexture(mesh, views);
+  EXPECT_TRUE(sameAtlases(without, with));
+  EXPECT_EQ(with.cameras.size(), views.size());
+}
+
+TEST(TextureViews, SomebodyInTheWayIsIgnored)
+{
+  const TriangleMesh mesh = cube();
+  auto views = photographsAround(mesh, waves);
+  for (int y = 60; y < 140; ++y) // a green disc in front of a camera that sees one side best
+    for (int x = 60; x < 140; ++x)
+      if (std::hypot(x - 100, y - 100) < 35)
+        for (int c = 0; c < 3; ++c)
+          views[4].image.pixel(x, y)[c] = c == 1 ? 255 : 0;
+  TextureOptions options;
+  const double with = colorError(reconstructTexture(mesh, views, options).model, waves).mean;
+  options.consistency = false;
+  const double without = colorError(reconstructTexture(mesh, views, options).model, waves).mean;
+  EXPECT_LT(with, 2.5);
+  EXPECT_LT(with, 0.6 * without);
+}
+} // namespace
+} // namespace fresco::test

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include <cstdint>
+#include <fresco/common/camera.h>
+#include <fresco/common/mesh.h>
+#include <fresco/common/progress.h>
+#include <fresco/common/textured_mesh.h>
+#include <string>
+#include <utility>
+#include <vector>
+namespace fresco {
+/// Texture reconstruction from calibrated photographs: per face the view that shows it best, chosen with few seams.
+struct TextureOptions {
+  double texel = 0; ///< side of a texel in mesh units, >= 0; 0 = as fine as the photographs show each part
+  int atlas = 0;    ///< side of each square atlas, 128..16384 pixels; 0 = one as small as possible, up to 8192 each
+  int border = 2;   ///< texels around each chart that continue its surface against bleeding, 1..16
+  double smoothness =
+      0.01;          ///< length, in bounding-box diagonals, of seam that costs as much as one octave of resolution
+                     ///< lost over a square of that side, >= 0; 0 = the best view of each face on its own
+  double margin = 4; ///< pixels kept away from the outline of anything nearer to the camera, 0..100
+  double depth_tolerance = 0.01; ///< share of its distance by which a face may lie behind the surface seen, 0..0.5
+  bool refine = true;      ///< correct poses, focal length, lens and mount so that the photographs agree on the mesh;
+                           ///< not done for more than 400 views
+  bool exposure = true;    ///< bring exposure and white balance of the photographs together
+  bool consistency = true; ///< avoid photographs whose colour differs from what most show of the same surface
+  bool level = true;       ///< take away what steps of colour are left at seams
+  double strip = 6;        ///< pixels over which one photograph passes into the next at a seam, 0..100
+  int memory = 1024;       ///< MB of decoded photographs kept at a time, >= 1
+  int threads = 0;         ///< 0 = all cores; the result does not depend on it
+};
+
+/// One photograph with its calibration.
+struct TextureView {
+  CameraModel camera;
+  Eigen::Isometry3d T_camera_world = Eigen::Isometry3d::Identity();
+  Image image;       ///< empty: read from `path` when needed
+  std::string path;  ///< file of the photograph; names it in messages
+  bool paint = true; ///< false: its camera is refined with the others, but nothing is coloured from it
+};
+
+/// A camera at its place.
+struct PlacedCamera {
+  CameraModel camera;
+  Eigen::Isometry3d T_camera_world = Eigen::Isometry3d::Identity();
+};
+
+struct TextureResult {
+  TexturedMesh model;
+  std::vector<Image>
+      masks; ///< one per atlas, grey: 255 where no photograph saw the surface and the colour is inpainted
+  Eigen::VectorXi face_view; ///< F, index of the view that most of the face is taken from; -1 = unseen
+  double coverage = 0;       ///< share of the mesh's area that at least one view sees, 0..1
+  double used = 0;           ///< share of the atlases' texels that lie in charts or their borders, 0..1
+  double texel = 0;          ///< side of a texel in mesh units, median over the area
+  Index charts = 0;
+  Index views_used = 0;              ///< views that some face is taken from
+  double seam_length = 0;            ///< mesh units, along which two views meet
+  std::vector<PlacedCamera> cameras; ///< of each view, as used: refined where that made the photographs agree better
+  Points gains; ///< 3xV, factors on RGB that bring the photographs together; their mean logarithm is 0
+  double disagreement_before = 0; ///< pixels, median, between photographs on the mesh; 0 where it was not measured
+  double disagreement_after = 0;  ///< with `cameras`
+  std::vector<std::pair<std::string, double>> seconds; ///< time of each phase
+};
+
+/// @param mesh  as validateMesh() wants it, with at least one face of positive area
+/// @throws std::invalid_argument if the mesh, an option or a view (pose, intrinsics) is out of range
+/// @throws std::runtime_error naming the photograph that is missing, no image, or of another size than its camera; if
+/// the
+///         texture would be larger than a thousand megatexels; Cancelled
+TextureResult reconstructTexture(const TriangleMesh& mesh, const std::vector<TextureView>& views,
+                                 const TextureOptions& options = {}, const Progress& progress = {});
+} // namespace fresco

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include <fresco/texture/core/texture_reconstruction.h>
+#include <memory>
+#include <pcl/PolygonMesh.h>
+#include <pcl/TextureMesh.h>
+#include <string>
+#include <vector>
+namespace fresco {
+/// PCL face of reconstructTexture(); setters: see TextureOptions.
+///
+///   TextureReconstruction texture;
+///   texture.setInputMesh(mesh);
+///   for (each photograph)
+///     texture.addView(camera, T_camera_world, "photo.jpg");
+///   pcl::TextureMesh out;
+///   texture.process(out);
+///   texture.saveAtlases(folder); // the images that the materials of `out` name
+class TextureReconstruction {
+public:
+  using Ptr = std::shared_ptr<TextureReconstruction>;
+  using ConstPtr = std::shared_ptr<const TextureReconstruction>;
+
+  void setInputMesh(const pcl::PolygonMeshConstPtr& mesh) { input_mesh_ = mesh; }
+  pcl::PolygonMeshConstPtr getInputMesh() const { return input_mesh_; }
+
+  void addView(TextureView view) { views_.push_back(std::move(view)); }
+  /// @param T_camera_world axes of the camera: x right, y down, z forward
+  /// @param file           photograph, read when needed
+  void addView(const CameraModel& camera, const Eigen::Isometry3d& T_camera_world, const std::string& file)
+  {
+    views_.push_back({camera, T_camera_world, Image(), file});
+  }
+  void clearViews() { views_.clear(); }
+  const std::vector<TextureView>& getViews() const { return views_; }
+
+  void setTexelSize(double texel) { options_.texel = texel; }
+  double getTexelSize() const { return options_.texel; }
+  void setAtlasSize(int side) { options_.atlas = side; }
+  int getAtlasSize() const { return options_.atlas; }
+  void setBorder(int texels) { options_.border = texels; }
+  int getBorder() const { return options_.border; }
+  void setSmoothness(double smoothness) { options_.smoothness = smoothness; }
+  double getSmoothness() const { return options_.smoothness; }
+  void setMargin(double pixels) { options_.margin = pixels; }
+  double getMargin() const { return options_.margin; }
+  void setDepthTolerance(double share) { options_.depth_tolerance = share; }
+  double getDepthTolerance() const { return options_.depth_tolerance; }
+  void setRefineCameras(bool refine) { options_.refine = refine; }
+  bool getRefineCameras() const { return options_.refine; }
+  void setAdjustExposure(bool adjust) { options_.exposure = adjust; }
+  bool getAdjustExposure() const { return options_.exposure; }
+  void setCheckConsistency(bool check) { options_.consistency = check; }
+  bool getCheckConsistency() const { return options_.consistency; }
+  void setLevelSeams(bool level) { options_.level = level; }
+  bool getLevelSeams() const { return options_.level; }
+  void setBlendStrip(double pixels) { options_.strip = pixels; }
+  double getBlendStrip() const { return options_.strip; }
+  void setMemory(int megabytes) { options_.memory = megabytes; }
+  int getMemory() const { return options_.memory; }
+  void setThreads(int threads) { options_.threads = threads; }
+  int getThreads() const { return options_.threads; }
+  void setProgress(const Progress& progress) { progress_ = progress; }
+
+  /// @throws std::invalid_argument without input mesh or as reconstructTexture() does; std::runtime_error likewise
+  void process(pcl::TextureMesh& output);
+
+  /// All that the last process() found out, its images among them.
+  const TextureResult& getResult() const { return result_; }
+
+  /// Writes the atlases of the last process() under the names that its materials carry ("texture_0.png" ...).
+  void saveAtlases(const std::string& folder) const;
+
+private:
+  pcl::PolygonMeshConstPtr input_mesh_;
+  std::vector<TextureView> views_;
+  TextureOptions options_;
+  Progress progress_;
+  TextureResult result_;
+};
+} // namespace fresco
+#include <fresco/texture/impl/texture_reconstruction.hpp>

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "photo_store.h"
+#include <algorithm>
+#include <cmath>
+#include <fresco/common/require.h>
+namespace fresco {
+namespace {
+Image asRgb(const Image& in)
+{
+  Image out(in.width, in.height, 3);
+  for (int y = 0; y < in.height; ++y)
+    for (int x = 0; x < in.width; ++x)
+      for (int c = 0; c < 3; ++c)
+        out.pixel(x, y)[c] = in.pixel(x, y)[in.channels >= 3 ? c : 0];
+  return out;
+}
+
+/// Weights of the pixels at -1, 0, 1, 2 for a place t = 0..1 between the middle two (Catmull & Rom 1974).
+Eigen::Vector4f cubicWeights(float t)
+{
+  const float t2 = t * t, t3 = t2 * t;
+  return {-0.5f * t + t2 - 0.5f * t3, 1 - 2.5f * t2 + 1.5f * t3, 0.5f * t + 2 * t2 - 1.5f * t3, -0.5f * t2 + 0.5f * t3};
+}
+} // namespace
+
+PhotoStore::PhotoStore(const std::vector<TextureView>& views, std::size_t most_bytes)
+    : views_(views), most_bytes_(most_bytes), slots_(views.size())
+{}
+
+std::shared_ptr<const Image> PhotoStore::get(Index view)
+{
+  {
+    const std::lock_guard lock(mutex_);
+    Slot& slot = slots_[view];
+    if (slot.image) {
+      recent_.splice(recent_.begin(), recent_, slot.recent);
+      return slot.image;
+    }
+  }
+  auto image = load(view);
+  keep(view, image);
+  return image;
+}
+
+std::shared_ptr<const Image> PhotoStore::load(Index view) const
+{
+  const TextureView& v = views_[view];
+  std::shared_ptr<const Image> image;
+  if (v.image.empty())
+    image = std::make_shared<const Image>(readImage(v.path));
+  else
+    image = std::shared_ptr<const Image>(std::shared_ptr<void>(), &v.image);
+  if (image->width != v.camera.width || image->height != v.camera.height)
+    throw std::runtime_error(concat(v.path.empty() ? concat("photograph ", view) : v.path, ": is ", image->width, "x",
+                                    image->height, " pixels, its camera has ", v.camera.width, "x", v.camera.height));
+  return image->channels == 3 ? image : std::make_shared<const Image>(asRgb(*image));
+}
+
+void PhotoStore::keep(Index view, std::shared_ptr<const Image> image)
+{
+  const std::lock_guard lock(mutex_);
+  if (slots_[view].image)
+    return;
+  bytes_ += image->data.size();
+  recent_.push_front(view);
+  slots_[view] = {std::move(image), recent_.begin()};
+  while (bytes_ > most_bytes_ && recent_.size() > 1) {
+    Slot& oldest = slots_[recent_.back()];
+    bytes_ -= oldest.image->data.size();
+    oldest.image.reset();
+    recent_.pop_back();
+  }
+}
+
+Eigen::Vector3f samplePhoto(const Image& photo, float x, float y)
+{
+  const float u = std::clamp(x - 0.5f, 0.f, photo.width - 1.f), v = std::clamp(y - 0.5f, 0.f, photo.height - 1.f);
+  const int i = static_cast<int>(u), j = static_cast<int>(v);
+  const Eigen::Vector4f wx = cubicWeights(u - i), wy = cubicWeights(v - j);
+  Eigen::Vector3f sum = Eigen::Vector3f::Zero();
+  for (int b = 0; b < 4; ++b) {
+    const int row = std::clamp(j + b - 1, 0, photo.height - 1);
+    Eigen::Vector3f line = Eigen::Vector3f::Zero();
+    for (int a = 0; a < 4; ++a) {
+      const std::uint8_t* p = photo.pixel(std::clamp(i + a - 1, 0, photo.width - 1), row);
+      line += wx[a] * Eigen::Vector3f(p[0], p[1], p[2]);
+    }
+    sum += wy[b] * line;
+  }
+  return sum.cwiseMax(0.f).cwiseMin(255.f);
+}
+
+Eigen::Vector3f samplePhotoQuickly(const Image& photo, float x, float y)
+{
+  const float u = std::clamp(x - 0.5f, 0.f, photo.width - 1.f), v = std::clamp(y - 0.5f, 0.f, photo.height - 1.f);
+  const int i = std::min(static_cast<int>(u), photo.width - 2), j = std::min(static_cast<int>(v), photo.height - 2);
+  const float a = u - i, b = v - j;
+  const std::uint8_t *p = photo.pixel(i, j), *q = photo.pixel(i, j + 1);
+  return ((1 - a) * (1 - b)) * Eigen::Vector3f(p[0], p[1], p[2]) + (a * (1 - b)) * Eigen::Vector3f(p[3], p[4], p[5]) +
+         ((1 - a) * b) * Eigen::Vector3f(q[0], q[1], q[2]) + (a * b) * Eigen::Vector3f(q[3], q[4], q[5]);
+}
+} // namespace fresco

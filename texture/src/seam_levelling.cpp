@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "seam_levelling.h"
+#include <Eigen/IterativeLinearSolvers>
+#include <Eigen/SparseCore>
+#include <algorithm>
+#include <cmath>
+namespace fresco {
+namespace {
+constexpr double slowness = 0.3;  // weight of a change along an edge against a step between views
+constexpr double anchor = 1e-3;   // weight of the offset itself: it fades far from seams
+constexpr float implausible = 40; // grey levels: a larger step is rather something that moved or stood in the way
+
+using Sparse = Eigen::SparseMatrix<double, Eigen::RowMajor>;
+using Triplet = Eigen::Triplet<double>;
+
+Eigen::Vector3f colorOf(const Candidate& c, const Points& gains)
+{
+  return Eigen::Vector3f(c.color[0], c.color[1], c.color[2]).cwiseProduct(gains.col(c.view));
+}
+
+class Levelling {
+public:
+  Levelling(const PatchMesh& patches, const VertexPatches& around, const VertexViews& shares,
+            const Candidates& candidates, const Points& gains)
+      : patches_(patches), around_(around), shares_(shares), candidates_(candidates), gains_(gains)
+  {
+    out_.begin.assign(1, 0);
+    for (const auto& list : shares)
+      out_.begin.push_back(out_.begin.back() + static_cast<int>(list.size()));
+  }
+
+  SeamOffsets run()
+  {
+    const Index n = out_.begin.back();
+    right_ = Eigen::MatrixXd::Zero(n, 3);
+    for (Index i = 0; i < n; ++i)
+      entries_.emplace_back(static_cast<int>(i), static_cast<int>(i), anchor);
+    for (std::size_t v = 0; v < shares_.size(); ++v)
+      addSteps(v);
+    addSlowness();
+    Sparse A(n, n);
+    A.setFromTriplets(entries_.begin(), entries_.end());
+    Eigen::ConjugateGradient<Sparse, Eigen::Lower | Eigen::Upper> solver;
+    solver.setMaxIterations(300);
+    solver.setTolerance(1e-3); // of a grey level, about
+    solver.compute(A);
+    out_.offsets.resize(3, n);
+    for (int c = 0; c < 3 && n > 0; ++c)
+      out_.offsets.row(c) = solver.solve(right_.col(c)).transpose().cast<float>();
+    return std::move(out_);
+  }
+
+private:
+  /// weight * (x_i - x_j - difference)^2
+  void addEquation(int i, int j, double weight, const Eigen::Vector3d& difference)
+  {
+    entries_.emplace_back(i, i, weight);
+    entries_.emplace_back(j, j, weight);
+    entries_.emplace_back(i, j, -weight);
+    entries_.emplace_back(j, i, -weight);
+    right_.row(i) += weight * difference.transpose();
+    right_.row(j) -= weight * difference.transpose();
+  }
+
+  void addSteps(std::size_t v)
+  {
+    const auto& list = shares_[v];
+    for (std::size_t a = 0; a < list.size(); ++a)
+      for (std::size_t b = a + 1; b < list.size(); ++b) {
+        Eigen::Vector3f step = Eigen::Vector3f::Zero();
+        float count = 0;
+        for (int k = around_.begin[v]; k < around_.begin[v + 1]; ++k) {
+          const Candidate *ca = candidates_.find(around_.list[k], list[a].view),
+                          *cb = candidates_.find(around_.list[k], list[b].view);
+          if (!ca || !cb)
+            continue;
+          step += colorOf(*cb, gains_) - colorOf(*ca, gains_);
+          ++count;
+        }
+        if (!(count > 0))
+          continue;
+        step /= count;
+        const double trust = 1 / (1 + step.squaredNorm() / (implausible * implausible));
+        addEquation(out_.begin[v] + static_cast<int>(a), out_.begin[v] + static_cast<int>(b),
+                    4 * trust * std::min(list[a].weight, list[b].weight), step.cast<double>());
+      }
+  }
+
+  /// Along every edge, for each view that takes part at both ends.
+  void addSlowness()
+  {
+    for (Index i = 0; i < patches_.size(); ++i)
+      for (int k = 0; k < 3; ++k) {
+        const int p = patches_.faces(k, i), q = patches_.faces((k + 1) % 3, i);
+        const auto &a = shares_[p], &b = shares_[q];
+        for (std::size_t s = 0, t = 0; s < a.size() && t < b.size();) {
+          if (a[s].view == b[t].view)
+            addEquation(out_.begin[p] + static_cast<int>(s), out_.begin[q] + static_cast<int>(t), slowness,
+                        Eigen::Vector3d::Zero());
+          const bool next_a = a[s].view <= b[t].view, next_b = b[t].view <= a[s].view;
+          s += next_a;
+          t += next_b;
+        }
+      }
+  }
+
+  const PatchMesh& patches_;
+  const VertexPatches& around_;
+  const VertexViews& shares_;
+  const Candidates& candidates_;
+  const Points& gains_;
+  SeamOffsets out_;
+  std::vector<Triplet> entries_;
+  Eigen::MatrixXd right_;
+};
+} // namespace
+
+SeamOffsets levelSeams(const PatchMesh& patches, const VertexPatches& around, const VertexViews& shares,
+                       const Candidates& candidates, const Points& gains)
+{
+  return Levelling(patches, around, shares, candidates, gains).run();
+}
+} // namespace fresco

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include "vertex_views.h"
+#include "visibility.h"
+namespace fresco {
+/// Offsets of colour for every view at every vertex where it takes part.
+struct SeamOffsets {
+  std::vector<int> begin; ///< V + 1: offsets of vertex v, in the order of its shares
+  Points offsets;         ///< 3xN, grey levels
+};
+
+/// Offsets that let the views agree where they meet and change slowly elsewhere: least squares over the mesh after
+/// Lempitsky & Ivanov 2007, "Seamless Mosaicing of Image-Based Texture Maps". What two views differ by is measured on
+/// patches that both see, so that detail of the surface does not count.
+/// @param gains 3xV, factor per view and channel
+SeamOffsets levelSeams(const PatchMesh& patches, const VertexPatches& around, const VertexViews& shares,
+                       const Candidates& candidates, const Points& gains);
+} // namespace fresco

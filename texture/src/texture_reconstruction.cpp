@@ -1,0 +1,301 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "atlas_packing.h"
+#include "atlas_paint.h"
+#include "camera_refinement.h"
+#include "chart_layout.h"
+#include "color_diffusion.h"
+#include "exposure.h"
+#include "photo_consistency.h"
+#include "resolution.h"
+#include "view_selection.h"
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <fresco/common/parallel.h>
+#include <fresco/common/require.h>
+#include <fresco/texture/core/texture_reconstruction.h>
+namespace fresco {
+namespace {
+constexpr int largest_atlas = 8192; // every graphics card takes it
+constexpr float patch_pixels = 16;  // longest side of a patch in a typical view
+
+void validateView(const TextureView& view, std::size_t index)
+{
+  const std::string name = view.path.empty() ? concat("view ", index) : view.path;
+  const CameraModel& c = view.camera;
+  require(c.width >= 3 && c.height >= 3 && c.width <= 65535 && c.height <= 65535, "texture: ", name, ": camera of ",
+          c.width, "x", c.height, " pixels");
+  require(c.fx > 0 && c.fy > 0 && std::isfinite(c.fx + c.fy + c.cx + c.cy + c.k1 + c.k2 + c.p1 + c.p2),
+          "texture: ", name, ": intrinsics are not finite or a focal length is not positive");
+  const Eigen::Matrix3d R = view.T_camera_world.linear();
+  require(view.T_camera_world.matrix().allFinite() && (R * R.transpose() - Eigen::Matrix3d::Identity()).norm() < 1e-3 &&
+              R.determinant() > 0,
+          "texture: ", name, ": the pose is not finite or no rigid motion");
+  require(!view.image.empty() || !view.path.empty(), "texture: ", name, ": neither an image nor a path");
+}
+
+void validate(const TriangleMesh& mesh, const std::vector<TextureView>& views, const TextureOptions& options)
+{
+  validateMesh(mesh);
+  require(mesh.faceCount() > 0 && surfaceArea(mesh) > 0, "texture: the mesh has no face of positive area");
+  require(mesh.vertexCount() < (1 << 29) && mesh.faceCount() < (1 << 29), "texture: the mesh is too large");
+  require(options.texel >= 0 && std::isfinite(options.texel), "texture: texel ", options.texel,
+          " is negative or not finite");
+  require(options.atlas == 0 || (options.atlas >= 128 && options.atlas <= 16384), "texture: atlas ", options.atlas,
+          " is neither 0 nor in 128..16384");
+  require(options.border >= 1 && options.border <= 16, "texture: border ", options.border, " is not in 1..16");
+  require(options.smoothness >= 0 && std::isfinite(options.smoothness), "texture: smoothness ", options.smoothness,
+          " is negative or not finite");
+  require(options.margin >= 0 && options.margin <= 100, "texture: margin ", options.margin, " is not in 0..100");
+  require(options.depth_tolerance >= 0 && options.depth_tolerance <= 0.5, "texture: depth tolerance ",
+          options.depth_tolerance, " is not in 0..0.5");
+  require(options.strip >= 0 && options.strip <= 100, "texture: strip ", options.strip, " is not in 0..100");
+  require(options.memory >= 1, "texture: memory ", options.memory, " MB is below 1");
+  for (std::size_t v = 0; v < views.size(); ++v)
+    validateView(views[v], v);
+}
+
+double diagonalOf(const TriangleMesh& mesh)
+{
+  Eigen::Vector3f low = mesh.vertices.col(mesh.faces(0, 0)), high = low;
+  for (Index i = 0; i < mesh.faces.size(); ++i) {
+    low = low.cwiseMin(mesh.vertices.col(mesh.faces.data()[i]));
+    high = high.cwiseMax(mesh.vertices.col(mesh.faces.data()[i]));
+  }
+  return (high - low).norm();
+}
+
+/// Side that a typical view sees patch_pixels long; so large that there are at most two million patches by cutting.
+float longestEdge(const TriangleMesh& mesh, const std::vector<Projector>& views)
+{
+  constexpr Index samples = 2000;
+  constexpr double most_patches = 2e6;
+  const Index stride = std::max<Index>(1, mesh.faceCount() / samples);
+  std::vector<float> sizes; // of a pixel
+  for (const Projector& view : views)
+    for (Index f = 0; f < mesh.faceCount(); f += stride) {
+      const Eigen::Vector3f p = view(mesh.vertices.col(mesh.faces(0, f)));
+      if (p.z() > 0 && p.x() >= 0 && p.y() >= 0 && p.x() <= view.camera().width && p.y() <= view.camera().height)
+        sizes.push_back(p.z() / view.focal());
+    }
+  const float least = static_cast<float>(std::sqrt(surfaceArea(mesh) / (0.43 * most_patches)));
+  if (sizes.empty())
+    return static_cast<float>(std::max<double>(least, 0.05 * diagonalOf(mesh)));
+  std::nth_element(sizes.begin(), sizes.begin() + sizes.size() / 2, sizes.end());
+  return std::max(least, patch_pixels * sizes[sizes.size() / 2]);
+}
+
+std::vector<Projector> projectorsOf(const TriangleMesh& mesh, const std::vector<PlacedCamera>& cameras)
+{
+  std::vector<Projector> out;
+  for (const PlacedCamera& c : cameras)
+    out.emplace_back(c.camera, c.T_camera_world, mesh.origin);
+  return out;
+}
+
+std::vector<char> paintable(const std::vector<TextureView>& views)
+{
+  std::vector<char> out;
+  for (const TextureView& view : views)
+    out.push_back(view.paint);
+  return out;
+}
+
+void placeCameras(const RayScene& scene, const std::vector<TextureView>& views, PhotoStore& photos,
+                  const TextureOptions& options, const Progress& progress, TextureResult& result)
+{
+  for (const TextureView& view : views)
+    result.cameras.push_back({view.camera, view.T_camera_world});
+  constexpr std::size_t most_views = 400; // the normal equations are solved densely
+  if (!options.refine || views.size() < 2 || views.size() > most_views)
+    return;
+  const RefinedCameras refined = refineCameras(result.model.mesh, scene, views, photos, options.threads, progress);
+  result.disagreement_before = refined.before;
+  result.disagreement_after = refined.changed ? refined.after : refined.before;
+  for (std::size_t v = 0; v < views.size() && refined.changed; ++v)
+    result.cameras[v] = {refined.cameras[v], refined.T_camera_world[v]};
+}
+
+/// For each face the view that most of its area is taken from.
+Eigen::VectorXi viewsOfFaces(const PatchMesh& patches, const Eigen::VectorXi& view, Index faces)
+{
+  Eigen::VectorXi out = Eigen::VectorXi::Constant(faces, -1);
+  std::vector<std::pair<int, float>> areas; // of the views of one face
+  for (Index i = 0; i < patches.size(); ++i) {
+    if (i == 0 || patches.parent[i] != patches.parent[i - 1])
+      areas.clear();
+    const auto at = std::find_if(areas.begin(), areas.end(), [&](const auto& a) { return a.first == view[i]; });
+    if (at == areas.end())
+      areas.emplace_back(view[i], patches.areas[i]);
+    else
+      at->second += patches.areas[i];
+    out[patches.parent[i]] = std::max_element(areas.begin(), areas.end(), [](const auto& a, const auto& b) {
+                               return a.second < b.second;
+                             })->first;
+  }
+  return out;
+}
+
+Eigen::VectorXi chartsOfFaces(const std::vector<Chart>& charts, Index faces)
+{
+  Eigen::VectorXi out = Eigen::VectorXi::Constant(faces, -1);
+  for (std::size_t c = 0; c < charts.size(); ++c)
+    for (const int f : charts[c].faces)
+      out[f] = static_cast<int>(c);
+  return out;
+}
+
+/// Texture coordinates of every face; a vertex has one per chart.
+void fillTexcoords(const std::vector<Chart>& charts, int side, TexturedMesh& model)
+{
+  const TriangleMesh& mesh = model.mesh;
+  model.texcoord_faces = Eigen::Matrix3Xi::Constant(3, mesh.faceCount(), -1);
+  model.face_atlas = Eigen::VectorXi::Constant(mesh.faceCount(), -1);
+  std::vector<Eigen::Vector2f> coords;
+  std::vector<int> number(mesh.vertexCount(), -1); // of the vertex's coordinate, if not below `begin`
+  for (const Chart& chart : charts) {
+    const int begin = static_cast<int>(coords.size());
+    for (const int f : chart.faces) {
+      model.face_atlas[f] = chart.atlas;
+      for (int k = 0; k < 3; ++k) {
+        const int v = mesh.faces(k, f);
+        if (number[v] < begin) {
+          number[v] = static_cast<int>(coords.size());
+          const Eigen::Vector2d at = (chart.texel(mesh.vertices.col(v)) + Eigen::Vector2d(chart.x, chart.y)) / side;
+          coords.emplace_back(static_cast<float>(at.x()), static_cast<float>(1 - at.y()));
+        }
+        model.texcoord_faces(k, f) = number[v];
+      }
+    }
+  }
+  model.texcoords = Eigen::Map<const Eigen::Matrix2Xf>(coords.front().data(), 2, static_cast<Index>(coords.size()));
+}
+
+double typicalTexel(const std::vector<Chart>& charts, const FaceGraph& graph)
+{
+  std::vector<std::pair<double, double>> sizes; // texel, area
+  double total = 0, sum = 0;
+  for (const Chart& chart : charts) {
+    double area = 0;
+    for (const int f : chart.faces)
+      area += graph.areas[f];
+    sizes.emplace_back(1 / chart.T_texel.row(0).norm(), area);
+    total += area;
+  }
+  std::sort(sizes.begin(), sizes.end());
+  for (const auto& [texel, area] : sizes)
+    if ((sum += area) >= 0.5 * total)
+      return texel;
+  return 0;
+}
+
+class Stopwatch {
+public:
+  explicit Stopwatch(TextureResult& result) : result_(result) {}
+  void lap(const std::string& phase)
+  {
+    const auto now = std::chrono::steady_clock::now();
+    result_.seconds.emplace_back(phase, std::chrono::duration<double>(now - last_).count());
+    last_ = now;
+  }
+
+private:
+  TextureResult& result_;
+  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+};
+
+/// Reads every photograph once, so that one that is missing or of another size is found before the long work.
+void checkPhotos(PhotoStore& photos, Index count, int threads)
+{
+  parallelFor(
+      count, threads, [&](Index v) { photos.get(v); }, 1);
+}
+
+void fillFigures(const PatchMesh& patches, const Eigen::VectorXi& view, TextureResult& result)
+{
+  double seen = 0;
+  std::vector<char> used(static_cast<std::size_t>(view.maxCoeff() + 1), 0);
+  for (Index i = 0; i < patches.size(); ++i)
+    if (view[i] >= 0) {
+      seen += patches.areas[i];
+      used[view[i]] = 1;
+    }
+  result.coverage = std::min(1.0, seen / patches.areas.cast<double>().sum());
+  result.views_used = std::count(used.begin(), used.end(), 1);
+  result.seam_length = seamLength(patches, view);
+  result.face_view = viewsOfFaces(patches, view, result.model.mesh.faceCount());
+}
+
+std::vector<Chart> makeAtlas(const PatchMesh& patches, const Eigen::VectorXf& density, const TextureOptions& options,
+                             TextureResult& result)
+{
+  const FaceGraph graph = buildFaceGraph(result.model.mesh, options.threads);
+  const int side = options.atlas > 0 ? options.atlas : largest_atlas;
+  LayoutOptions layout;
+  layout.border = options.border;
+  layout.largest = side - side / 16; // packing rounds up to its blocks
+  layout.threads = options.threads;
+  std::vector<Chart> charts = layOutCharts(patches, graph, density, layout);
+  const Packing packing = packCharts(charts, options.atlas, largest_atlas);
+  fillTexcoords(charts, packing.side, result.model);
+  result.model.atlases.assign(packing.atlases, Image(packing.side, packing.side, 3, 128));
+  result.masks.assign(packing.atlases, Image(packing.side, packing.side, 1));
+  result.used = packing.used;
+  result.charts = static_cast<Index>(charts.size());
+  result.texel = typicalTexel(charts, graph);
+  return charts;
+}
+} // namespace
+
+TextureResult reconstructTexture(const TriangleMesh& mesh, const std::vector<TextureView>& views,
+                                 const TextureOptions& options, const Progress& progress)
+{
+  validate(mesh, views, options);
+  TextureResult result;
+  result.model.mesh = mesh;
+  Stopwatch watch(result);
+  report(progress, "photographs", 0.0);
+  PhotoStore photos(views, static_cast<std::size_t>(options.memory) << 20);
+  checkPhotos(photos, static_cast<Index>(views.size()), options.threads);
+  watch.lap("photographs");
+  const RayScene rays(mesh);
+  placeCameras(rays, views, photos, options, subProgress(progress, 0.05, 0.25), result);
+  watch.lap("camera refinement");
+  const std::vector<Projector> projectors = projectorsOf(mesh, result.cameras);
+  const PatchMesh patches = cutFaces(mesh, longestEdge(mesh, projectors), options.threads);
+  const Candidates candidates =
+      findCandidates(patches, rays, {projectors, photos, paintable(views)}, options, subProgress(progress, 0.25, 0.4));
+  watch.lap("visibility");
+  result.gains = Points::Ones(3, static_cast<Index>(views.size()));
+  if (options.exposure)
+    result.gains = solveGains(candidates, static_cast<Index>(views.size()));
+  watch.lap("exposure");
+  report(progress, "view selection", 0.4);
+  const std::vector<float> odd = options.consistency ? oddityCosts(patches, candidates, result.gains, options.threads)
+                                                     : std::vector<float>(candidates.list.size(), 0.f);
+  const Eigen::VectorXi view =
+      selectViews(patches, {candidates, odd}, options.smoothness * diagonalOf(mesh), options.threads);
+  fillFigures(patches, view, result);
+  watch.lap("view selection");
+  report(progress, "charts", 0.6);
+  const Eigen::VectorXf resolution = patchResolutions(patches, projectors, view);
+  const std::vector<Chart> charts =
+      makeAtlas(patches, wantedDensities(patches, mesh.faceCount(), resolution, options.texel), options, result);
+  watch.lap("charts");
+  report(progress, "seams", 0.7);
+  const Blend blend = blendViews(patches, candidates, view, result.gains,
+                                 {options.strip * pixelSize(resolution), options.level, options.threads});
+  watch.lap("seams");
+  report(progress, "painting", 0.8);
+  const Eigen::VectorXi face_chart = chartsOfFaces(charts, mesh.faceCount());
+  const PaintScene scene{patches, charts, face_chart, view, options.border, options.threads};
+  paintSeen(scene, {projectors, result.gains, blend, photos}, result.model.atlases);
+  watch.lap("painting");
+  report(progress, "inpainting", 0.9);
+  const Points colors = diffuseColors(patches, patchColors(scene, result.model.atlases), options.threads);
+  paintUnseen(scene, colors, result.model.atlases, result.masks);
+  watch.lap("inpainting");
+  report(progress, "done", 1.0);
+  return result;
+}
+} // namespace fresco

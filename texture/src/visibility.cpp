@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "visibility.h"
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <fresco/common/parallel.h>
+namespace fresco {
+namespace {
+constexpr Index most_cells = 1 << 20; // of a depth map: enough for outlines, and a 12 megapixel view takes a second
+constexpr float least_cosine = 0.1f;  // 84 degrees: beyond, a pixel smears over ten times its size
+constexpr float image_border = 1.f;   // pixels: interpolation needs a neighbour
+constexpr float outline_doubt = 5; // octaves, near the outline of what stands before: taken where nothing else shows it
+constexpr float rim_doubt = 2;     // octaves, at its own outline, where pixels mix with what lies behind
+constexpr float rim_pixels = 2;    // reach of cubic interpolation
+constexpr float outline_step = 3.f; // an outline: depth jumps by this many tolerances
+
+struct Seen {
+  int patch;
+  std::array<std::uint8_t, 3> color;
+  std::uint8_t doubt;
+  float resolution;
+};
+
+/// A patch in the cells of a depth map.
+struct Footprint {
+  Eigen::Matrix<float, 2, 3> corners; ///< cells
+  Eigen::Vector3f inverse_depth;      ///< a x + b y + c over the cells
+  float nearest, farthest;            ///< depth of the corners
+};
+
+Footprint footprintOf(const Eigen::Matrix3f& pixels, float step)
+{
+  Footprint out;
+  out.corners = pixels.topRows<2>() / step;
+  const Eigen::Vector3f inverse = pixels.row(2).cwiseInverse();
+  const Eigen::Vector2f u = out.corners.col(1) - out.corners.col(0), v = out.corners.col(2) - out.corners.col(0);
+  const float det = u.x() * v.y() - u.y() * v.x(), du = inverse[1] - inverse[0], dv = inverse[2] - inverse[0];
+  const bool flat = std::abs(det) < 1e-6f;
+  const float a = flat ? 0 : (du * v.y() - dv * u.y()) / det, b = flat ? 0 : (dv * u.x() - du * v.x()) / det;
+  out.inverse_depth = {a, b, inverse[0] - a * out.corners(0, 0) - b * out.corners(1, 0)};
+  out.nearest = pixels.row(2).minCoeff();
+  out.farthest = pixels.row(2).maxCoeff();
+  return out;
+}
+
+/// Whether a cell's centre lies within one cell of the triangle.
+bool touches(const Footprint& patch, const Eigen::Vector2f& p)
+{
+  const auto& c = patch.corners;
+  const Eigen::Vector2f u = c.col(1) - c.col(0), v = c.col(2) - c.col(0);
+  const float turn = u.x() * v.y() - u.y() * v.x() > 0 ? 1.f : -1.f;
+  for (int k = 0; k < 3; ++k) {
+    const Eigen::Vector2f edge = c.col((k + 1) % 3) - c.col(k), to = p - c.col(k);
+    if (turn * (edge.x() * to.y() - edge.y() * to.x()) < -edge.norm())
+      return false;
+  }
+  return true;
+}
+
+/// Whether some ray through the patch's cells ends before it.
+bool isHidden(const Footprint& patch, const DepthMap& map, double tolerance)
+{
+  const int x0 = std::max(0, static_cast<int>(patch.corners.row(0).minCoeff() - 0.5f)),
+            x1 = std::min(map.width - 1, static_cast<int>(patch.corners.row(0).maxCoeff() + 0.5f)),
+            y0 = std::max(0, static_cast<int>(patch.corners.row(1).minCoeff() - 0.5f)),
+            y1 = std::min(map.height - 1, static_cast<int>(patch.corners.row(1).maxCoeff() + 0.5f));
+  const float slope = std::abs(patch.inverse_depth[0]) + std::abs(patch.inverse_depth[1]);
+  for (int y = y0; y <= y1; ++y)
+    for (int x = x0; x <= x1; ++x) {
+      const Eigen::Vector2f p(x + 0.5f, y + 0.5f);
+      const float hit = map.at(x, y);
+      if (!(hit < patch.farthest) || !touches(patch, p))
+        continue;
+      const float inverse = patch.inverse_depth.dot(p.homogeneous()), z = inverse > 0 ? 1 / inverse : patch.farthest;
+      const float depth = std::clamp(z, patch.nearest, patch.farthest);
+      if (hit < depth * (1 - static_cast<float>(tolerance)) - depth * depth * slope)
+        return true;
+    }
+  return false;
+}
+
+bool isNearOutline(const Footprint& patch, const DepthMap& nearest, float radius, double tolerance)
+{
+  const Eigen::Vector2f center = patch.corners.rowwise().mean();
+  const int x = std::clamp(static_cast<int>(center.x()), 0, nearest.width - 1),
+            y = std::clamp(static_cast<int>(center.y()), 0, nearest.height - 1);
+  const float slope = patch.inverse_depth.head<2>().norm(), depth = patch.farthest;
+  return nearest.at(x, y) <
+         depth * (1 - outline_step * static_cast<float>(tolerance)) - depth * depth * slope * (1.5f * radius + 1);
+}
+
+/// Whether the surface ends near one of the patch's corners or its middle.
+bool isAtRim(const Footprint& patch, const DepthMap& farthest, float radius, double tolerance)
+{
+  const float slope = patch.inverse_depth.head<2>().norm(), depth = patch.farthest;
+  const float beyond =
+      depth * (1 + outline_step * static_cast<float>(tolerance)) + depth * depth * slope * (1.5f * radius + 1);
+  for (int k = 0; k < 4; ++k) {
+    const Eigen::Vector2f p =
+        k < 3 ? Eigen::Vector2f(patch.corners.col(k)) : Eigen::Vector2f(patch.corners.rowwise().mean());
+    const int x = std::clamp(static_cast<int>(p.x()), 0, farthest.width - 1),
+              y = std::clamp(static_cast<int>(p.y()), 0, farthest.height - 1);
+    if (farthest.at(x, y) > beyond)
+      return true;
+  }
+  return false;
+}
+
+/// Octaves, 0 inside the image, rising to 1 at its border: there lenses are worst and a better view is likely.
+float borderDoubt(const CameraModel& camera, const Eigen::Vector2f& pixel)
+{
+  const float away = std::min({pixel.x(), pixel.y(), camera.width - pixel.x(), camera.height - pixel.y()});
+  return 1 - std::clamp(away / (0.05f * std::min(camera.width, camera.height)), 0.f, 1.f);
+}
+
+class ViewTest {
+public:
+  ViewTest(const PatchMesh& patches, const Projector& view, const TextureOptions& options)
+      : patches_(patches), view_(view), options_(options), pixels_(3, patches.vertices.cols())
+  {
+    const float low = image_border, right = view.camera().width - image_border,
+                bottom = view.camera().height - image_border;
+    for (Index v = 0; v < pixels_.cols(); ++v) {
+      const Eigen::Vector3f p = view(patches.vertices.col(v));
+      const bool inside = p.z() > 0 && p.x() >= low && p.y() >= low && p.x() <= right && p.y() <= bottom;
+      pixels_.col(v) = inside ? p : Eigen::Vector3f::Zero();
+    }
+  }
+
+  std::vector<Seen> run(const RayScene& scene, const Image& photo) const
+  {
+    std::vector<Seen> seen;
+    if (!(pixels_.row(2).array() > 0).any())
+      return seen;
+    const DepthMap map = scene.depthMap(view_, most_cells);
+    const float radius = static_cast<float>(options_.margin) / map.step;
+    const float rim = rim_pixels / map.step;
+    const DepthMap nearest = nearestWithin(map, static_cast<int>(std::ceil(radius))),
+                   farthest = farthestWithin(map, static_cast<int>(std::ceil(rim)));
+    for (Index i = 0; i < patches_.size(); ++i)
+      if (const float cosine = cosineOf(i); cosine >= least_cosine) {
+        const Footprint patch = footprintOf(corners(i), map.step);
+        if (isHidden(patch, map, options_.depth_tolerance))
+          continue;
+        float doubt = borderDoubt(view_.camera(), patch.corners.rowwise().mean() * map.step);
+        if (isNearOutline(patch, nearest, radius, options_.depth_tolerance))
+          doubt += outline_doubt;
+        else if (isAtRim(patch, farthest, rim, options_.depth_tolerance))
+          doubt += rim_doubt;
+        const float resolution = view_.focal() * cosine / (0.5f * (patch.nearest + patch.farthest));
+        seen.push_back({static_cast<int>(i), meanColor(photo, i), static_cast<std::uint8_t>(16 * doubt), resolution});
+      }
+    return seen;
+  }
+
+private:
+  Eigen::Matrix3f corners(Index i) const
+  {
+    Eigen::Matrix3f out;
+    for (int k = 0; k < 3; ++k)
+      out.col(k) = pixels_.col(patches_.faces(k, i));
+    return out;
+  }
+
+  /// Cosine between the patch's normal and the direction to the camera; 0 where a corner is out of the image.
+  float cosineOf(Index i) const
+  {
+    for (int k = 0; k < 3; ++k)
+      if (!(pixels_(2, patches_.faces(k, i)) > 0))
+        return 0;
+    Eigen::Vector3f middle = Eigen::Vector3f::Zero();
+    for (int k = 0; k < 3; ++k)
+      middle += patches_.vertices.col(patches_.faces(k, i)) / 3;
+    return patches_.normals.col(i).dot((view_.center() - middle).normalized());
+  }
+
+  /// From the middle and halfway to the corners.
+  std::array<std::uint8_t, 3> meanColor(const Image& photo, Index i) const
+  {
+    const Eigen::Matrix3f at = corners(i);
+    const Eigen::Vector2f middle = at.topRows<2>().rowwise().mean();
+    Eigen::Vector3f sum = samplePhotoQuickly(photo, middle.x(), middle.y());
+    for (int k = 0; k < 3; ++k) {
+      const Eigen::Vector2f p = 0.5f * (middle + at.col(k).head<2>());
+      sum += samplePhotoQuickly(photo, p.x(), p.y());
+    }
+    const Eigen::Vector3f mean = sum / 4 + Eigen::Vector3f::Constant(0.5f);
+    return {static_cast<std::uint8_t>(mean[0]), static_cast<std::uint8_t>(mean[1]), static_cast<std::uint8_t>(mean[2])};
+  }
+
+  const PatchMesh& patches_;
+  const Projector& view_;
+  const TextureOptions& options_;
+  Points pixels_; ///< x, y, depth per vertex; depth 0 where out of the image
+};
+} // namespace
+
+const Candidate* Candidates::find(Index patch, int view) const
+{
+  const Candidate *first = of(patch), *last = first + count(patch);
+  const Candidate* at = std::lower_bound(first, last, view, [](const Candidate& c, int v) { return c.view < v; });
+  return at != last && at->view == view ? at : nullptr;
+}
+
+Candidates findCandidates(const PatchMesh& patches, const RayScene& scene, const ViewList& views,
+                          const TextureOptions& options, const Progress& progress)
+{
+  std::vector<std::vector<Seen>> seen(views.used.size());
+  constexpr Index batch = 16; // views between two reports
+  const Index n = static_cast<Index>(views.used.size());
+  for (Index first = 0; first < n; first += batch) {
+    report(progress, "visibility", static_cast<double>(first) / static_cast<double>(n));
+    parallelFor(
+        std::min(batch, n - first), options.threads,
+        [&](Index i) {
+          if (views.used[first + i])
+            seen[first + i] =
+                ViewTest(patches, views.projectors[first + i], options).run(scene, *views.photos.get(first + i));
+        },
+        1);
+  }
+  Candidates out;
+  out.begin.assign(patches.size() + 1, 0);
+  for (const auto& view : seen)
+    for (const Seen& s : view)
+      ++out.begin[s.patch + 1];
+  for (Index i = 0; i < patches.size(); ++i)
+    out.begin[i + 1] += out.begin[i];
+  out.list.resize(out.begin.back());
+  std::vector<Index> next(out.begin.begin(), out.begin.end() - 1);
+  for (Index v = 0; v < n; ++v)
+    for (const Seen& s : seen[v])
+      out.list[next[s.patch]++] = {static_cast<int>(v), s.color, s.doubt, s.resolution};
+  return out;
+}
+} // namespace fresco

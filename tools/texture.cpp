@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "support/tool.h"
+#include <cstdio>
+#include <fresco/common/colmap.h>
+#include <fresco/common/file.h>
+#include <fresco/common/mesh_io.h>
+#include <fresco/common/require.h>
+#include <fresco/texture/core/texture_reconstruction.h>
+namespace {
+using namespace fresco;
+
+struct ToolOptions {
+  bool no_refine = false;
+  bool no_exposure = false, no_level = false, no_consistency = false;
+  int keep_out = 0;
+  std::string cameras_out;
+};
+
+std::vector<TextureView> viewsOf(const CameraSet& set, const std::string& folder)
+{
+  std::vector<TextureView> views;
+  for (const View& view : set.views) {
+    TextureView out;
+    out.camera = set.cameras[view.camera];
+    out.T_camera_world = view.T_camera_world;
+    out.path = folder + "/" + view.image;
+    views.push_back(std::move(out));
+  }
+  return views;
+}
+
+void declare(Args& args, TextureOptions& options, ToolOptions& tool)
+{
+  args.flag("no_refine", tool.no_refine, "take the cameras as they are given");
+  args.flag("no_exposure", tool.no_exposure, "leave exposure and white balance of the photographs as they are");
+  args.flag("no_consistency", tool.no_consistency, "do not avoid photographs that differ from what most show");
+  args.flag("no_level", tool.no_level, "leave the steps of colour at seams");
+  args.option("strip", options.strip, "pixels over which one photograph passes into the next at a seam, 0..100");
+  args.option(
+      "keep_out", tool.keep_out,
+      "every Nth photograph (the Nth, 2Nth ...) is aligned with the others but not used, to judge by; 0 = none");
+  args.option("cameras_out", tool.cameras_out, "folder for the cameras as used, a COLMAP text model; empty = none");
+  args.option("texel", options.texel, "side of a texel in mesh units; 0 = as fine as the photographs show each part");
+  args.option("atlas", options.atlas, "side of each square atlas, 128..16384 pixels; 0 = one as small as possible");
+  args.option("border", options.border, "texels around each chart against bleeding, 1..16");
+  args.option(
+      "smoothness", options.smoothness,
+      "how much fewer seams are worth against resolution, in bounding-box diagonals; 0 = best view of each face");
+  args.option("margin", options.margin, "pixels kept away from the outline of what stands in front, 0..100");
+  args.option("depth_tolerance", options.depth_tolerance,
+              "share of the distance by which occlusion is forgiven, 0..0.5");
+  args.option("memory", options.memory, "MB of decoded photographs kept at a time");
+}
+
+/// One camera per view: they may differ after refinement.
+CameraSet usedCameras(CameraSet set, const TextureResult& result)
+{
+  set.cameras.clear();
+  for (std::size_t v = 0; v < set.views.size(); ++v) {
+    set.cameras.push_back(result.cameras[v].camera);
+    set.views[v].camera = static_cast<int>(v);
+    set.views[v].T_camera_world = result.cameras[v].T_camera_world;
+  }
+  return set;
+}
+
+/// Name of a picture beside the model: room.obj -> room_mask.png, or room_mask_1.png of several.
+std::string maskPath(const std::string& model, std::size_t index, std::size_t count)
+{
+  const std::string stem = model.substr(0, model.size() - extension(model).size());
+  return stem + (count > 1 ? concat("_mask_", index, ".png") : "_mask.png");
+}
+
+void printFigures(const TextureResult& result, std::size_t views, bool quiet)
+{
+  char line[256];
+  std::snprintf(line, sizeof line, "seen %.1f %% of the surface, by %ld of %zu photographs", 100 * result.coverage,
+                static_cast<long>(result.views_used), views);
+  inform(quiet, line);
+  std::snprintf(line, sizeof line, "%ld charts in %zu atlas%s of %dx%d, %.0f %% of the texels used, texel %.3g",
+                static_cast<long>(result.charts), result.model.atlases.size(),
+                result.model.atlases.size() == 1 ? "" : "es", result.model.atlases.front().width,
+                result.model.atlases.front().height, 100 * result.used, result.texel);
+  inform(quiet, line);
+  if (result.disagreement_before > 0) {
+    std::snprintf(line, sizeof line, "photographs disagree by %.2f pixels, %.2f with the cameras as given",
+                  result.disagreement_after, result.disagreement_before);
+    inform(quiet, line);
+  }
+  for (const auto& [phase, seconds] : result.seconds) {
+    std::snprintf(line, sizeof line, "  %-16s %7.2f s", phase.c_str(), seconds);
+    inform(quiet, line);
+  }
+}
+
+void run(int argc, char** argv)
+{
+  TextureOptions options;
+  ToolOptions tool;
+  CommonOptions common;
+  Args args("fresco_texture MESH CAMERAS_DIR IMAGES_DIR OUT [options]",
+            "Textures a mesh from calibrated photographs. MESH: PLY, OBJ or VTK. CAMERAS_DIR: a COLMAP model, text or "
+            "binary.\n"
+            "IMAGES_DIR: the photographs it names. OUT: .obj (with .mtl and .png beside it) or .glb. Beside it "
+            "NAME_mask.png:\n"
+            "white where no photograph saw the surface and the colour is inpainted.");
+  declare(args, options, tool);
+  common.declare(args);
+  args.note("Example: fresco_texture mesh.ply scan/cameras scan/images model.glb");
+  const std::vector<std::string> files = args.parse(argc, argv, 4);
+  const std::string out = files[3];
+  if (extension(out) != ".obj" && extension(out) != ".glb")
+    throw UsageError(out + ": the output's extension must be .obj or .glb");
+  if (tool.keep_out < 0)
+    throw UsageError("-keep_out must not be negative");
+  options.threads = common.threads;
+  options.refine = !tool.no_refine;
+  options.consistency = !tool.no_consistency;
+  options.level = !tool.no_level;
+  options.exposure = !tool.no_exposure;
+  const TriangleMesh mesh = readMesh(files[0]);
+  if (mesh.faceCount() == 0 || !(surfaceArea(mesh) > 0))
+    throw std::runtime_error(files[0] + ": has no face of positive area");
+  const CameraSet set = readColmap(files[1]);
+  std::vector<TextureView> views = viewsOf(set, files[2]);
+  for (std::size_t v = 0; v < views.size() && tool.keep_out > 0; ++v)
+    views[v].paint = (v + 1) % static_cast<std::size_t>(tool.keep_out) != 0;
+  const TextureResult result = reconstructTexture(mesh, views, options, printProgress(common.quiet));
+  if (!(result.coverage > 0))
+    throw std::runtime_error(
+        concat(files[1], ": none of the ", views.size(), " photographs sees any part of ", files[0]));
+  writeTexturedMesh(out, result.model);
+  for (std::size_t i = 0; i < result.masks.size(); ++i)
+    writeImage(maskPath(out, i, result.masks.size()), result.masks[i]);
+  if (!tool.cameras_out.empty())
+    writeColmap(tool.cameras_out, usedCameras(set, result));
+  printFigures(result, views.size(), common.quiet);
+}
+} // namespace
+
+int main(int argc, char** argv)
+{
+  return fresco::runTool("fresco_texture", [&] { run(argc, argv); });
+}
