@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include <cstddef>
+#include <fresco/common/mesh.h>
+#include <fresco/common/point_set.h>
+#include <fresco/common/progress.h>
+namespace fresco {
+/// Screened Poisson reconstruction over an adaptive octree: Kazhdan, Bolitho, Hoppe 2006, "Poisson Surface
+/// Reconstruction"; Kazhdan, Hoppe 2013, "Screened Poisson Surface Reconstruction". The function is a sum of B-splines
+/// of degree 1.
+struct VolumetricOptions {
+  int depth = 8; ///< octree depth, 2..16; finest cell = cube side / 2^depth
+  double cell_size =
+      0.0;           ///< length unit of the points; side of the finest cell, which then sets the depth; 0 = from depth
+  int min_depth = 5; ///< the octree is complete down to this depth, 2..8
+  float point_weight = 4.f;     ///< weight of passing through the points, >= 0; 0 = unscreened (2006)
+  float scale = 1.1f;           ///< cube side / longest side of the bounding box, >= 1
+  float samples_per_node = 1.f; ///< samples that a cell needs to sustain its depth, > 0; more = smoother
+  bool confidence = false;      ///< samples weighted by PointSet::confidences, else by the length of their normals
+  float trim = 0.f;   ///< surface is cut away where the data sustain less than this octree depth; 0 = kept closed
+  int iterations = 6; ///< smoothing sweeps per octree depth, 1..1000
+  int threads = 0;    ///< 0 = all cores; the result does not depend on it
+};
+
+/// Lengths are in the unit of the points.
+struct VolumetricResult {
+  /// Faces counter-clockwise seen from the free side (where the normals point to); the origin is that of the points.
+  /// Closed and manifold unless trimmed. Colours where the points have them. Fields: "support" (octree depth that the
+  /// data sustain at the vertex), "intensity" where the points have it.
+  TriangleMesh mesh;
+  int depth = 0;             ///< depth used
+  double cell_size = 0.0;    ///< side of the finest cell
+  double residual = 0.0;     ///< |A x - b| / |b| at the finest depth
+  Index used_points = 0;     ///< points that took part
+  Index left_out_points = 0; ///< not finite, without normal or confidence, or far outliers
+  Index cells = 0;           ///< cells of the octree, all depths
+};
+
+/// @param points with normals that point to the free side
+/// @throws std::invalid_argument if there are no normals, fewer than 4 usable points, all usable points coincide, or an
+/// option is
+///         out of range
+/// @throws Cancelled if `progress` asks to stop
+VolumetricResult reconstructVolumetric(const PointSet& points, const VolumetricOptions& options = {},
+                                       const Progress& progress = {});
+
+/// Bytes that reconstructVolumetric() needs at most beside the points themselves, judged from how many octree cells the
+/// points occupy. Costs a fraction of the reconstruction.
+/// @throws as reconstructVolumetric()
+std::size_t estimateMemory(const PointSet& points, const VolumetricOptions& options = {});
+} // namespace fresco

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "volumetric_constraints.h"
+#include "volumetric_splat.h"
+#include "volumetric_transfer.h"
+#include <algorithm>
+#include <cstring>
+namespace fresco::volumetric {
+namespace {
+/// Share of a sample that is splatted at octree depth d: the two depths around
+/// its own share it.
+float share(float sample_depth, int d, int finest)
+{
+  const float s = std::clamp(sample_depth, 2.f, static_cast<float>(finest));
+  return std::max(0.f, 1.f - std::abs(s - static_cast<float>(d)));
+}
+
+/// The hat function of a node, convolved with the hat-shaped kernel that spreads a sample, is the cubic B-spline.
+void splatSample(const Sample& s, float factor, const Eigen::Vector3f& position, SplatBlock& block)
+{
+  const CubicWeights x(position.x()), y(position.y()), z(position.z());
+  const Eigen::Vector3f n = factor * s.normal;
+  for (std::size_t c = 0; c < CubicWeights::count; ++c)
+    for (std::size_t r = 0; r < CubicWeights::count; ++r) {
+      const float along = n.x() * y.value[r] * z.value[c];
+      const float across = n.y() * y.slope[r] * z.value[c] + n.z() * y.value[r] * z.slope[c];
+      float* row = &block.at(x.first, y.first + static_cast<int>(r), z.first + static_cast<int>(c));
+      for (std::size_t q = 0; q < CubicWeights::count; ++q)
+        row[q] += along * x.slope[q] + across * x.value[q];
+    }
+}
+
+void splatLevel(const BrickLevel& level, const Samples& samples, NodeField& field, int threads)
+{
+  const int finest = samples.cube.depth;
+  const std::vector<std::uint32_t> begin = sampleRanges(level, samples.codes, finest);
+  const float scale = std::ldexp(1.f, level.depth - finest);
+  splatBricks(level, begin, field, threads, [&](SplatBlock& block, int b) {
+    const Eigen::Vector3f origin = level.origin(b);
+    for (std::uint32_t i = begin[static_cast<std::size_t>(b)]; i < begin[static_cast<std::size_t>(b) + 1]; ++i) {
+      const Sample& s = samples.samples[i];
+      const float w = share(s.depth, level.depth, finest);
+      if (w > 0.f)
+        splatSample(s, w * s.area * scale * scale, s.position * scale - origin, block);
+    }
+  });
+  sumFaces(level, field, threads);
+}
+
+NodeField copyOf(const NodeField& field, int threads)
+{
+  NodeField copy(field.size());
+  parallelRanges(field.size(), threads, [&](Index begin, Index end) {
+    std::memcpy(copy.brick(begin), field.brick(begin),
+                static_cast<std::size_t>(end - begin) * brick_stride * sizeof(float));
+  });
+  return copy;
+}
+} // namespace
+
+Constraints splatNormals(const Octree& tree, const Samples& samples, int threads)
+{
+  Constraints constraints;
+  constraints.fine.resize(tree.levels.size());
+  constraints.own.resize(tree.levels.size());
+  for (int d = tree.depth; d >= 2; --d) {
+    const auto i = static_cast<std::size_t>(d);
+    const BrickLevel& level = tree.levels[i];
+    NodeField& field = constraints.fine[i];
+    field = NodeField(level.size(), threads);
+    splatLevel(level, samples, field, threads);
+    if (d == tree.depth)
+      continue;
+    constraints.own[i] = copyOf(field, threads);
+    restrictLevel(tree.levels[i + 1], constraints.fine[i + 1], level, 0.5f, field, threads);
+  }
+  return constraints;
+}
+} // namespace fresco::volumetric

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "volumetric_cube.h"
+#include <algorithm>
+#include <cmath>
+#include <fresco/common/parallel.h>
+#include <fresco/common/require.h>
+namespace fresco::volumetric {
+namespace {
+constexpr Index least_points = 4;
+/// Share of the points that may be far outliers, and how many of them at least
+/// if there are enough points.
+constexpr double outlier_share = 0.001;
+constexpr Index few_outliers = 4;
+/// An outlier is further off the others than they extend.
+constexpr double outlier_distance = 1.0;
+constexpr std::size_t quantile_points = 1 << 17;
+
+using Box = Eigen::AlignedBox3d;
+
+bool isUsable(const PointSet& set, const Weights& weights, Index i)
+{
+  const float length = set.normals.col(i).squaredNorm();
+  return set.points.col(i).allFinite() && std::isfinite(length) && length > 1e-20f && weights.of(set, i) > 0;
+}
+
+std::vector<Index> finitePoints(const PointSet& set, const Weights& weights)
+{
+  std::vector<Index> points;
+  points.reserve(static_cast<std::size_t>(set.size()));
+  for (Index i = 0; i < set.size(); ++i)
+    if (isUsable(set, weights, i))
+      points.push_back(i);
+  return points;
+}
+
+/// Box of the points without the `drop` lowest and highest of each axis.
+Box innerBox(const PointSet& set, const std::vector<Index>& points)
+{
+  const std::size_t stride = (points.size() + quantile_points - 1) / quantile_points;
+  std::vector<float> values;
+  Box box;
+  Eigen::Vector3d lower, upper;
+  for (int axis = 0; axis < 3; ++axis) {
+    values.clear();
+    for (std::size_t k = 0; k < points.size(); k += stride)
+      values.push_back(set.points(axis, points[k]));
+    const auto n = static_cast<Index>(values.size());
+    const Index drop =
+        std::min(std::max(few_outliers, static_cast<Index>(outlier_share * static_cast<double>(n))), n / 16);
+    std::nth_element(values.begin(), values.begin() + drop, values.end());
+    lower[axis] = values[static_cast<std::size_t>(drop)];
+    std::nth_element(values.begin(), values.end() - 1 - drop, values.end());
+    upper[axis] = values[static_cast<std::size_t>(n - 1 - drop)];
+  }
+  return Box(lower, upper);
+}
+
+Box dropOutliers(const PointSet& set, std::vector<Index>& points)
+{
+  Box inner = innerBox(set, points);
+  const double margin = outlier_distance * inner.sizes().maxCoeff();
+  if (margin > 0) {
+    const Box allowed(inner.min().array() - margin, inner.max().array() + margin);
+    const auto outside = [&](Index i) { return !allowed.contains(set.points.col(i).cast<double>()); };
+    points.erase(std::remove_if(points.begin(), points.end(), outside), points.end());
+  }
+  Box box;
+  for (const Index i : points)
+    box.extend(set.points.col(i).cast<double>());
+  return box;
+}
+
+Cube fitCube(const Box& box, const VolumetricOptions& options)
+{
+  Cube cube;
+  cube.depth = options.depth;
+  cube.side = box.sizes().maxCoeff() * static_cast<double>(options.scale);
+  if (options.cell_size > 0) {
+    cube.depth = std::max(2, static_cast<int>(std::ceil(std::log2(cube.side / options.cell_size))));
+    require(cube.depth <= 16, "volumetric reconstruction: a cell size of ", options.cell_size, " needs octree depth ",
+            cube.depth, ", above 16, for points that extend over ", cube.side);
+    cube.side = options.cell_size * static_cast<double>(Index(1) << cube.depth);
+  }
+  cube.corner = box.center().array() - 0.5 * cube.side;
+  return cube;
+}
+
+Weights chooseWeights(const PointSet& set, const VolumetricOptions& options)
+{
+  Weights weights;
+  if (options.confidence)
+    weights.source = set.confidences.size() > 0 ? Weights::Source::confidences : Weights::Source::normal_lengths;
+  return weights;
+}
+} // namespace
+
+double Weights::of(const PointSet& set, Index i) const
+{
+  if (source == Source::none)
+    return 1.0;
+  const double w = source == Source::confidences ? static_cast<double>(set.confidences[i])
+                                                 : static_cast<double>(set.normals.col(i).norm());
+  return std::isfinite(w) ? scale * w : 0.0;
+}
+
+Usable usablePoints(const PointSet& set, const VolumetricOptions& options)
+{
+  Usable usable;
+  usable.weights = chooseWeights(set, options);
+  usable.points = finitePoints(set, usable.weights);
+  const auto enough = [&] {
+    require(static_cast<Index>(usable.points.size()) >= least_points,
+            "volumetric reconstruction: ", usable.points.size(), " of ", set.size(),
+            " points are usable (finite, with a normal that is finite and not "
+            "zero); at least ",
+            least_points, " are needed");
+  };
+  enough();
+  const Box box = dropOutliers(set, usable.points);
+  enough();
+  require(box.sizes().maxCoeff() > 1e-30, "volumetric reconstruction: all ", usable.points.size(),
+          " usable points coincide");
+  double sum = 0;
+  for (const Index i : usable.points)
+    sum += usable.weights.of(set, i);
+  usable.weights.scale = static_cast<double>(usable.points.size()) / sum;
+  usable.cube = fitCube(box, options);
+  return usable;
+}
+} // namespace fresco::volumetric

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "volumetric_specks.h"
+#include "volumetric_sets.h"
+#include <algorithm>
+namespace fresco::volumetric {
+namespace {
+constexpr Index least_faces = 150;
+constexpr double least_share = 0.01; ///< of the largest component's faces
+
+void compactVertices(const std::vector<int>& new_index, IsoSurface& surface)
+{
+  Index count = 0;
+  for (VertexRange& range : surface.ranges) {
+    const Index first = count;
+    for (Index v = range.first; v < range.first + range.count; ++v)
+      if (new_index[static_cast<std::size_t>(v)] >= 0)
+        surface.vertices.col(count++) = surface.vertices.col(v).eval();
+    range.first = first;
+    range.count = count - first;
+  }
+  surface.vertices.conservativeResize(3, count);
+  for (Index f = 0; f < surface.faces.cols(); ++f)
+    for (int k = 0; k < 3; ++k)
+      surface.faces(k, f) = new_index[static_cast<std::size_t>(surface.faces(k, f))];
+}
+} // namespace
+
+void removeSpecks(IsoSurface& surface)
+{
+  DisjointSets components(surface.vertices.cols());
+  for (Index f = 0; f < surface.faces.cols(); ++f) {
+    components.join(surface.faces(0, f), surface.faces(1, f));
+    components.join(surface.faces(0, f), surface.faces(2, f));
+  }
+  std::vector<int> faces(static_cast<std::size_t>(surface.vertices.cols()),
+                         0); // by root
+  for (Index f = 0; f < surface.faces.cols(); ++f)
+    ++faces[static_cast<std::size_t>(components.root(surface.faces(0, f)))];
+  const int largest = faces.empty() ? 0 : *std::max_element(faces.begin(), faces.end());
+  const auto isSpeck = [&](int v) {
+    const int n = faces[static_cast<std::size_t>(components.root(v))];
+    return n < least_faces && n < least_share * largest;
+  };
+  Index kept = 0;
+  for (Index f = 0; f < surface.faces.cols(); ++f)
+    if (!isSpeck(surface.faces(0, f)))
+      surface.faces.col(kept++) = surface.faces.col(f).eval();
+  if (kept == surface.faces.cols())
+    return;
+  surface.faces.conservativeResize(3, kept);
+  std::vector<int> new_index(faces.size());
+  int count = 0;
+  for (const VertexRange& range : surface.ranges)
+    for (Index v = range.first; v < range.first + range.count; ++v)
+      new_index[static_cast<std::size_t>(v)] = isSpeck(static_cast<int>(v)) ? -1 : count++;
+  compactVertices(new_index, surface);
+}
+} // namespace fresco::volumetric

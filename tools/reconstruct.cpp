@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "support/tool.h"
+#include <cmath>
+#include <fresco/common/mesh_io.h>
+#include <fresco/common/point_io.h>
+#include <fresco/common/require.h>
+#include <fresco/surface/core/volumetric_reconstruction.h>
+#include <iostream>
+namespace {
+struct Request {
+  std::string input, output;
+  fresco::VolumetricOptions options;
+  fresco::CommonOptions common;
+  bool estimate = false;
+};
+
+Request parse(int argc, char** argv)
+{
+  Request request;
+  fresco::VolumetricOptions& o = request.options;
+  fresco::Args args(
+      "fresco_reconstruct IN OUT [options]",
+      "Volumetric surface reconstruction (screened Poisson over an octree) of points with normals.\n"
+      "IN: PCD, PLY, VTK, OBJ or XYZ with normals that point to the free side; OUT: PLY, OBJ or VTK mesh, closed\n"
+      "and manifold unless trimmed, with colours and intensity where IN has them and the field `support`: the\n"
+      "octree depth that the data sustain at the vertex.");
+  args.option("depth", o.depth, "octree depth, 2..16; finest cell = cube side / 2^depth");
+  args.option("cell", o.cell_size,
+              "side of the finest cell, unit of the points, which sets the depth; 0 = from -depth");
+  args.option("point_weight", o.point_weight, "weight of passing through the points, >= 0; 0 = unscreened");
+  args.option("samples_per_node", o.samples_per_node,
+              "points that a cell needs to sustain its depth, > 0; more = smoother");
+  args.option("trim", o.trim,
+              "cut the surface away where the data sustain less than this octree depth; 0 = keep it closed");
+  args.flag("confidence", o.confidence,
+            "weight the points by their field `confidence`, else by the length of their normals");
+  args.option("scale", o.scale, "cube side / longest side of the points' bounding box, 1..100");
+  args.option("min_depth", o.min_depth, "the octree is complete down to this depth, 2..8");
+  args.option("iterations", o.iterations, "solver sweeps per octree depth, 1..1000");
+  args.flag("estimate", request.estimate, "print the memory needed in MB on stdout and stop; OUT is not written");
+  args.note(
+      "fresco_reconstruct scan.ply mesh.ply -depth 9\n"
+      "fresco_reconstruct room.pcd room.ply -cell 0.02 -trim 6   (an open room: cells of 2 cm, no invented surface)");
+  request.common.declare(args);
+  const std::vector<std::string> files = args.parse(argc, argv, 2);
+  request.input = files[0];
+  request.output = files[1];
+  o.threads = request.common.threads;
+  return request;
+}
+
+std::string percent(fresco::Index part, fresco::Index whole)
+{
+  return fresco::concat(std::round(1000.0 * static_cast<double>(part) / static_cast<double>(whole)) / 10, " %");
+}
+
+void run(const Request& request)
+{
+  const fresco::PointSet points = fresco::readPoints(request.input);
+  if (request.estimate) {
+    std::cout << std::ceil(static_cast<double>(fresco::estimateMemory(points, request.options)) / 1e6) << '\n';
+    return;
+  }
+  const fresco::VolumetricResult result =
+      fresco::reconstructVolumetric(points, request.options, fresco::printProgress(request.common.quiet));
+  fresco::writeMesh(request.output, result.mesh);
+  fresco::inform(request.common.quiet,
+                 fresco::concat(result.mesh.vertexCount(), " vertices, ", result.mesh.faceCount(), " faces; depth ",
+                                result.depth, ", cell ", result.cell_size, "; ", result.used_points, " points used, ",
+                                result.left_out_points, " left out (", percent(result.left_out_points, points.size()),
+                                ")"));
+}
+} // namespace
+
+int main(int argc, char** argv)
+{
+  return fresco::runTool("fresco_reconstruct", [&] {
+    const Request request = parse(argc, argv);
+    try {
+      run(request);
+    } catch (const std::invalid_argument& error) {
+      throw std::runtime_error(request.input + ": " + error.what());
+    }
+  });
+}
