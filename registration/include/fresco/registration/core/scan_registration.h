@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include <fresco/common/point_set.h>
+#include <fresco/common/poses.h>
+#include <fresco/common/progress.h>
+#include <optional>
+#include <string>
+#include <vector>
+namespace fresco {
+/// Registration of many scans: global alignment of scans without a start pose, then joint point-to-plane refinement.
+struct ScanRegistrationOptions {
+  float voxel = 0.f;           ///< edge of the finest thinning cells, length; 0 = median range of the scans / 100
+  float max_distance = 0.f;    ///< how far start poses may be off where the scans overlap, length; 0 = 20 voxels
+  float min_overlap = 0.1f;    ///< share of a scan's points with a counterpart from which a pair is used, 0..1
+  float max_violation = 0.04f; ///< share of a scan's points in space that the other saw through: above, a pair is wrong
+  int max_iterations = 40;     ///< of the joint refinement, per resolution, >= 1
+  int threads = 0;             ///< 0 = all cores; the result does not depend on it
+  std::vector<std::string> names; ///< of the scans, for messages; empty = their numbers
+};
+
+/// What messages call a scan.
+std::string scanName(const ScanRegistrationOptions& options, Index scan);
+
+/// One pair of scans at the end.
+struct PairResult {
+  Index a = 0, b = 0;   ///< a < b
+  double overlap = 0.0; ///< larger of the shares of points of one scan with a counterpart in the other, 0..1
+  double violation =
+      0.0;               ///< larger of the shares of comparable surfaces in space that the other scan saw through, 0..1
+  double rms = 0.0;      ///< point-to-plane distance of the corresponding points, length
+  Index matches = 0;     ///< corresponding points
+  bool accepted = false; ///< holds the two scans together
+};
+
+/// A motion of a scan that its surfaces leave free, such as along a corridor without features.
+struct FreeMotion {
+  Eigen::Vector3d translation = Eigen::Vector3d::Zero(); ///< direction in the world
+  Eigen::Vector3d rotation = Eigen::Vector3d::Zero();    ///< axis through the scan's viewpoint, in the world
+};
+
+/// One scan at the end. Lengths are in the unit of the points.
+struct ScanResult {
+  bool placed = false;
+  std::string problem; ///< why it was not placed, or what is doubtful about its place
+  Index group = -1;    ///< scans held together by accepted pairs; 0 is the group with poses; -1 = none
+  Eigen::Matrix4d T_group_scan = Eigen::Matrix4d::Identity(); ///< within its group, whether placed or not
+  double rms = 0.0;                                           ///< point-to-plane distance over its accepted pairs
+  double translation_deviation = 0.0;                         ///< standard deviation in the least certain direction
+  double rotation_deviation = 0.0;                            ///< the same about the least certain axis, radian
+  std::optional<FreeMotion> free_motion;                      ///< degenerate: the pose is arbitrary along it
+};
+
+struct ScanRegistrationResult {
+  std::vector<Pose> poses;       ///< world from scan, per scan; nothing where it could not be placed
+  std::vector<PairResult> pairs; ///< that overlap or were tried, ordered by (a, b)
+  std::vector<ScanResult> scans;
+  Index groups = 0;
+  double rms = 0.0;   ///< point-to-plane distance over all accepted pairs, length
+  float voxel = 0.f;  ///< that was used
+  int iterations = 0; ///< of the last refinement, over all resolutions
+  bool converged = false;
+};
+
+/// @param scans one or more; each in its own frame. The viewpoint of a scan without `viewpoints` is its frame's origin.
+/// @param start world from scan, one per scan, off by up to max_distance; or empty. Scans without one are aligned
+/// globally.
+///              The first scan of a group keeps its start pose; without any, the first scan of the largest group is the
+///              world.
+/// @throws std::invalid_argument if there is no scan, sizes differ, an attribute is malformed, an option is out of
+/// range or
+///         the scans differ in size so much that their units must differ
+ScanRegistrationResult registerScans(const std::vector<PointSet>& scans, const std::vector<Pose>& start = {},
+                                     const ScanRegistrationOptions& options = {}, const Progress& progress = {});
+
+/// All placed scans in the world, one after the other, without non-finite points. Normals (those of the scans turned,
+/// else estimated) point to each point's own viewpoint, which is kept per point. Colours, intensities and confidences
+/// are kept where all placed scans have them. `origin` differs from zero where the world's coordinates are large.
+/// @throws std::invalid_argument if sizes differ or an attribute is malformed
+PointSet mergeScans(const std::vector<PointSet>& scans, const std::vector<Pose>& poses, int threads = 0);
+} // namespace fresco

@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "global_alignment.h"
+#include <algorithm>
+#include <fresco/common/parallel.h>
+namespace fresco {
+namespace {
+constexpr Index quick_features = 300; // the most distinctive ones, for the ranking of pairs
+constexpr std::size_t all_pairs = 30; // up to this many pairs are tried without ranking
+constexpr Index partners_a_round = 4; // of each scan
+constexpr int most_rounds = 6;
+
+struct RankedPair {
+  Index a, b;
+  Index votes;
+};
+
+bool isKnown(const ScanCluster& known, Index scan)
+{
+  return std::find(known.scans.begin(), known.scans.end(), scan) != known.scans.end();
+}
+
+std::vector<RankedPair> possiblePairs(const std::vector<PreparedScan>& scans, const ScanCluster& known)
+{
+  std::vector<RankedPair> pairs;
+  const auto usable = [&](Index i) { return scans[static_cast<std::size_t>(i)].problem.empty(); };
+  for (Index a = 0; a < static_cast<Index>(scans.size()); ++a)
+    for (Index b = a + 1; b < static_cast<Index>(scans.size()); ++b)
+      if (usable(a) && usable(b) && !(isKnown(known, a) && isKnown(known, b)))
+        pairs.push_back({a, b, 0});
+  return pairs;
+}
+
+ScanFeatures mostDistinctive(const ScanFeatures& features)
+{
+  const Index n = std::min(quick_features, features.points.cols());
+  return {features.points.leftCols(n), features.normals.leftCols(n), features.descriptors.leftCols(n)};
+}
+
+void rankPairs(std::vector<RankedPair>& pairs, const std::vector<PreparedScan>& scans,
+               const std::vector<ScanFeatures>& features, int threads)
+{
+  std::vector<ScanFeatures> few;
+  for (const ScanFeatures& all : features)
+    few.push_back(mostDistinctive(all));
+  parallelFor(
+      static_cast<Index>(pairs.size()), threads,
+      [&](Index k) {
+        RankedPair& pair = pairs[static_cast<std::size_t>(k)];
+        const auto a = static_cast<std::size_t>(pair.a), b = static_cast<std::size_t>(pair.b);
+        ConsensusOptions options;
+        options.tolerance = 1.5f * scans[a].levels[1].voxel;
+        options.size = static_cast<float>(scans[a].size);
+        options.most = 1;
+        const Hypotheses best = findConsensus(few[a], few[b], matchFeatures(few[a], few[b], 400), options);
+        pair.votes = best.empty() ? 0 : best[0].votes;
+      },
+      1);
+  std::stable_sort(pairs.begin(), pairs.end(), [](const auto& x, const auto& y) { return x.votes > y.votes; });
+}
+
+// The best pairs not yet tried, at most `partners_a_round` of each scan; they are taken out of `pairs`.
+std::vector<RankedPair> takeRound(std::vector<RankedPair>& pairs, std::size_t scan_count)
+{
+  std::vector<Index> taken(scan_count, 0);
+  std::vector<RankedPair> round, rest;
+  for (const RankedPair& pair : pairs) {
+    Index &a = taken[static_cast<std::size_t>(pair.a)], &b = taken[static_cast<std::size_t>(pair.b)];
+    const bool take = std::min(a, b) < partners_a_round;
+    (take ? round : rest).push_back(pair);
+    a += take ? 1 : 0;
+    b += take ? 1 : 0;
+  }
+  pairs = std::move(rest);
+  return round;
+}
+
+class GlobalAligner {
+public:
+  GlobalAligner(const std::vector<PreparedScan>& scans, const ScanCluster& known,
+                const ScanRegistrationOptions& options)
+      : scans_(scans), known_(known), options_(options)
+  {}
+
+  GlobalAlignment run(const Progress& progress);
+
+private:
+  void describe(const Progress& progress);
+  void alignPairs(const std::vector<RankedPair>& round);
+  GraphOptions graphOptions() const;
+
+  const std::vector<PreparedScan>& scans_;
+  const ScanCluster& known_;
+  const ScanRegistrationOptions& options_;
+  std::vector<ScanFeatures> features_;
+  GlobalAlignment result_;
+};
+
+void GlobalAligner::describe(const Progress& progress)
+{
+  FeatureOptions options;
+  options.threads = options_.threads;
+  for (std::size_t i = 0; i < scans_.size(); ++i) {
+    report(progress, "describe", 0.3 * static_cast<double>(i) / static_cast<double>(scans_.size()));
+    features_.push_back(scans_[i].problem.empty() ? describeScan(scans_[i], options) : ScanFeatures{});
+  }
+}
+
+void GlobalAligner::alignPairs(const std::vector<RankedPair>& round)
+{
+  PairAlignmentOptions options;
+  options.min_overlap = options_.min_overlap;
+  options.max_violation = options_.max_violation;
+  std::vector<PairAlignment> aligned(round.size());
+  parallelFor(
+      static_cast<Index>(round.size()), options_.threads,
+      [&](Index k) {
+        const auto a = static_cast<std::size_t>(round[static_cast<std::size_t>(k)].a);
+        const auto b = static_cast<std::size_t>(round[static_cast<std::size_t>(k)].b);
+        PairAlignment& alignment = aligned[static_cast<std::size_t>(k)];
+        alignment = alignPair(scans_[a], scans_[b], features_[a], features_[b], options);
+        alignment.a = static_cast<Index>(a);
+        alignment.b = static_cast<Index>(b);
+      },
+      1);
+  result_.pairs.insert(result_.pairs.end(), aligned.begin(), aligned.end());
+  std::sort(result_.pairs.begin(), result_.pairs.end(),
+            [](const PairAlignment& x, const PairAlignment& y) { return std::pair(x.a, x.b) < std::pair(y.a, y.b); });
+}
+
+GraphOptions GlobalAligner::graphOptions() const
+{
+  GraphOptions options;
+  options.max_violation = options_.max_violation;
+  options.tolerance = 4.f * options_.voxel;
+  options.threads = options_.threads;
+  return options;
+}
+
+GlobalAlignment GlobalAligner::run(const Progress& progress)
+{
+  describe(progress);
+  std::vector<RankedPair> pairs = possiblePairs(scans_, known_);
+  const bool ranked = pairs.size() > all_pairs;
+  if (ranked)
+    rankPairs(pairs, scans_, features_, options_.threads);
+  for (int round = 0; round < most_rounds; ++round) {
+    report(progress, "align pairs", 0.3 + 0.7 * round / most_rounds);
+    alignPairs(ranked ? takeRound(pairs, scans_.size()) : pairs);
+    result_.graph = buildScanGraph(scans_, result_.pairs, known_, graphOptions());
+    if (!ranked || pairs.empty() || result_.graph.clusters.size() <= 1)
+      break;
+  }
+  return std::move(result_);
+}
+} // namespace
+
+GlobalAlignment alignGlobally(const std::vector<PreparedScan>& scans, const ScanCluster& known,
+                              const ScanRegistrationOptions& options, const Progress& progress)
+{
+  return GlobalAligner(scans, known, options).run(progress);
+}
+} // namespace fresco

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include "consensus.h"
+#include "pair_overlap.h"
+#include <vector>
+namespace fresco {
+/// A relative pose of two scans that passed the checks.
+struct PairMode {
+  Eigen::Isometry3d T_a_b = Eigen::Isometry3d::Identity();
+  PairCheck check;
+  Index votes = 0;    ///< features that agree
+  double score = 0.0; ///< overlap, discounted by violations; larger is better
+};
+using PairModes = std::vector<PairMode, Eigen::aligned_allocator<PairMode>>;
+
+/// All that is known of one pair of scans without a start pose.
+struct PairAlignment {
+  Index a = 0, b = 0;
+  PairModes modes;        ///< best first, distinct; empty = the pair has no acceptable relative pose
+  bool ambiguous = false; ///< several modes explain the scans about equally well
+};
+
+struct PairAlignmentOptions {
+  float min_overlap = 0.1f;
+  float max_violation = 0.04f;
+  std::size_t matches = 1500; ///< correspondences of features
+};
+
+/// Discount of an overlap by violations.
+double alignmentScore(const PairCheck& check);
+
+/// Whether `other` explains two scans about as well as `best` does.
+bool comparable(const PairCheck& best, const PairCheck& other);
+
+/// Global alignment of two scans from their features: hypotheses by consensus, the best by overlap and free space,
+/// refined and checked again.
+PairAlignment alignPair(const PreparedScan& a, const PreparedScan& b, const ScanFeatures& features_a,
+                        const ScanFeatures& features_b, const PairAlignmentOptions& options);
+} // namespace fresco

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "pose_uncertainty.h"
+#include <Eigen/Eigenvalues>
+#include <cmath>
+namespace fresco {
+namespace {
+constexpr double free_limit = 4e-3; // information of a direction / that of one in which every normal points
+
+double largestDeviation(const Eigen::Matrix3d& covariance)
+{
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
+  solver.computeDirect(covariance, Eigen::EigenvaluesOnly);
+  return std::sqrt(solver.eigenvalues()[2]);
+}
+} // namespace
+
+PoseUncertainty describeUncertainty(const Matrix6d& information, double rms, double size)
+{
+  const double weight = information.bottomRightCorner<3, 3>().trace();
+  if (!(weight > 0.0))
+    return {};
+  Vector6d scale;
+  scale << Eigen::Vector3d::Constant(1.0 / size), Eigen::Vector3d::Ones();
+  const Matrix6d scaled = scale.asDiagonal() * information * scale.asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<Matrix6d> solver(scaled / weight);
+  const Vector6d values = solver.eigenvalues().cwiseMax(1e-9);
+  const Matrix6d V = solver.eigenvectors();
+  const Matrix6d covariance = V * values.cwiseInverse().asDiagonal() * V.transpose() * (rms * rms / weight);
+  PoseUncertainty uncertainty;
+  uncertainty.translation = largestDeviation(covariance.bottomRightCorner<3, 3>());
+  uncertainty.rotation = largestDeviation(covariance.topLeftCorner<3, 3>()) / size;
+  if (values[0] >= free_limit)
+    return uncertainty;
+  const Vector6d direction = V.col(0);
+  FreeMotion motion;
+  if (direction.tail<3>().norm() >= direction.head<3>().norm())
+    motion.translation = direction.tail<3>().normalized();
+  else
+    motion.rotation = direction.head<3>().normalized();
+  uncertainty.free_motion = motion;
+  return uncertainty;
+}
+} // namespace fresco

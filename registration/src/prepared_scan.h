@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include "free_space.h"
+#include <fresco/common/point_set.h>
+#include <fresco/filters/core/neighbors.h>
+#include <memory>
+#include <string>
+#include <vector>
+namespace fresco {
+/// One scan at one resolution, in the scan's working frame.
+struct ScanLevel {
+  float voxel = 0.f;                     ///< edge of the thinning cells, length
+  Points points;                         ///< 3xN, one per cell, the mean of its points
+  std::shared_ptr<const PointTree> tree; ///< over them
+  Points viewpoints;                     ///< 3xN
+  Points colors;                         ///< 3xN, means over the cells, or 3x0
+  Points normals;                        ///< 3xN unit, zero where the neighbours do not span a plane
+  Eigen::VectorXf bend;                  ///< N, smallest eigenvalue / sum of eigenvalues of the neighbourhood, 0..1/3
+  std::vector<Index> samples;            ///< points with a normal; any prefix covers all directions of normals
+};
+
+/// What registration keeps of a scan.
+struct PreparedScan {
+  std::string problem;                              ///< why it cannot be registered; empty = it can
+  Eigen::Vector3d center = Eigen::Vector3d::Zero(); ///< scan = center + working
+  double size = 0.0;                                ///< median distance of its points from where they were seen, length
+  bool oriented = false;                            ///< normals point to the free side; else their sign means nothing
+  std::vector<ScanLevel> levels;                    ///< coarse to fine, each half the voxel of the one before
+  FreeSpace free_space;                             ///< empty unless oriented
+};
+
+constexpr int level_count = 4;            ///< resolutions: voxel, 2, 4 and 8 voxels
+constexpr double voxels_per_size = 100.0; ///< finest thinning: a room of 3 m radius in 3 cm cells
+
+/// Level on which two scans are compared: fine enough for furniture, coarser than the errors of a measured pose.
+constexpr int check_level = level_count - 2;
+
+/// Median distance of the finite points from the viewpoints (the scan's origin if unknown), length; 0 if there are
+/// none.
+double scanSize(const PointSet& scan);
+
+/// The smallest voxel, `least` or more, that a scan of this density fills; length.
+double fittingVoxel(const PointSet& scan, double least);
+
+/// @param voxel finest thinning, length
+PreparedScan prepareScan(const PointSet& scan, float voxel, int threads);
+} // namespace fresco

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "pose_uncertainty.h"
+#include "registration_state.h"
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+namespace fresco {
+namespace {
+using Groups = std::vector<std::vector<Index>>;
+
+// Members held together by accepted pairs, largest group first, each in rising order.
+Groups acceptedGroups(const Placement& placement, std::size_t scan_count)
+{
+  std::vector<Index> label(scan_count);
+  std::iota(label.begin(), label.end(), Index(0));
+  for (const PairResult& pair : placement.pairs) {
+    const Index a = label[static_cast<std::size_t>(pair.a)], b = label[static_cast<std::size_t>(pair.b)];
+    if (pair.accepted)
+      std::replace(label.begin(), label.end(), std::max(a, b), std::min(a, b));
+  }
+  Groups groups(scan_count);
+  for (const Index scan : placement.members)
+    groups[static_cast<std::size_t>(label[static_cast<std::size_t>(scan)])].push_back(scan);
+  groups.erase(std::remove_if(groups.begin(), groups.end(), [](const auto& g) { return g.empty(); }), groups.end());
+  std::stable_sort(groups.begin(), groups.end(), [](const auto& a, const auto& b) { return a.size() > b.size(); });
+  return groups;
+}
+
+double pooledRms(const std::vector<PairResult>& pairs, Index scan)
+{
+  double squares = 0.0, count = 0.0;
+  for (const PairResult& pair : pairs)
+    if (pair.accepted && (scan < 0 || pair.a == scan || pair.b == scan)) {
+      squares += static_cast<double>(pair.matches) * pair.rms * pair.rms;
+      count += static_cast<double>(pair.matches);
+    }
+  return count > 0.0 ? std::sqrt(squares / count) : 0.0;
+}
+
+// The placed scan whose free space contradicts the place of `scan`, -1 if none does.
+Index contradictingScan(const std::vector<PairResult>& pairs, Index scan, const std::vector<Index>& placed,
+                        double limit)
+{
+  for (const PairResult& pair : pairs)
+    for (const auto& [one, other] : {std::pair(pair.a, pair.b), std::pair(pair.b, pair.a)})
+      if (one == scan && pair.violation > limit && std::find(placed.begin(), placed.end(), other) != placed.end())
+        return other;
+  return -1;
+}
+
+class Description {
+public:
+  Description(const std::vector<PreparedScan>& scans, const std::vector<Pose>& start,
+              const ScanRegistrationOptions& options)
+      : scans_(scans), start_(start), options_(options)
+  {
+    result_.voxel = options.voxel;
+    result_.poses.resize(scans.size());
+    result_.scans.resize(scans.size());
+    for (std::size_t i = 0; i < scans.size(); ++i)
+      result_.scans[i].problem = scans[i].problem;
+  }
+
+  ScanRegistrationResult run(const std::vector<Placement>& placements);
+
+private:
+  ScanResult& scan(Index i) { return result_.scans[static_cast<std::size_t>(i)]; }
+  bool started(Index i) const { return !start_.empty() && start_[static_cast<std::size_t>(i)].has_value(); }
+  void describeScans(const Placement& placement);
+  void placeMain(const std::vector<Index>& group);
+  void placeOther(const std::vector<Index>& group, const std::vector<Index>& main, bool same_frame);
+
+  const std::vector<PreparedScan>& scans_;
+  const std::vector<Pose>& start_;
+  const ScanRegistrationOptions& options_;
+  ScanRegistrationResult result_;
+};
+
+void Description::describeScans(const Placement& placement)
+{
+  for (std::size_t m = 0; m < placement.members.size(); ++m) {
+    const Index i = placement.members[m];
+    const PreparedScan& prepared = scans_[static_cast<std::size_t>(i)];
+    scan(i).T_group_scan = (placement.poses[m] * Eigen::Translation3d(-prepared.center)).matrix();
+    scan(i).rms = pooledRms(placement.pairs, i);
+    const PoseUncertainty uncertainty = describeUncertainty(placement.joint.information[m], scan(i).rms, prepared.size);
+    scan(i).translation_deviation = uncertainty.translation;
+    scan(i).rotation_deviation = uncertainty.rotation;
+    scan(i).free_motion = uncertainty.free_motion;
+  }
+}
+
+void Description::placeMain(const std::vector<Index>& group)
+{
+  for (const Index i : group) {
+    scan(i).placed = true;
+    result_.poses[static_cast<std::size_t>(i)] = scan(i).T_group_scan;
+    if (scan(i).free_motion)
+      scan(i).problem = "its surfaces leave a motion free: the pose is arbitrary along it";
+  }
+}
+
+void Description::placeOther(const std::vector<Index>& group, const std::vector<Index>& main, bool same_frame)
+{
+  for (const Index i : group) {
+    const Index against = same_frame ? contradictingScan(result_.pairs, i, main, options_.max_violation) : -1;
+    if (against >= 0) {
+      scan(i).problem = "its place contradicts what " + scanName(options_, against) + " saw through";
+    } else if (same_frame && started(i)) {
+      scan(i).placed = true;
+      scan(i).problem = "overlaps none of the other placed scans enough: its start pose is kept unconfirmed";
+      result_.poses[static_cast<std::size_t>(i)] = scan(i).T_group_scan;
+    } else {
+      scan(i).problem = "no place among the other scans is certain";
+    }
+  }
+}
+
+ScanRegistrationResult Description::run(const std::vector<Placement>& placements)
+{
+  for (const Placement& placement : placements) {
+    result_.pairs.insert(result_.pairs.end(), placement.pairs.begin(), placement.pairs.end());
+    result_.iterations = std::max(result_.iterations, placement.joint.iterations);
+    result_.converged = (&placement == &placements.front() || result_.converged) && placement.joint.converged;
+    describeScans(placement);
+  }
+  std::sort(result_.pairs.begin(), result_.pairs.end(),
+            [](const PairResult& x, const PairResult& y) { return std::pair(x.a, x.b) < std::pair(y.a, y.b); });
+  result_.rms = pooledRms(result_.pairs, -1);
+  std::vector<Index> main;
+  for (const Placement& placement : placements)
+    for (const std::vector<Index>& group : acceptedGroups(placement, scans_.size())) {
+      for (const Index i : group)
+        scan(i).group = result_.groups;
+      if (result_.groups++ == 0)
+        placeMain(main = group);
+      else
+        placeOther(group, main, &placement == &placements.front());
+    }
+  return std::move(result_);
+}
+} // namespace
+
+ScanRegistrationResult describeRegistration(const std::vector<PreparedScan>& scans,
+                                            const std::vector<Placement>& placements, const std::vector<Pose>& start,
+                                            const ScanRegistrationOptions& options)
+{
+  return Description(scans, start, options).run(placements);
+}
+} // namespace fresco

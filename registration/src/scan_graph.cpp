@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scan_graph.h"
+#include <algorithm>
+#include <cmath>
+#include <fresco/common/parallel.h>
+namespace fresco {
+namespace {
+constexpr double telling_color = 0.6; // correlation of colours that the upper quarter of the pairs reaches: then
+constexpr double color_share = 0.5;   // a pair must reach this share of it
+
+struct Place {
+  std::size_t cluster = 0, position = 0;
+};
+
+struct Candidate {
+  const PairAlignment* pair;
+  const PairMode* mode;
+};
+
+class GraphBuilder {
+public:
+  GraphBuilder(const std::vector<PreparedScan>& scans, const std::vector<PairAlignment>& pairs,
+               const ScanCluster& known, const GraphOptions& options)
+      : scans_(scans), pairs_(pairs), options_(options), known_count_(known.scans.size()), least_color_(leastColor())
+  {
+    if (known_count_ > 0)
+      graph_.clusters.push_back(known);
+    for (std::size_t i = 0; i < scans.size(); ++i)
+      if (scans[i].problem.empty() &&
+          std::find(known.scans.begin(), known.scans.end(), static_cast<Index>(i)) == known.scans.end())
+        graph_.clusters.push_back({{static_cast<Index>(i)}, {Eigen::Isometry3d::Identity()}});
+  }
+
+  ScanGraph build();
+
+private:
+  Place placeOf(Index scan) const;
+  const Eigen::Isometry3d& pose(const Place& place) const
+  {
+    return graph_.clusters[place.cluster].poses[place.position];
+  }
+  double slack() const { return 3.0 * options_.tolerance; }
+  bool supported(const Candidate& candidate, const Eigen::Isometry3d& T_first_second) const;
+  bool contradicted(const ScanCluster& first, const ScanCluster& second, const Eigen::Isometry3d& T_first_second) const;
+  bool tryJoin(const Candidate& candidate);
+  Eigen::Isometry3d clusterPose(const Candidate& candidate) const;
+  void join(const Candidate& candidate, const Eigen::Isometry3d& T_a_b);
+  double leastColor() const;
+  bool joinUnambiguous();
+  bool joinAmbiguous();
+
+  const std::vector<PreparedScan>& scans_;
+  const std::vector<PairAlignment>& pairs_;
+  const GraphOptions& options_;
+  std::size_t known_count_;
+  double least_color_;
+  ScanGraph graph_;
+};
+
+Place GraphBuilder::placeOf(Index scan) const
+{
+  for (std::size_t c = 0; c < graph_.clusters.size(); ++c) {
+    const std::vector<Index>& members = graph_.clusters[c].scans;
+    const auto found = std::find(members.begin(), members.end(), scan);
+    if (found != members.end())
+      return {c, static_cast<std::size_t>(found - members.begin())};
+  }
+  return {};
+}
+
+// Frame of the cluster of a from frame of the cluster of b.
+Eigen::Isometry3d GraphBuilder::clusterPose(const Candidate& candidate) const
+{
+  return pose(placeOf(candidate.pair->a)) * candidate.mode->T_a_b * pose(placeOf(candidate.pair->b)).inverse();
+}
+
+// Whether a second pair between the same clusters says the same.
+bool GraphBuilder::supported(const Candidate& candidate, const Eigen::Isometry3d& T_first_second) const
+{
+  const std::size_t first = placeOf(candidate.pair->a).cluster, second = placeOf(candidate.pair->b).cluster;
+  for (const PairAlignment& pair : pairs_) {
+    const std::size_t a = placeOf(pair.a).cluster, b = placeOf(pair.b).cluster;
+    if (&pair == candidate.pair || !((a == first && b == second) || (a == second && b == first)))
+      continue;
+    for (const PairMode& mode : pair.modes) {
+      const Eigen::Isometry3d T = clusterPose({&pair, &mode});
+      if (poseDistance(a == first ? T : T.inverse(), T_first_second, scans_[static_cast<std::size_t>(pair.a)].size) <
+          slack())
+        return true;
+    }
+  }
+  return false;
+}
+
+bool GraphBuilder::contradicted(const ScanCluster& first, const ScanCluster& second,
+                                const Eigen::Isometry3d& T_first_second) const
+{
+  const std::size_t n = first.scans.size(), m = second.scans.size();
+  std::vector<char> violated(n * m, 0);
+  parallelFor(
+      static_cast<Index>(n * m), options_.threads,
+      [&](Index k) {
+        const std::size_t i = static_cast<std::size_t>(k) / m, j = static_cast<std::size_t>(k) % m;
+        const PreparedScan& a = scans_[static_cast<std::size_t>(first.scans[i])];
+        const PreparedScan& b = scans_[static_cast<std::size_t>(second.scans[j])];
+        const Eigen::Isometry3d T_a_b = first.poses[i].inverse() * T_first_second * second.poses[j];
+        violated[static_cast<std::size_t>(k)] = checkPair(a, b, T_a_b, check_level).violation > options_.max_violation;
+      },
+      1);
+  return std::find(violated.begin(), violated.end(), 1) != violated.end();
+}
+
+// The frame of the cluster that stands first stays.
+void GraphBuilder::join(const Candidate& candidate, const Eigen::Isometry3d& T_a_b)
+{
+  const std::size_t a = placeOf(candidate.pair->a).cluster, b = placeOf(candidate.pair->b).cluster;
+  ScanCluster &first = graph_.clusters[std::min(a, b)], &second = graph_.clusters[std::max(a, b)];
+  const Eigen::Isometry3d T_first_second = a < b ? T_a_b : T_a_b.inverse();
+  for (std::size_t k = 0; k < second.scans.size(); ++k) {
+    first.scans.push_back(second.scans[k]);
+    first.poses.push_back(T_first_second * second.poses[k]);
+  }
+  graph_.clusters.erase(graph_.clusters.begin() + static_cast<std::ptrdiff_t>(std::max(a, b)));
+}
+
+bool GraphBuilder::tryJoin(const Candidate& candidate)
+{
+  const std::size_t a = placeOf(candidate.pair->a).cluster, b = placeOf(candidate.pair->b).cluster;
+  if (a == b)
+    return false;
+  const Eigen::Isometry3d T = clusterPose(candidate);
+  if (candidate.mode->check.overlap < options_.strong_overlap && !supported(candidate, T))
+    return false;
+  if (contradicted(graph_.clusters[a], graph_.clusters[b], T))
+    return false;
+  join(candidate, T);
+  return true;
+}
+
+// Where most pairs agree well in colour, one that does not is a look-alike.
+double GraphBuilder::leastColor() const
+{
+  std::vector<double> colors;
+  for (const PairAlignment& pair : pairs_)
+    if (!pair.modes.empty() && pair.modes[0].check.color)
+      colors.push_back(*pair.modes[0].check.color);
+  if (colors.empty())
+    return -1.0;
+  const auto upper = colors.begin() + static_cast<std::ptrdiff_t>(3 * colors.size() / 4);
+  std::nth_element(colors.begin(), upper, colors.end());
+  return *upper > telling_color ? color_share * *upper : -1.0;
+}
+
+bool GraphBuilder::joinUnambiguous()
+{
+  std::vector<Candidate> candidates;
+  for (const PairAlignment& pair : pairs_)
+    if (!pair.modes.empty() && !pair.ambiguous && pair.modes[0].check.color.value_or(1.0) >= least_color_)
+      candidates.push_back({&pair, &pair.modes[0]});
+  std::stable_sort(candidates.begin(), candidates.end(),
+                   [](const Candidate& x, const Candidate& y) { return x.mode->score > y.mode->score; });
+  bool joined = false;
+  for (const Candidate& candidate : candidates)
+    joined = tryJoin(candidate) || joined;
+  return joined;
+}
+
+// A pair whose modes are all contradicted but one is not ambiguous any more.
+bool GraphBuilder::joinAmbiguous()
+{
+  for (const PairAlignment& pair : pairs_) {
+    const std::size_t a = placeOf(pair.a).cluster, b = placeOf(pair.b).cluster;
+    if (!pair.ambiguous || a == b)
+      continue;
+    std::vector<Candidate> left;
+    for (const PairMode& mode : pair.modes)
+      if (mode.check.color.value_or(1.0) >= least_color_ &&
+          !contradicted(graph_.clusters[a], graph_.clusters[b], clusterPose({&pair, &mode})))
+        left.push_back({&pair, &mode});
+    if (left.size() == 1 && tryJoin(left[0]))
+      return true;
+  }
+  return false;
+}
+
+ScanGraph GraphBuilder::build()
+{
+  while (joinUnambiguous() || joinAmbiguous())
+    ;
+  std::stable_sort(graph_.clusters.begin() + (known_count_ > 0 ? 1 : 0), graph_.clusters.end(),
+                   [](const ScanCluster& x, const ScanCluster& y) { return x.scans.size() > y.scans.size(); });
+  return std::move(graph_);
+}
+} // namespace
+
+ScanGraph buildScanGraph(const std::vector<PreparedScan>& scans, const std::vector<PairAlignment>& pairs,
+                         const ScanCluster& known, const GraphOptions& options)
+{
+  return GraphBuilder(scans, pairs, known, options).build();
+}
+} // namespace fresco

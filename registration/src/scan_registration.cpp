@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "global_alignment.h"
+#include "registration_state.h"
+#include <algorithm>
+#include <cmath>
+#include <fresco/common/parallel.h>
+#include <fresco/common/require.h>
+#include <fresco/registration/core/scan_registration.h>
+#include <numeric>
+namespace fresco {
+namespace {
+constexpr float distance_voxels = 20.f; // basin of start poses
+constexpr double size_ratio = 100.0;    // between scans of one job: above, one of them is in millimetres
+
+void validate(const std::vector<PointSet>& scans, const std::vector<Pose>& start,
+              const ScanRegistrationOptions& options)
+{
+  require(!scans.empty(), "registration: no scans");
+  require(start.empty() || start.size() == scans.size(), "registration: ", scans.size(), " scans, ", start.size(),
+          " start poses");
+  require(options.voxel >= 0.f && std::isfinite(options.voxel), "registration: voxel ", options.voxel,
+          " is negative or NaN");
+  require(options.max_distance >= 0.f && std::isfinite(options.max_distance), "registration: max_distance ",
+          options.max_distance, " is negative or NaN");
+  require(options.min_overlap > 0.f && options.min_overlap <= 1.f, "registration: min_overlap ", options.min_overlap,
+          " is not in 0..1");
+  require(options.max_violation >= 0.f && options.max_violation <= 1.f, "registration: max_violation ",
+          options.max_violation, " is not in 0..1");
+  require(options.max_iterations >= 1, "registration: max_iterations ", options.max_iterations, " is below 1");
+  require(options.names.empty() || options.names.size() == scans.size(), "registration: ", scans.size(), " scans, ",
+          options.names.size(), " names");
+  for (const PointSet& scan : scans)
+    validatePointSet(scan);
+  for (const Pose& pose : start)
+    require(!pose || pose->allFinite(), "registration: a start pose is not finite");
+}
+
+// The median of the scans' sizes.
+double commonSize(const std::vector<double>& sizes, const ScanRegistrationOptions& options)
+{
+  std::vector<double> sorted;
+  std::copy_if(sizes.begin(), sizes.end(), std::back_inserter(sorted), [](double size) { return size > 0.0; });
+  if (sorted.empty())
+    return 0.0;
+  std::sort(sorted.begin(), sorted.end());
+  const double median = sorted[(sorted.size() - 1) / 2];
+  for (std::size_t i = 0; i < sizes.size(); ++i)
+    require(!(sizes[i] > 0.0) || (sizes[i] < size_ratio * median && median < size_ratio * sizes[i]),
+            scanName(options, static_cast<Index>(i)), ": reaches ", sizes[i], " from its viewpoint, the others ",
+            median, ": are they in the same unit?");
+  return median;
+}
+
+float chooseVoxel(const std::vector<PointSet>& scans, double size)
+{
+  std::vector<double> voxels;
+  for (const PointSet& scan : scans)
+    voxels.push_back(fittingVoxel(scan, size / voxels_per_size));
+  std::nth_element(voxels.begin(), voxels.begin() + static_cast<std::ptrdiff_t>(voxels.size() / 2), voxels.end());
+  return static_cast<float>(voxels[voxels.size() / 2]);
+}
+
+Eigen::Isometry3d workingToScan(const PreparedScan& scan)
+{
+  return Eigen::Isometry3d(Eigen::Translation3d(scan.center));
+}
+
+std::vector<PreparedScan> prepareAll(const std::vector<PointSet>& scans, const ScanRegistrationOptions& options,
+                                     const Progress& progress)
+{
+  std::vector<PreparedScan> prepared;
+  for (std::size_t i = 0; i < scans.size(); ++i) {
+    report(progress, "prepare", static_cast<double>(i) / static_cast<double>(scans.size()));
+    prepared.push_back(prepareScan(scans[i], options.voxel, options.threads));
+  }
+  return prepared;
+}
+
+ScanCluster startCluster(const std::vector<PreparedScan>& scans, const std::vector<Pose>& start)
+{
+  ScanCluster cluster;
+  for (std::size_t i = 0; i < start.size(); ++i)
+    if (scans[i].problem.empty() && start[i]) {
+      Eigen::Isometry3d pose(*start[i]);
+      pose.linear() = Eigen::Quaterniond(pose.linear()).normalized().toRotationMatrix();
+      cluster.scans.push_back(static_cast<Index>(i));
+      cluster.poses.push_back(pose * workingToScan(scans[i]));
+    }
+  return cluster;
+}
+
+// Start poses where all scans have one, else what global alignment finds.
+std::vector<ScanCluster> findClusters(const std::vector<PreparedScan>& scans, const std::vector<Pose>& start,
+                                      const ScanRegistrationOptions& options, const Progress& progress)
+{
+  const ScanCluster known = startCluster(scans, start);
+  const auto usable = std::count_if(scans.begin(), scans.end(), [](const auto& scan) { return scan.problem.empty(); });
+  if (static_cast<Index>(known.scans.size()) == usable)
+    return usable > 0 ? std::vector<ScanCluster>{known} : std::vector<ScanCluster>{};
+  return alignGlobally(scans, known, options, progress).graph.clusters;
+}
+
+// Members in rising order; without start poses, the frame of the first scan becomes that of the cluster.
+Placement toPlacement(const ScanCluster& cluster, const std::vector<PreparedScan>& scans,
+                      const std::vector<Pose>& start)
+{
+  const auto hasStart = [&](Index i) { return !start.empty() && start[static_cast<std::size_t>(i)].has_value(); };
+  const bool started = std::any_of(cluster.scans.begin(), cluster.scans.end(), hasStart);
+  std::vector<std::size_t> order(cluster.scans.size());
+  std::iota(order.begin(), order.end(), std::size_t(0));
+  std::sort(order.begin(), order.end(),
+            [&](std::size_t x, std::size_t y) { return cluster.scans[x] < cluster.scans[y]; });
+  const auto first = static_cast<std::size_t>(cluster.scans[order[0]]);
+  const Eigen::Isometry3d T_first_frame = workingToScan(scans[first]) * cluster.poses[order[0]].inverse();
+  Placement placement;
+  for (const std::size_t k : order) {
+    if (hasStart(cluster.scans[k]))
+      placement.anchors.push_back(static_cast<Index>(placement.members.size()));
+    placement.members.push_back(cluster.scans[k]);
+    placement.poses.push_back(started ? cluster.poses[k] : T_first_frame * cluster.poses[k]);
+  }
+  return placement;
+}
+} // namespace
+
+std::string scanName(const ScanRegistrationOptions& options, Index scan)
+{
+  return options.names.empty() ? concat("scan ", scan) : options.names[static_cast<std::size_t>(scan)];
+}
+
+ScanRegistrationResult registerScans(const std::vector<PointSet>& scans, const std::vector<Pose>& start,
+                                     const ScanRegistrationOptions& given, const Progress& progress)
+{
+  validate(scans, start, given);
+  std::vector<double> sizes;
+  for (const PointSet& scan : scans)
+    sizes.push_back(scanSize(scan));
+  const double size = commonSize(sizes, given);
+  ScanRegistrationOptions options = given;
+  if (!(options.voxel > 0.f))
+    options.voxel = size > 0.0 ? chooseVoxel(scans, size) : 1.f;
+  if (!(options.max_distance > 0.f))
+    options.max_distance = distance_voxels * options.voxel;
+  const std::vector<PreparedScan> prepared = prepareAll(scans, options, subProgress(progress, 0.0, 0.3));
+
+  const std::vector<ScanCluster> clusters = findClusters(prepared, start, options, subProgress(progress, 0.3, 0.6));
+  std::vector<Placement> placements;
+  for (const ScanCluster& cluster : clusters) {
+    const double done = static_cast<double>(placements.size()) / static_cast<double>(clusters.size());
+    const double step = 1.0 / static_cast<double>(clusters.size());
+    placements.push_back(toPlacement(cluster, prepared, start));
+    refinePlacement(prepared, options, placements.back(),
+                    subProgress(progress, 0.6 + 0.4 * done, 0.6 + 0.4 * (done + step)));
+  }
+  return describeRegistration(prepared, placements, start, options);
+}
+} // namespace fresco

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include "synthetic_rooms.h"
+#include <fresco/common/poses.h>
+namespace fresco::test {
+struct ScannedScene {
+  std::vector<PointSet> scans;
+  std::vector<Eigen::Isometry3d, Eigen::aligned_allocator<Eigen::Isometry3d>> truth; ///< world from scan
+};
+
+/// Two furnished rooms that share a door, seen from three places in the first and two in the second.
+inline ScannedScene scanTwoRooms(Index rays = 20000, double noise = 0.004)
+{
+  const Boxes boxes = twoRooms();
+  ScannedScene scene;
+  scene.truth = {stationPose({1, 1, 1.5}, 0.3, 0.02), stationPose({3.8, 1.2, 1.5}, 1.3, 0.01),
+                 stationPose({2.5, 3.3, 1.6}, -2.3, 0.03), stationPose({6, 1.5, 1.5}, 2.3, 0.02),
+                 stationPose({7.5, 3, 1.5}, 0.9, 0.02)};
+  for (std::size_t i = 0; i < scene.truth.size(); ++i)
+    scene.scans.push_back(scanBoxes(boxes, scene.truth[i], rays, noise, static_cast<unsigned>(i) + 1));
+  return scene;
+}
+
+/// `truth` moved by `offset` metres and `degrees` in directions that follow from the number of the scan.
+inline std::vector<Pose> disturbed(const ScannedScene& scene, double offset, double degrees)
+{
+  std::vector<Pose> poses;
+  std::mt19937 random(5);
+  const auto unit = [&] {
+    Eigen::Vector3d v;
+    do
+      for (int k = 0; k < 3; ++k)
+        v[k] = 2.0 * (random() / 4294967296.0) - 1.0;
+    while (v.norm() > 1.0 || v.norm() < 0.1);
+    return Eigen::Vector3d(v.normalized());
+  };
+  for (const Eigen::Isometry3d& T : scene.truth) {
+    const Eigen::Vector3d shift = offset * unit();
+    poses.push_back((T * Eigen::Translation3d(shift) * Eigen::AngleAxisd(degrees * M_PI / 180.0, unit())).matrix());
+  }
+  return poses;
+}
+
+/// Largest errors of the relative poses against the first placed scan.
+struct PoseError {
+  double translation = 0.0; ///< metres
+  double degrees = 0.0;
+};
+
+inline PoseError relativeError(const std::vector<Pose>& poses, const ScannedScene& scene)
+{
+  PoseError error;
+  std::size_t first = 0;
+  while (first < poses.size() && !poses[first])
+    ++first;
+  for (std::size_t i = first; i < poses.size(); ++i) {
+    if (!poses[i])
+      continue;
+    const Eigen::Isometry3d found(poses[first]->inverse() * *poses[i]),
+        truth = scene.truth[first].inverse() * scene.truth[i];
+    const Eigen::Isometry3d difference = truth.inverse() * found;
+    error.translation = std::max(error.translation, difference.translation().norm());
+    error.degrees = std::max(error.degrees, Eigen::AngleAxisd(difference.linear()).angle() * 180.0 / M_PI);
+  }
+  return error;
+}
+} // namespace fresco::test

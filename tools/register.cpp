@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "support/tool.h"
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fresco/common/file.h>
+#include <fresco/common/point_io.h>
+#include <fresco/common/require.h>
+#include <fresco/registration/core/scan_registration.h>
+#include <nlohmann/json.hpp>
+namespace {
+using Json = nlohmann::ordered_json;
+
+struct Request {
+  std::vector<std::string> files;
+  std::string folder, start_file;
+  fresco::ScanRegistrationOptions options;
+  fresco::CommonOptions common;
+};
+
+bool isPointFile(const std::filesystem::path& path)
+{
+  const std::string ending = fresco::extension(path.string());
+  return ending == ".pcd" || ending == ".ply" || ending == ".vtk" || ending == ".obj" || ending == ".xyz";
+}
+
+// Folders are replaced by the point files in them, in the order of their names.
+std::vector<std::string> scanFiles(const std::vector<std::string>& words)
+{
+  std::vector<std::string> files;
+  for (const std::string& word : words) {
+    if (!std::filesystem::is_directory(word)) {
+      files.push_back(word);
+      continue;
+    }
+    std::vector<std::string> inside;
+    for (const auto& entry : std::filesystem::directory_iterator(word))
+      if (entry.is_regular_file() && isPointFile(entry.path()))
+        inside.push_back(entry.path().string());
+    if (inside.empty())
+      throw std::runtime_error(word + ": no scan in this folder");
+    std::sort(inside.begin(), inside.end());
+    files.insert(files.end(), inside.begin(), inside.end());
+  }
+  return files;
+}
+
+Request parse(int argc, char** argv)
+{
+  Request request;
+  fresco::Args args(
+      "fresco_register SCAN... -o OUT_DIR [-poses START.txt] [options]",
+      "Brings scans into one frame. SCAN: PCD, PLY, VTK, OBJ or XYZ, each in its own frame, or a folder of them.\n"
+      "Writes poses.txt (world from scan, `none` for a scan without a place), registered.pcd (all placed scans,\n"
+      "normals towards each point's own viewpoint) and registration.json (overlap graph, residuals, unplaced scans).");
+  args.option("o", request.folder, "folder of the output, created; required");
+  args.option("poses", request.start_file, "start poses, one a line as in poses.txt; `none` = unknown");
+  args.option("voxel", request.options.voxel, "finest thinning, unit of the points; 0 = from the data");
+  args.option("max_distance", request.options.max_distance,
+              "how far start poses may be off, unit of the points; 0 = 20 voxels");
+  args.option("min_overlap", request.options.min_overlap, "share of a scan from which a pair of scans is used, 0..1");
+  args.option("max_violation", request.options.max_violation,
+              "share of a scan in space that the other saw through from which a pair is wrong, 0..1");
+  args.option("iterations", request.options.max_iterations, "of the joint refinement per resolution, at least 1");
+  request.common.declare(args);
+  args.note("example: fresco_register scans/*.pcd -o registered");
+  const std::vector<std::string> words = args.parse(argc, argv, 1, 100000);
+  if (request.folder.empty())
+    throw fresco::UsageError("-o OUT_DIR is missing");
+  request.files = scanFiles(words);
+  request.options.threads = request.common.threads;
+  request.options.names = request.files;
+  return request;
+}
+
+Json toJson(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
+
+Json toJson(const Eigen::Matrix4d& T)
+{
+  Json rows = Json::array();
+  for (int r = 0; r < 4; ++r)
+    rows.push_back({T(r, 0), T(r, 1), T(r, 2), T(r, 3)});
+  return rows;
+}
+
+Json scanJson(const std::string& file, const fresco::ScanResult& scan, const fresco::Pose& pose)
+{
+  Json json = {{"file", file}, {"placed", scan.placed}, {"group", scan.group}};
+  json["pose"] = pose ? toJson(*pose) : Json();
+  json["pose_in_group"] = scan.group >= 0 ? toJson(scan.T_group_scan) : Json();
+  json["problem"] = scan.problem;
+  json["rms"] = scan.rms;
+  json["translation_deviation"] = scan.translation_deviation;
+  json["rotation_deviation_deg"] = scan.rotation_deviation * 180.0 / M_PI;
+  if (scan.free_motion)
+    json["free_motion"] = {{"translation", toJson(scan.free_motion->translation)},
+                           {"rotation", toJson(scan.free_motion->rotation)}};
+  return json;
+}
+
+std::string reportText(const Request& request, const fresco::ScanRegistrationResult& result)
+{
+  Json json;
+  json["scans"] = Json::array();
+  json["unplaced"] = Json::array();
+  for (std::size_t i = 0; i < request.files.size(); ++i) {
+    json["scans"].push_back(scanJson(request.files[i], result.scans[i], result.poses[i]));
+    if (!result.scans[i].placed)
+      json["unplaced"].push_back(request.files[i]);
+  }
+  json["pairs"] = Json::array();
+  for (const fresco::PairResult& pair : result.pairs)
+    json["pairs"].push_back({{"a", pair.a},
+                             {"b", pair.b},
+                             {"overlap", pair.overlap},
+                             {"violation", pair.violation},
+                             {"rms", pair.rms},
+                             {"matches", pair.matches},
+                             {"accepted", pair.accepted}});
+  json["groups"] = result.groups;
+  json["rms"] = result.rms;
+  json["voxel"] = result.voxel;
+  json["iterations"] = result.iterations;
+  json["converged"] = result.converged;
+  return json.dump(1) + "\n";
+}
+
+void writeText(const std::string& path, const std::string& text)
+{
+  fresco::OutputFile file(path);
+  file.write(text);
+  file.commit();
+}
+
+std::vector<fresco::Pose> startPoses(const Request& request)
+{
+  if (request.start_file.empty())
+    return {};
+  std::vector<fresco::Pose> poses = fresco::readPoses(request.start_file);
+  if (poses.size() != request.files.size())
+    throw std::runtime_error(
+        fresco::concat(request.start_file, ": ", poses.size(), " poses for ", request.files.size(), " scans"));
+  return poses;
+}
+
+void write(const Request& request, const std::vector<fresco::PointSet>& scans,
+           const fresco::ScanRegistrationResult& result)
+{
+  fresco::writePoints(request.folder + "/registered.pcd",
+                      fresco::mergeScans(scans, result.poses, request.common.threads));
+  fresco::writePoses(request.folder + "/poses.txt", result.poses);
+  writeText(request.folder + "/registration.json", reportText(request, result));
+}
+
+void run(int argc, char** argv)
+{
+  const Request request = parse(argc, argv);
+  const std::vector<fresco::Pose> start = startPoses(request);
+  fresco::makeFolder(request.folder);
+  const fresco::Progress progress = fresco::printProgress(request.common.quiet);
+  std::vector<fresco::PointSet> scans;
+  for (std::size_t i = 0; i < request.files.size(); ++i) {
+    fresco::report(progress, "read", 0.1 * static_cast<double>(i) / static_cast<double>(request.files.size()));
+    scans.push_back(fresco::readPoints(request.files[i]));
+  }
+  const auto result = fresco::registerScans(scans, start, request.options, fresco::subProgress(progress, 0.1, 0.9));
+  const auto placed = std::count_if(result.scans.begin(), result.scans.end(), [](const auto& s) { return s.placed; });
+  if (placed == 0)
+    throw std::runtime_error(request.files[0] + ": " + result.scans[0].problem + "; no scan could be placed");
+  fresco::report(progress, "write", 0.9);
+  write(request, scans, result);
+  fresco::report(progress, "done", 1.0);
+  for (std::size_t i = 0; i < result.scans.size(); ++i)
+    if (!result.scans[i].problem.empty())
+      fresco::inform(request.common.quiet, request.files[i] + ": " + result.scans[i].problem);
+  fresco::inform(request.common.quiet, fresco::concat(placed, " of ", scans.size(), " scans placed, rms ", result.rms));
+}
+} // namespace
+
+int main(int argc, char** argv)
+{
+  return fresco::runTool("fresco_register", [&] { run(argc, argv); });
+}
