@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "model/pipeline.h"
+#include "support/args.h"
+#include "support/tool.h"
+#include <cstdio>
+int main(int argc, char** argv)
+{
+  return fresco::runTool("fresco_model", [&] {
+    fresco::ModelOptions options; // its defaults are the tool's defaults
+    fresco::CommonOptions common;
+    fresco::Args args(
+        "fresco_model INPUT OUT_DIR [options]",
+        "Makes a textured model of a room: points and normals, poses, surface, texture, pictures, report.\n"
+        "INPUT is a folder of scans and photographs (scans/*.pcd, cameras/ as COLMAP model, images/, and\n"
+        "poses.txt, of which only the first pose is used unless -poses is given: it ties the scans to the\n"
+        "photographs) or an RGB-D folder (camera-intrinsics.txt, frame-*.{color.jpg,depth.png,pose.txt}).\n"
+        "Writes model.obj/.mtl/.png, model.glb, mesh.ply, poses.txt, snapshots/*.png, report.html and\n"
+        "report.json to OUT_DIR; OUT_DIR/work holds what -resume needs.");
+    args.flag("poses", options.use_poses, "take the poses of poses.txt as they are instead of registering the scans");
+    args.flag("resume", options.resume, "go on after the last stage that an earlier run into OUT_DIR finished");
+    args.option("cell", options.cell, "finest cell of the surface reconstruction, metres, > 0");
+    args.option("fuse", options.fuse, "RGB-D: cell in which the points of all frames are averaged, metres, > 0");
+    args.option("bilateral", options.bilateral, "rounds of bilateral smoothing of the normals, >= 0");
+    args.option(
+        "trim", options.trim,
+        "octree levels below the finest that the data must sustain, else surface is cut off; 0 = keep it closed");
+    args.option("texel", options.texel, "side of a texel, metres; 0 = as fine as the photographs");
+    args.values("size", "WxH", "size of the pictures, pixels (default 1280x960)", [&](const auto& words) {
+      if (int end = 0; std::sscanf(words[0].c_str(), "%5dx%5d%n", &options.width, &options.height, &end) != 2 ||
+                       end != static_cast<int>(words[0].size()))
+        throw fresco::UsageError("option -size wants WIDTHxHEIGHT, not '" + words[0] + "'");
+    });
+    common.declare(args);
+    const auto words = args.parse(argc, argv, 2);
+    options.threads = common.threads;
+    const fresco::ModelReport report =
+        fresco::buildModel(fresco::readModelInput(words[0]), words[1], options, fresco::printProgress(common.quiet));
+    for (const fresco::StageRecord& stage : report.stages)
+      fresco::inform(common.quiet, stage.name + (stage.resumed ? " (earlier run)" : "") + ": " + stage.figures.dump());
+  });
+}

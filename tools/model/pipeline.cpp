@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "model/pipeline.h"
+#include "model/pictures_stage.h"
+#include "model/points_stage.h"
+#include "model/report.h"
+#include "model/surface_stage.h"
+#include "model/texture_stage.h"
+#include <chrono>
+#include <fresco/common/file.h>
+#include <fresco/common/require.h>
+namespace fresco {
+namespace {
+void validate(const ModelInput& input, const ModelOptions& options)
+{
+  require(options.cell > 0 && options.fuse > 0, "model: a cell of ", options.cell, " m or ", options.fuse, " m");
+  require(options.bilateral >= 0 && options.trim >= 0 && options.texel >= 0, "model: an option is negative");
+  require(options.width >= 160 && options.height >= 120, "model: pictures of ", options.width, "x", options.height,
+          " pixels are too small");
+  if (options.use_poses && input.poses.empty())
+    throw std::runtime_error(input.folder + "/poses.txt: no such file, but -poses asks for it");
+  if (!input.rgbd && input.cameras.views.empty())
+    throw std::runtime_error(input.folder + "/cameras: no photographs, so there is nothing to texture the model with");
+}
+
+std::vector<ModelPicture> picturesOf(const std::vector<StageRecord>& stages)
+{
+  std::vector<ModelPicture> pictures;
+  for (const StageRecord& stage : stages)
+    if (stage.figures.contains("pictures"))
+      for (const auto& picture : stage.figures["pictures"])
+        pictures.push_back({picture.value("file", ""), picture.value("title", "")});
+  return pictures;
+}
+} // namespace
+
+ModelFiles::ModelFiles(const std::string& out)
+    : folder(out), work(out + "/work"), snapshots(out + "/snapshots"), points(work + "/registered.ply"),
+      poses(out + "/poses.txt"), mesh(out + "/mesh.ply"), model_obj(out + "/model.obj"), model_glb(out + "/model.glb"),
+      report_json(out + "/report.json"), report_html(out + "/report.html")
+{}
+
+ModelReport buildModel(const ModelInput& input, const std::string& folder, const ModelOptions& options,
+                       const Progress& progress)
+{
+  validate(input, options);
+  const auto start = std::chrono::steady_clock::now();
+  const ModelFiles files(folder);
+  makeFolder(files.folder);
+  makeFolder(files.snapshots);
+  StageLog log(files.work, fingerprint(input.files()), options.resume, progress);
+  log.run({"points",
+           concat(options.use_poses, " ", options.fuse, " ", options.bilateral),
+           {files.points, files.poses},
+           [&](const Progress& inner) { return makePoints(input, files, options, inner); },
+           0.35});
+  log.run({"surface",
+           concat(options.cell, " ", options.trim),
+           {files.mesh},
+           [&](const Progress& inner) { return makeSurface(files, options, inner); },
+           0.25});
+  log.run({"texture",
+           concat(options.texel),
+           {files.model_obj, files.model_glb},
+           [&](const Progress& inner) { return makeTexture(input, files, options, inner); },
+           0.3});
+  log.run({"pictures", concat(options.width, "x", options.height), pictureFiles(files),
+           [&](const Progress& inner) { return makePictures(input, files, options, inner); }, 0.1});
+  ModelReport result{input.folder, log.records(), picturesOf(log.records()), 0};
+  result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  writeReport(result, files);
+  report(progress, "done", 1.0);
+  return result;
+}
+} // namespace fresco

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include "model/input.h"
+#include "model/stage_log.h"
+#include <fresco/common/progress.h>
+#include <string>
+#include <vector>
+namespace fresco {
+/// Lengths in metres.
+struct ModelOptions {
+  bool resume = false;    ///< go on after the last stage that an earlier run finished
+  bool use_poses = false; ///< take the folder's poses.txt as they are; RGB-D frames always bring theirs
+  double cell = 0.02;     ///< finest cell of the reconstruction, > 0
+  double fuse = 0.01;     ///< RGB-D: cell in which points of all frames are averaged, > 0
+  int bilateral = 2;      ///< rounds of bilateral smoothing of the normals, >= 0
+  double trim = 2.0;      ///< octree levels below the finest that data must sustain, else cut off; 0 = keep it closed
+  double texel = 0.0;     ///< side of a texel; 0 = from the photographs
+  int width = 1280, height = 960; ///< of the pictures, pixels
+  int threads = 0;                ///< 0 = all cores; the result does not depend on it
+};
+
+/// Files that the job writes into its folder; the ones in `work` are kept for resuming.
+struct ModelFiles {
+  explicit ModelFiles(const std::string& folder);
+  std::string folder, work, snapshots, points, poses, mesh, model_obj, model_glb, report_json, report_html;
+};
+
+struct ModelPicture {
+  std::string file; ///< relative to the folder
+  std::string title;
+};
+
+struct ModelReport {
+  std::string input;
+  std::vector<StageRecord> stages;
+  std::vector<ModelPicture> pictures;
+  double seconds = 0; ///< of this run
+};
+
+/// The whole chain from an input folder to the textured model: points and normals, poses, mesh, texture, pictures.
+/// Stages hand over files, so a resumed run gives the same bytes as an undisturbed one.
+/// @throws std::runtime_error naming file and reason; what earlier stages wrote stays
+ModelReport buildModel(const ModelInput& input, const std::string& folder, const ModelOptions& options,
+                       const Progress& progress);
+} // namespace fresco

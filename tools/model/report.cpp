@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "model/report.h"
+#include <cstdint>
+#include <fresco/common/file.h>
+#include <fresco/common/require.h>
+#include <iomanip>
+#include <sstream>
+namespace fresco {
+namespace {
+using Json = nlohmann::ordered_json;
+
+std::string escaped(const std::string& text)
+{
+  std::string result;
+  for (const char c : text)
+    result += c == '&' ? "&amp;" : c == '<' ? "&lt;" : c == '>' ? "&gt;" : c == '"' ? "&quot;" : std::string(1, c);
+  return result;
+}
+
+/// RFC 4648, section 4.
+std::string base64(const std::string& bytes)
+{
+  static const char* const digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  text.reserve((bytes.size() + 2) / 3 * 4);
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    std::uint32_t group = 0;
+    for (std::size_t k = 0; k < 3; ++k)
+      group = group << 8 | (i + k < bytes.size() ? static_cast<std::uint8_t>(bytes[i + k]) : 0U);
+    for (std::size_t k = 0; k < 4; ++k)
+      text += i + k <= bytes.size() ? digits[group >> (18 - 6 * k) & 63U] : '=';
+  }
+  return text;
+}
+
+std::string fixed(double value, int digits)
+{
+  std::ostringstream text;
+  text << std::fixed << std::setprecision(digits) << value;
+  return text.str();
+}
+
+std::string shown(const Json& value)
+{
+  if (value.is_number_float()) {
+    std::ostringstream text;
+    text << std::setprecision(4) << value.get<double>();
+    return text.str();
+  }
+  return value.is_string() ? value.get<std::string>() : value.dump();
+}
+
+Json toJson(const ModelReport& report)
+{
+  Json json{
+      {"input", report.input}, {"seconds", report.seconds}, {"stages", Json::array()}, {"pictures", Json::array()}};
+  for (const StageRecord& stage : report.stages) {
+    Json figures = stage.figures;
+    figures.erase("pictures");
+    json["stages"].push_back({{"name", stage.name},
+                              {"seconds", stage.seconds},
+                              {"cpu_seconds", stage.cpu_seconds},
+                              {"peak_megabytes", stage.peak_megabytes},
+                              {"resumed", stage.resumed},
+                              {"figures", figures}});
+  }
+  for (const ModelPicture& picture : report.pictures)
+    json["pictures"].push_back({{"file", picture.file}, {"title", picture.title}});
+  return json;
+}
+
+std::string stageTable(const ModelReport& report)
+{
+  std::string html = "<table><tr><th>stage<th>time, s<th>CPU, s<th>peak memory, MB<th>figures</tr>\n";
+  for (const StageRecord& stage : report.stages) {
+    html += "<tr><td>" + escaped(stage.name) + (stage.resumed ? " (earlier run)" : "") + "<td>" +
+            fixed(stage.seconds, 1) + "<td>" + fixed(stage.cpu_seconds, 1) + "<td>" + fixed(stage.peak_megabytes, 0) +
+            "<td>";
+    for (const auto& [name, value] : stage.figures.items())
+      if (name != "pictures")
+        html += "<span><b>" + escaped(name) + "</b> " + escaped(shown(value)) + "</span> ";
+    html += "</tr>\n";
+  }
+  return html + "</table>\n";
+}
+
+std::string toHtml(const ModelReport& report, const ModelFiles& files)
+{
+  std::string html =
+      "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>fresco model</title>\n"
+      "<style>body{font:15px/1.5 sans-serif;margin:2em auto;max-width:1200px;padding:0 1em;color:#222}"
+      "table{border-collapse:collapse}td,th{border-bottom:1px solid #ccc;padding:.3em .8em;text-align:left;"
+      "vertical-align:top}td span{white-space:nowrap;margin-right:1em;display:inline-block}"
+      "figure{margin:1.5em 0}img{max-width:100%;border:1px solid #ddd}figcaption{color:#555}"
+      "</style></head><body>\n<h1>fresco model</h1>\n<p>Input: " +
+      escaped(report.input) + ". Time of this run: " + fixed(report.seconds, 1) +
+      " s. Model: <code>model.glb</code>, <code>model.obj</code>; mesh: <code>mesh.ply</code>; poses: "
+      "<code>poses.txt</code>.</p>\n" +
+      stageTable(report);
+  for (const ModelPicture& picture : report.pictures)
+    html += "<figure><img alt=\"" + escaped(picture.title) + "\" src=\"data:image/png;base64," +
+            base64(readFile(files.folder + "/" + picture.file)) + "\"><figcaption>" + escaped(picture.title) +
+            "</figcaption></figure>\n";
+  return html + "</body></html>\n";
+}
+
+void writeText(const std::string& path, const std::string& text)
+{
+  OutputFile file(path);
+  file.write(text);
+  file.commit();
+}
+} // namespace
+
+void writeReport(const ModelReport& report, const ModelFiles& files)
+{
+  writeText(files.report_html, toHtml(report, files));
+  writeText(files.report_json, toJson(report).dump(2) + "\n");
+}
+} // namespace fresco

@@ -1,0 +1,8 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include "model/pipeline.h"
+namespace fresco {
+/// report.json: times, memory and figures per stage, and report.html: the same with the pictures inside, readable
+/// offline.
+void writeReport(const ModelReport& report, const ModelFiles& files);
+} // namespace fresco
