@@ -23,18 +23,18 @@ bool isUsable(const PointSet& set, const Weights& weights, Index i)
   return set.points.col(i).allFinite() && std::isfinite(length) && length > 1e-20f && weights.of(set, i) > 0;
 }
 
-std::vector<Index> finitePoints(const PointSet& set, const Weights& weights)
+std::vector<std::uint32_t> finitePoints(const PointSet& set, const Weights& weights)
 {
-  std::vector<Index> points;
+  std::vector<std::uint32_t> points;
   points.reserve(static_cast<std::size_t>(set.size()));
   for (Index i = 0; i < set.size(); ++i)
     if (isUsable(set, weights, i))
-      points.push_back(i);
+      points.push_back(static_cast<std::uint32_t>(i));
   return points;
 }
 
 /// Box of the points without the `drop` lowest and highest of each axis.
-Box innerBox(const PointSet& set, const std::vector<Index>& points)
+Box innerBox(const PointSet& set, const std::vector<std::uint32_t>& points)
 {
   const std::size_t stride = (points.size() + quantile_points - 1) / quantile_points;
   std::vector<float> values;
@@ -55,7 +55,7 @@ Box innerBox(const PointSet& set, const std::vector<Index>& points)
   return Box(lower, upper);
 }
 
-Box dropOutliers(const PointSet& set, std::vector<Index>& points)
+Box dropOutliers(const PointSet& set, std::vector<std::uint32_t>& points)
 {
   Box inner = innerBox(set, points);
   const double margin = outlier_distance * inner.sizes().maxCoeff();

@@ -12,7 +12,7 @@ struct Weights {
 };
 
 struct Usable {
-  std::vector<Index> points;
+  std::vector<std::uint32_t> points;
   Weights weights;
   Cube cube;
 };

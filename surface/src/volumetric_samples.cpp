@@ -3,6 +3,7 @@
 #include "volumetric_cube.h"
 #include "volumetric_morton.h"
 #include "volumetric_sort.h"
+#include <algorithm>
 #include <cmath>
 #include <fresco/common/parallel.h>
 #include <fresco/common/require.h>
@@ -21,26 +22,66 @@ Eigen::Vector3f toCells(const PointSet& set, Index i, const Cube& cube)
   return ((set.points.col(i).cast<double>() - cube.corner) / cube.cell()).cast<float>();
 }
 
-std::vector<KeyIndex> sortedCells(const PointSet& set, const std::vector<Index>& usable, const Cube& cube, int threads)
-{
-  std::vector<KeyIndex> keys(usable.size());
-  parallelFor(static_cast<Index>(usable.size()), threads, [&](Index k) {
-    const Index i = usable[static_cast<std::size_t>(k)];
-    keys[static_cast<std::size_t>(k)] = {cellCode(toCells(set, i, cube), cube.depth), static_cast<std::uint32_t>(i)};
-  });
-  sortByKey(keys, 3 * cube.depth, threads);
-  return keys;
-}
+/// Usable points in the order of their cells. Cell code and point index share 64 bits; where they do not fit, the
+/// lowest bits of the code are left out and made up for by sorting the few points that then look alike.
+class SortedPoints {
+public:
+  SortedPoints(const PointSet& set, const std::vector<std::uint32_t>& usable, const Cube& cube, int threads)
+      : set_(set), cube_(cube)
+  {
+    while (static_cast<std::uint64_t>(set.size()) >> index_bits_ != 0)
+      ++index_bits_;
+    const int code_bits = std::min(3 * cube.depth, 64 - index_bits_);
+    dropped_bits_ = 3 * cube.depth - code_bits;
+    keys_.resize(usable.size());
+    parallelFor(static_cast<Index>(usable.size()), threads, [&](Index k) {
+      const std::uint32_t i = usable[static_cast<std::size_t>(k)];
+      keys_[static_cast<std::size_t>(k)] = codeOf(i) >> dropped_bits_ << index_bits_ | i;
+    });
+    sortBits(keys_, index_bits_, code_bits, threads);
+    if (dropped_bits_ > 0)
+      sortLowBits();
+  }
+
+  std::size_t size() const { return keys_.size(); }
+  Index point(std::size_t k) const { return static_cast<Index>(keys_[k] & ((std::uint64_t(1) << index_bits_) - 1)); }
+  std::uint64_t code(std::size_t k) const { return dropped_bits_ > 0 ? codeOf(point(k)) : keys_[k] >> index_bits_; }
+
+private:
+  std::uint64_t codeOf(Index i) const { return cellCode(toCells(set_, i, cube_), cube_.depth); }
+
+  void sortLowBits()
+  {
+    const auto order = [&](std::uint64_t a, std::uint64_t b) {
+      const std::uint64_t mask = (std::uint64_t(1) << index_bits_) - 1;
+      const std::uint64_t code_a = codeOf(static_cast<Index>(a & mask)), code_b = codeOf(static_cast<Index>(b & mask));
+      return code_a != code_b ? code_a < code_b : a < b;
+    };
+    for (std::size_t begin = 0, end = 0; begin < keys_.size(); begin = end) {
+      while (end < keys_.size() && keys_[end] >> index_bits_ == keys_[begin] >> index_bits_)
+        ++end;
+      std::sort(keys_.begin() + static_cast<std::ptrdiff_t>(begin), keys_.begin() + static_cast<std::ptrdiff_t>(end),
+                order);
+    }
+  }
+
+  const PointSet& set_;
+  const Cube& cube_;
+  int index_bits_ = 1, dropped_bits_ = 0;
+  std::vector<std::uint64_t> keys_;
+};
 
 /// Where each cell's run of points begins, and the end.
-std::vector<std::uint32_t> cellRuns(const std::vector<KeyIndex>& keys)
+std::vector<std::uint32_t> cellRuns(const SortedPoints& points)
 {
   std::vector<std::uint32_t> runs;
-  runs.reserve(keys.size() / 2 + 2);
-  for (std::size_t k = 0; k < keys.size(); ++k)
-    if (k == 0 || keys[k].key != keys[k - 1].key)
+  std::uint64_t code = 0;
+  for (std::size_t k = 0; k < points.size(); ++k)
+    if (const std::uint64_t next = points.code(k); k == 0 || next != code) {
       runs.push_back(static_cast<std::uint32_t>(k));
-  runs.push_back(static_cast<std::uint32_t>(keys.size()));
+      code = next;
+    }
+  runs.push_back(static_cast<std::uint32_t>(points.size()));
   return runs;
 }
 
@@ -60,11 +101,12 @@ Attributes attributesOf(const PointSet& set, Index i)
   return a;
 }
 
-Sums sumCell(const PointSet& set, const Weights& weights, const KeyIndex* begin, const KeyIndex* end)
+Sums sumCell(const PointSet& set, const Weights& weights, const SortedPoints& points, std::size_t begin,
+             std::size_t end)
 {
   Sums sums;
-  for (const KeyIndex* k = begin; k < end; ++k) {
-    const Index i = k->index;
+  for (std::size_t k = begin; k < end; ++k) {
+    const Index i = points.point(k);
     const double w = weights.of(set, i);
     sums.weight += w;
     sums.position += w * set.points.col(i).cast<double>();
@@ -78,12 +120,15 @@ Sums sumCell(const PointSet& set, const Weights& weights, const KeyIndex* begin,
 Samples gatherSamples(const PointSet& set, const VolumetricOptions& options)
 {
   Samples result;
-  const Usable usable = usablePoints(set, options);
+  require(static_cast<std::uint64_t>(set.size()) < (std::uint64_t(1) << 32), "volumetric reconstruction: ", set.size(),
+          " points are more than 2^32");
+  Usable usable = usablePoints(set, options);
   result.cube = usable.cube;
   result.used_points = static_cast<Index>(usable.points.size());
   result.left_out_points = set.size() - result.used_points;
-  const std::vector<KeyIndex> keys = sortedCells(set, usable.points, result.cube, options.threads);
-  const std::vector<std::uint32_t> runs = cellRuns(keys);
+  const SortedPoints points(set, usable.points, result.cube, options.threads);
+  usable.points = {};
+  const std::vector<std::uint32_t> runs = cellRuns(points);
   const std::size_t n = runs.size() - 1;
   result.codes.resize(n);
   result.samples.resize(n);
@@ -91,8 +136,8 @@ Samples gatherSamples(const PointSet& set, const VolumetricOptions& options)
     result.attributes.resize(n);
   parallelFor(static_cast<Index>(n), options.threads, [&](Index c) {
     const auto i = static_cast<std::size_t>(c);
-    const Sums sums = sumCell(set, usable.weights, &keys[runs[i]], keys.data() + runs[i + 1]);
-    result.codes[i] = keys[runs[i]].key;
+    const Sums sums = sumCell(set, usable.weights, points, runs[i], runs[i + 1]);
+    result.codes[i] = points.code(runs[i]);
     Sample& sample = result.samples[i];
     sample.position = ((sums.position / sums.weight - result.cube.corner) / result.cube.cell()).cast<float>();
     const double length = sums.normal.norm();

@@ -8,7 +8,7 @@ constexpr int digit_bits = 10;
 constexpr std::size_t digits = std::size_t(1) << digit_bits;
 using Counts = std::array<std::uint32_t, digits>;
 
-std::size_t digitOf(const KeyIndex& item, int shift) { return item.key >> shift & (digits - 1); }
+std::size_t digitOf(std::uint64_t item, int shift) { return item >> shift & (digits - 1); }
 
 /// Turns the counts of each chunk into the places where its items of each digit
 /// begin.
@@ -23,7 +23,7 @@ void placeChunks(std::vector<Counts>& counts)
     }
 }
 
-void sortDigit(const std::vector<KeyIndex>& from, std::vector<KeyIndex>& to, int shift, int threads)
+void sortDigit(const std::vector<std::uint64_t>& from, std::vector<std::uint64_t>& to, int shift, int threads)
 {
   const auto n = static_cast<Index>(from.size());
   const Index chunk = std::max<Index>(1 << 14, (n + 31) / 32);
@@ -44,7 +44,7 @@ void sortDigit(const std::vector<KeyIndex>& from, std::vector<KeyIndex>& to, int
       [&](Index begin, Index end) {
         Counts& place = countsOf(begin);
         for (Index i = begin; i < end; ++i) {
-          const KeyIndex& item = from[static_cast<std::size_t>(i)];
+          const std::uint64_t item = from[static_cast<std::size_t>(i)];
           to[place[digitOf(item, shift)]++] = item;
         }
       },
@@ -52,10 +52,10 @@ void sortDigit(const std::vector<KeyIndex>& from, std::vector<KeyIndex>& to, int
 }
 } // namespace
 
-void sortByKey(std::vector<KeyIndex>& items, int bits, int threads)
+void sortBits(std::vector<std::uint64_t>& items, int first_bit, int bits, int threads)
 {
-  std::vector<KeyIndex> other(items.size());
-  for (int shift = 0; shift < bits; shift += digit_bits) {
+  std::vector<std::uint64_t> other(items.size());
+  for (int shift = first_bit; shift < first_bit + bits; shift += digit_bits) {
     sortDigit(items, other, shift, threads);
     items.swap(other);
   }

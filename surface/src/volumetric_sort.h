@@ -3,11 +3,6 @@
 #include <cstdint>
 #include <vector>
 namespace fresco::volumetric {
-struct KeyIndex {
-  std::uint64_t key;
-  std::uint32_t index;
-};
-
-/// Stable radix sort by the lowest `bits` bits of the keys.
-void sortByKey(std::vector<KeyIndex>& items, int bits, int threads);
+/// Stable radix sort by `bits` bits of the items, from bit `first_bit` on.
+void sortBits(std::vector<std::uint64_t>& items, int first_bit, int bits, int threads);
 } // namespace fresco::volumetric

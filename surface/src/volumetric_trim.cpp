@@ -131,8 +131,8 @@ TriangleMesh trimMesh(const TriangleMesh& mesh, const std::string& field, float 
   cut.vertices = extended(mesh.vertices, trimmer.cuts_);
   cut.normals = extended(mesh.normals, trimmer.cuts_);
   cut.colors = extended(mesh.colors, trimmer.cuts_);
-  for (const auto& [name, values] : mesh.fields)
-    cut.fields[name] = extended(Eigen::RowVectorXf(values.transpose()), trimmer.cuts_).transpose();
+  for (const auto& [name, field_values] : mesh.fields)
+    cut.fields[name] = extended(Eigen::RowVectorXf(field_values.transpose()), trimmer.cuts_).transpose();
   cut.faces = Eigen::Map<const Faces>(trimmer.faces_.data(), 3, static_cast<Index>(trimmer.faces_.size()) / 3);
   return removeUnreferencedVertices(cut);
 }
