@@ -54,13 +54,6 @@ Options parse(int argc, char** argv)
   return options;
 }
 
-void writeText(const std::string& path, const std::string& text)
-{
-  OutputFile file(path);
-  file.write(text);
-  file.commit();
-}
-
 std::vector<Case> chosenCases(const CaseTable& table, const std::vector<std::string>& names)
 {
   if (names.empty())
@@ -87,9 +80,9 @@ std::string heading(const std::vector<Case>& cases, const RunnerOptions& options
 void writeFiles(const Options& options, const std::string& text, const std::vector<Measurement>& measurements)
 {
   if (!options.markdown.empty())
-    writeText(options.markdown, text);
+    writeFile(options.markdown, text);
   if (!options.json.empty())
-    writeText(options.json, measurementsJson(measurements).dump(1) + "\n");
+    writeFile(options.json, measurementsJson(measurements).dump(1) + "\n");
 }
 
 void run(const Options& options)

@@ -125,13 +125,6 @@ std::string reportText(const Request& request, const fresco::ScanRegistrationRes
   return json.dump(1) + "\n";
 }
 
-void writeText(const std::string& path, const std::string& text)
-{
-  fresco::OutputFile file(path);
-  file.write(text);
-  file.commit();
-}
-
 std::vector<fresco::Pose> startPoses(const Request& request)
 {
   if (request.start_file.empty())
@@ -149,7 +142,7 @@ void write(const Request& request, const std::vector<fresco::PointSet>& scans,
   fresco::writePoints(request.folder + "/registered.pcd",
                       fresco::mergeScans(scans, result.poses, request.common.threads));
   fresco::writePoses(request.folder + "/poses.txt", result.poses);
-  writeText(request.folder + "/registration.json", reportText(request, result));
+  fresco::writeFile(request.folder + "/registration.json", reportText(request, result));
 }
 
 void run(int argc, char** argv)

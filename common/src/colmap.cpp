@@ -69,13 +69,6 @@ std::vector<ImageEntry> readImagesText(const std::string& path)
   });
   return images;
 }
-
-void writeText(const std::string& path, const std::string& text)
-{
-  OutputFile file(path);
-  file.write(text);
-  file.commit();
-}
 } // namespace
 
 CameraSet readColmap(const std::string& folder)
@@ -116,8 +109,8 @@ void writeColmap(const std::string& folder, const CameraSet& set)
     images << v + 1 << " " << q.w() << " " << q.x() << " " << q.y() << " " << q.z() << " " << t.x() << " " << t.y()
            << " " << t.z() << " " << view.camera + 1 << " " << view.image << "\n\n";
   }
-  writeText(folder + "/points3D.txt", "# 3D point list with one line of data per point:\n# Number of points: 0\n");
-  writeText(folder + "/cameras.txt", cameras.str());
-  writeText(folder + "/images.txt", images.str());
+  writeFile(folder + "/points3D.txt", "# 3D point list with one line of data per point:\n# Number of points: 0\n");
+  writeFile(folder + "/cameras.txt", cameras.str());
+  writeFile(folder + "/images.txt", images.str());
 }
 } // namespace fresco

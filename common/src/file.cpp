@@ -109,6 +109,13 @@ std::string readFile(const std::string& path)
   return content;
 }
 
+void writeFile(const std::string& path, std::string_view content)
+{
+  OutputFile file(path);
+  file.write(content);
+  file.commit();
+}
+
 std::string extension(const std::string& path)
 {
   std::string text = std::filesystem::path(path).extension().string();

@@ -58,8 +58,6 @@ void writePoses(const std::string& path, const std::vector<Pose>& poses)
       text << (i > 0 ? " " : "") << (*pose)(i / 4, i % 4);
     text << "\n";
   }
-  OutputFile file(path);
-  file.write(text.str());
-  file.commit();
+  writeFile(path, text.str());
 }
 } // namespace fresco

@@ -103,18 +103,11 @@ std::string toHtml(const ModelReport& report, const ModelFiles& files)
             "</figcaption></figure>\n";
   return html + "</body></html>\n";
 }
-
-void writeText(const std::string& path, const std::string& text)
-{
-  OutputFile file(path);
-  file.write(text);
-  file.commit();
-}
 } // namespace
 
 void writeReport(const ModelReport& report, const ModelFiles& files)
 {
-  writeText(files.report_html, toHtml(report, files));
-  writeText(files.report_json, toJson(report).dump(2) + "\n");
+  writeFile(files.report_html, toHtml(report, files));
+  writeFile(files.report_json, toJson(report).dump(2) + "\n");
 }
 } // namespace fresco

@@ -93,15 +93,13 @@ void StageLog::run(const Stage& stage)
   record.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   record.cpu_seconds = cpuSeconds() - cpu_start;
   record.peak_megabytes = peakMegabytes();
-  OutputFile out(file);
-  out.write(Json{{"key", key_},
-                 {"seconds", record.seconds},
-                 {"cpu_seconds", record.cpu_seconds},
-                 {"peak_megabytes", record.peak_megabytes},
-                 {"figures", record.figures}}
-                .dump(2) +
-            "\n");
-  out.commit();
+  writeFile(file, Json{{"key", key_},
+                       {"seconds", record.seconds},
+                       {"cpu_seconds", record.cpu_seconds},
+                       {"peak_megabytes", record.peak_megabytes},
+                       {"figures", record.figures}}
+                          .dump(2) +
+                      "\n");
   records_.push_back(std::move(record));
   done_ = end;
 }

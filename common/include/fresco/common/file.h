@@ -33,6 +33,9 @@ private:
 /// Whole content. @throws std::runtime_error naming the file if it is missing, a folder, empty or unreadable
 std::string readFile(const std::string& path);
 
+/// The whole content at once; see OutputFile. @throws std::runtime_error as OutputFile
+void writeFile(const std::string& path, std::string_view content);
+
 /// Extension in lower case with its dot, "" if none.
 std::string extension(const std::string& path);
 
