@@ -2,7 +2,6 @@
 #include "model/pipeline.h"
 #include "support/args.h"
 #include "support/tool.h"
-#include <cstdio>
 int main(int argc, char** argv)
 {
   return fresco::runTool("fresco_model", [&] {
@@ -25,11 +24,7 @@ int main(int argc, char** argv)
         "trim", options.trim,
         "octree levels below the finest that the data must sustain, else surface is cut off; 0 = keep it closed");
     args.option("texel", options.texel, "side of a texel, metres; 0 = as fine as the photographs");
-    args.values("size", "WxH", "size of the pictures, pixels (default 1280x960)", [&](const auto& words) {
-      if (int end = 0; std::sscanf(words[0].c_str(), "%5dx%5d%n", &options.width, &options.height, &end) != 2 ||
-                       end != static_cast<int>(words[0].size()))
-        throw fresco::UsageError("option -size wants WIDTHxHEIGHT, not '" + words[0] + "'");
-    });
+    args.size("size", options.width, options.height, "size of the pictures, pixels");
     common.declare(args);
     const auto words = args.parse(argc, argv, 2);
     options.threads = common.threads;

@@ -1,21 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "support/tool.h"
 #include "virtual/dataset.h"
-#include <cstdio>
 using namespace fresco;
 
 namespace {
-void readImageSize(const std::string& text, DatasetOptions& options)
-{
-  int width = 0, height = 0;
-  char rest = 0;
-  if (std::sscanf(text.c_str(), "%dx%d%c", &width, &height, &rest) != 2 || width < 16 || height < 16 || width > 20000 ||
-      height > 20000)
-    throw UsageError("-images: " + text + " is not WxH with 16 to 20000 pixels each");
-  options.width = width;
-  options.height = height;
-}
-
 struct Switches {
   bool no_veil = false, no_images = false;
   int seed = 1;
@@ -29,10 +17,7 @@ void declare(Args& args, DatasetOptions& options, Switches& switches)
   args.flag("no_veil", switches.no_veil, "thin laser beams: no mixed points at depth jumps");
   args.option("max_range", options.laser.max_range, "of the laser, metres; 0 = 30 in rooms, without limit for meshes");
   args.option("seed", switches.seed, "of all random numbers; same seed, same bytes; >= 0");
-  args.values("images", "WxH",
-              "size of the photographs, pixels; default " + std::to_string(options.width) + "x" +
-                  std::to_string(options.height),
-              [&options](const std::vector<std::string>& words) { readImageSize(words[0], options); });
+  args.size("images", options.width, options.height, "size of the photographs, pixels, 16..20000 each");
   args.option("views", options.views, "photographs");
   args.flag("no_images", switches.no_images, "no photographs");
   args.option("exposure", options.exposure_spread,

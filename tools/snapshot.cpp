@@ -42,19 +42,6 @@ std::string joined(const std::vector<std::string>& words)
   return text;
 }
 
-void setSize(PictureOptions& picture, const std::string& text)
-{
-  const std::size_t cross = text.find('x');
-  if (cross == std::string::npos)
-    throw UsageError("-size: '" + text + "' is not WIDTHxHEIGHT");
-  const long long width = Args::integer("size", text.substr(0, cross));
-  const long long height = Args::integer("size", text.substr(cross + 1));
-  if (width < 1 || height < 1 || width > 65536 || height > 65536)
-    throw UsageError("-size: '" + text + "' is not within 1x1 and 65536x65536");
-  picture.width = static_cast<int>(width);
-  picture.height = static_cast<int>(height);
-}
-
 std::vector<Shading> parseShadings(const std::string& text)
 {
   std::vector<Shading> shadings;
@@ -108,8 +95,7 @@ void declareLook(Args& args, Request& request)
   args.option("limit", picture.error_limit,
               "distance that error shading paints blue, unit of the model; 0 = 99 % of the vertices lie below");
   args.option("unit", picture.unit, "unit of the model for the scale bar of error shading, for example m");
-  args.values("size", "WxH", concat("pixels (default: ", picture.width, "x", picture.height, ")"),
-              [&](const auto& words) { setSize(picture, words[0]); });
+  args.size("size", picture.width, picture.height, "pixels");
   args.values("background", "R G B", "colour behind the model, 0..255 each (default: white)",
               [&](const auto& words) { setBackground(picture, words); });
   args.flag("transparent", picture.transparent, "no background: PNG with alpha");

@@ -26,9 +26,10 @@ std::uint8_t fieldType(Scalar scalar)
 bool isDense(const PointTable& table)
 {
   bool finite = true;
+  const auto check = [&](Index, auto value) { finite &= std::isfinite(static_cast<double>(value)); };
   for (const char* name : xyz_names)
     if (const Column* column = table.find(name))
-      forEachValue(table, *column, 0, [&](Index, auto value) { finite &= std::isfinite(static_cast<double>(value)); });
+      forEachValue(table, *column, 0, check, 0, table.rows);
   return finite;
 }
 

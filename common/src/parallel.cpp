@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <atomic>
 #include <fresco/common/parallel.h>
 #include <fresco/common/require.h>
 #include <tbb/global_control.h>
@@ -6,10 +7,21 @@
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 namespace fresco {
+namespace {
+std::atomic<int> default_threads{0};
+}
+
 int threadCount(int threads)
 {
   require(threads >= 0, "threads ", threads, " is negative");
-  return threads > 0 ? threads : tbb::info::default_concurrency();
+  const int chosen = threads > 0 ? threads : default_threads.load();
+  return chosen > 0 ? chosen : tbb::info::default_concurrency();
+}
+
+void setDefaultThreads(int threads)
+{
+  require(threads >= 0, "threads ", threads, " is negative");
+  default_threads = threads;
 }
 
 namespace detail {

@@ -3,8 +3,8 @@
 #include "point_io_text.h"
 #include <algorithm>
 #include <fresco/common/require.h>
+#include <liblzf/lzf.h>
 #include <limits>
-#include <pcl/io/lzf.h>
 namespace fresco::detail {
 namespace {
 struct PcdHeader {
@@ -201,7 +201,7 @@ void readCompressed(const PcdHeader& header, const std::vector<StoredField>& fie
   if (expanded / 264 > compressed || expanded != header.points * rowBytes(fields))
     throw std::runtime_error("compressed data do not have the size that the header gives");
   std::vector<char> bytes(expanded);
-  if (pcl::lzfDecompress(header.data.data() + 8, compressed, bytes.data(), expanded) != expanded)
+  if (lzf_decompress(header.data.data() + 8, compressed, bytes.data(), expanded) != expanded)
     throw std::runtime_error("compressed data are damaged");
   table.allocate(static_cast<Index>(header.points));
   const char* at = bytes.data();

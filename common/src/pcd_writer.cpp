@@ -4,8 +4,8 @@
 #include <fresco/common/file.h>
 #include <fresco/common/require.h>
 #include <iomanip>
+#include <liblzf/lzf.h>
 #include <limits>
-#include <pcl/io/lzf.h>
 #include <sstream>
 namespace fresco::detail {
 namespace {
@@ -53,7 +53,7 @@ std::string compressColumns(const PointTable& table)
     }
   const auto expanded = static_cast<std::uint32_t>(columns.size());
   std::string packed(8 + columns.size(), '\0');
-  const std::uint32_t size = pcl::lzfCompress(columns.data(), expanded, packed.data() + 8, expanded);
+  const std::uint32_t size = lzf_compress(columns.data(), expanded, packed.data() + 8, expanded);
   if (size == 0)
     return {};
   std::memcpy(packed.data(), &size, 4);

@@ -89,7 +89,7 @@ PointSet pointsFromBytes(const std::vector<pcl::PCLPointField>& fields, const Po
   const auto* points = static_cast<const std::uint8_t*>(bytes.data);
   if (!indices) {
     table.rows = static_cast<Index>(bytes.count);
-    table.data.assign(points, points + bytes.count * bytes.stride);
+    table.view = points;
     return tableToPoints(table);
   }
   table.allocate(static_cast<Index>(indices->size()));

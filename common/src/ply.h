@@ -33,7 +33,7 @@ struct PlyHeader {
 PlyHeader parsePlyHeader(std::string_view content);
 
 struct PlyContent {
-  PointTable vertices; ///< colours as byte columns red green blue, normals under PCL's names
+  PointTable vertices; ///< colours as byte columns red green blue, normals under PCL's names; may view `content`
   Faces faces;         ///< polygons as fans, strips as triangles
 };
 

@@ -31,14 +31,13 @@ public:
     at_ += sizeof(T);
     return loadScalar<T>(bytes);
   }
-  /// Rows without lists are in the file what they are in memory.
-  bool copyRows(std::vector<std::uint8_t>& rows)
+  /// Rows without lists are in the file what they are in memory. @return where `bytes` of them begin, or nullptr
+  const std::uint8_t* takeRows(std::size_t bytes)
   {
-    if (Swap || rows.size() > remaining())
-      return false;
-    std::copy(at_, at_ + rows.size(), rows.data());
-    at_ += rows.size();
-    return true;
+    if (Swap || bytes > remaining())
+      return nullptr;
+    at_ += bytes;
+    return reinterpret_cast<const std::uint8_t*>(at_ - bytes);
   }
   /// Appends the rows that follow and are a list of three, as long as they are. @return their number
   std::uint64_t copyTriangles(std::uint64_t most, FaceCollector& collector)
@@ -68,7 +67,7 @@ public:
   {
     return parseNumber<T>(scanner_.wordAcrossLines());
   }
-  static bool copyRows(std::vector<std::uint8_t>&) { return false; }
+  static const std::uint8_t* takeRows(std::size_t) { return nullptr; }
   static std::uint64_t copyTriangles(std::uint64_t, FaceCollector&) { return 0; }
   /// The last word of a file needs no separator.
   std::size_t remaining() const { return scanner_.remaining() + 1; }
@@ -137,9 +136,12 @@ PointTable readVertices(Source& source, const PlyElement& element)
       table.addColumn(columnName(property.name), property.type);
   if (table.columns.empty())
     throw std::runtime_error("vertices without properties");
-  table.allocate(static_cast<Index>(element.count));
-  if (!element.hasList() && source.copyRows(table.data))
+  table.rows = static_cast<Index>(element.count);
+  if (!element.hasList())
+    table.view = source.takeRows(static_cast<std::size_t>(element.count) * table.stride);
+  if (table.view)
     return table;
+  table.allocate(table.rows);
   std::uint8_t* at = table.data.data();
   for (std::uint64_t row = 0; row < element.count; ++row)
     for (const PlyProperty& property : element.properties) {

@@ -18,7 +18,11 @@ PointTable readTable(const std::string& path)
   if (type == ".pcd")
     return parseFile(path, parsePcd);
   if (type == ".ply")
-    return parseFile(path, [](std::string_view content) { return parsePly(content).vertices; });
+    return parseFile(path, [](std::string_view content) {
+      PointTable vertices = parsePly(content).vertices;
+      vertices.own();
+      return vertices;
+    });
   if (type == ".vtk")
     return parseFile(path, [](std::string_view content) { return parseVtk(content).vertices; });
   if (type == ".obj")
@@ -44,6 +48,9 @@ void writeTable(const std::string& path, const PointTable& table, bool compresse
 
 PointSet readPoints(const std::string& path)
 {
+  if (extension(path) == ".ply") // its rows need not be copied before they are converted
+    return detail::parseFile(
+        path, [](std::string_view content) { return detail::tableToPoints(detail::parsePly(content).vertices); });
   const detail::PointTable table = detail::readTable(path);
   try {
     return detail::tableToPoints(table);

@@ -5,6 +5,12 @@
 #include <fresco/common/require.h>
 namespace fresco::detail {
 namespace {
+template <typename Body>
+void forEachRow(const PointTable& table, const Body& body)
+{
+  parallelFor(table.rows, 0, body, rows_per_task);
+}
+
 Eigen::Vector3d readCoordinates(const PointTable& table, Points& points)
 {
   const auto xyz = findTriple(table, xyz_names);
@@ -58,10 +64,10 @@ Colors readColors(const PointTable& table)
   Colors colors;
   if (const Column* column = packedColor(table)) {
     colors.resize(3, table.rows);
-    for (Index row = 0; row < table.rows; ++row) {
+    forEachRow(table, [&](Index row) {
       const auto packed = loadScalar<std::uint32_t>(table.cell(row, *column));
       colors.col(row) << std::uint8_t(packed >> 16), std::uint8_t(packed >> 8), std::uint8_t(packed);
-    }
+    });
   } else if (const auto rgb = findTriple(table, color_names)) {
     colors.resize(3, table.rows);
     for (int channel = 0; channel < 3; ++channel)
@@ -89,10 +95,10 @@ void storeTriple(PointTable& table, NameTriple names, const Values& values, cons
 {
   for (int axis = 0; axis < 3; ++axis) {
     const Column column = *table.find(names[axis]);
-    for (Index row = 0; row < table.rows; ++row) {
+    forEachRow(table, [&](Index row) {
       const T value = static_cast<T>(static_cast<double>(values(axis, row)) + origin[axis]);
       std::memcpy(table.cell(row, column), &value, sizeof(T));
-    }
+    });
   }
 }
 
@@ -107,18 +113,17 @@ void storePositions(PointTable& table, NameTriple names, const Points& values, c
 void storeColors(PointTable& table, const Colors& colors)
 {
   const Column column = *table.find("rgb");
-  for (Index row = 0; row < table.rows; ++row) {
+  forEachRow(table, [&](Index row) {
     const std::uint32_t packed =
         std::uint32_t(colors(0, row)) << 16 | std::uint32_t(colors(1, row)) << 8 | std::uint32_t(colors(2, row));
     std::memcpy(table.cell(row, column), &packed, sizeof(packed));
-  }
+  });
 }
 
 void storeValues(PointTable& table, const std::string& name, const Eigen::VectorXf& values)
 {
   const Column column = *table.find(name);
-  for (Index row = 0; row < table.rows; ++row)
-    std::memcpy(table.cell(row, column), &values[row], sizeof(float));
+  forEachRow(table, [&](Index row) { std::memcpy(table.cell(row, column), &values[row], sizeof(float)); });
 }
 
 Scalar positionType(const Eigen::Vector3d& origin) { return origin.isZero(0) ? Scalar::float32 : Scalar::float64; }

@@ -23,7 +23,7 @@ void copyShared(const PointTable& from, PointTable& to)
     else
       runs.push_back({source->offset, column.offset, column.bytes()});
   }
-  const std::uint8_t* source = from.data.data();
+  const std::uint8_t* source = from.rowsBegin();
   std::uint8_t* target = to.data.data();
   for (Index row = 0; row < from.rows; ++row, source += from.stride, target += to.stride)
     for (const ByteRun& run : runs)
@@ -68,6 +68,13 @@ void PointTable::allocate(Index row_count)
 {
   rows = row_count;
   data.resize(static_cast<std::size_t>(row_count) * stride);
+}
+
+void PointTable::own()
+{
+  if (view)
+    data.assign(view, view + static_cast<std::size_t>(rows) * stride);
+  view = nullptr;
 }
 
 std::optional<std::array<Column, 3>> findTriple(const PointTable& table, NameTriple names)
@@ -173,14 +180,17 @@ CoordinateBounds coordinateBounds(const PointTable& table, const std::array<Colu
                           Eigen::Array3d::Zero()};
   for (std::size_t axis = 0; axis < 3; ++axis) {
     double low = infinity, high = -infinity, loss = 0;
-    forEachValue(table, xyz[axis], 0, [&](Index, auto raw) {
-      const double value = static_cast<double>(raw);
-      if (!std::isfinite(value))
-        return;
-      low = std::min(low, value);
-      high = std::max(high, value);
-      loss = std::max(loss, std::abs(value - static_cast<double>(static_cast<float>(value))));
-    });
+    forEachValue(
+        table, xyz[axis], 0,
+        [&](Index, auto raw) {
+          const double value = static_cast<double>(raw);
+          if (!std::isfinite(value))
+            return;
+          low = std::min(low, value);
+          high = std::max(high, value);
+          loss = std::max(loss, std::abs(value - static_cast<double>(static_cast<float>(value))));
+        },
+        0, table.rows);
     const auto at = static_cast<Index>(axis);
     bounds.low[at] = low;
     bounds.high[at] = high;

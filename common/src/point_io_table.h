@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <cstring>
 #include <fresco/common/mesh.h>
+#include <fresco/common/parallel.h>
 #include <fresco/common/point_set.h>
 #include <optional>
 #include <stdexcept>
@@ -78,12 +79,14 @@ struct PointTable {
   Index rows = 0;
   Index width = 0, height = 0; ///< of an organised cloud, width * height = rows; 0 = not organised
   std::vector<std::uint8_t> data;
+  const std::uint8_t* view = nullptr; ///< rows to be read only, owned by somebody else, instead of `data`
   std::optional<SensorPose> sensor;
 
   const Column* find(std::string_view name) const; ///< nullptr if there is none
+  const std::uint8_t* rowsBegin() const { return view ? view : data.data(); }
   const std::uint8_t* cell(Index row, const Column& column) const
   {
-    return data.data() + static_cast<std::size_t>(row) * stride + column.offset;
+    return rowsBegin() + static_cast<std::size_t>(row) * stride + column.offset;
   }
   std::uint8_t* cell(Index row, const Column& column)
   {
@@ -92,18 +95,31 @@ struct PointTable {
   /// Appends a column to the layout; before data is allocated.
   void addColumn(const std::string& name, Scalar type, std::size_t count = 1);
   void allocate(Index row_count); ///< zeros
+  void own();                     ///< copies what `view` shows into `data`
 };
 
-/// body(row, T value) with component `component` of `column` of every row.
+/// body(row, T value) with component `component` of `column` of the rows begin .. end - 1.
 template <typename Body>
-void forEachValue(const PointTable& table, const Column& column, std::size_t component, const Body& body)
+void forEachValue(const PointTable& table, const Column& column, std::size_t component, const Body& body, Index begin,
+                  Index end)
 {
   visitScalar(column.type, [&](auto zero) {
     using T = decltype(zero);
-    const std::uint8_t* at = table.data.data() + column.offset + component * sizeof(T);
-    for (Index row = 0; row < table.rows; ++row, at += table.stride)
+    const std::uint8_t* at = table.cell(begin, column) + component * sizeof(T);
+    for (Index row = begin; row < end; ++row, at += table.stride)
       body(row, loadScalar<T>(at));
   });
+}
+
+/// Rows that are converted in one go; a table with fewer starts no thread.
+inline constexpr Index rows_per_task = Index{1} << 16;
+
+/// body(row, T value) of every row, in parallel: a body writes only what belongs to its row.
+template <typename Body>
+void forEachValue(const PointTable& table, const Column& column, std::size_t component, const Body& body)
+{
+  const auto part = [&](Index begin, Index end) { forEachValue(table, column, component, body, begin, end); };
+  parallelRanges(table.rows, 0, part, rows_per_task);
 }
 
 /// Value `component` of every row as float, N.

@@ -74,7 +74,12 @@ void Args::option(const std::string& name, int& value, const std::string& help)
 
 void Args::option(const std::string& name, float& value, const std::string& help)
 {
-  values(name, "X", help, [name, &value](const auto& words) { value = static_cast<float>(number(name, words[0])); });
+  values(name, "X", help, [name, &value](const auto& words) {
+    const double given = number(name, words[0]);
+    if (std::abs(given) > std::numeric_limits<float>::max())
+      throw UsageError("option -" + name + ": " + words[0] + " is too large");
+    value = static_cast<float>(given);
+  });
   options_.back().shown_default = shown(value);
 }
 
@@ -88,6 +93,22 @@ void Args::option(const std::string& name, std::string& value, const std::string
 {
   values(name, "TEXT", help, [&value](const auto& words) { value = words[0]; });
   options_.back().shown_default = value;
+}
+
+void Args::size(const std::string& name, int& width, int& height, const std::string& help)
+{
+  values(name, "WxH", help, [name, &width, &height](const auto& words) {
+    constexpr int most = 65536;
+    const std::size_t cross = words[0].find('x');
+    if (cross == std::string::npos)
+      throw UsageError("option -" + name + " wants WIDTHxHEIGHT, not '" + words[0] + "'");
+    const long long w = integer(name, words[0].substr(0, cross)), h = integer(name, words[0].substr(cross + 1));
+    if (w < 1 || h < 1 || w > most || h > most)
+      throw UsageError("option -" + name + ": " + words[0] + " is not within 1x1 and 65536x65536");
+    width = static_cast<int>(w);
+    height = static_cast<int>(h);
+  });
+  options_.back().shown_default = shown(width) + "x" + shown(height);
 }
 
 void Args::flag(const std::string& name, bool& value, const std::string& help)

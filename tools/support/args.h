@@ -27,6 +27,8 @@ public:
   void option(const std::string& name, float& value, const std::string& help);
   void option(const std::string& name, double& value, const std::string& help);
   void option(const std::string& name, std::string& value, const std::string& help);
+  /// `-name WxH`: width and height of a picture, 1..65536 pixels each.
+  void size(const std::string& name, int& width, int& height, const std::string& help);
   /// `-name` without a value sets true.
   void flag(const std::string& name, bool& value, const std::string& help);
   /// `-name A B C`: exactly as many values as `placeholders` has words; `apply` gets them and may throw UsageError.

@@ -3,6 +3,7 @@
 #include <atomic>
 #include <cmath>
 #include <csignal>
+#include <fresco/common/parallel.h>
 #include <iostream>
 #include <memory>
 #include <mutex>
@@ -62,7 +63,14 @@ private:
 
 void CommonOptions::declare(Args& args)
 {
-  args.option("threads", threads, "number of threads, 0 = all cores; never changes the result");
+  args.values("threads", "N", "number of threads, 0 = all cores; never changes the result (default 0)",
+              [this](const auto& words) {
+                const long long given = Args::integer("threads", words[0]);
+                if (given < 0 || given > 4096)
+                  throw UsageError("option -threads: " + words[0] + " is not within 0 and 4096");
+                threads = static_cast<int>(given);
+                setDefaultThreads(threads); // for what has no option of its own, such as readers
+              });
   args.flag("quiet", quiet, "print nothing but errors");
 }
 
@@ -82,6 +90,7 @@ int runTool(const std::string& name, const std::function<void()>& body)
 try {
   std::signal(SIGINT, askToStop);
   std::signal(SIGTERM, askToStop);
+  std::signal(SIGXFSZ, SIG_IGN); // a file that grows beyond its limit is an error like a full disk
   body();
   return 0;
 } catch (const HelpShown&) {

@@ -5,9 +5,13 @@
 #include <functional>
 #include <vector>
 namespace fresco {
-/// Number of threads that `threads` stands for: 0 = all cores, else itself.
+/// Number of threads that `threads` stands for: itself, 0 = the default, all cores unless set otherwise.
 /// @throws std::invalid_argument if negative
 int threadCount(int threads);
+
+/// What 0 stands for from now on in this process: for programs, which let their user choose once.
+/// @param threads 0 = all cores. @throws std::invalid_argument if negative
+void setDefaultThreads(int threads);
 
 namespace detail {
 /// Runs run(0) .. run(count - 1), each once, in any order, on up to `threads` threads; blocks (never spins at a
