@@ -7,6 +7,7 @@ int main(int argc, char** argv)
   return fresco::runTool("fresco_model", [&] {
     fresco::ModelOptions options; // its defaults are the tool's defaults
     fresco::CommonOptions common;
+    bool no_optimize = false;
     fresco::Args args(
         "fresco_model INPUT OUT_DIR [options]",
         "Makes a textured model of a room: points and normals, poses, surface, texture, pictures, report.\n"
@@ -23,14 +24,18 @@ int main(int argc, char** argv)
     args.option(
         "trim", options.trim,
         "octree levels below the finest that the data must sustain, else surface is cut off; 0 = keep it closed");
+    args.flag("no_optimize", no_optimize, "leave the vertices where the reconstruction puts them: rounded edges");
     args.option("texel", options.texel, "side of a texel, metres; 0 = as fine as the photographs");
     args.size("size", options.width, options.height, "size of the pictures, pixels");
     common.declare(args);
     const auto words = args.parse(argc, argv, 2);
     options.threads = common.threads;
+    options.optimize = !no_optimize;
     const fresco::ModelReport report =
         fresco::buildModel(fresco::readModelInput(words[0]), words[1], options, fresco::printProgress(common.quiet));
-    for (const fresco::StageRecord& stage : report.stages)
+    for (fresco::StageRecord stage : report.stages) {
+      stage.figures.erase("pictures");
       fresco::inform(common.quiet, stage.name + (stage.resumed ? " (earlier run)" : "") + ": " + stage.figures.dump());
+    }
   });
 }

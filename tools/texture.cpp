@@ -11,7 +11,7 @@ using namespace fresco;
 
 struct ToolOptions {
   bool no_refine = false;
-  bool no_exposure = false, no_level = false, no_consistency = false;
+  bool no_exposure = false, no_level = false, no_consistency = false, no_examples = false;
   int keep_out = 0;
   std::string cameras_out;
 };
@@ -35,6 +35,7 @@ void declare(Args& args, TextureOptions& options, ToolOptions& tool)
   args.flag("no_exposure", tool.no_exposure, "leave exposure and white balance of the photographs as they are");
   args.flag("no_consistency", tool.no_consistency, "do not avoid photographs that differ from what most show");
   args.flag("no_level", tool.no_level, "leave the steps of colour at seams");
+  args.flag("no_examples", tool.no_examples, "colour unseen parts smoothly, without structure");
   args.option("strip", options.strip, "pixels over which one photograph passes into the next at a seam, 0..100");
   args.option(
       "keep_out", tool.keep_out,
@@ -48,8 +49,8 @@ void declare(Args& args, TextureOptions& options, ToolOptions& tool)
       "how much fewer seams are worth against resolution, in bounding-box diagonals; 0 = best view of each face");
   args.option("margin", options.margin, "pixels kept away from the outline of what stands in front, 0..100");
   args.option("depth_tolerance", options.depth_tolerance,
-              "share of the distance by which occlusion is forgiven, 0..0.5");
-  args.option("memory", options.memory, "MB of decoded photographs kept at a time");
+              "share of the typical distance by which occlusion is forgiven, 0..0.5");
+  args.option("memory", options.memory, "MB of photographs kept at a time, decoded or as grey copies");
 }
 
 /// One camera per view: they may differ after refinement.
@@ -73,6 +74,8 @@ std::string maskPath(const std::string& model, std::size_t index, std::size_t co
 
 void printFigures(const TextureResult& result, std::size_t views, bool quiet)
 {
+  for (const std::string& warning : result.warnings)
+    inform(quiet, "warning: " + warning);
   char line[256];
   std::snprintf(line, sizeof line, "seen %.1f %% of the surface, by %ld of %zu photographs", 100 * result.coverage,
                 static_cast<long>(result.views_used), views);
@@ -118,6 +121,7 @@ void run(int argc, char** argv)
   options.consistency = !tool.no_consistency;
   options.level = !tool.no_level;
   options.exposure = !tool.no_exposure;
+  options.examples = !tool.no_examples;
   const TriangleMesh mesh = readMesh(files[0]);
   if (mesh.faceCount() == 0 || !(surfaceArea(mesh) > 0))
     throw std::runtime_error(files[0] + ": has no face of positive area");

@@ -1,10 +1,16 @@
 # Installs the build tree, builds examples/ against the installed package alone and runs them.
-#   cmake -D BINARY_DIR=... -D SOURCE_DIR=... -D SCRATCH=... -P install_test.cmake
+#   cmake -D BINARY_DIR=... -D SOURCE_DIR=... -D SCRATCH=... -D SOVERSION=0.1 -P install_test.cmake
 function(run)
   execute_process(COMMAND ${ARGN} RESULT_VARIABLE status)
   if(NOT status EQUAL 0)
     string(JOIN " " command ${ARGN})
     message(FATAL_ERROR "failed (${status}): ${command}")
+  endif()
+endfunction()
+
+function(expect_file file)
+  if(NOT EXISTS "${file}")
+    message(FATAL_ERROR "${file} was not written")
   endif()
 endfunction()
 
@@ -20,10 +26,39 @@ if(NOT found MATCHES "${prefix}")
 endif()
 run("${CMAKE_COMMAND}" --build "${build}" --parallel 2)
 run("${CMAKE_COMMAND}" -E chdir "${build}" "${build}/pcl_pipeline" "${SCRATCH}/mesh.ply")
-if(NOT EXISTS "${SCRATCH}/mesh.ply")
-  message(FATAL_ERROR "the example wrote no mesh")
-endif()
+expect_file("${SCRATCH}/mesh.ply")
 run("${prefix}/bin/fresco_compare" "${SCRATCH}/mesh.ply" "${SCRATCH}/mesh.ply") # installed tools find their libraries
+
+# The other examples on a room of the virtual scanner.
+set(room "${SCRATCH}/room")
+run("${prefix}/bin/fresco_scan" conference_room "${room}" -stations 2 -points 15000 -views 4 -images 160x120 -quiet)
+run("${build}/filter_chain" "${room}/scans/scan_00.pcd" "${SCRATCH}/filtered.pcd")
+expect_file("${SCRATCH}/filtered.pcd")
+run("${build}/registration" "${SCRATCH}/registered.pcd" "${room}/scans/scan_00.pcd" "${room}/scans/scan_01.pcd")
+expect_file("${SCRATCH}/registered.pcd")
+run("${build}/texture" "${room}/truth.ply" "${room}/cameras" "${room}/images" "${SCRATCH}/textured")
+expect_file("${SCRATCH}/textured/model.obj")
+expect_file("${SCRATCH}/textured/texture_0.png")
+
+# The pieces of code in the documentation compile.
+set(snippets "${SCRATCH}/snippets")
+run("${CMAKE_COMMAND}" -D "PAGE=${SOURCE_DIR}/docs/migration.md" -D "OUT=${snippets}/migration.cpp"
+    -P "${SOURCE_DIR}/test/package/snippets.cmake")
+file(WRITE "${snippets}/CMakeLists.txt" "cmake_minimum_required(VERSION 3.20)\nproject(snippets LANGUAGES C CXX)\n"
+     "find_package(fresco REQUIRED COMPONENTS surface filters)\nadd_executable(migration migration.cpp)\n"
+     "target_link_libraries(migration PRIVATE fresco::surface fresco::filters)\n")
+run("${CMAKE_COMMAND}" -S "${snippets}" -B "${snippets}/build" -G Ninja "-DCMAKE_PREFIX_PATH=${prefix}"
+    "-DCMAKE_CXX_COMPILER_LAUNCHER=${LAUNCHER}")
+run("${CMAKE_COMMAND}" --build "${snippets}/build")
+
+# What a package holds besides.
+file(GLOB_RECURSE installed RELATIVE "${prefix}" "${prefix}/*")
+foreach(part "libfresco_common.so.${SOVERSION}" "libfresco_surface.so.${SOVERSION}." share/man/man1/fresco_model.1
+             include/fresco/surface/volumetric_reconstruction.h share/doc/fresco/copyright frescoConfig.cmake)
+  if(NOT installed MATCHES "${part}")
+    message(FATAL_ERROR "${part} was not installed")
+  endif()
+endforeach()
 
 # A component that does not exist is named.
 file(WRITE "${SCRATCH}/wrong/CMakeLists.txt" "cmake_minimum_required(VERSION 3.20)\nproject(wrong LANGUAGES C CXX)\n"

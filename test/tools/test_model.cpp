@@ -4,6 +4,7 @@
 #include "model/report.h"
 #include "test_data.h"
 #include <fresco/common/file.h>
+#include <fresco/common/mesh_io.h>
 #include <fresco/common/require.h>
 #include <fstream>
 namespace {
@@ -84,8 +85,8 @@ struct Job {
       file.commit();
       return Json{{"answer", 42}};
     };
-    log.run({"a", option, {folder + "/a"}, [&](const Progress&) { return write(folder + "/a", runs_a); }, 0.5});
-    log.run({"b", "", {folder + "/b"}, [&](const Progress&) { return write(folder + "/b", runs_b); }, 0.5});
+    log.run({"a", option, {folder + "/a"}, [&](const Progress&) { return write(folder + "/a", runs_a); }});
+    log.run({"b", "", {folder + "/b"}, [&](const Progress&) { return write(folder + "/b", runs_b); }});
     return log.records();
   }
 };
@@ -123,11 +124,25 @@ TEST(Report, IsWholeAndEscaped)
   StageRecord stage;
   stage.name = "texture";
   stage.figures = {{"coverage", 0.5}, {"note", "<b>"}};
-  writeReport({"a<b>", {stage}, {{"snapshots/p.png", "title"}}, 1.5}, files);
+  makeFolder(files.work);
+  TexturedMesh model;
+  model.mesh.vertices = Points::Identity(3, 3);
+  model.mesh.faces = Faces(3, 1);
+  model.mesh.faces << 0, 1, 2;
+  model.texcoord_faces = Faces::Constant(3, 1, -1);
+  model.face_atlas = Eigen::VectorXi::Constant(1, -1);
+  writeTexturedMesh(files.viewer_glb, model);
+  ModelReport content;
+  content.input = "a<b>";
+  content.stages = {stage};
+  content.pictures = {{"snapshots/p.png", "title"}};
+  content.seconds = 1.5;
+  writeReport(content, files);
   const std::string html = readFile(files.report_html);
   EXPECT_NE(html.find("data:image/png;base64,iVBORw0KGgo"), std::string::npos);
   EXPECT_NE(html.find("a&lt;b&gt;"), std::string::npos);
   EXPECT_EQ(html.find("<b>\""), std::string::npos);
+  EXPECT_NE(html.find("fresco-viewer"), std::string::npos);
   const Json json = Json::parse(readFile(files.report_json));
   EXPECT_EQ(json["stages"][0]["figures"]["coverage"], 0.5);
   EXPECT_EQ(json["pictures"][0]["file"], "snapshots/p.png");

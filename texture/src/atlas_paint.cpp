@@ -91,7 +91,7 @@ private:
   Eigen::Vector2f pixel(const Eigen::Vector2d& texel) const
   {
     const Eigen::Vector3d inside =
-        barycentric(corners_, texel).cwiseMax(0.0); // what lies beyond may be another surface
+        barycentric(corners_, texel).cwiseMax(least_); // what lies beyond may be another surface
     const Eigen::Vector3d point = points_ * (inside / inside.sum());
     return view_(point.cast<float>()).head<2>();
   }

@@ -6,7 +6,7 @@
 #include <tuple>
 namespace fresco {
 namespace {
-constexpr Index most_pixels = 1 << 20; // of a photograph that is searched
+constexpr Index most_pixels = 1 << 20, least_pixels = 1 << 16; // of a photograph that is searched
 constexpr int pyramid_levels = 4, corner_cells = 200;
 constexpr double searches[] = {0.06, 0.025, 0.0125, 0.008}; // of the image's width, round by round
 constexpr double agreement = 0.5;                           // pixels: cameras that agree so well are left alone
@@ -32,13 +32,18 @@ CameraState stateOf(const TriangleMesh& mesh, const std::vector<TextureView>& vi
   return state;
 }
 
+/// Grey copies take at most half of what may be kept of the photographs; the rest keeps what they are made of.
 std::vector<MatchPhoto> prepare(PhotoStore& photos, Index count, int threads)
 {
+  constexpr double with_halvings = 4.0 / 3;
+  const double share = 0.5 * static_cast<double>(photos.mostBytes()) / (with_halvings * static_cast<double>(count));
+  const auto pixels = static_cast<Index>(std::clamp<double>(share, least_pixels, most_pixels));
+  photos.setAside(static_cast<std::size_t>(with_halvings * static_cast<double>(pixels * count)));
   std::vector<MatchPhoto> out(static_cast<std::size_t>(count));
   parallelFor(
       count, threads,
       [&](Index v) {
-        out[v].pyramid = buildPyramid(*photos.get(v), most_pixels, pyramid_levels);
+        out[v].pyramid = buildPyramid(*photos.get(v), pixels, pyramid_levels);
         out[v].corners = findCorners(out[v].pyramid.levels[0], corner_cells);
       },
       1);
@@ -118,6 +123,7 @@ RefinedCameras refineCameras(const TriangleMesh& mesh, const RayScene& scene, co
     out.after = medianOf(matchErrors(matches, state));
     done += 1.0 / std::size(searches);
   }
+  photos.setAside(0);
   out.changed = out.matches >= least_matches && out.after < least_gain * out.before;
   if (!out.changed)
     state = initial;

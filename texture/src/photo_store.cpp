@@ -64,7 +64,19 @@ void PhotoStore::keep(Index view, std::shared_ptr<const Image> image)
   bytes_ += image->data.size();
   recent_.push_front(view);
   slots_[view] = {std::move(image), recent_.begin()};
-  while (bytes_ > most_bytes_ && recent_.size() > 1) {
+  drop();
+}
+
+void PhotoStore::setAside(std::size_t bytes)
+{
+  const std::lock_guard lock(mutex_);
+  aside_ = bytes;
+  drop();
+}
+
+void PhotoStore::drop()
+{
+  while (bytes_ + aside_ > most_bytes_ && recent_.size() > 1) {
     Slot& oldest = slots_[recent_.back()];
     bytes_ -= oldest.image->data.size();
     oldest.image.reset();

@@ -14,7 +14,12 @@ public:
   /// @throws std::runtime_error naming the photograph if it cannot be read or is of another size than its camera
   std::shared_ptr<const Image> get(Index view);
 
+  std::size_t mostBytes() const { return most_bytes_; }
+  /// Keeps so much less while something else made of the photographs needs memory.
+  void setAside(std::size_t bytes);
+
 private:
+  void drop();
   std::shared_ptr<const Image> load(Index view) const;
   void keep(Index view, std::shared_ptr<const Image> image);
 
@@ -23,7 +28,7 @@ private:
     std::list<Index>::iterator recent;
   };
   const std::vector<TextureView>& views_;
-  std::size_t most_bytes_, bytes_ = 0;
+  std::size_t most_bytes_, aside_ = 0, bytes_ = 0;
   std::vector<Slot> slots_;
   std::list<Index> recent_; ///< kept views, the one asked for last in front
   std::mutex mutex_;

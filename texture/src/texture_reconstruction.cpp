@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "atlas_gaps.h"
 #include "atlas_packing.h"
 #include "atlas_paint.h"
 #include "camera_refinement.h"
 #include "chart_layout.h"
 #include "color_diffusion.h"
+#include "exemplar_inpainting.h"
+#include "exif.h"
 #include "exposure.h"
 #include "photo_consistency.h"
 #include "resolution.h"
@@ -107,6 +110,9 @@ void placeCameras(const RayScene& scene, const std::vector<TextureView>& views, 
   for (const TextureView& view : views)
     result.cameras.push_back({view.camera, view.T_camera_world});
   constexpr std::size_t most_views = 400; // the normal equations are solved densely
+  if (options.refine && views.size() > most_views)
+    result.warnings.push_back(concat("cameras are taken as given: ", views.size(), " views are more than the ",
+                                     most_views, " that are refined"));
   if (!options.refine || views.size() < 2 || views.size() > most_views)
     return;
   const RefinedCameras refined = refineCameras(result.model.mesh, scene, views, photos, options.threads, progress);
@@ -114,6 +120,16 @@ void placeCameras(const RayScene& scene, const std::vector<TextureView>& views, 
   result.disagreement_after = refined.changed ? refined.after : refined.before;
   for (std::size_t v = 0; v < views.size() && refined.changed; ++v)
     result.cameras[v] = {refined.cameras[v], refined.T_camera_world[v]};
+}
+
+/// How far outlines are to be distrusted, 0.2..1: where the photographs agree on the mesh to a fraction of a pixel,
+/// mesh and cameras are nearly exact, and what is seen close to an outline is right. 1 where that is not known.
+double doubtOf(const TextureResult& result)
+{
+  constexpr double exact = 0.3, vague = 0.7; // pixels: what matching itself errs by, and a disagreement that shows
+  constexpr double least = 0.2;
+  const double doubt = (result.disagreement_after - exact) / (vague - exact);
+  return result.disagreement_before > 0 ? std::clamp(doubt, least, 1.0) : 1.0;
 }
 
 /// For each face the view that most of its area is taken from.
@@ -204,6 +220,19 @@ private:
   std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
 
+void warnOfRotations(const std::vector<TextureView>& views, TextureResult& result)
+{
+  std::string first;
+  Index count = 0;
+  for (const TextureView& view : views)
+    if (view.image.empty() && exifOrientation(view.path) != 1 && count++ == 0)
+      first = view.path;
+  if (count > 0)
+    result.warnings.push_back(
+        concat(first, count > 1 ? concat(" and ", count - 1, " more carry") : " carries",
+               " an EXIF rotation, which is ignored: cameras belong to pixels as they are stored"));
+}
+
 /// Reads every photograph once, so that one that is missing or of another size is found before the long work.
 void checkPhotos(PhotoStore& photos, Index count, int threads)
 {
@@ -257,14 +286,15 @@ TextureResult reconstructTexture(const TriangleMesh& mesh, const std::vector<Tex
   report(progress, "photographs", 0.0);
   PhotoStore photos(views, static_cast<std::size_t>(options.memory) << 20);
   checkPhotos(photos, static_cast<Index>(views.size()), options.threads);
+  warnOfRotations(views, result);
   watch.lap("photographs");
   const RayScene rays(mesh);
   placeCameras(rays, views, photos, options, subProgress(progress, 0.05, 0.25), result);
   watch.lap("camera refinement");
   const std::vector<Projector> projectors = projectorsOf(mesh, result.cameras);
   const PatchMesh patches = cutFaces(mesh, longestEdge(mesh, projectors), options.threads);
-  const Candidates candidates =
-      findCandidates(patches, rays, {projectors, photos, paintable(views)}, options, subProgress(progress, 0.25, 0.4));
+  const Candidates candidates = findCandidates(patches, rays, {projectors, photos, paintable(views), doubtOf(result)},
+                                               options, subProgress(progress, 0.25, 0.4));
   watch.lap("visibility");
   result.gains = Points::Ones(3, static_cast<Index>(views.size()));
   if (options.exposure)
@@ -295,6 +325,12 @@ TextureResult reconstructTexture(const TriangleMesh& mesh, const std::vector<Tex
   const Points colors = diffuseColors(patches, patchColors(scene, result.model.atlases), options.threads);
   paintUnseen(scene, colors, result.model.atlases, result.masks);
   watch.lap("inpainting");
+  report(progress, "examples", 0.93);
+  if (options.examples)
+    inpaintByExample(scene, result.masks, result.model.atlases);
+  watch.lap("examples");
+  fillGaps(charts, options.threads, result.model.atlases);
+  watch.lap("gaps");
   report(progress, "done", 1.0);
   return result;
 }

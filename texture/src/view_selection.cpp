@@ -9,6 +9,8 @@ namespace {
 constexpr Index most_labels = 16; // per patch, the best ones: the others lose by their cost anyway
 constexpr int rounds = 40;
 constexpr float damping = 0.5f;
+constexpr float crease_share = 0.1f; // of a seam's cost where the surface bends sharply: it does not show there
+constexpr float bend_from = 0.7f, bend_to = 0.3f; // cosines of the normals, 46 and 73 degrees
 
 struct Label {
   int view;
@@ -41,6 +43,14 @@ Labels labelsOf(const PatchMesh& patches, const ViewCosts& costs)
     out.begin.push_back(static_cast<Index>(out.list.size()));
   }
   return out;
+}
+
+/// Length of a patch's side as far as a seam along it would show.
+float visibleLength(const PatchMesh& patches, Index patch, int side)
+{
+  const float cosine = patches.normals.col(patch).dot(patches.normals.col(patches.neighbors(side, patch)));
+  const float straight = std::clamp((cosine - bend_to) / (bend_from - bend_to), 0.f, 1.f);
+  return edgeLength(patches, patch, side) * (crease_share + (1 - crease_share) * straight);
 }
 
 /// Min-sum messages of the Potts model over the patches' edges; all are renewed at once from those of the last round,
@@ -89,7 +99,7 @@ private:
   {
     if (labels_.count(from) == 0)
       return;
-    const float edge = seam_ * edgeLength(patches_, i, side);
+    const float edge = seam_ * visibleLength(patches_, i, side);
     int back = 0; // the side of `from` that it shares with i
     while (back < 2 && patches_.neighbors(back, from) != i)
       ++back;
@@ -127,7 +137,7 @@ void settle(const PatchMesh& patches, const Labels& labels, double seam, Eigen::
         float cost = labels.list[l].cost;
         for (int side = 0; side < 3; ++side)
           if (const int other = patches.neighbors(side, i); other >= 0 && view[other] != labels.list[l].view)
-            cost += static_cast<float>(seam) * edgeLength(patches, i, side);
+            cost += static_cast<float>(seam) * visibleLength(patches, i, side);
         if (cost < least || (cost == least && labels.list[l].view == view[i])) {
           least = cost;
           best = labels.list[l].view;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fresco/common/parallel.h>
+#include <limits>
 namespace fresco {
 namespace {
 constexpr Index most_cells = 1 << 20; // of a depth map: enough for outlines, and a 12 megapixel view takes a second
@@ -11,6 +12,7 @@ constexpr float least_cosine = 0.1f;  // 84 degrees: beyond, a pixel smears over
 constexpr float image_border = 1.f;   // pixels: interpolation needs a neighbour
 constexpr float outline_doubt = 5; // octaves, near the outline of what stands before: taken where nothing else shows it
 constexpr float rim_doubt = 2;     // octaves, at its own outline, where pixels mix with what lies behind
+constexpr float beside_doubt = 1;  // octaves, where a pixel next to it shows something a little nearer
 constexpr float rim_pixels = 2;    // reach of cubic interpolation
 constexpr float outline_step = 3.f; // an outline: depth jumps by this many tolerances
 
@@ -43,58 +45,68 @@ Footprint footprintOf(const Eigen::Matrix3f& pixels, float step)
   return out;
 }
 
-/// Whether a cell's centre lies within one cell of the triangle.
-bool touches(const Footprint& patch, const Eigen::Vector2f& p)
+/// Cells from a place to the triangle's nearest side, positive inside.
+float depthInside(const Footprint& patch, const Eigen::Vector2f& p)
 {
   const auto& c = patch.corners;
   const Eigen::Vector2f u = c.col(1) - c.col(0), v = c.col(2) - c.col(0);
   const float turn = u.x() * v.y() - u.y() * v.x() > 0 ? 1.f : -1.f;
+  float depth = std::numeric_limits<float>::infinity();
   for (int k = 0; k < 3; ++k) {
     const Eigen::Vector2f edge = c.col((k + 1) % 3) - c.col(k), to = p - c.col(k);
-    if (turn * (edge.x() * to.y() - edge.y() * to.x()) < -edge.norm())
-      return false;
+    depth = std::min(depth, turn * (edge.x() * to.y() - edge.y() * to.x()) / std::max(edge.norm(), 1e-6f));
   }
-  return true;
+  return depth;
 }
 
-/// Whether some ray through the patch's cells ends before it.
-bool isHidden(const Footprint& patch, const DepthMap& map, double tolerance)
+enum class Sight { free, beside, hidden };
+
+/// hidden: some ray through a cell whose centre the patch covers ends before it; beside: one through a cell next to it.
+/// @param tolerance mesh units
+Sight sightOf(const Footprint& patch, const DepthMap& map, float tolerance)
 {
   const int x0 = std::max(0, static_cast<int>(patch.corners.row(0).minCoeff() - 0.5f)),
             x1 = std::min(map.width - 1, static_cast<int>(patch.corners.row(0).maxCoeff() + 0.5f)),
             y0 = std::max(0, static_cast<int>(patch.corners.row(1).minCoeff() - 0.5f)),
             y1 = std::min(map.height - 1, static_cast<int>(patch.corners.row(1).maxCoeff() + 0.5f));
+  const Eigen::Vector2i middle = patch.corners.rowwise().mean().array().floor().cast<int>().matrix();
   const float slope = std::abs(patch.inverse_depth[0]) + std::abs(patch.inverse_depth[1]);
+  Sight sight = Sight::free;
   for (int y = y0; y <= y1; ++y)
     for (int x = x0; x <= x1; ++x) {
-      const Eigen::Vector2f p(x + 0.5f, y + 0.5f);
       const float hit = map.at(x, y);
-      if (!(hit < patch.farthest) || !touches(patch, p))
+      if (!(hit < patch.farthest - tolerance))
+        continue;
+      const Eigen::Vector2f p(x + 0.5f, y + 0.5f);
+      const float inside = depthInside(patch, p);
+      if (inside < -1)
         continue;
       const float inverse = patch.inverse_depth.dot(p.homogeneous()), z = inverse > 0 ? 1 / inverse : patch.farthest;
       const float depth = std::clamp(z, patch.nearest, patch.farthest);
-      if (hit < depth * (1 - static_cast<float>(tolerance)) - depth * depth * slope)
-        return true;
+      if (hit >= depth - tolerance - depth * depth * slope)
+        continue;
+      if (inside >= 0 || Eigen::Vector2i(x, y) == middle)
+        return Sight::hidden;
+      sight = Sight::beside;
     }
-  return false;
+  return sight;
 }
 
-bool isNearOutline(const Footprint& patch, const DepthMap& nearest, float radius, double tolerance)
+/// @param step length by which depth jumps at an outline
+bool isNearOutline(const Footprint& patch, const DepthMap& nearest, float radius, float step)
 {
   const Eigen::Vector2f center = patch.corners.rowwise().mean();
   const int x = std::clamp(static_cast<int>(center.x()), 0, nearest.width - 1),
             y = std::clamp(static_cast<int>(center.y()), 0, nearest.height - 1);
   const float slope = patch.inverse_depth.head<2>().norm(), depth = patch.farthest;
-  return nearest.at(x, y) <
-         depth * (1 - outline_step * static_cast<float>(tolerance)) - depth * depth * slope * (1.5f * radius + 1);
+  return nearest.at(x, y) < depth - step - depth * depth * slope * (1.5f * radius + 1);
 }
 
 /// Whether the surface ends near one of the patch's corners or its middle.
-bool isAtRim(const Footprint& patch, const DepthMap& farthest, float radius, double tolerance)
+bool isAtRim(const Footprint& patch, const DepthMap& farthest, float radius, float step)
 {
   const float slope = patch.inverse_depth.head<2>().norm(), depth = patch.farthest;
-  const float beyond =
-      depth * (1 + outline_step * static_cast<float>(tolerance)) + depth * depth * slope * (1.5f * radius + 1);
+  const float beyond = depth + step + depth * depth * slope * (1.5f * radius + 1);
   for (int k = 0; k < 4; ++k) {
     const Eigen::Vector2f p =
         k < 3 ? Eigen::Vector2f(patch.corners.col(k)) : Eigen::Vector2f(patch.corners.rowwise().mean());
@@ -106,6 +118,24 @@ bool isAtRim(const Footprint& patch, const DepthMap& farthest, float radius, dou
   return false;
 }
 
+/// Median distance of the surface within the images, from what stands before it or not; mesh units.
+float typicalDepth(const PatchMesh& patches, const std::vector<Projector>& views)
+{
+  constexpr Index samples = 2000;
+  const Index stride = std::max<Index>(1, patches.vertices.cols() / samples);
+  std::vector<float> depths;
+  for (const Projector& view : views)
+    for (Index v = 0; v < patches.vertices.cols(); v += stride) {
+      const Eigen::Vector3f p = view(patches.vertices.col(v));
+      if (p.z() > 0 && p.x() >= 0 && p.y() >= 0 && p.x() <= view.camera().width && p.y() <= view.camera().height)
+        depths.push_back(p.z());
+    }
+  if (depths.empty())
+    return 0;
+  std::nth_element(depths.begin(), depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2), depths.end());
+  return depths[depths.size() / 2];
+}
+
 /// Octaves, 0 inside the image, rising to 1 at its border: there lenses are worst and a better view is likely.
 float borderDoubt(const CameraModel& camera, const Eigen::Vector2f& pixel)
 {
@@ -113,10 +143,25 @@ float borderDoubt(const CameraModel& camera, const Eigen::Vector2f& pixel)
   return 1 - std::clamp(away / (0.05f * std::min(camera.width, camera.height)), 0.f, 1.f);
 }
 
+struct SightLimits {
+  float tolerance; ///< of depth, mesh units
+  float margin;    ///< pixels
+  float doubt;     ///< factor on the octaves
+};
+
+/// The tolerance is the same length in all views, so that near views are not doubted more than far ones.
+SightLimits limitsFor(const PatchMesh& patches, const ViewList& views, const TextureOptions& options)
+{
+  const double tolerance = views.doubt * options.depth_tolerance * typicalDepth(patches, views.projectors);
+  return {static_cast<float>(tolerance), static_cast<float>(views.doubt * options.margin),
+          static_cast<float>(views.doubt)};
+}
+
 class ViewTest {
 public:
-  ViewTest(const PatchMesh& patches, const Projector& view, const TextureOptions& options)
-      : patches_(patches), view_(view), options_(options), pixels_(3, patches.vertices.cols())
+  ViewTest(const PatchMesh& patches, const Projector& view, const SightLimits& limits)
+      : patches_(patches), view_(view), limits_(limits), outline_(outline_step * limits.tolerance),
+        pixels_(3, patches.vertices.cols())
   {
     const float low = image_border, right = view.camera().width - image_border,
                 bottom = view.camera().height - image_border;
@@ -133,20 +178,23 @@ public:
     if (!(pixels_.row(2).array() > 0).any())
       return seen;
     const DepthMap map = scene.depthMap(view_, most_cells);
-    const float radius = static_cast<float>(options_.margin) / map.step;
+    const float radius = limits_.margin / map.step;
     const float rim = rim_pixels / map.step;
     const DepthMap nearest = nearestWithin(map, static_cast<int>(std::ceil(radius))),
                    farthest = farthestWithin(map, static_cast<int>(std::ceil(rim)));
     for (Index i = 0; i < patches_.size(); ++i)
       if (const float cosine = cosineOf(i); cosine >= least_cosine) {
         const Footprint patch = footprintOf(corners(i), map.step);
-        if (isHidden(patch, map, options_.depth_tolerance))
+        const Sight sight = sightOf(patch, map, limits_.tolerance);
+        if (sight == Sight::hidden)
           continue;
         float doubt = borderDoubt(view_.camera(), patch.corners.rowwise().mean() * map.step);
-        if (isNearOutline(patch, nearest, radius, options_.depth_tolerance))
-          doubt += outline_doubt;
-        else if (isAtRim(patch, farthest, rim, options_.depth_tolerance))
-          doubt += rim_doubt;
+        if (sight == Sight::beside)
+          doubt += limits_.doubt * beside_doubt;
+        if (isNearOutline(patch, nearest, radius, outline_))
+          doubt += limits_.doubt * outline_doubt;
+        else if (isAtRim(patch, farthest, rim, outline_))
+          doubt += limits_.doubt * rim_doubt;
         const float resolution = view_.focal() * cosine / (0.5f * (patch.nearest + patch.farthest));
         seen.push_back({static_cast<int>(i), meanColor(photo, i), static_cast<std::uint8_t>(16 * doubt), resolution});
       }
@@ -190,7 +238,8 @@ private:
 
   const PatchMesh& patches_;
   const Projector& view_;
-  const TextureOptions& options_;
+  SightLimits limits_;
+  float outline_;
   Points pixels_; ///< x, y, depth per vertex; depth 0 where out of the image
 };
 } // namespace
@@ -208,6 +257,7 @@ Candidates findCandidates(const PatchMesh& patches, const RayScene& scene, const
   std::vector<std::vector<Seen>> seen(views.used.size());
   constexpr Index batch = 16; // views between two reports
   const Index n = static_cast<Index>(views.used.size());
+  const SightLimits limits = limitsFor(patches, views, options);
   for (Index first = 0; first < n; first += batch) {
     report(progress, "visibility", static_cast<double>(first) / static_cast<double>(n));
     parallelFor(
@@ -215,7 +265,7 @@ Candidates findCandidates(const PatchMesh& patches, const RayScene& scene, const
         [&](Index i) {
           if (views.used[first + i])
             seen[first + i] =
-                ViewTest(patches, views.projectors[first + i], options).run(scene, *views.photos.get(first + i));
+                ViewTest(patches, views.projectors[first + i], limits).run(scene, *views.photos.get(first + i));
         },
         1);
   }

@@ -34,6 +34,7 @@ struct ViewList {
   const std::vector<Projector>& projectors;
   PhotoStore& photos;
   std::vector<char> used; ///< views that may become candidates
+  double doubt = 1; ///< how far outlines are to be distrusted: 1 = by some pixels and centimetres, 0 = all is exact
 };
 
 /// A patch counts as seen by a view where all of it lies in the image, turned towards the camera, and no ray through

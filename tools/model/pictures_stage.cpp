@@ -8,6 +8,8 @@
 #include <limits>
 namespace fresco {
 namespace {
+using Json = nlohmann::ordered_json;
+
 enum class From { inside, photograph, above };
 
 struct Shot {
@@ -89,6 +91,17 @@ std::optional<Eigen::Vector3d> uprightOf(const ModelInput& input)
     up -= frame.T_world_camera.linear().col(1);
   return up.norm() > 0 ? std::optional<Eigen::Vector3d>(up.normalized()) : std::nullopt;
 }
+Json listOf(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
+
+Json entryOf(const Shot& shot, const Viewpoint& view)
+{
+  return {{"file", "snapshots/" + shot.name + ".png"},
+          {"title", shot.title},
+          {"textured", shot.shading == Shading::Texture},
+          {"eye", listOf(view.eye)},
+          {"look", listOf(view.look)},
+          {"angle", view.angle}};
+}
 } // namespace
 
 std::vector<std::string> pictureFiles(const ModelFiles& files)
@@ -99,8 +112,8 @@ std::vector<std::string> pictureFiles(const ModelFiles& files)
   return paths;
 }
 
-nlohmann::ordered_json makePictures(const ModelInput& input, const ModelFiles& files, const ModelOptions& options,
-                                    const Progress& progress)
+Json makePictures(const ModelInput& input, const ModelFiles& files, const ModelOptions& options,
+                  const Progress& progress)
 {
   const TexturedMesh model = readTexturedMesh(files.model_obj);
   const IndoorOptions indoor{uprightOf(input), static_cast<double>(options.width) / options.height, options.threads};
@@ -112,7 +125,7 @@ nlohmann::ordered_json makePictures(const ModelInput& input, const ModelFiles& f
   picture.width = options.width;
   picture.height = options.height;
   picture.threads = options.threads;
-  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  Json list = Json::array();
   for (std::size_t i = 0; i < shots().size(); ++i) {
     const Shot& shot = shots()[i];
     report(progress, shot.name, static_cast<double>(i) / static_cast<double>(shots().size()));
@@ -123,8 +136,8 @@ nlohmann::ordered_json makePictures(const ModelInput& input, const ModelFiles& f
     const Image image =
         shot.shading == Shading::Texture ? renderPicture(model, picture) : renderPicture(model.mesh, picture);
     writeImage(pictureFiles(files)[i], image);
-    list.push_back({{"file", "snapshots/" + shot.name + ".png"}, {"title", shot.title}});
+    list.push_back(entryOf(shot, *picture.view));
   }
-  return {{"pictures", list}};
+  return {{"up", listOf(indoor.up.value_or(Eigen::Vector3d::UnitZ()))}, {"pictures", list}};
 }
 } // namespace fresco

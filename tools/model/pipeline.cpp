@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "model/pipeline.h"
+#include "model/optimization_stage.h"
 #include "model/pictures_stage.h"
 #include "model/points_stage.h"
 #include "model/report.h"
@@ -22,22 +23,32 @@ void validate(const ModelInput& input, const ModelOptions& options)
     throw std::runtime_error(input.folder + "/cameras: no photographs, so there is nothing to texture the model with");
 }
 
-std::vector<ModelPicture> picturesOf(const std::vector<StageRecord>& stages)
+Eigen::Vector3d vectorOf(const nlohmann::ordered_json& object, const char* name)
 {
-  std::vector<ModelPicture> pictures;
-  for (const StageRecord& stage : stages)
-    if (stage.figures.contains("pictures"))
-      for (const auto& picture : stage.figures["pictures"])
-        pictures.push_back({picture.value("file", ""), picture.value("title", "")});
-  return pictures;
+  const auto values = object.value(name, std::vector<double>{0, 0, 1});
+  return Eigen::Vector3d(values.at(0), values.at(1), values.at(2));
+}
+
+void takePictures(const nlohmann::ordered_json& figures, ModelReport& report)
+{
+  report.up = vectorOf(figures, "up");
+  for (const auto& picture : figures["pictures"])
+    report.pictures.push_back({picture.value("file", ""), picture.value("title", ""), picture.value("textured", false),
+                               vectorOf(picture, "eye"), vectorOf(picture, "look"), picture.value("angle", 0.0)});
 }
 } // namespace
 
 ModelFiles::ModelFiles(const std::string& out)
     : folder(out), work(out + "/work"), snapshots(out + "/snapshots"), points(work + "/registered.ply"),
-      poses(out + "/poses.txt"), mesh(out + "/mesh.ply"), model_obj(out + "/model.obj"), model_glb(out + "/model.glb"),
-      report_json(out + "/report.json"), report_html(out + "/report.html")
+      surface(work + "/surface.ply"), poses(out + "/poses.txt"), mesh(out + "/mesh.ply"), model_obj(out + "/model.obj"),
+      model_glb(out + "/model.glb"), viewer_glb(work + "/viewer.glb"), report_json(out + "/report.json"),
+      report_html(out + "/report.html")
 {}
+
+std::string ModelFiles::mask(std::size_t index, std::size_t count) const
+{
+  return folder + (count > 1 ? concat("/model_mask_", index, ".png") : "/model_mask.png");
+}
 
 ModelReport buildModel(const ModelInput& input, const std::string& folder, const ModelOptions& options,
                        const Progress& progress)
@@ -51,24 +62,25 @@ ModelReport buildModel(const ModelInput& input, const std::string& folder, const
   log.run({"points",
            concat(options.use_poses, " ", options.fuse, " ", options.bilateral),
            {files.points, files.poses},
-           [&](const Progress& inner) { return makePoints(input, files, options, inner); },
-           0.35});
-  log.run({"surface",
-           concat(options.cell, " ", options.trim),
-           {files.mesh},
-           [&](const Progress& inner) { return makeSurface(files, options, inner); },
-           0.25});
+           [&](const Progress& inner) { return makePoints(input, files, options, inner); }});
+  log.run({"surface", concat(options.cell, " ", options.trim), {files.surface}, [&](const Progress& inner) {
+             return makeSurface(files, options, inner);
+           }});
+  log.run({"optimization", concat(options.optimize), {files.mesh}, [&](const Progress& inner) {
+             return makeOptimizedSurface(files, options, inner);
+           }});
   log.run({"texture",
            concat(options.texel),
-           {files.model_obj, files.model_glb},
-           [&](const Progress& inner) { return makeTexture(input, files, options, inner); },
-           0.3});
+           {files.model_obj, files.model_glb, files.viewer_glb},
+           [&](const Progress& inner) { return makeTexture(input, files, options, inner); }});
   log.run({"pictures", concat(options.width, "x", options.height), pictureFiles(files),
-           [&](const Progress& inner) { return makePictures(input, files, options, inner); }, 0.1});
-  ModelReport result{input.folder, log.records(), picturesOf(log.records()), 0};
+           [&](const Progress& inner) { return makePictures(input, files, options, inner); }});
+  ModelReport result;
+  result.input = input.folder;
+  result.stages = log.records();
+  takePictures(result.stages.back().figures, result);
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   writeReport(result, files);
-  report(progress, "done", 1.0);
   return result;
 }
 } // namespace fresco

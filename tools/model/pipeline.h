@@ -13,6 +13,7 @@ struct ModelOptions {
   double cell = 0.02;     ///< finest cell of the reconstruction, > 0
   double fuse = 0.01;     ///< RGB-D: cell in which points of all frames are averaged, > 0
   int bilateral = 2;      ///< rounds of bilateral smoothing of the normals, >= 0
+  bool optimize = true;   ///< move the vertices so that edges become sharp
   double trim = 2.0;      ///< octree levels below the finest that data must sustain, else cut off; 0 = keep it closed
   double texel = 0.0;     ///< side of a texel; 0 = from the photographs
   int width = 1280, height = 960; ///< of the pictures, pixels
@@ -22,22 +23,32 @@ struct ModelOptions {
 /// Files that the job writes into its folder; the ones in `work` are kept for resuming.
 struct ModelFiles {
   explicit ModelFiles(const std::string& folder);
-  std::string folder, work, snapshots, points, poses, mesh, model_obj, model_glb, report_json, report_html;
+  std::string folder, work, snapshots, points, surface, poses, mesh, model_obj, model_glb, viewer_glb, report_json,
+      report_html;
+
+  /// Mask `index` of `count`: white where no photograph saw the surface.
+  std::string mask(std::size_t index, std::size_t count) const;
 };
 
+/// A picture of the model and where it was taken from, world coordinates.
 struct ModelPicture {
   std::string file; ///< relative to the folder
   std::string title;
+  bool textured = false;
+  Eigen::Vector3d eye = Eigen::Vector3d::Zero(), look = Eigen::Vector3d::Zero();
+  double angle = 0; ///< vertical opening angle, degrees; 0 = not known
 };
 
 struct ModelReport {
   std::string input;
   std::vector<StageRecord> stages;
   std::vector<ModelPicture> pictures;
-  double seconds = 0; ///< of this run
+  Eigen::Vector3d up = Eigen::Vector3d::UnitZ(); ///< upright direction
+  double seconds = 0;                            ///< of this run
 };
 
-/// The whole chain from an input folder to the textured model: points and normals, poses, mesh, texture, pictures.
+/// The whole chain from an input folder to the textured model: points and normals, poses, mesh, sharp edges, texture,
+/// pictures.
 /// Stages hand over files, so a resumed run gives the same bytes as an undisturbed one.
 /// @throws std::runtime_error naming file and reason; what earlier stages wrote stays
 ModelReport buildModel(const ModelInput& input, const std::string& folder, const ModelOptions& options,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "model/report.h"
-#include <cstdint>
+#include "viewer/viewer.h"
 #include <fresco/common/file.h>
 #include <fresco/common/require.h>
 #include <iomanip>
@@ -15,22 +15,6 @@ std::string escaped(const std::string& text)
   for (const char c : text)
     result += c == '&' ? "&amp;" : c == '<' ? "&lt;" : c == '>' ? "&gt;" : c == '"' ? "&quot;" : std::string(1, c);
   return result;
-}
-
-/// RFC 4648, section 4.
-std::string base64(const std::string& bytes)
-{
-  static const char* const digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  text.reserve((bytes.size() + 2) / 3 * 4);
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    std::uint32_t group = 0;
-    for (std::size_t k = 0; k < 3; ++k)
-      group = group << 8 | (i + k < bytes.size() ? static_cast<std::uint8_t>(bytes[i + k]) : 0U);
-    for (std::size_t k = 0; k < 4; ++k)
-      text += i + k <= bytes.size() ? digits[group >> (18 - 6 * k) & 63U] : '=';
-  }
-  return text;
 }
 
 std::string fixed(double value, int digits)
@@ -57,6 +41,7 @@ Json toJson(const ModelReport& report)
   for (const StageRecord& stage : report.stages) {
     Json figures = stage.figures;
     figures.erase("pictures");
+    figures.erase("up");
     json["stages"].push_back({{"name", stage.name},
                               {"seconds", stage.seconds},
                               {"cpu_seconds", stage.cpu_seconds},
@@ -77,11 +62,21 @@ std::string stageTable(const ModelReport& report)
             fixed(stage.seconds, 1) + "<td>" + fixed(stage.cpu_seconds, 1) + "<td>" + fixed(stage.peak_megabytes, 0) +
             "<td>";
     for (const auto& [name, value] : stage.figures.items())
-      if (name != "pictures")
+      if (name != "pictures" && name != "up")
         html += "<span><b>" + escaped(name) + "</b> " + escaped(shown(value)) + "</span> ";
     html += "</tr>\n";
   }
   return html + "</table>\n";
+}
+
+std::string viewer(const ModelReport& report, const ModelFiles& files)
+{
+  ViewerOptions options;
+  options.up = report.up;
+  for (const ModelPicture& picture : report.pictures)
+    if (picture.textured && picture.angle > 0)
+      options.places.push_back({picture.title, picture.eye, picture.look, picture.angle});
+  return "<div class=\"viewer\">" + viewerElement(readFile(files.viewer_glb), options) + "</div>\n";
 }
 
 std::string toHtml(const ModelReport& report, const ModelFiles& files)
@@ -91,12 +86,13 @@ std::string toHtml(const ModelReport& report, const ModelFiles& files)
       "<style>body{font:15px/1.5 sans-serif;margin:2em auto;max-width:1200px;padding:0 1em;color:#222}"
       "table{border-collapse:collapse}td,th{border-bottom:1px solid #ccc;padding:.3em .8em;text-align:left;"
       "vertical-align:top}td span{white-space:nowrap;margin-right:1em;display:inline-block}"
+      ".viewer{height:min(75vh,800px);margin:1em 0}"
       "figure{margin:1.5em 0}img{max-width:100%;border:1px solid #ddd}figcaption{color:#555}"
       "</style></head><body>\n<h1>fresco model</h1>\n<p>Input: " +
       escaped(report.input) + ". Time of this run: " + fixed(report.seconds, 1) +
       " s. Model: <code>model.glb</code>, <code>model.obj</code>; mesh: <code>mesh.ply</code>; poses: "
       "<code>poses.txt</code>.</p>\n" +
-      stageTable(report);
+      viewer(report, files) + stageTable(report);
   for (const ModelPicture& picture : report.pictures)
     html += "<figure><img alt=\"" + escaped(picture.title) + "\" src=\"data:image/png;base64," +
             base64(readFile(files.folder + "/" + picture.file)) + "\"><figcaption>" + escaped(picture.title) +

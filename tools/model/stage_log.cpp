@@ -74,10 +74,9 @@ void StageLog::run(const Stage& stage)
 {
   key_ = hashed(key_ + "\n" + stage.name + "\n" + stage.options);
   const std::string file = folder_ + "/" + stage.name + ".json";
-  const double end = std::min(1.0, done_ + stage.share);
-  report(progress_, stage.name, done_);
+  report(progress_, stage.name, 0.0);
   if (takeOver(stage, file)) {
-    done_ = end;
+    report(progress_, stage.name + ": taken from an earlier run", 1.0);
     return;
   }
   resume_ = false; // what follows depends on what is made anew here
@@ -86,9 +85,8 @@ void StageLog::run(const Stage& stage)
   resetPeakMemory();
   const auto start = std::chrono::steady_clock::now();
   const double cpu_start = cpuSeconds();
-  const Progress inner = subProgress(progress_, done_, end);
   StageRecord record{stage.name, 0, 0, 0, false, stage.body([&](std::string_view step, double fraction) {
-                       return !inner || inner(stage.name + ": " + std::string(step), fraction);
+                       return !progress_ || progress_(stage.name + ": " + std::string(step), std::min(fraction, 0.999));
                      })};
   record.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   record.cpu_seconds = cpuSeconds() - cpu_start;
@@ -101,6 +99,6 @@ void StageLog::run(const Stage& stage)
                           .dump(2) +
                       "\n");
   records_.push_back(std::move(record));
-  done_ = end;
+  report(progress_, stage.name + ": done", 1.0);
 }
 } // namespace fresco

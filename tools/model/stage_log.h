@@ -22,14 +22,14 @@ struct Stage {
   std::string options;              ///< everything besides the stages before that the outputs depend on
   std::vector<std::string> outputs; ///< files; the stage is done when all are there
   std::function<nlohmann::ordered_json(const Progress&)> body; ///< returns its figures
-  double share = 0.1;                                          ///< of the time of the whole job, for progress
 };
 
 /// Runs stages one after the other and keeps a record of each in `folder`, so that a later run can go on after the last
 /// one that was finished with the same input and options.
 class StageLog {
 public:
-  /// @param key what the whole job depends on: the input
+  /// @param key      what the whole job depends on: the input
+  /// @param progress hears of each stage from 0 to 1, steps as "STAGE: STEP"
   StageLog(std::string folder, const std::string& key, bool resume, Progress progress);
 
   /// @throws what the stage throws
@@ -42,7 +42,6 @@ private:
   std::string folder_, key_;
   bool resume_;
   Progress progress_;
-  double done_ = 0;
   std::vector<StageRecord> records_;
 };
 

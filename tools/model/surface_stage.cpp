@@ -27,7 +27,7 @@ nlohmann::ordered_json makeSurface(const ModelFiles& files, const ModelOptions& 
   const VolumetricResult result = reconstructVolumetric(points, volumetric, progress);
   if (result.mesh.faceCount() == 0)
     throw std::runtime_error(files.points + ": no surface could be made of the points");
-  writeMesh(files.mesh, result.mesh);
+  writeMesh(files.surface, result.mesh);
   const MeshTopology topology = meshTopology(result.mesh);
   return {{"vertices", result.mesh.vertexCount()},
           {"faces", result.mesh.faceCount()},

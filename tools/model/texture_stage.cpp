@@ -38,10 +38,10 @@ nlohmann::ordered_json makeTexture(const ModelInput& input, const ModelFiles& fi
   const std::vector<TextureView> views = viewsOf(input);
   const TextureResult result = reconstructTexture(mesh, views, texture, progress);
   for (std::size_t i = 0; i < result.masks.size(); ++i)
-    writeImage(files.folder + (result.masks.size() > 1 ? concat("/model_mask_", i, ".png") : "/model_mask.png"),
-               result.masks[i]);
+    writeImage(files.mask(i, result.masks.size()), result.masks[i]);
   writeTexturedMesh(files.model_glb, result.model);
   writeTexturedMesh(files.model_obj, result.model);
+  writeTexturedMesh(files.viewer_glb, result.model, 90); // smaller, since the report has it inside
   nlohmann::ordered_json phases;
   for (const auto& [phase, seconds] : result.seconds)
     phases[phase] = seconds;

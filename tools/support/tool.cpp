@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "support/tool.h"
+#include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <cmath>
 #include <csignal>
 #include <fresco/common/parallel.h>
+#include <fresco/common/require.h>
 #include <iostream>
 #include <memory>
 #include <mutex>
@@ -28,6 +31,13 @@ std::string oneLine(std::string text)
   return text;
 }
 
+std::string shownTime(double seconds)
+{
+  const auto whole = static_cast<long>(std::lround(seconds));
+  return whole < 120 ? concat(whole, " s") : concat((whole + 30) / 60, " min");
+}
+
+/// A bar per job; a job begins where the fraction falls.
 class Printer {
 public:
   explicit Printer(bool quiet) : quiet_(quiet), terminal_(isatty(STDERR_FILENO) != 0) {}
@@ -36,26 +46,44 @@ public:
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     if (!quiet_)
-      print(std::string(step), fraction);
+      print(std::string(step), std::clamp(fraction, 0.0, 1.0));
     return !stop_asked;
   }
 
 private:
+  using Clock = std::chrono::steady_clock;
+
   void print(const std::string& step, double fraction)
   {
+    if (fraction < fraction_) {
+      start_ = Clock::now();
+      last_.clear();
+    }
+    fraction_ = fraction;
     const int percent = static_cast<int>(std::lround(100 * fraction));
     if (terminal_) {
       const int filled = percent * 30 / 100;
       std::cerr << "\r\033[K[" << std::string(static_cast<std::size_t>(filled), '#')
                 << std::string(static_cast<std::size_t>(30 - filled), '.') << "] " << percent << " % " << step
-                << (percent >= 100 ? "\n" : "") << std::flush;
+                << remaining() << (fraction >= 1 ? "\n" : "") << std::flush;
     } else if (step != last_) {
       std::cerr << step << " (" << percent << " %)\n";
     }
     last_ = step;
   }
 
+  /// Time left if the rest goes on as fast as what is done; nothing while that would be a guess.
+  std::string remaining() const
+  {
+    const double elapsed = std::chrono::duration<double>(Clock::now() - start_).count();
+    if (fraction_ < 0.05 || fraction_ >= 1 || elapsed < 2)
+      return "";
+    return ", " + shownTime(elapsed * (1 - fraction_) / fraction_) + " left";
+  }
+
   bool quiet_, terminal_;
+  double fraction_ = 0;
+  Clock::time_point start_ = Clock::now();
   std::string last_;
   std::mutex mutex_;
 };

@@ -56,6 +56,8 @@ public:
   bool getLevelSeams() const { return options_.level; }
   void setBlendStrip(double pixels) { options_.strip = pixels; }
   double getBlendStrip() const { return options_.strip; }
+  void setUseExamples(bool use) { options_.examples = use; }
+  bool getUseExamples() const { return options_.examples; }
   void setMemory(int megabytes) { options_.memory = megabytes; }
   int getMemory() const { return options_.memory; }
   void setThreads(int threads) { options_.threads = threads; }

@@ -15,17 +15,20 @@ struct TextureOptions {
   int atlas = 0;    ///< side of each square atlas, 128..16384 pixels; 0 = one as small as possible, up to 8192 each
   int border = 2;   ///< texels around each chart that continue its surface against bleeding, 1..16
   double smoothness =
-      0.01;          ///< length, in bounding-box diagonals, of seam that costs as much as one octave of resolution
+      0.004;         ///< length, in bounding-box diagonals, of seam that costs as much as one octave of resolution
                      ///< lost over a square of that side, >= 0; 0 = the best view of each face on its own
-  double margin = 4; ///< pixels kept away from the outline of anything nearer to the camera, 0..100
-  double depth_tolerance = 0.01; ///< share of its distance by which a face may lie behind the surface seen, 0..0.5
+  double margin = 4; ///< pixels kept away from the outline of anything nearer to the camera, 0..100; less
+                     ///< where the photographs are found to agree to a fraction of a pixel
+  double depth_tolerance = 0.01; ///< share of the photographs' typical distance by which a face may lie behind the
+                                 ///< surface seen, 0..0.5
   bool refine = true;      ///< correct poses, focal length, lens and mount so that the photographs agree on the mesh;
-                           ///< not done for more than 400 views
+                           ///< not done, with a warning, for more than 400 views
   bool exposure = true;    ///< bring exposure and white balance of the photographs together
   bool consistency = true; ///< avoid photographs whose colour differs from what most show of the same surface
   bool level = true;       ///< take away what steps of colour are left at seams
   double strip = 6;        ///< pixels over which one photograph passes into the next at a seam, 0..100
-  int memory = 1024;       ///< MB of decoded photographs kept at a time, >= 1
+  bool examples = true;    ///< give larger unseen parts the fine structure of the seen surface beside them
+  int memory = 1024;       ///< MB of photographs kept at a time, decoded or as grey copies, >= 1
   int threads = 0;         ///< 0 = all cores; the result does not depend on it
 };
 
@@ -57,8 +60,9 @@ struct TextureResult {
   double seam_length = 0;            ///< mesh units, along which two views meet
   std::vector<PlacedCamera> cameras; ///< of each view, as used: refined where that made the photographs agree better
   Points gains; ///< 3xV, factors on RGB that bring the photographs together; their mean logarithm is 0
-  double disagreement_before = 0; ///< pixels, median, between photographs on the mesh; 0 where it was not measured
-  double disagreement_after = 0;  ///< with `cameras`
+  double disagreement_before = 0;    ///< pixels, median, between photographs on the mesh; 0 where it was not measured
+  double disagreement_after = 0;     ///< with `cameras`
+  std::vector<std::string> warnings; ///< what was left out or ignored, a sentence each
   std::vector<std::pair<std::string, double>> seconds; ///< time of each phase
 };
 

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "optimization_guard.h"
+#include "optimization_normals.h"
+#include "optimization_terms.h"
+#include <algorithm>
+#include <cmath>
+#include <fresco/common/parallel.h>
+namespace fresco {
+namespace {
+constexpr int default_iterations = 15;
+constexpr double default_kappa1 = 1.0, default_kappa2 = 0.1;
+constexpr int solver_rounds = 20;      // of conjugate gradients per iteration
+constexpr double noise_lengths = 10.0; // averaging length per noise, both in mean edge lengths
+constexpr double noise_spacing_lengths =
+    7.0; // and per geometric mean of noise and distance between data: dense data average it
+constexpr double spacing_lengths = 0.5; // averaging length per distance between data
+constexpr double least_robust = 3.0;    // mean edge lengths: a datum this far off is judged an outlier
+constexpr double robust_noises = 4.0;
+constexpr double blurred_noise = 0.05; // mean edge lengths: from here on the normals of the data are blurred by noise
+constexpr double data_normal_weight = 2.0; // of the normal of a datum, against that of the same area of the mesh
+
+TermWeights weightsFor(const OptimizationProblem& problem, double noise, double kappa1, double kappa2)
+{
+  const double spacing = problem.support.spacing;
+  const double length = spacing_lengths * std::max(1.0, spacing) +
+                        std::min(noise_lengths * noise, noise_spacing_lengths * std::sqrt(noise * spacing));
+  TermWeights weights;
+  weights.slope = kappa1 * length * length;
+  weights.slide = kappa2;
+  weights.noise = noise;
+  weights.robust = std::max(least_robust, robust_noises * noise);
+  return weights;
+}
+
+// Normals of the data count where they are sharper than the field of the mesh, not where noise blurred them.
+double trustInNormals(double noise)
+{
+  const double ratio = noise / blurred_noise;
+  return data_normal_weight / (1.0 + ratio * ratio);
+}
+
+OptimizationStep describe(const OptimizationProblem& problem, const QuadraticEnergy& energy, const Positions& move,
+                          int threads)
+{
+  const Positions still = Positions::Zero(3, move.cols());
+  const EnergyTerms terms = evaluate(energy, problem.graph, problem.x, move, threads);
+  OptimizationStep step;
+  step.before = evaluate(energy, problem.graph, problem.x, still, threads).sum();
+  step.after = terms.sum();
+  step.fit = terms.fit;
+  step.smooth = terms.slope;
+  step.topology = terms.slide;
+  step.move = rmsMove(move, problem.support.vertex, threads);
+  return step;
+}
+
+// One iteration. `noise` is that of the last one, and negative in the first; replaced.
+OptimizationStep improve(OptimizationProblem& problem, double kappa1, double kappa2, double& noise, int threads)
+{
+  const Eigen::Matrix3Xd areas = areaVectors(problem.graph, problem.x, threads);
+  const FacePoints lists = pointsOfFaces(problem.data, problem.graph.faceCount());
+  NormalFilterOptions filter;
+  filter.threads = threads;
+  const double trust = noise < 0.0 ? 0.0 : trustInNormals(noise);
+  const Eigen::Matrix3Xf normals =
+      filterNormals(problem.graph, areas, dataNormals(problem, areas, lists, trust, threads), filter);
+  const Eigen::VectorXf residuals = dataResiduals(problem, normals, threads);
+  noise = noiseOf(lists, residuals);
+  const QuadraticEnergy energy =
+      makeEnergy(problem, lists, normals, residuals, weightsFor(problem, noise, kappa1, kappa2), threads);
+  Positions move = solveMoves(energy, problem.graph, problem.x, solver_rounds, threads);
+  limitMoves(problem.graph, problem.x, normals, move, threads);
+  OptimizationStep step = describe(problem, energy, move, threads);
+  for (; step.after > step.before && step.move > 0.0; step = describe(problem, energy, move, threads))
+    move *= 0.5;
+  step.kappa2 = kappa2;
+  problem.x += move;
+  return step;
+}
+} // namespace
+
+void runBest(OptimizationProblem& problem, const SurfaceOptimizationOptions& options, const Progress& progress,
+             SurfaceOptimizationResult& result)
+{
+  const int most = options.iterations > 0 ? options.iterations : default_iterations;
+  const double kappa1 = options.kappa1 >= 0 ? options.kappa1 : default_kappa1;
+  const double kappa2 = options.kappa2 >= 0 ? options.kappa2 : default_kappa2;
+  double noise = -1.0;
+  for (int i = 0; i < most && !result.converged; ++i) {
+    report(progress, "optimize", 0.1 + 0.85 * i / most);
+    if (i > 0)
+      followFaces(problem.graph, problem.x, problem.data, options.threads);
+    result.steps.push_back(improve(problem, kappa1, kappa2, noise, options.threads));
+    result.converged = result.steps.back().move <= options.tolerance;
+  }
+  result.noise = noise;
+}
+} // namespace fresco

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include "optimization_data.h"
+namespace fresco {
+/// Which part of the surface each datum stands for, and where there are no data.
+struct Support {
+  std::vector<char> vertex;    ///< V, 1 where data are near
+  Eigen::VectorXf face_weight; ///< F, area that each point of the face stands for; 0 without points
+  double spacing = 0;          ///< between data, median; mean edge lengths
+};
+
+/// Every vertex is given to the nearest face that holds points, along the mesh. Vertices much farther from it than it
+/// is from its own neighbours have no support.
+Support findSupport(const MeshGraph& graph, const Positions& x, const DataPoints& data, const FacePoints& lists,
+                    int threads);
+} // namespace fresco

@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "atlas_gaps.h"
+#include "exemplar_synthesis.h"
+#include "exif.h"
+#include "test_data.h"
+#include "texture/texture_scene.h"
+#include <fresco/common/file.h>
+namespace fresco::test {
+namespace {
+Eigen::Vector3f stripes(int x, int y)
+{
+  return (x + 2 * y) % 9 < 4 ? Eigen::Vector3f(60, 20, 10) : Eigen::Vector3f(-40, 5, 30);
+}
+
+/// Stripes with a square hole of `side` in the middle.
+HolePicture stripedPicture(int size, int side)
+{
+  HolePicture picture;
+  picture.width = picture.height = size;
+  for (int y = 0; y < size; ++y)
+    for (int x = 0; x < size; ++x) {
+      const bool in = std::abs(2 * x - size) < side && std::abs(2 * y - size) < side;
+      picture.state.push_back(in ? HolePicture::hole : HolePicture::known);
+      picture.color.push_back(in ? Eigen::Vector3f::Zero() : stripes(x, y));
+    }
+  return picture;
+}
+
+TEST(TextureUnseen, APatternIsContinuedThroughAHole)
+{
+  HolePicture picture = stripedPicture(90, 30);
+  ASSERT_TRUE(synthesizeHole(picture, 1));
+  int right = 0, all = 0;
+  for (int y = 0; y < 90; ++y)
+    for (int x = 0; x < 90; ++x)
+      if (picture.state[picture.at(x, y)] == HolePicture::hole) {
+        right += (picture.color[picture.at(x, y)] - stripes(x, y)).norm() < 1;
+        ++all;
+      } else {
+        EXPECT_EQ(picture.color[picture.at(x, y)], stripes(x, y));
+      }
+  EXPECT_GT(right, 0.9 * all);
+}
+
+TEST(TextureUnseen, SynthesisIsRepeatable)
+{
+  HolePicture a = stripedPicture(60, 20), b = a;
+  ASSERT_TRUE(synthesizeHole(a, 5));
+  ASSERT_TRUE(synthesizeHole(b, 5));
+  EXPECT_EQ(a.color, b.color);
+}
+
+TEST(TextureUnseen, WithoutExamplesNothingIsDone)
+{
+  HolePicture picture = stripedPicture(40, 38);
+  const auto before = picture.color;
+  EXPECT_FALSE(synthesizeHole(picture, 1));
+  EXPECT_EQ(picture.color, before);
+}
+
+TEST(TextureUnseen, RadiusOfAHole)
+{
+  EXPECT_EQ(holeRadius(stripedPicture(60, 21)), 11);
+  EXPECT_EQ(holeRadius(stripedPicture(60, 0)), 0);
+}
+
+/// A floor with a fine pattern, and a board above the middle of it that hides a part from every view.
+struct FloorUnderABoard {
+  TriangleMesh mesh;
+  std::vector<TextureView> views;
+
+  static Eigen::Vector3d pattern(const Eigen::Vector3d& p)
+  {
+    const double wave = std::sin(70 * p.x()) + std::sin(55 * p.y() + 1);
+    return p.z() > 0.05 ? Eigen::Vector3d(200, 60, 60) : Eigen::Vector3d(120 + 25 * wave, 130 + 20 * wave, 110);
+  }
+
+  FloorUnderABoard()
+  {
+    appendBox({-1, -1, -0.2f}, {1, 1, 0}, false, mesh);
+    appendBox({-0.45f, -0.45f, 0.1f}, {0.45f, 0.45f, 0.2f}, false, mesh);
+    for (const Eigen::Vector3d& eye :
+         {Eigen::Vector3d(0.3, 0.2, 3), Eigen::Vector3d(-0.3, 0.3, 3), Eigen::Vector3d(0, -0.4, 3)})
+      views.push_back(photograph(mesh, pattern, camera(320, 320, 400), lookAt(eye, {0, 0, 0})));
+  }
+};
+
+/// Deviation of green over the floor's texels in the middle, which no view sees, or around it.
+double roughness(const TextureResult& result, bool middle)
+{
+  double sum = 0, squares = 0, count = 0;
+  forPlaces(result.model.mesh, 4000, [&](Index f, const Eigen::Vector3d& weights) {
+    const Eigen::Vector3d p = pointAt(result.model.mesh, f, weights);
+    const double radius = std::max(std::abs(p.x()), std::abs(p.y()));
+    if (std::abs(p.z()) > 1e-3 || (middle ? radius > 0.2 : radius < 0.7 || radius > 0.95))
+      return;
+    const double green = colorAt(result.model, f, weights).y();
+    sum += green;
+    squares += green * green;
+    ++count;
+  });
+  return std::sqrt(std::max(0.0, squares / count - sum * sum / (count * count)));
+}
+
+TEST(TextureUnseen, AFloorUnderABoardLooksLikeTheFloor)
+{
+  const FloorUnderABoard scene;
+  TextureOptions options = withThreads(1);
+  options.refine = false;
+  const TextureResult with = reconstructTexture(scene.mesh, scene.views, options);
+  EXPECT_TRUE(std::any_of(with.masks[0].data.begin(), with.masks[0].data.end(), [](int v) { return v == 255; }));
+  const double seen = roughness(with, false);
+  EXPECT_GT(seen, 15);
+  EXPECT_NEAR(roughness(with, true), seen, 0.4 * seen);
+  options.threads = 4;
+  EXPECT_TRUE(sameAtlases(with, reconstructTexture(scene.mesh, scene.views, options)));
+  options.examples = false;
+  EXPECT_LT(roughness(reconstructTexture(scene.mesh, scene.views, options), true), 0.3 * seen);
+}
+
+TEST(TextureUnseen, GapsTakeTheColourOfTheChartsBesideThem)
+{
+  Chart chart;
+  chart.width = chart.height = 4;
+  chart.owner.assign(16, 0);
+  chart.atlas = 0;
+  chart.x = chart.y = 10;
+  std::vector<Image> atlases{Image(40, 40, 3, 128)};
+  for (int y = 10; y < 14; ++y)
+    for (int x = 10; x < 14; ++x)
+      for (int c = 0; c < 3; ++c)
+        atlases[0].pixel(x, y)[c] = static_cast<std::uint8_t>(50 * c);
+  fillGaps({chart}, 1, atlases);
+  for (const int away : {1, 4, 8})
+    for (int c = 0; c < 3; ++c)
+      EXPECT_EQ(atlases[0].pixel(13 + away, 12)[c], 50 * c) << away;
+  EXPECT_EQ(atlases[0].pixel(13 + 9, 12)[0], 128);
+}
+
+/// A JPEG file with an EXIF block that says how to turn it.
+std::string jpegTurned(const std::string& path, int orientation, bool low_first)
+{
+  const std::vector<std::uint8_t> plain = encodeImage(Image(32, 24, 3, 90), ".jpg");
+  const auto number = [&](int value, int length) {
+    std::string out;
+    for (int i = 0; i < length; ++i)
+      out += static_cast<char>(value >> 8 * (low_first ? i : length - 1 - i) & 255);
+    return out;
+  };
+  const std::string exif = std::string("Exif\0\0", 6) + (low_first ? "II" : "MM") + number(42, 2) + number(8, 4) +
+                           number(1, 2) + number(274, 2) + number(3, 2) + number(1, 4) + number(orientation, 2) +
+                           number(0, 2) + number(0, 4);
+  const std::size_t length = exif.size() + 2;
+  std::string file(plain.begin(), plain.begin() + 2);
+  file += std::string("\xFF\xE1") + static_cast<char>(length >> 8) + static_cast<char>(length & 255) + exif;
+  file.append(plain.begin() + 2, plain.end());
+  writeFile(path, file);
+  return path;
+}
+
+TEST(TextureUnseen, ExifRotationIsFound)
+{
+  const std::string folder = scratchFolder();
+  EXPECT_EQ(exifOrientation(jpegTurned(folder + "/low.jpg", 6, true)), 6);
+  EXPECT_EQ(exifOrientation(jpegTurned(folder + "/high.jpg", 8, false)), 8);
+  EXPECT_EQ(exifOrientation(jpegTurned(folder + "/wild.jpg", 77, false)), 1);
+  writeImage(folder + "/plain.jpg", Image(32, 24));
+  EXPECT_EQ(exifOrientation(folder + "/plain.jpg"), 1);
+  writeImage(folder + "/plain.png", Image(32, 24));
+  EXPECT_EQ(exifOrientation(folder + "/plain.png"), 1);
+  writeFile(folder + "/cut.jpg", readFile(folder + "/low.jpg").substr(0, 30));
+  EXPECT_EQ(exifOrientation(folder + "/cut.jpg"), 1);
+  EXPECT_EQ(exifOrientation(folder + "/absent.jpg"), 1);
+}
+
+TEST(TextureUnseen, WhatIsIgnoredIsSaid)
+{
+  const std::string folder = scratchFolder();
+  TextureView view;
+  view.camera = camera(32, 24, 40);
+  view.T_camera_world = lookAt({0, 0, 5}, {0, 0, 0});
+  view.path = jpegTurned(folder + "/turned.jpg", 3, true);
+  const TextureResult one = reconstructTexture(cube(), {view});
+  ASSERT_EQ(one.warnings.size(), 1U);
+  EXPECT_NE(one.warnings[0].find("turned.jpg carries an EXIF rotation"), std::string::npos);
+  view.image = readImage(view.path);
+  EXPECT_TRUE(reconstructTexture(cube(), {view}).warnings.empty());
+  const TextureResult many = reconstructTexture(cube(), std::vector<TextureView>(401, view));
+  ASSERT_EQ(many.warnings.size(), 1U);
+  EXPECT_NE(many.warnings[0].find("401 views"), std::string::npos);
+}
+} // namespace
+} // namespace fresco::test
