@@ -21,9 +21,9 @@ int main(int argc, char** argv)
     args.option("cell", options.cell, "finest cell of the surface reconstruction, metres, > 0");
     args.option("fuse", options.fuse, "RGB-D: cell in which the points of all frames are averaged, metres, > 0");
     args.option("bilateral", options.bilateral, "rounds of bilateral smoothing of the normals, >= 0");
-    args.option(
-        "trim", options.trim,
-        "octree levels below the finest that the data must sustain, else surface is cut off; 0 = keep it closed");
+    args.option("trim", options.trim,
+                "octree levels that the data may sustain less than they do elsewhere, else surface is cut off; 0 = "
+                "keep it closed");
     args.flag("no_optimize", no_optimize, "leave the vertices where the reconstruction puts them: rounded edges");
     args.option("texel", options.texel, "side of a texel, metres; 0 = as fine as the photographs");
     args.size("size", options.width, options.height, "size of the pictures, pixels");

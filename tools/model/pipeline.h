@@ -14,7 +14,7 @@ struct ModelOptions {
   double fuse = 0.01;     ///< RGB-D: cell in which points of all frames are averaged, > 0
   int bilateral = 2;      ///< rounds of bilateral smoothing of the normals, >= 0
   bool optimize = true;   ///< move the vertices so that edges become sharp
-  double trim = 2.0;      ///< octree levels below the finest that data must sustain, else cut off; 0 = keep it closed
+  double trim = 2.0;      ///< see VolumetricOptions::trim_levels; 0 = keep it closed
   double texel = 0.0;     ///< side of a texel; 0 = from the photographs
   int width = 1280, height = 960; ///< of the pictures, pixels
   int threads = 0;                ///< 0 = all cores; the result does not depend on it
