@@ -32,20 +32,28 @@ Request parse(int argc, char** argv)
               "points that a cell needs to sustain its depth, > 0; more = smoother");
   args.option("trim", o.trim,
               "cut the surface away where the data sustain less than this octree depth; 0 = keep it closed");
+  args.option("trim_levels", o.trim_levels,
+              "the same so many octree levels below what a quarter of the surface sustains, at most below the finest; "
+              "0 = keep it closed");
   args.flag("confidence", o.confidence,
             "weight the points by their field `confidence`, else by the length of their normals");
   args.option("scale", o.scale, "cube side / longest side of the points' bounding box, 1..100");
   args.option("min_depth", o.min_depth, "the octree is complete down to this depth, 2..8");
   args.option("iterations", o.iterations, "solver sweeps per octree depth, 1..1000");
   args.flag("estimate", request.estimate, "print the memory needed in MB on stdout and stop; OUT is not written");
-  args.note(
-      "fresco_reconstruct scan.ply mesh.ply -depth 9\n"
-      "fresco_reconstruct room.pcd room.ply -cell 0.02 -trim 6   (an open room: cells of 2 cm, no invented surface)");
+  args.note("fresco_reconstruct scan.ply mesh.ply -depth 9\n"
+            "fresco_reconstruct room.pcd room.ply -cell 0.02 -trim_levels 2   (an open room: cells of 2 cm, no "
+            "invented surface)");
   request.common.declare(args);
   const std::vector<std::string> files = args.parse(argc, argv, 2);
   request.input = files[0];
   request.output = files[1];
   o.threads = request.common.threads;
+  try {
+    fresco::validateVolumetricOptions(o);
+  } catch (const std::invalid_argument& error) {
+    throw fresco::UsageError(error.what());
+  }
   return request;
 }
 
@@ -56,19 +64,19 @@ std::string percent(fresco::Index part, fresco::Index whole)
 
 void run(const Request& request)
 {
-  const fresco::PointSet points = fresco::readPoints(request.input);
+  fresco::PointSet points = fresco::readPoints(request.input);
+  const fresco::Index count = points.size();
   if (request.estimate) {
     std::cout << std::ceil(static_cast<double>(fresco::estimateMemory(points, request.options)) / 1e6) << '\n';
     return;
   }
   const fresco::VolumetricResult result =
-      fresco::reconstructVolumetric(points, request.options, fresco::printProgress(request.common.quiet));
+      fresco::reconstructVolumetric(std::move(points), request.options, fresco::printProgress(request.common.quiet));
   fresco::writeMesh(request.output, result.mesh);
   fresco::inform(request.common.quiet,
                  fresco::concat(result.mesh.vertexCount(), " vertices, ", result.mesh.faceCount(), " faces; depth ",
                                 result.depth, ", cell ", result.cell_size, "; ", result.used_points, " points used, ",
-                                result.left_out_points, " left out (", percent(result.left_out_points, points.size()),
-                                ")"));
+                                result.left_out_points, " left out (", percent(result.left_out_points, count), ")"));
 }
 } // namespace
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "optimization_flip.h"
 #include "optimization_guard.h"
 #include "optimization_normals.h"
 #include "optimization_terms.h"
@@ -8,6 +9,7 @@
 namespace fresco {
 namespace {
 constexpr int default_iterations = 15;
+constexpr int flip_rounds = 12, flips_between = 3; // rounds of flips in all, and from one iteration to the next
 constexpr double default_kappa1 = 1.0, default_kappa2 = 0.1;
 constexpr int solver_rounds = 20;      // of conjugate gradients per iteration
 constexpr double noise_lengths = 10.0; // averaging length per noise, both in mean edge lengths
@@ -75,6 +77,8 @@ OptimizationStep improve(OptimizationProblem& problem, double kappa1, double kap
     move *= 0.5;
   step.kappa2 = kappa2;
   problem.x += move;
+  relaxFolds(problem.graph, problem.support.vertex, problem.x, threads);
+  relaxStuck(problem.graph, problem.support.vertex, move, problem.x, threads);
   return step;
 }
 } // namespace
@@ -86,12 +90,25 @@ void runBest(OptimizationProblem& problem, const SurfaceOptimizationOptions& opt
   const double kappa1 = options.kappa1 >= 0 ? options.kappa1 : default_kappa1;
   const double kappa2 = options.kappa2 >= 0 ? options.kappa2 : default_kappa2;
   double noise = -1.0;
-  for (int i = 0; i < most && !result.converged; ++i) {
-    report(progress, "optimize", 0.1 + 0.85 * i / most);
-    if (i > 0)
+  const auto iterate = [&] {
+    if (!result.steps.empty())
       followFaces(problem.graph, problem.x, problem.data, options.threads);
     result.steps.push_back(improve(problem, kappa1, kappa2, noise, options.threads));
     result.converged = result.steps.back().move <= options.tolerance;
+  };
+  for (int i = 0; i < most && !result.converged; ++i) {
+    report(progress, "optimize", 0.1 + 0.75 * i / most);
+    iterate();
+  }
+  for (int round = 0; options.flip && round < flip_rounds; ++round) {
+    report(progress, "flip", 0.85 + 0.1 * round / flip_rounds);
+    followFaces(problem.graph, problem.x, problem.data, options.threads);
+    const Index flipped = flipEdges(problem, noise, options.threads);
+    result.flipped_edges += flipped;
+    if (flipped == 0)
+      break;
+    if ((round + 1) % flips_between == 0)
+      iterate();
   }
   result.noise = noise;
 }

@@ -43,10 +43,12 @@ double fitOfFace(Work& work, Index f)
 {
   const OptimizationProblem& problem = work.energy.problem;
   const FacePoints& lists = work.energy.lists;
-  const double s2 = work.energy.robust * work.energy.robust, weight = problem.support.face_weight[f];
+  const double s2 = work.energy.robust * work.energy.robust;
   double sum = 0.0;
   for (int j = lists.begin[at(f)]; j < lists.begin[at(f) + 1]; ++j) {
-    const Vector3d p = problem.data.points.col(lists.order[at(j)]).cast<double>();
+    const int i = lists.order[at(j)];
+    const double weight = problem.support.point_weight[i];
+    const Vector3d p = problem.data.points.col(i).cast<double>();
     const Vector3d foot = footOn(work.graph, work.x, f, p);
     Vector3d offset = -p;
     for (int k = 0; k < 3; ++k)

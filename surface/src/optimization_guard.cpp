@@ -9,6 +9,7 @@ using Eigen::Vector3d;
 std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 constexpr int halvings = 5;         // of a move before it is given up
+constexpr int relaxations = 3;      // before vertices go back
 constexpr int limit_rounds = 40;    // a vertex given up can spoil its neighbours, but not for long
 constexpr double least_area = 1e-4; // of a face, in squared mean edge lengths: it must not shrink below by a move
 
@@ -53,6 +54,21 @@ bool touchFolded(const MeshGraph& graph, Index f, const std::vector<char>& times
       for (int j = 0; j < 3; ++j)
         touch(graph.faces(j, g));
   return any;
+}
+// Free vertices inside the surface that `which` names go to the middle of their neighbours.
+template <typename Which>
+void relaxWhere(const MeshGraph& graph, const std::vector<char>& free, Positions& x, int threads, const Which& which)
+{
+  const Positions before = x;
+  parallelFor(graph.vertexCount(), threads, [&](Index v) {
+    const IntRange edges = edgesAround(graph, v);
+    if (!free[at(v)] || graph.border[at(v)] || edges.size() == 0 || !which(v))
+      return;
+    Vector3d sum = Vector3d::Zero();
+    for (const int e : edges)
+      sum += before.col(graph.otherVertex(e, static_cast<int>(v)));
+    x.col(v) = sum / static_cast<double>(edges.size());
+  });
 }
 } // namespace
 
@@ -103,9 +119,25 @@ std::vector<char> foldedFaces(const MeshGraph& graph, const Positions& x, int th
   return folded;
 }
 
-Index unfold(const MeshGraph& graph, const Positions& start, Positions& x, int threads)
+void relaxFolds(const MeshGraph& graph, const std::vector<char>& free, Positions& x, int threads)
+{
+  const std::vector<char> folded = foldedFaces(graph, x, threads);
+  relaxWhere(graph, free, x, threads, [&](Index v) {
+    const IntRange faces = facesAround(graph, v);
+    return std::any_of(faces.begin(), faces.end(), [&](int f) { return folded[at(f)]; });
+  });
+}
+
+void relaxStuck(const MeshGraph& graph, const std::vector<char>& free, const Positions& move, Positions& x, int threads)
+{
+  relaxWhere(graph, free, x, threads, [&](Index v) { return move.col(v).squaredNorm() == 0.0; });
+}
+
+Index unfold(const MeshGraph& graph, const Positions& start, const std::vector<char>& free, Positions& x, int threads)
 {
   const std::vector<char> before = foldedFaces(graph, start, threads);
+  for (int round = 0; round < relaxations; ++round)
+    relaxFolds(graph, free, x, threads);
   std::vector<char> times(at(graph.vertexCount()), 0), touched(at(graph.vertexCount()));
   for (bool again = true; again;) {
     again = false;

@@ -6,7 +6,7 @@ namespace fresco {
 namespace {
 // A face that agrees with less than this share of the area around it is an artefact and takes the normal of the
 // neighbour that agrees most with its own.
-constexpr float lonely_share = 0.45f;
+constexpr float lonely_share = 0.65f;
 
 using Eigen::Vector3f;
 #define env(n, d)                                                                                                      \

@@ -150,7 +150,7 @@ Positions solveMoves(const QuadraticEnergy& energy, const MeshGraph& graph, cons
   precondition(system, inverse, residual, z);
   Positions direction = z;
   double rho = dot(residual, z, threads);
-  const double enough = 1e-8 * rho;
+  const double enough = 1e-4 * rho; // the next iteration has another energy anyway
   for (int round = 0; round < rounds && rho > enough; ++round) {
     multiply(system, direction, shares, product);
     const double curvature = dot(direction, product, threads);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "optimization_support.h"
 #include <algorithm>
+#include <cmath>
 #include <fresco/common/parallel.h>
 #include <limits>
 namespace fresco {
@@ -129,7 +130,7 @@ Support findSupport(const MeshGraph& graph, const Positions& x, const DataPoints
   const std::vector<double> areas = vertexAreas(graph, x, threads);
   Support support;
   support.vertex.assign(at(graph.vertexCount()), 0);
-  support.face_weight.setZero(graph.faceCount());
+  Eigen::VectorXf face_area = Eigen::VectorXf::Zero(graph.faceCount());
   for (Index v = 0; v < graph.vertexCount(); ++v) {
     const int s = seeds.of_vertex[at(v)];
     if (s < 0)
@@ -138,15 +139,16 @@ Support findSupport(const MeshGraph& graph, const Positions& x, const DataPoints
     if ((seeds.middle.col(s).cast<double>() - x.col(v)).norm() > reach)
       continue;
     support.vertex[at(v)] = 1;
-    support.face_weight[s] += static_cast<float>(areas[at(v)]);
+    face_area[s] += static_cast<float>(areas[at(v)]);
   }
+  support.point_weight.setZero(data.size());
   std::vector<float> spacings_of_points;
-  for (Index f = 0; f < graph.faceCount(); ++f)
-    if (lists.count(f) > 0) {
-      support.face_weight[f] /= static_cast<float>(lists.count(f));
-      if (support.face_weight[f] > 0.f)
-        spacings_of_points.insert(spacings_of_points.end(), at(lists.count(f)), std::sqrt(support.face_weight[f]));
-    }
+  for (Index i = 0; i < data.size(); ++i) {
+    const Index f = data.face[at(i)];
+    support.point_weight[i] = face_area[f] / static_cast<float>(lists.count(f));
+    if (support.point_weight[i] > 0.f)
+      spacings_of_points.push_back(std::sqrt(support.point_weight[i]));
+  }
   if (!spacings_of_points.empty()) {
     const auto middle = spacings_of_points.begin() + static_cast<std::ptrdiff_t>(spacings_of_points.size() / 2);
     std::nth_element(spacings_of_points.begin(), middle, spacings_of_points.end());

@@ -4,9 +4,9 @@
 namespace fresco {
 /// Which part of the surface each datum stands for, and where there are no data.
 struct Support {
-  std::vector<char> vertex;    ///< V, 1 where data are near
-  Eigen::VectorXf face_weight; ///< F, area that each point of the face stands for; 0 without points
-  double spacing = 0;          ///< between data, median; mean edge lengths
+  std::vector<char> vertex;     ///< V, 1 where data are near
+  Eigen::VectorXf point_weight; ///< per datum, area that it stands for; 0 where it supports nothing
+  double spacing = 0;           ///< between data, median; mean edge lengths
 };
 
 /// Every vertex is given to the nearest face that holds points, along the mesh. Vertices much farther from it than it

@@ -84,7 +84,7 @@ FaceTerm faceTerm(const OptimizationProblem& problem, const FacePoints& lists, c
     const int i = lists.order[at(j)];
     const Vector3d foot = footOn(problem.graph, problem.x, f, problem.data.points.col(i).cast<double>());
     const double weight =
-        problem.support.face_weight[f] * pointWeight(problem.data, i, residuals[i], term, weights.robust);
+        urgency * problem.support.point_weight[i] * pointWeight(problem.data, i, residuals[i], term, weights.robust);
     addDatum(term, foot, residuals[i], weight);
   }
   return term;
@@ -168,9 +168,9 @@ Eigen::Matrix3Xf dataNormals(const OptimizationProblem& problem, const Eigen::Ma
     for (int j = lists.begin[at(f)]; j < lists.begin[at(f) + 1]; ++j) {
       const auto normal = data.normals.col(lists.order[at(j)]);
       if (normal.cast<double>().dot(areas.col(f)) > 0.0)
-        given.col(f) += normal;
+        given.col(f) += problem.support.point_weight[lists.order[at(j)]] * normal;
     }
-    given.col(f) *= static_cast<float>(trust) * problem.support.face_weight[f];
+    given.col(f) *= static_cast<float>(trust);
   });
   return given;
 }

@@ -105,7 +105,7 @@ SurfaceOptimizationResult optimizeSurface(const TriangleMesh& mesh, const PointS
   (options.mode == OptimizationMode::best ? runBest : runFaithful)(problem, options, progress, result);
   report(progress, "check", 0.95);
   result.noise *= problem.frame.unit;
-  result.restored_vertices = unfold(problem.graph, problem.start, problem.x, options.threads);
+  result.restored_vertices = unfold(problem.graph, problem.start, problem.support.vertex, problem.x, options.threads);
   result.mesh = movedMesh(mesh, problem, options.threads);
   return result;
 }

@@ -21,7 +21,7 @@ Channels channelsOf(const Samples& samples, std::uint32_t i)
 class Transfer {
 public:
   Transfer(const Octree& tree, const Samples& samples, int threads)
-      : tree_(tree), samples_(samples), begin_(sampleRanges(tree.levels.back(), samples.codes, tree.depth)),
+      : tree_(tree), samples_(samples), begin_(sampleRanges(tree.levels.back(), samples.codes, tree.depth, threads)),
         fields_(tree.levels.size())
   {
     for (int d = tree.depth - 1; d >= 2; --d)
@@ -60,7 +60,7 @@ private:
   {
     const BrickLevel& level = tree_.levels[static_cast<std::size_t>(d)];
     Fields& fields = fields_[static_cast<std::size_t>(d)];
-    const std::vector<std::uint32_t> begin = sampleRanges(level, samples_.codes, tree_.depth);
+    const std::vector<std::uint32_t> begin = sampleRanges(level, samples_.codes, tree_.depth, threads);
     for (std::size_t c = 0; c < channel_count; ++c) {
       fields[c] = NodeField(level.size(), threads);
       if (d < tree_.depth - 1) {
@@ -68,7 +68,7 @@ private:
         restrictLevel(tree_.levels[finer], fields_[finer][c], level, 1.f, fields[c], threads);
         continue;
       }
-      splatBricks(level, begin, fields[c], threads, [&](SplatBlock& block, int b) {
+      splatBricks(level, begin, fields[c], threads, [&](SplatBlock<1>& block, int b) {
         for (std::uint32_t i = begin[static_cast<std::size_t>(b)]; i < begin[static_cast<std::size_t>(b) + 1]; ++i) {
           const HatWeights w(toBrick(samples_.samples[i].position, d, b));
           const float value = channelsOf(samples_, i)[static_cast<Index>(c)];

@@ -68,7 +68,7 @@ void closeBoundary(DenseGrid& grid)
 } // namespace
 
 NodeField solveBase(const Octree& tree, const std::vector<NodeField>& right, const std::vector<SampleLevel>& levels,
-                    float point_weight, int)
+                    float point_weight, int threads)
 {
   DenseGrid x(2);
   for (int d = 2; d <= tree.full_depth; ++d) {
@@ -76,7 +76,8 @@ NodeField solveBase(const Octree& tree, const std::vector<NodeField>& right, con
     const double scale = std::ldexp(1.0, d - tree.depth);
     const SampleLevel& samples = levels[std::min(i + 1, levels.size() - 1)];
     x = refine(x);
-    DenseSystem(x.cells, samples, scale, point_weight).solve(gather(tree.levels[i], right[i], x), tolerance, x);
+    DenseSystem(x.cells, samples, scale, point_weight)
+        .solve(gather(tree.levels[i], right[i], x), tolerance, threads, x);
   }
   const SampleLevel& samples = levels[std::min(static_cast<std::size_t>(tree.full_depth) + 1, levels.size() - 1)];
   x.values.array() -= meanAtSamples(x, samples, std::ldexp(1.0, tree.full_depth - tree.depth));

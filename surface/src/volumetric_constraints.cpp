@@ -14,33 +14,36 @@ float share(float sample_depth, int d, int finest)
   return std::max(0.f, 1.f - std::abs(s - static_cast<float>(d)));
 }
 
-/// The hat function of a node, convolved with the hat-shaped kernel that spreads a sample, is the cubic B-spline.
-void splatSample(const Sample& s, float factor, const Eigen::Vector3f& position, SplatBlock& block)
+/// @tparam Weights hat functions convolved with the kernel that spreads a sample
+template <typename Weights>
+void splatSample(const Sample& s, float factor, const Eigen::Vector3f& position, SplatBlock<Weights::reach>& block)
 {
-  const CubicWeights x(position.x()), y(position.y()), z(position.z());
+  const Weights x(position.x()), y(position.y()), z(position.z());
   const Eigen::Vector3f n = factor * s.normal;
-  for (std::size_t c = 0; c < CubicWeights::count; ++c)
-    for (std::size_t r = 0; r < CubicWeights::count; ++r) {
-      const float along = n.x() * y.value[r] * z.value[c];
-      const float across = n.y() * y.slope[r] * z.value[c] + n.z() * y.value[r] * z.slope[c];
-      float* row = &block.at(x.first, y.first + static_cast<int>(r), z.first + static_cast<int>(c));
-      for (std::size_t q = 0; q < CubicWeights::count; ++q)
+  for (int c = 0; c < Weights::count; ++c)
+    for (int r = 0; r < Weights::count; ++r) {
+      const auto i = static_cast<std::size_t>(r), k = static_cast<std::size_t>(c);
+      const float along = n.x() * y.value[i] * z.value[k];
+      const float across = n.y() * y.slope[i] * z.value[k] + n.z() * y.value[i] * z.slope[k];
+      float* row = &block.at(x.first, y.first + r, z.first + c);
+      for (std::size_t q = 0; q < Weights::count; ++q)
         row[q] += along * x.slope[q] + across * x.value[q];
     }
 }
 
+template <typename Weights>
 void splatLevel(const BrickLevel& level, const Samples& samples, NodeField& field, int threads)
 {
   const int finest = samples.cube.depth;
-  const std::vector<std::uint32_t> begin = sampleRanges(level, samples.codes, finest);
+  const std::vector<std::uint32_t> begin = sampleRanges(level, samples.codes, finest, threads);
   const float scale = std::ldexp(1.f, level.depth - finest);
-  splatBricks(level, begin, field, threads, [&](SplatBlock& block, int b) {
+  splatBricks<Weights::reach>(level, begin, field, threads, [&](SplatBlock<Weights::reach>& block, int b) {
     const Eigen::Vector3f origin = level.origin(b);
     for (std::uint32_t i = begin[static_cast<std::size_t>(b)]; i < begin[static_cast<std::size_t>(b) + 1]; ++i) {
       const Sample& s = samples.samples[i];
       const float w = share(s.depth, level.depth, finest);
       if (w > 0.f)
-        splatSample(s, w * s.area * scale * scale, s.position * scale - origin, block);
+        splatSample<Weights>(s, w * s.area * scale * scale, s.position * scale - origin, block);
     }
   });
   sumFaces(level, field, threads);
@@ -67,9 +70,11 @@ Constraints splatNormals(const Octree& tree, const Samples& samples, int threads
     const BrickLevel& level = tree.levels[i];
     NodeField& field = constraints.fine[i];
     field = NodeField(level.size(), threads);
-    splatLevel(level, samples, field, threads);
-    if (d == tree.depth)
+    if (d == tree.depth) {
+      splatLevel<TentWeights>(level, samples, field, threads);
       continue;
+    }
+    splatLevel<BoxWeights>(level, samples, field, threads);
     constraints.own[i] = copyOf(field, threads);
     restrictLevel(tree.levels[i + 1], constraints.fine[i + 1], level, 0.5f, field, threads);
   }

@@ -4,8 +4,11 @@
 #include "volumetric_samples.h"
 namespace fresco::volumetric {
 /// Right-hand sides b_i = integral V . grad B_i of all depths, divided by the
-/// depth's cell side. V is the normal field: each sample's normal times its
-/// area, spread over a cell of the depth that its density sustains.
+/// depth's cell side. V is the normal field: each sample's normal times its area, spread over a cell of the depth that
+/// its density sustains to either side: then chi is linear across the surface as far as the hat functions around it
+/// reach, and its level set is where theirs is. A box does that with the least blur, for points that are sparse against
+/// the finest cells; where they sustain the finest depth the field is spread twice, which hides the directions of the
+/// grid and costs no detail, because there the points themselves hold the surface.
 struct Constraints {
   std::vector<NodeField> fine; ///< by depth: what was splatted at this depth or a finer one
   std::vector<NodeField> own;  ///< by depth: what was splatted at this depth; empty at the finest

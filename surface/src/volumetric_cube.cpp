@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "volumetric_cube.h"
+#include "volumetric_select.h"
 #include <algorithm>
 #include <cmath>
 #include <fresco/common/parallel.h>
@@ -21,16 +22,6 @@ bool isUsable(const PointSet& set, const Weights& weights, Index i)
 {
   const float length = set.normals.col(i).squaredNorm();
   return set.points.col(i).allFinite() && std::isfinite(length) && length > 1e-20f && weights.of(set, i) > 0;
-}
-
-std::vector<std::uint32_t> finitePoints(const PointSet& set, const Weights& weights)
-{
-  std::vector<std::uint32_t> points;
-  points.reserve(static_cast<std::size_t>(set.size()));
-  for (Index i = 0; i < set.size(); ++i)
-    if (isUsable(set, weights, i))
-      points.push_back(static_cast<std::uint32_t>(i));
-  return points;
 }
 
 /// Box of the points without the `drop` lowest and highest of each axis.
@@ -55,19 +46,29 @@ Box innerBox(const PointSet& set, const std::vector<std::uint32_t>& points)
   return Box(lower, upper);
 }
 
-Box dropOutliers(const PointSet& set, std::vector<std::uint32_t>& points)
+Box boxOf(const PointSet& set, const std::vector<std::uint32_t>& points, int threads)
 {
-  Box inner = innerBox(set, points);
+  const auto map = [&](Index begin, Index end) {
+    Box box;
+    for (Index k = begin; k < end; ++k)
+      box.extend(set.points.col(points[static_cast<std::size_t>(k)]).cast<double>());
+    return box;
+  };
+  const auto join = [](const Box& a, const Box& b) { return a.merged(b); };
+  return parallelReduce(static_cast<Index>(points.size()), threads, Box(), map, join);
+}
+
+/// @return box of the points that are left
+Box dropOutliers(const PointSet& set, std::vector<std::uint32_t>& points, int threads)
+{
+  const Box inner = innerBox(set, points), box = boxOf(set, points, threads);
   const double margin = outlier_distance * inner.sizes().maxCoeff();
-  if (margin > 0) {
-    const Box allowed(inner.min().array() - margin, inner.max().array() + margin);
-    const auto outside = [&](Index i) { return !allowed.contains(set.points.col(i).cast<double>()); };
-    points.erase(std::remove_if(points.begin(), points.end(), outside), points.end());
-  }
-  Box box;
-  for (const Index i : points)
-    box.extend(set.points.col(i).cast<double>());
-  return box;
+  const Box allowed(inner.min().array() - margin, inner.max().array() + margin);
+  if (!(margin > 0) || allowed.contains(box))
+    return box;
+  const auto outside = [&](Index i) { return !allowed.contains(set.points.col(i).cast<double>()); };
+  points.erase(std::remove_if(points.begin(), points.end(), outside), points.end());
+  return boxOf(set, points, threads);
 }
 
 Cube fitCube(const Box& box, const VolumetricOptions& options)
@@ -107,7 +108,7 @@ Usable usablePoints(const PointSet& set, const VolumetricOptions& options)
 {
   Usable usable;
   usable.weights = chooseWeights(set, options);
-  usable.points = finitePoints(set, usable.weights);
+  usable.points = selectIndices(set.size(), options.threads, [&](Index i) { return isUsable(set, usable.weights, i); });
   const auto enough = [&] {
     require(static_cast<Index>(usable.points.size()) >= least_points,
             "volumetric reconstruction: ", usable.points.size(), " of ", set.size(),
@@ -116,14 +117,15 @@ Usable usablePoints(const PointSet& set, const VolumetricOptions& options)
             least_points, " are needed");
   };
   enough();
-  const Box box = dropOutliers(set, usable.points);
+  const Box box = dropOutliers(set, usable.points, options.threads);
   enough();
   require(box.sizes().maxCoeff() > 1e-30, "volumetric reconstruction: all ", usable.points.size(),
           " usable points coincide");
-  double sum = 0;
-  for (const Index i : usable.points)
-    sum += usable.weights.of(set, i);
-  usable.weights.scale = static_cast<double>(usable.points.size()) / sum;
+  const auto n = static_cast<Index>(usable.points.size());
+  const double sum = parallelSum(n, options.threads, 0.0, [&](Index k) {
+    return usable.weights.of(set, usable.points[static_cast<std::size_t>(k)]);
+  });
+  usable.weights.scale = static_cast<double>(n) / sum;
   usable.cube = fitCube(box, options);
   return usable;
 }

@@ -3,6 +3,7 @@
 #include "volumetric_noise.h"
 #include <algorithm>
 #include <cmath>
+#include <fresco/common/parallel.h>
 namespace fresco::volumetric {
 namespace {
 using Block = Eigen::Matrix<double, 8, 8>;
@@ -115,32 +116,43 @@ void DenseSystem::addSample(const CoarseSample& sample, double scale, double poi
                                               sample.area * scale * scale * weights * weights.transpose();
 }
 
-void DenseSystem::multiply(const Eigen::VectorXd& x, Eigen::VectorXd& y) const
+/// Slices of cells in two colours: those of one colour share no node.
+void DenseSystem::multiply(const Eigen::VectorXd& x, Eigen::VectorXd& y, int threads) const
 {
-  static const Block base = stiffness();
   y = regularization * x;
-  forEachCell(shape_.cells, [&](const Eigen::Vector3i& cell, std::size_t index) {
-    const std::array<Index, 8> nodes = cornerNodes(shape_, cell);
-    Corners local;
-    for (int i = 0; i < 8; ++i)
-      local[i] = x[nodes[static_cast<std::size_t>(i)]];
-    const int block = block_of_cell_[index];
-    const Corners product = (block < 0 ? base : blocks_[static_cast<std::size_t>(block)]) * local;
-    for (int i = 0; i < 8; ++i)
-      y[nodes[static_cast<std::size_t>(i)]] += product[i];
-  });
+  for (Index color = 0; color < 2; ++color)
+    parallelFor(shape_.cells / 2, shape_.cells < 16 ? 1 : threads,
+                [&](Index pair) { multiplySlice(static_cast<int>(2 * pair + color), x, y); });
 }
 
-void DenseSystem::solve(const Eigen::VectorXd& b, double tolerance, DenseGrid& x) const
+void DenseSystem::multiplySlice(int z, const Eigen::VectorXd& x, Eigen::VectorXd& y) const
+{
+  static const Block base = stiffness();
+  auto index = static_cast<std::size_t>(shape_.cells) * static_cast<std::size_t>(shape_.cells * z);
+  for (int cell_y = 0; cell_y < shape_.cells; ++cell_y)
+    for (int cell_x = 0; cell_x < shape_.cells; ++cell_x, ++index) {
+      const std::array<Index, 8> nodes = cornerNodes(shape_, Eigen::Vector3i(cell_x, cell_y, z));
+      Corners local;
+      for (int i = 0; i < 8; ++i)
+        local[i] = x[nodes[static_cast<std::size_t>(i)]];
+      const int block = block_of_cell_[index];
+      const Block& matrix = block < 0 ? base : blocks_[static_cast<std::size_t>(block)];
+      const Corners product = matrix * local;
+      for (int i = 0; i < 8; ++i)
+        y[nodes[static_cast<std::size_t>(i)]] += product[i];
+    }
+}
+
+void DenseSystem::solve(const Eigen::VectorXd& b, double tolerance, int threads, DenseGrid& x) const
 {
   Eigen::VectorXd product(shape_.count());
-  multiply(x.values, product);
+  multiply(x.values, product, threads);
   Eigen::VectorXd r = b - product;
   Eigen::VectorXd z = r.cwiseQuotient(diagonal_), p = z;
   double rho = r.dot(z);
   const double target = tolerance * b.norm();
   for (int i = 0; i < most_iterations && r.norm() > target && rho > 0; ++i) {
-    multiply(p, product);
+    multiply(p, product, threads);
     const double step = rho / p.dot(product);
     x.values += step * p;
     r -= step * product;

@@ -31,11 +31,12 @@ public:
 
   /// Conjugate gradients with diagonal preconditioning, from the values that
   /// `x` has, until |r| < tolerance |b|.
-  void solve(const Eigen::VectorXd& b, double tolerance, DenseGrid& x) const;
+  void solve(const Eigen::VectorXd& b, double tolerance, int threads, DenseGrid& x) const;
 
 private:
   void addSample(const CoarseSample& sample, double scale, double point_weight);
-  void multiply(const Eigen::VectorXd& x, Eigen::VectorXd& y) const;
+  void multiply(const Eigen::VectorXd& x, Eigen::VectorXd& y, int threads) const;
+  void multiplySlice(int z, const Eigen::VectorXd& x, Eigen::VectorXd& y) const;
   DenseGrid shape_;
   std::vector<Eigen::Matrix<double, 8, 8>> blocks_; ///< of cells that hold samples
   std::vector<int> block_of_cell_;                  ///< -1 where there is none

@@ -13,9 +13,8 @@ void estimateNoise(Samples& samples, int threads);
 /// @param noise in cells of the depth that is solved
 inline float screeningWeight(float noise)
 {
-  constexpr float gain = 2.5f;       // measured: less leaves ripples of the normal field, more follows every sample
-  constexpr float tolerated = 0.25f; // noise at which the weight is halved
-  const float ratio = noise / tolerated;
-  return gain / (1.f + ratio * ratio);
+  constexpr float gain = 2.5f;      // measured: less leaves ripples of the normal field, more follows every sample
+  constexpr float tolerated = 0.1f; // noise at which the weight is halved
+  return gain / (1.f + noise / tolerated);
 }
 } // namespace fresco::volumetric

@@ -25,32 +25,16 @@ void validate(const PointSet& points, const VolumetricOptions& options)
 {
   validatePointSet(points);
   require(points.hasNormals(), "volumetric reconstruction: the points have no normals");
-  require(options.depth >= 2 && options.depth <= 16, "volumetric reconstruction: depth ", options.depth,
-          " is not in 2..16");
-  require(options.cell_size >= 0 && std::isfinite(options.cell_size), "volumetric reconstruction: cell size ",
-          options.cell_size, " is negative or not finite");
-  require(options.min_depth >= 2 && options.min_depth <= 8, "volumetric reconstruction: minimum depth ",
-          options.min_depth, " is not in 2..8");
-  require(options.point_weight >= 0 && std::isfinite(options.point_weight), "volumetric reconstruction: point weight ",
-          options.point_weight, " is negative or not finite");
-  require(options.scale >= 1 && options.scale <= 100, "volumetric reconstruction: scale ", options.scale,
-          " is not in 1..100");
-  require(options.samples_per_node > 0 && std::isfinite(options.samples_per_node),
-          "volumetric reconstruction: samples per node ", options.samples_per_node, " is not positive");
-  require(options.trim >= 0 && std::isfinite(options.trim), "volumetric reconstruction: trimming depth ", options.trim,
-          " is negative or not finite");
-  require(options.iterations >= 1 && options.iterations <= 1000, "volumetric reconstruction: ", options.iterations,
-          " iterations are not in 1..1000");
-  threadCount(options.threads);
+  validateVolumetricOptions(options);
 }
 
 /// samples joined in the cells of each depth, by depth
-std::vector<SampleLevel> sampleLevels(const Samples& samples)
+std::vector<SampleLevel> sampleLevels(const Samples& samples, int threads)
 {
   std::vector<SampleLevel> levels(static_cast<std::size_t>(samples.cube.depth) + 1);
-  levels.back() = finestLevel(samples);
+  levels.back() = finestLevel(samples, threads);
   for (std::size_t d = levels.size() - 1; d > 2; --d)
-    levels[d - 1] = coarsen(levels[d]);
+    levels[d - 1] = coarsen(levels[d], threads);
   return levels;
 }
 
@@ -126,7 +110,7 @@ Solution solve(const Octree& tree, Constraints& constraints, const std::vector<S
 float levelSetValue(const Octree& tree, const NodeField& chi, const Samples& samples, int threads)
 {
   const BrickLevel& level = tree.levels.back();
-  const std::vector<std::uint32_t> begin = sampleRanges(level, samples.codes, tree.depth);
+  const std::vector<std::uint32_t> begin = sampleRanges(level, samples.codes, tree.depth, threads);
   const Eigen::Array2d sums = parallelSum(level.size(), threads, Eigen::Array2d(0, 0), [&](Index b) {
     Eigen::Array2d sum(0, 0);
     const Eigen::Vector3f origin = level.origin(b);
@@ -152,10 +136,21 @@ Eigen::VectorXf vertexSupport(const Density& density, const IsoSurface& surface,
   return support;
 }
 
-TriangleMesh toMesh(const PointSet& points, const Cube& cube, IsoSurface&& surface, int threads)
+/// What is needed of the points after they have been sampled.
+struct Source {
+  Eigen::Vector3d origin;
+  bool colors, intensities;
+};
+
+Source sourceOf(const PointSet& points)
+{
+  return {points.origin, points.colors.cols() > 0, points.intensities.size() > 0};
+}
+
+TriangleMesh toMesh(const Source& source, const Cube& cube, IsoSurface&& surface, int threads)
 {
   TriangleMesh mesh;
-  mesh.origin = points.origin;
+  mesh.origin = source.origin;
   mesh.faces = std::move(surface.faces);
   mesh.vertices = std::move(surface.vertices);
   parallelFor(mesh.vertices.cols(), threads, [&](Index v) {
@@ -164,21 +159,27 @@ TriangleMesh toMesh(const PointSet& points, const Cube& cube, IsoSurface&& surfa
   return mesh;
 }
 
-void addAttributes(const PointSet& points, const Eigen::Matrix4Xf& attributes, TriangleMesh& mesh)
+void addAttributes(const Source& source, const Eigen::Matrix4Xf& attributes, TriangleMesh& mesh)
 {
-  if (points.colors.cols() > 0)
+  if (source.colors)
     mesh.colors = (attributes.topRows<3>().array() + 0.5f).max(0.f).min(255.f).cast<std::uint8_t>();
-  if (points.intensities.size() > 0)
+  if (source.intensities)
     mesh.fields["intensity"] = attributes.row(3).transpose();
 }
-} // namespace
 
-VolumetricResult reconstructVolumetric(const PointSet& points, const VolumetricOptions& options,
-                                       const Progress& progress)
+/// Depth below which surface is cut away; see VolumetricOptions::trim_levels.
+float trimDepth(Eigen::VectorXf support, int depth, const VolumetricOptions& options)
 {
-  validate(points, options);
-  report(progress, "sort points", 0.0);
-  Samples samples = gatherSamples(points, options);
+  if (options.trim_levels <= 0 || support.size() == 0)
+    return options.trim;
+  float* quartile = support.data() + support.size() * 3 / 4;
+  std::nth_element(support.data(), quartile, support.data() + support.size());
+  return std::max(options.trim, std::min(*quartile, static_cast<float>(depth)) - options.trim_levels);
+}
+
+VolumetricResult reconstruct(Samples&& samples, const Source& source, const VolumetricOptions& options,
+                             const Progress& progress)
+{
   VolumetricResult result;
   result.used_points = samples.used_points;
   result.left_out_points = samples.left_out_points;
@@ -195,7 +196,7 @@ VolumetricResult reconstructVolumetric(const PointSet& points, const VolumetricO
   estimateNoise(samples, options.threads);
   report(progress, "normal field", 0.25);
   Constraints constraints = splatNormals(tree, samples, options.threads);
-  const Solution solution = solve(tree, constraints, sampleLevels(samples), options, progress);
+  const Solution solution = solve(tree, constraints, sampleLevels(samples, options.threads), options, progress);
   result.residual = solution.residual;
   report(progress, "surface", 0.7);
   const LevelSet level_set{&tree, &solution.chi, levelSetValue(tree, solution.chi.back(), samples, options.threads)};
@@ -206,16 +207,60 @@ VolumetricResult reconstructVolumetric(const PointSet& points, const VolumetricO
   Eigen::Matrix4Xf attributes;
   if (!samples.attributes.empty())
     attributes = vertexAttributes(tree, samples, surface, options.threads);
-  result.mesh = toMesh(points, samples.cube, std::move(surface), options.threads);
+  result.mesh = toMesh(source, samples.cube, std::move(surface), options.threads);
   result.mesh.fields["support"] = support;
   if (attributes.cols() > 0)
-    addAttributes(points, attributes, result.mesh);
-  if (options.trim > 0) {
-    const double trim_cell = samples.cube.side / std::exp2(static_cast<double>(options.trim));
-    result.mesh = trimMesh(result.mesh, "support", options.trim, trim_patch * trim_cell * trim_cell);
+    addAttributes(source, attributes, result.mesh);
+  const float trim = trimDepth(support, result.depth, options);
+  if (trim > 0) {
+    result.trim_depth = trim;
+    const double trim_cell = samples.cube.side / std::exp2(result.trim_depth);
+    result.mesh = trimMesh(result.mesh, "support", trim, trim_patch * trim_cell * trim_cell);
   }
   report(progress, "done", 1.0);
   return result;
+}
+} // namespace
+
+void validateVolumetricOptions(const VolumetricOptions& options)
+{
+  require(options.depth >= 2 && options.depth <= 16, "volumetric reconstruction: depth ", options.depth,
+          " is not in 2..16");
+  require(options.cell_size >= 0 && std::isfinite(options.cell_size), "volumetric reconstruction: cell size ",
+          options.cell_size, " is negative or not finite");
+  require(options.min_depth >= 2 && options.min_depth <= 8, "volumetric reconstruction: minimum depth ",
+          options.min_depth, " is not in 2..8");
+  require(options.point_weight >= 0 && std::isfinite(options.point_weight), "volumetric reconstruction: point weight ",
+          options.point_weight, " is negative or not finite");
+  require(options.scale >= 1 && options.scale <= 100, "volumetric reconstruction: scale ", options.scale,
+          " is not in 1..100");
+  require(options.samples_per_node > 0 && std::isfinite(options.samples_per_node),
+          "volumetric reconstruction: samples per node ", options.samples_per_node, " is not positive");
+  require(options.trim >= 0 && std::isfinite(options.trim), "volumetric reconstruction: trimming depth ", options.trim,
+          " is negative or not finite");
+  require(options.trim_levels >= 0 && std::isfinite(options.trim_levels),
+          "volumetric reconstruction: ", options.trim_levels, " levels of trimming are negative or not finite");
+  require(options.iterations >= 1 && options.iterations <= 1000, "volumetric reconstruction: ", options.iterations,
+          " iterations are not in 1..1000");
+  threadCount(options.threads);
+}
+
+VolumetricResult reconstructVolumetric(const PointSet& points, const VolumetricOptions& options,
+                                       const Progress& progress)
+{
+  validate(points, options);
+  report(progress, "sort points", 0.0);
+  return reconstruct(gatherSamples(points, options), sourceOf(points), options, progress);
+}
+
+VolumetricResult reconstructVolumetric(PointSet&& points, const VolumetricOptions& options, const Progress& progress)
+{
+  validate(points, options);
+  report(progress, "sort points", 0.0);
+  const Source source = sourceOf(points);
+  Samples samples = gatherSamples(points, options);
+  points = PointSet();
+  return reconstruct(std::move(samples), source, options, progress);
 }
 
 std::size_t estimateMemory(const PointSet& points, const VolumetricOptions& options)

@@ -2,6 +2,7 @@
 #include "volumetric_samples.h"
 #include "volumetric_cube.h"
 #include "volumetric_morton.h"
+#include "volumetric_select.h"
 #include "volumetric_sort.h"
 #include <algorithm>
 #include <cmath>
@@ -71,20 +72,6 @@ private:
   std::vector<std::uint64_t> keys_;
 };
 
-/// Where each cell's run of points begins, and the end.
-std::vector<std::uint32_t> cellRuns(const SortedPoints& points)
-{
-  std::vector<std::uint32_t> runs;
-  std::uint64_t code = 0;
-  for (std::size_t k = 0; k < points.size(); ++k)
-    if (const std::uint64_t next = points.code(k); k == 0 || next != code) {
-      runs.push_back(static_cast<std::uint32_t>(k));
-      code = next;
-    }
-  runs.push_back(static_cast<std::uint32_t>(points.size()));
-  return runs;
-}
-
 struct Sums {
   Eigen::Vector3d position = Eigen::Vector3d::Zero(), normal = Eigen::Vector3d::Zero();
   Eigen::Vector4d attributes = Eigen::Vector4d::Zero();
@@ -128,7 +115,8 @@ Samples gatherSamples(const PointSet& set, const VolumetricOptions& options)
   result.left_out_points = set.size() - result.used_points;
   const SortedPoints points(set, usable.points, result.cube, options.threads);
   usable.points = {};
-  const std::vector<std::uint32_t> runs = cellRuns(points);
+  const auto codeAt = [&](Index k) { return points.code(static_cast<std::size_t>(k)); };
+  const std::vector<std::uint32_t> runs = runBegins(static_cast<Index>(points.size()), options.threads, codeAt);
   const std::size_t n = runs.size() - 1;
   result.codes.resize(n);
   result.samples.resize(n);
@@ -149,48 +137,59 @@ Samples gatherSamples(const PointSet& set, const VolumetricOptions& options)
   return result;
 }
 
-SampleLevel finestLevel(const Samples& samples)
+SampleLevel finestLevel(const Samples& samples, int threads)
 {
   SampleLevel level;
   level.depth = samples.cube.depth;
   level.codes = samples.codes;
-  level.samples.reserve(samples.samples.size());
-  for (const Sample& s : samples.samples)
-    level.samples.push_back({s.position, s.area, s.noise, s.depth});
+  level.samples.resize(samples.samples.size());
+  parallelFor(static_cast<Index>(samples.samples.size()), threads, [&](Index i) {
+    const Sample& s = samples.samples[static_cast<std::size_t>(i)];
+    level.samples[static_cast<std::size_t>(i)] = {s.position, s.area, s.noise, s.depth};
+  });
   return level;
 }
 
-SampleLevel coarsen(const SampleLevel& fine)
+SampleLevel coarsen(const SampleLevel& fine, int threads)
 {
+  const auto parentOf = [&](Index i) { return fine.codes[static_cast<std::size_t>(i)] >> 3; };
+  const std::vector<std::uint32_t> runs = runBegins(static_cast<Index>(fine.codes.size()), threads, parentOf);
   SampleLevel coarse;
   coarse.depth = fine.depth - 1;
-  for (std::size_t i = 0; i < fine.codes.size();) {
+  coarse.codes.resize(runs.size() - 1);
+  coarse.samples.resize(runs.size() - 1);
+  parallelFor(static_cast<Index>(coarse.codes.size()), threads, [&](Index c) {
+    const auto at = static_cast<std::size_t>(c);
     Eigen::Vector3d position = Eigen::Vector3d::Zero();
     double area = 0, variance = 0, depth = 0;
-    const std::uint64_t code = fine.codes[i] >> 3;
-    for (; i < fine.codes.size() && fine.codes[i] >> 3 == code; ++i) {
-      position += fine.samples[i].area * fine.samples[i].position.cast<double>();
-      area += fine.samples[i].area;
-      depth += static_cast<double>(fine.samples[i].area * fine.samples[i].depth);
-      variance += std::pow(static_cast<double>(fine.samples[i].area * fine.samples[i].noise), 2);
+    for (std::uint32_t i = runs[at]; i < runs[at + 1]; ++i) {
+      const CoarseSample& s = fine.samples[i];
+      position += s.area * s.position.cast<double>();
+      area += s.area;
+      depth += static_cast<double>(s.area * s.depth);
+      variance += std::pow(static_cast<double>(s.area * s.noise), 2);
     }
-    coarse.codes.push_back(code);
-    coarse.samples.push_back({(position / area).cast<float>(), static_cast<float>(area),
-                              static_cast<float>(std::sqrt(variance) / area), static_cast<float>(depth / area)});
-  }
+    coarse.codes[at] = parentOf(runs[at]);
+    coarse.samples[at] = {(position / area).cast<float>(), static_cast<float>(area),
+                          static_cast<float>(std::sqrt(variance) / area), static_cast<float>(depth / area)};
+  });
   return coarse;
 }
 
-std::vector<std::uint32_t> sampleRanges(const BrickLevel& level, const std::vector<std::uint64_t>& codes, int depth)
+std::vector<std::uint32_t> sampleRanges(const BrickLevel& level, const std::vector<std::uint64_t>& codes, int depth,
+                                        int threads)
 {
   const int shift = 3 * (depth - level.depth + 2);
   std::vector<std::uint32_t> begin(level.codes.size() + 1);
-  std::size_t at = 0;
-  for (std::size_t b = 0; b < level.codes.size(); ++b) {
-    while (at < codes.size() && codes[at] >> shift < level.codes[b])
-      ++at;
-    begin[b] = static_cast<std::uint32_t>(at);
-  }
+  parallelRanges(level.size(), threads, [&](Index first, Index last) {
+    const auto isBefore = [&](std::uint64_t code, std::uint64_t brick) { return code >> shift < brick; };
+    auto at = std::lower_bound(codes.begin(), codes.end(), level.codes[static_cast<std::size_t>(first)], isBefore);
+    for (Index b = first; b < last; ++b) {
+      while (at != codes.end() && isBefore(*at, level.codes[static_cast<std::size_t>(b)]))
+        ++at;
+      begin[static_cast<std::size_t>(b)] = static_cast<std::uint32_t>(at - codes.begin());
+    }
+  });
   begin.back() = static_cast<std::uint32_t>(codes.size());
   return begin;
 }

@@ -59,10 +59,11 @@ struct SampleLevel {
   int depth = 0;
 };
 
-SampleLevel finestLevel(const Samples& samples);
-SampleLevel coarsen(const SampleLevel& fine);
+SampleLevel finestLevel(const Samples& samples, int threads);
+SampleLevel coarsen(const SampleLevel& fine, int threads);
 
 /// First sample of each brick of `level` among sorted codes of depth `depth` >=
 /// the level's, and their count at the end.
-std::vector<std::uint32_t> sampleRanges(const BrickLevel& level, const std::vector<std::uint64_t>& codes, int depth);
+std::vector<std::uint32_t> sampleRanges(const BrickLevel& level, const std::vector<std::uint64_t>& codes, int depth,
+                                        int threads);
 } // namespace fresco::volumetric

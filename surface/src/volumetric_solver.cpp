@@ -43,8 +43,8 @@ struct LevelSystem::Block {
 
 LevelSystem::LevelSystem(const BrickLevel& level, const SampleLevel& samples, int finest, float point_weight,
                          int threads)
-    : level_(level), begin_(sampleRanges(level, samples.codes, samples.depth)), samples_(samples.samples.size()),
-      threads_(threads)
+    : level_(level), begin_(sampleRanges(level, samples.codes, samples.depth, threads)),
+      samples_(samples.samples.size()), threads_(threads)
 {
   const float scale = std::ldexp(1.f, level.depth - finest);
   parallelFor(static_cast<Index>(samples_.size()), threads, [&](Index i) {
@@ -212,7 +212,7 @@ void LevelSystem::smoothBrick(Index brick, const NodeField& b, int sweeps, NodeF
 
 void LevelSystem::addPull(const NodeField& x, NodeField& pull) const
 {
-  splatBricks(level_, begin_, pull, threads_, [&](SplatBlock& block, int b) {
+  splatBricks(level_, begin_, pull, threads_, [&](SplatBlock<1>& block, int b) {
     const Eigen::Vector3f origin = level_.origin(b);
     for (std::uint32_t i = begin_[static_cast<std::size_t>(b)]; i < begin_[static_cast<std::size_t>(b) + 1]; ++i) {
       const Constraint& s = samples_[i];

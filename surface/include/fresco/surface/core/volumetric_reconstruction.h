@@ -17,7 +17,10 @@ struct VolumetricOptions {
   float scale = 1.1f;           ///< cube side / longest side of the bounding box, >= 1
   float samples_per_node = 1.f; ///< samples that a cell needs to sustain its depth, > 0; more = smoother
   bool confidence = false;      ///< samples weighted by PointSet::confidences, else by the length of their normals
-  float trim = 0.f;   ///< surface is cut away where the data sustain less than this octree depth; 0 = kept closed
+  float trim = 0.f; ///< surface is cut away where the data sustain less than this octree depth; 0 = kept closed
+  /// The same relative to the data: so many levels below what a quarter of the vertices sustain, or below the finest
+  /// depth if that is coarser; >= 0, 0 = kept closed. The higher of both thresholds counts.
+  float trim_levels = 0.f;
   int iterations = 6; ///< smoothing sweeps per octree depth, 1..1000
   int threads = 0;    ///< 0 = all cores; the result does not depend on it
 };
@@ -31,17 +34,24 @@ struct VolumetricResult {
   int depth = 0;             ///< depth used
   double cell_size = 0.0;    ///< side of the finest cell
   double residual = 0.0;     ///< |A x - b| / |b| at the finest depth
+  double trim_depth = 0.0;   ///< depth below which surface was cut away, 0 = nowhere
   Index used_points = 0;     ///< points that took part
   Index left_out_points = 0; ///< not finite, without normal or confidence, or far outliers
   Index cells = 0;           ///< cells of the octree, all depths
 };
 
+/// @throws std::invalid_argument if an option is out of range
+void validateVolumetricOptions(const VolumetricOptions& options);
+
 /// @param points with normals that point to the free side
 /// @throws std::invalid_argument if there are no normals, fewer than 4 usable points, all usable points coincide, or an
-/// option is
-///         out of range
+///         option is out of range
 /// @throws Cancelled if `progress` asks to stop
 VolumetricResult reconstructVolumetric(const PointSet& points, const VolumetricOptions& options = {},
+                                       const Progress& progress = {});
+
+/// The same; the points are freed as soon as they have been sampled, which lowers the peak of the memory used.
+VolumetricResult reconstructVolumetric(PointSet&& points, const VolumetricOptions& options = {},
                                        const Progress& progress = {});
 
 /// Bytes that reconstructVolumetric() needs at most beside the points themselves, judged from how many octree cells the

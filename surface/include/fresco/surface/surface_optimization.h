@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include <fresco/common/point_set.h>
+#include <fresco/surface/core/surface_optimization.h>
+#include <pcl/point_cloud.h>
+#include <pcl/surface/processing.h>
+#include <string>
+namespace fresco {
+/// PCL face of optimizeSurface(); setters: see SurfaceOptimizationOptions. process() puts out the input mesh with moved
+/// vertices; its other attributes are kept.
+class SurfaceOptimization : public pcl::MeshProcessing {
+public:
+  using Ptr = pcl::shared_ptr<SurfaceOptimization>;
+  using ConstPtr = pcl::shared_ptr<const SurfaceOptimization>;
+
+  /// The points that the mesh was made of; copied.
+  /// @tparam PointT with x y z, with or without a normal
+  template <typename PointT>
+  void setInputCloud(const pcl::shared_ptr<const pcl::PointCloud<PointT>>& cloud);
+  template <typename PointT>
+  void setInputCloud(const pcl::shared_ptr<pcl::PointCloud<PointT>>& cloud);
+
+  void setMode(OptimizationMode mode) { options_.mode = mode; }
+  OptimizationMode getMode() const { return options_.mode; }
+  void setMaximumIterations(int iterations) { options_.iterations = iterations; }
+  int getMaximumIterations() const { return options_.iterations; }
+  void setKappa1(double kappa1) { options_.kappa1 = kappa1; }
+  double getKappa1() const { return options_.kappa1; }
+  void setKappa2(double kappa2) { options_.kappa2 = kappa2; }
+  double getKappa2() const { return options_.kappa2; }
+  void setFlipEdges(bool flip) { options_.flip = flip; }
+  bool getFlipEdges() const { return options_.flip; }
+  void setTolerance(double tolerance) { options_.tolerance = tolerance; }
+  double getTolerance() const { return options_.tolerance; }
+  void setNumberOfThreads(int threads) { options_.threads = threads; }
+  int getNumberOfThreads() const { return options_.threads; }
+
+  /// Hides MeshProcessing::process(), which is not virtual and crashes without an input. `output` may be the input
+  /// mesh.
+  /// @throws std::invalid_argument without input mesh or cloud, and as optimizeSurface()
+  void process(pcl::PolygonMesh& output);
+
+  /// Of the last process(); its mesh is empty.
+  const SurfaceOptimizationResult& getResult() const { return result_; }
+
+protected:
+  void performProcessing(pcl::PolygonMesh& output) override;
+  std::string getClassName() const override { return "SurfaceOptimization"; }
+
+private:
+  PointSet points_;
+  SurfaceOptimizationOptions options_;
+  SurfaceOptimizationResult result_;
+};
+} // namespace fresco
+#include <fresco/surface/impl/surface_optimization.hpp>
