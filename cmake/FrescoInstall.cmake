@@ -5,8 +5,13 @@ configure_package_config_file("${PROJECT_SOURCE_DIR}/cmake/frescoConfig.cmake.in
                               INSTALL_DESTINATION "${config_dir}")
 write_basic_package_version_file("${PROJECT_BINARY_DIR}/frescoConfigVersion.cmake" COMPATIBILITY SameMinorVersion)
 install(FILES "${PROJECT_BINARY_DIR}/frescoConfig.cmake" "${PROJECT_BINARY_DIR}/frescoConfigVersion.cmake"
-        DESTINATION "${config_dir}")
-install(EXPORT frescoTargets NAMESPACE fresco:: DESTINATION "${config_dir}")
-install(FILES "${PROJECT_SOURCE_DIR}/package.xml" DESTINATION "${CMAKE_INSTALL_DATADIR}/fresco")
-install(FILES "${PROJECT_SOURCE_DIR}/LICENSE" "${PROJECT_SOURCE_DIR}/README.md"
-        DESTINATION "${CMAKE_INSTALL_DATADIR}/doc/fresco")
+        DESTINATION "${config_dir}" COMPONENT development)
+install(EXPORT frescoTargets NAMESPACE fresco:: DESTINATION "${config_dir}" COMPONENT development)
+install(FILES "${PROJECT_SOURCE_DIR}/package.xml" DESTINATION "${CMAKE_INSTALL_DATADIR}/fresco" COMPONENT development)
+install(FILES "${PROJECT_SOURCE_DIR}/README.md" "${PROJECT_SOURCE_DIR}/CHANGELOG.md"
+        DESTINATION "${CMAKE_INSTALL_DATADIR}/doc/fresco" COMPONENT runtime)
+# Debian wants the licence of each package under this name.
+install(FILES "${PROJECT_SOURCE_DIR}/LICENSE" DESTINATION "${CMAKE_INSTALL_DATADIR}/doc/fresco" RENAME copyright
+        COMPONENT runtime)
+install(FILES "${PROJECT_SOURCE_DIR}/LICENSE" DESTINATION "${CMAKE_INSTALL_DATADIR}/doc/libfresco-dev" RENAME copyright
+        COMPONENT development)

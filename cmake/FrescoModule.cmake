@@ -14,12 +14,17 @@ function(fresco_add_module name)
   target_compile_features(${target} PUBLIC cxx_std_17)
   target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O3>)
   target_link_libraries(${target} PUBLIC ${ARG_DEPENDS} PRIVATE ${ARG_PRIVATE_DEPENDS} $<BUILD_INTERFACE:fresco_warnings>)
-  target_link_options(${target} PRIVATE -Wl,--as-needed $<$<NOT:$<BOOL:${FRESCO_SANITIZE}>>:-Wl,--no-undefined>)
+  target_link_options(${target} PRIVATE -Wl,--as-needed)
+  if(NOT FRESCO_SANITIZE) # a sanitizer's own symbols are found when the program starts
+    target_link_options(${target} PRIVATE -Wl,--no-undefined)
+  endif()
   set_target_properties(${target} PROPERTIES EXPORT_NAME ${name} VERSION ${PROJECT_VERSION}
                         SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
-  install(TARGETS ${target} EXPORT frescoTargets LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}
-          ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
-  install(DIRECTORY include/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+  install(TARGETS ${target} EXPORT frescoTargets
+          LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT runtime NAMELINK_COMPONENT development
+          ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development
+          RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT runtime)
+  install(DIRECTORY include/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT development)
 endfunction()
 
 # fresco_add_tool(NAME SOURCES file... [DEPENDS target...]): program fresco_NAME, installed; part of target fresco_tools.
@@ -28,7 +33,7 @@ function(fresco_add_tool name)
   add_executable(fresco_${name} ${ARG_SOURCES})
   target_link_libraries(fresco_${name} PRIVATE fresco_tool_support ${ARG_DEPENDS} fresco_warnings)
   target_link_options(fresco_${name} PRIVATE -Wl,--as-needed)
-  install(TARGETS fresco_${name} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+  install(TARGETS fresco_${name} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT runtime)
   if(NOT TARGET fresco_tools)
     add_custom_target(fresco_tools)
   endif()

@@ -24,3 +24,9 @@ if(FRESCO_SANITIZE)
   add_link_options(-fsanitize=${FRESCO_SANITIZE})
   add_compile_definitions(EIGEN_MALLOC_ALREADY_ALIGNED=1) # PCL's own allocations are taken for foreign ones otherwise
 endif()
+
+option(FRESCO_COVERAGE "Count which lines run (gcov)" OFF)
+if(FRESCO_COVERAGE)
+  add_compile_options(--coverage -fprofile-update=atomic)
+  add_link_options(--coverage)
+endif()

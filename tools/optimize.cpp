@@ -21,11 +21,10 @@ Request parse(int argc, char** argv)
       "Moves the vertices of MESH so that it fits the points of CLOUD that it was made of and gets its sharp\n"
       "edges back. MESH, OUT: PLY, OBJ or VTK; CLOUD: PCD, PLY, VTK, OBJ or XYZ, with or without normals.\n"
       "OUT has the faces, colours and other attributes of MESH. Vertices without data stay where they were.");
-  args.option("iterations", o.iterations, "at most, 1..10000; 0 = 30, in faithful mode 200");
-  args.option("kappa1", o.kappa1, "weight of smoothness, >= 0; negative = 1, in faithful mode 0.02");
+  args.option("iterations", o.iterations, "at most, 1..10000; 0 = 15, in faithful mode 200");
+  args.option("kappa1", o.kappa1, "weight of smoothness, >= 0; negative = 1, in faithful mode 0.1");
   args.option("kappa2", o.kappa2,
-              "weight of well-shaped triangles, at the start in faithful mode, >= 0; negative = 0.1, "
-              "in faithful mode 1");
+              "weight of well-shaped triangles, at the start in faithful mode, >= 0; negative = 0.1");
   args.flag("flip", o.flip, "flip edges so that they follow the creases");
   args.option("mode", request.mode,
               "best or faithful (conjugate gradients on E_fit + kappa1 E_smooth + kappa2 E_topology)");

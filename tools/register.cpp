@@ -61,6 +61,7 @@ Request parse(int argc, char** argv)
   args.option("min_overlap", request.options.min_overlap, "share of a scan from which a pair of scans is used, 0..1");
   args.option("max_violation", request.options.max_violation,
               "share of a scan in space that the other saw through from which a pair is wrong, 0..1");
+  args.flag("upright", request.options.upright, "all scanners stood upright to 10 degrees, z upwards");
   args.option("iterations", request.options.max_iterations, "of the joint refinement per resolution, at least 1");
   request.common.declare(args);
   args.note("example: fresco_register scans/*.pcd -o registered");
@@ -136,8 +137,7 @@ std::vector<fresco::Pose> startPoses(const Request& request)
   return poses;
 }
 
-void write(const Request& request, const std::vector<fresco::PointSet>& scans,
-           const fresco::ScanRegistrationResult& result)
+void write(const Request& request, const fresco::ScanSource& scans, const fresco::ScanRegistrationResult& result)
 {
   fresco::writePoints(request.folder + "/registered.pcd",
                       fresco::mergeScans(scans, result.poses, request.common.threads));
@@ -151,12 +151,10 @@ void run(int argc, char** argv)
   const std::vector<fresco::Pose> start = startPoses(request);
   fresco::makeFolder(request.folder);
   const fresco::Progress progress = fresco::printProgress(request.common.quiet);
-  std::vector<fresco::PointSet> scans;
-  for (std::size_t i = 0; i < request.files.size(); ++i) {
-    fresco::report(progress, "read", 0.1 * static_cast<double>(i) / static_cast<double>(request.files.size()));
-    scans.push_back(fresco::readPoints(request.files[i]));
-  }
-  const auto result = fresco::registerScans(scans, start, request.options, fresco::subProgress(progress, 0.1, 0.9));
+  const fresco::ScanSource scans{static_cast<fresco::Index>(request.files.size()), [&](fresco::Index i) {
+                                   return fresco::readPoints(request.files[static_cast<std::size_t>(i)]);
+                                 }};
+  const auto result = fresco::registerScans(scans, start, request.options, fresco::subProgress(progress, 0.0, 0.9));
   const auto placed = std::count_if(result.scans.begin(), result.scans.end(), [](const auto& s) { return s.placed; });
   if (placed == 0)
     throw std::runtime_error(request.files[0] + ": " + result.scans[0].problem + "; no scan could be placed");
@@ -166,7 +164,7 @@ void run(int argc, char** argv)
   for (std::size_t i = 0; i < result.scans.size(); ++i)
     if (!result.scans[i].problem.empty())
       fresco::inform(request.common.quiet, request.files[i] + ": " + result.scans[i].problem);
-  fresco::inform(request.common.quiet, fresco::concat(placed, " of ", scans.size(), " scans placed, rms ", result.rms));
+  fresco::inform(request.common.quiet, fresco::concat(placed, " of ", scans.count, " scans placed, rms ", result.rms));
 }
 } // namespace
 

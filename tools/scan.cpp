@@ -19,6 +19,8 @@ void declare(Args& args, DatasetOptions& options, Switches& switches)
   args.option("seed", switches.seed, "of all random numbers; same seed, same bytes; >= 0");
   args.size("images", options.width, options.height, "size of the photographs, pixels, 16..20000 each");
   args.option("views", options.views, "photographs");
+  args.flag("labels", options.labels,
+            "scans get a field label: 0 = of one surface, 1 = of several but within the noise of one, 2 = veil point");
   args.flag("no_images", switches.no_images, "no photographs");
   args.option("exposure", options.exposure_spread,
               "spread of the photographs' brightness, 0..0.9; white balance a quarter of it");

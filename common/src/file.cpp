@@ -7,7 +7,10 @@
 #include <filesystem>
 #include <fresco/common/file.h>
 #include <fresco/common/require.h>
+#include <fresco/common/unfinished_files.h>
 #include <fstream>
+#include <mutex>
+#include <set>
 #include <sys/stat.h>
 #include <unistd.h>
 namespace fresco {
@@ -25,15 +28,36 @@ std::string besides(const std::string& path)
 }
 
 constexpr std::size_t buffer_size = std::size_t{1} << 20;
+
+/// Temporary files that are neither renamed nor removed yet. Never destroyed: files may outlive main().
+struct Unfinished {
+  std::mutex mutex;
+  std::set<std::string> paths;
+};
+
+Unfinished& unfinished()
+{
+  static auto* const all = new Unfinished;
+  return *all;
+}
 } // namespace
+
+void abandonUnfinishedFiles() noexcept
+{
+  unfinished().mutex.lock(); // and never unlocked
+  for (const std::string& path : unfinished().paths)
+    ::unlink(path.c_str());
+}
 
 OutputFile::OutputFile(std::string path) : path_(std::move(path)), temporary_(besides(path_))
 {
   if (std::filesystem::path(path_).filename().empty() || std::filesystem::is_directory(path_))
     fail(path_, "is a folder, not a file to write to");
+  const std::lock_guard<std::mutex> lock(unfinished().mutex);
   descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
   if (descriptor_ < 0)
     fail(path_, std::string("cannot be written (") + std::strerror(errno) + ")");
+  unfinished().paths.insert(temporary_);
 }
 
 OutputFile::~OutputFile()
@@ -41,7 +65,9 @@ OutputFile::~OutputFile()
   if (descriptor_ < 0)
     return;
   ::close(descriptor_);
+  const std::lock_guard<std::mutex> lock(unfinished().mutex);
   ::unlink(temporary_.c_str());
+  unfinished().paths.erase(temporary_);
 }
 
 void OutputFile::write(const void* data, std::size_t bytes)
@@ -83,8 +109,10 @@ void OutputFile::commit()
   flush();
   // A library may have replaced the file behind the descriptor, so the name is what counts.
   const bool stored = ::fsync(descriptor_) == 0 || errno == EINVAL;
+  const std::lock_guard<std::mutex> lock(unfinished().mutex);
   if (!stored || ::rename(temporary_.c_str(), path_.c_str()) != 0)
     fail(path_, std::string("cannot be written (") + std::strerror(errno) + ")");
+  unfinished().paths.erase(temporary_);
   ::close(descriptor_);
   descriptor_ = -1;
 }

@@ -9,8 +9,9 @@
 #include <numeric>
 namespace fresco {
 namespace {
-constexpr int fewest = 6; // neighbours within a radius; below, the nearest are taken
-constexpr int most = 256; // neighbours within a radius; beyond, evenly chosen
+constexpr int fewest = 6;          // neighbours within a radius; below, the nearest are taken
+constexpr int most = 256;          // neighbours within a radius; beyond, evenly chosen
+constexpr float least_width = 6.f; // radius of a neighbourhood / deviation of the points from the surface
 
 void validate(const PointSet& set, const NormalOptions& options)
 {
@@ -34,6 +35,49 @@ NeighborLists listsWithin(const PointTree& tree, const NormalOptions& options)
   return radiusLists(tree, radii, most, options.threads);
 }
 
+/// Deviation of the points from their surfaces: the median of every 16th plane fit to `lists`.
+float surfaceNoise(const PointTree& tree, const NeighborLists& lists, int threads)
+{
+  std::vector<float> deviations(static_cast<std::size_t>((tree.size() + 15) / 16));
+  parallelFor(static_cast<Index>(deviations.size()), threads, [&](Index s) {
+    Moments moments;
+    for (const int* j = lists.first(16 * s); j != lists.last(16 * s); ++j)
+      moments.add(tree.point(*j) - tree.point(16 * s));
+    const auto count = static_cast<float>(lists.count(16 * s));
+    deviations[s] = std::sqrt(fitPlane(moments).variance * count / std::max(1.f, count - 3));
+  });
+  const auto middle = deviations.begin() + static_cast<std::ptrdiff_t>(deviations.size() / 2);
+  std::nth_element(deviations.begin(), middle, deviations.end());
+  return deviations.empty() ? 0.f : *middle;
+}
+
+/// Neighbourhoods that noise makes as thick as wide have no normal: where the scan is so dense, the same number of
+/// neighbours is taken, spread evenly, from as far as `radius`.
+void widenLists(const PointTree& tree, float radius, NeighborLists& lists, int threads)
+{
+  parallelRanges(tree.size(), threads, [&](Index begin, Index end) {
+    std::vector<PointTree::Key> keys;
+    for (Index i = begin; i < end; ++i) {
+      int* list = lists.index.data() + lists.begin[i];
+      const auto count = static_cast<std::size_t>(lists.count(i));
+      if (!((tree.point(list[count - 1]) - tree.point(i)).norm() < radius))
+        continue;
+      tree.withinKeys(tree.point(i), radius, keys, false);
+      const double step = static_cast<double>(keys.size()) / static_cast<double>(count);
+      for (std::size_t j = 0; step >= 1 && j < count; ++j)
+        list[j] = PointTree::position(keys[static_cast<std::size_t>((static_cast<double>(j) + 0.5) * step)]);
+    }
+  });
+}
+
+NeighborLists listsByCount(const PointTree& tree, const NormalOptions& options)
+{
+  NeighborLists lists = nearestLists(tree, options.k, options.threads);
+  if (tree.size() > options.k)
+    widenLists(tree, least_width * surfaceNoise(tree, lists, options.threads), lists, options.threads);
+  return lists;
+}
+
 Neighborhoods findNeighborhoods(const PointSet& set, const NormalOptions& options)
 {
   if (options.image_width > 1 && options.radius == 0) {
@@ -42,8 +86,7 @@ Neighborhoods findNeighborhoods(const PointSet& set, const NormalOptions& option
     return {set.points, std::move(columns), imageLists(set.points, options.image_width, options.k, options.threads)};
   }
   const PointTree tree(set.points, options.threads);
-  return {tree.points(), tree.columns(),
-          options.radius > 0 ? listsWithin(tree, options) : nearestLists(tree, options.k, options.threads)};
+  return {tree.points(), tree.columns(), options.radius > 0 ? listsWithin(tree, options) : listsByCount(tree, options)};
 }
 
 /// Direction to the viewpoint, not normalised; zero where it is unknown.

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <fresco/common/parallel.h>
 #include <fresco/common/require.h>
 #include <fresco/filters/core/neighbors.h>
@@ -95,21 +94,6 @@ Points PointTree::points() const
   for (Index i = 0; i < size(); ++i)
     sorted.col(i) = point(i);
   return sorted;
-}
-
-float PointTree::squaredDistance(Key key)
-{
-  const auto bits = static_cast<std::uint32_t>(key >> 32);
-  float value;
-  std::memcpy(&value, &bits, sizeof value);
-  return value;
-}
-
-PointTree::Key PointTree::key(float squared_distance, Index position)
-{
-  std::uint32_t bits;
-  std::memcpy(&bits, &squared_distance, sizeof bits);
-  return static_cast<Key>(bits) << 32 | static_cast<std::uint32_t>(position);
 }
 
 namespace {
@@ -230,13 +214,14 @@ void PointTree::nearestKeys(const Eigen::Vector3f& query, int k, std::vector<Key
   found.resize(collector.size);
 }
 
-void PointTree::withinKeys(const Eigen::Vector3f& query, float radius, std::vector<Key>& found) const
+void PointTree::withinKeys(const Eigen::Vector3f& query, float radius, std::vector<Key>& found, bool sorted) const
 {
   require(radius >= 0, "neighbour search: radius ", radius, " is negative or NaN");
   found.clear();
   AllWithin collector{found, std::nextafter(radius * radius, std::numeric_limits<float>::infinity())};
   search(query, collector);
-  std::sort(found.begin(), found.end(), [](Key a, Key b) { return position(a) < position(b); });
+  if (sorted)
+    std::sort(found.begin(), found.end(), [](Key a, Key b) { return position(a) < position(b); });
 }
 
 namespace {

@@ -1,27 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "beam_window.h"
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <fresco/common/parallel.h>
 #include <fresco/common/require.h>
-#include <fresco/filters/core/neighbors.h>
 #include <fresco/filters/core/veil_points.h>
+#include <limits>
 namespace fresco {
 namespace {
 constexpr Index fewest = 12;    // points of a viewpoint that can be judged
-constexpr float deviations = 4; // of the difference of two ranges, that noise does not reach
+constexpr float deviations = 4; // that noise does not reach
 
-/// What one viewpoint sees, in the order of a tree over directions.
-struct Scan {
-  std::vector<Index> columns;
-  Points directions;
-  Eigen::VectorXf ranges;
-  NeighborLists lists;
-};
-
-Scan makeScan(const Points& points, const Eigen::Vector3f& viewpoint, const std::vector<Index>& columns,
-              const VeilOptions& options)
+BeamScan makeScan(const Points& points, const Eigen::Vector3f& viewpoint, const std::vector<Index>& columns,
+                  const VeilOptions& options)
 {
   const auto n = static_cast<Index>(columns.size());
   Points directions(3, n);
@@ -30,7 +23,7 @@ Scan makeScan(const Points& points, const Eigen::Vector3f& viewpoint, const std:
     directions.col(i) = beam / beam.norm(); // NaN at the viewpoint: left out by the tree
   });
   const PointTree tree(directions, options.threads);
-  Scan scan{{}, tree.points(), Eigen::VectorXf(tree.size()), nearestLists(tree, options.k + 1, options.threads)};
+  BeamScan scan{{}, tree.points(), Eigen::VectorXf(tree.size()), nearestLists(tree, options.k + 1, options.threads), 0};
   for (Index i = 0; i < tree.size(); ++i) {
     scan.columns.push_back(columns[tree.columns()[i]]);
     scan.ranges[i] = (points.col(scan.columns.back()) - viewpoint).norm();
@@ -38,95 +31,89 @@ Scan makeScan(const Points& points, const Eigen::Vector3f& viewpoint, const std:
   return scan;
 }
 
-/// The value below which `share` of the values lie; not empty.
-float quantile(std::vector<float>& values, double share)
-{
-  const auto at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
-}
-
-/// Deviation of the ranges: from the differences to the medians of neighbouring ranges, of which depth jumps spoil few.
-/// Half of them lie within 0.6745 deviations. Scanners that round their ranges make that zero; the third quarter, half
-/// of its value to be safe from slopes, tells then.
-float rangeNoise(const Scan& scan, int threads)
-{
-  std::vector<float> differences(scan.columns.size());
-  parallelFor(scan.ranges.size(), threads, [&](Index i) {
-    thread_local std::vector<float> around;
-    around.clear();
-    for (const int* j = scan.lists.first(i); j != scan.lists.last(i); ++j)
-      around.push_back(scan.ranges[*j]);
-    differences[i] = std::abs(scan.ranges[i] - quantile(around, 0.5));
-  });
-  const float middle = quantile(differences, 0.5) / 0.6745f;
-  return std::max(middle, 0.5f * quantile(differences, 0.75) / 1.15f);
-}
-
-/// Limits that a scan is judged with.
-struct Limits {
-  float slope;     ///< range per way sideways that a surface can have
-  float tolerance; ///< difference of ranges that noise explains, length
-  float facing;    ///< sine of the angle between a beam and a plane that can be told from the veil itself
+/// How the beams around a point relate to it without regard to surfaces.
+struct Surroundings {
+  bool front = false, behind = false; ///< whether one of the nearest 8 is clearly nearer, farther
+  bool paired = false;                ///< whether one of the nearest 8 has the same range
+  float joined = 0;                   ///< share of the nearer half that a surface could join it with
+  float gap = 0;                      ///< distance to the nearest neighbour / way across to the nearest beam
 };
 
-/// Whether point i has points in front of it and behind it, and few that a surface joins it with.
-bool standsApart(const Scan& scan, Index i, const Limits& limits)
+Surroundings surroundingsOf(const BeamWindow& window, float noise, float slope)
 {
-  int front = 0, joined = 0, behind = 0;
-  const float range = scan.ranges[i];
-  for (const int* j = scan.lists.first(i); j != scan.lists.last(i); ++j) {
-    if (*j == i)
-      continue;
-    const float sideways = (scan.directions.col(*j) - scan.directions.col(i)).norm() * std::min(range, scan.ranges[*j]);
-    const float ahead = scan.ranges[*j] - range;
-    if (std::abs(ahead) <= std::max(sideways * limits.slope, limits.tolerance))
-      ++joined;
-    else
-      ++(ahead < 0 ? front : behind);
-  }
-  return front > 0 && behind > 0 && joined * 4 <= front + joined + behind;
-}
-
-/// Whether a plane through point i holds half of its neighbours: then it lies on a surface seen at a grazing angle. The
-/// veil along a straight edge is such a plane too, but one that nearly holds the beam: nine tenths are asked for there.
-/// A plane that holds the beam may be that of a scan line and tells nothing.
-bool liesOnPlane(const Scan& scan, Index i, const Limits& limits)
-{
-  thread_local std::vector<Eigen::Vector3f> offsets;
-  offsets.clear();
-  const Eigen::Vector3f beam = scan.directions.col(i);
-  for (const int* j = scan.lists.first(i); j != scan.lists.last(i); ++j)
-    if (*j != i)
-      offsets.push_back(scan.ranges[*j] * scan.directions.col(*j) - scan.ranges[i] * beam);
-  for (std::size_t a = 0; a < offsets.size(); ++a)
-    for (std::size_t b = a + 1; b < offsets.size(); ++b) {
-      const Eigen::Vector3f cross = offsets[a].cross(offsets[b]);
-      const float length = cross.norm();
-      if (length < 0.1f * offsets[a].norm() * offsets[b].norm())
-        continue;
-      const float facing = std::abs(cross.dot(beam)) / length;
-      if (facing < 0.5f * limits.facing)
-        continue;
-      const float share = facing < limits.facing ? 0.9f : 0.5f;
-      const auto near = std::count_if(offsets.begin(), offsets.end(), [&](const Eigen::Vector3f& offset) {
-        return std::abs(cross.dot(offset)) <= 0.75f * limits.tolerance * length;
-      });
-      if (static_cast<float>(near) >= share * static_cast<float>(offsets.size()))
-        return true;
+  Surroundings result;
+  const std::size_t half = (window.beams.size() + 1) / 2;
+  float nearest = std::numeric_limits<float>::infinity();
+  for (std::size_t k = 0; k < window.beams.size(); ++k) {
+    const float ahead = window.beams[k].range - window.range, sideways = window.beams[k].sideways;
+    nearest = std::min(nearest, std::hypot(ahead, sideways));
+    if (k < 8) {
+      result.front |= ahead < -3 * noise;
+      result.behind |= ahead > 3 * noise;
+      result.paired |= std::abs(ahead) < deviations * noise;
     }
-  return false;
+    if (k < half)
+      result.joined +=
+          std::abs(ahead) <= std::max(sideways * slope, deviations * noise) ? 1 / static_cast<float>(half) : 0;
+  }
+  result.gap = nearest / std::max(window.beams.front().sideways, std::numeric_limits<float>::min());
+  return result;
 }
 
-void judge(const Scan& scan, const VeilOptions& options, std::vector<char>& veil)
+/// Sides of a point, of 16 (half and quarter discs of neighbours in 8 directions), whose surface goes on ...
+struct Sides {
+  int in_front = 0;   ///< in front of the point
+  int behind = 0;     ///< behind it
+  bool meets = false; ///< through the point: it belongs to that surface
+};
+
+Sides sidesOf(const BeamWindow& window, float noise)
+{
+  Sides sides;
+  for (int direction = 0; direction < 8; ++direction)
+    for (const bool half : {true, false}) {
+      // Halfway between neighbouring beams: no beam lies at the border of a side, and the frame of the scan does not
+      // matter.
+      const float bearing = window.beams.front().bearing + 0.785398f * (static_cast<float>(direction) + 0.5f);
+      const auto side =
+          half ? continueSide(window, bearing, 1.4f, 12, noise) : continueSide(window, bearing, 0.85f, 6, noise);
+      if (!side)
+        continue;
+      const float off = (window.range - side->range) / side->deviation;
+      sides.in_front += off > deviations;
+      sides.behind += off < -deviations;
+      sides.meets |= half && std::abs(off) <= deviations;
+    }
+  return sides;
+}
+
+/// A point that stands alone between what is in front and a surface behind, or between two surfaces that several sides
+/// agree on.
+bool isVeil(const BeamWindow& window, float noise, float slope)
+{
+  if (window.beams.size() < 8)
+    return false;
+  const Surroundings around = surroundingsOf(window, noise, slope);
+  if (!around.front || !around.behind || around.joined > 0.5f || around.gap < 1.8f)
+    return false;
+  const Sides sides = sidesOf(window, noise);
+  const bool alone = !sides.meets && sides.behind >= 1 && !around.paired && around.joined <= 0.34f && around.gap > 2.5f;
+  return alone || (sides.in_front >= 2 && sides.behind >= 2);
+}
+
+void judge(BeamScan scan, const VeilOptions& options, std::vector<char>& veil)
 {
   if (static_cast<Index>(scan.columns.size()) <= fewest)
     return;
-  const float noise = options.noise > 0 ? options.noise : rangeNoise(scan, options.threads);
-  const float angle = options.angle * 0.017453293f;
-  const Limits limits{1 / std::tan(angle), deviations * noise, std::sin(0.6f * angle)};
-  parallelFor(scan.ranges.size(), options.threads,
-              [&](Index i) { veil[scan.columns[i]] = standsApart(scan, i, limits) && !liesOnPlane(scan, i, limits); });
+  scan.noise = options.noise > 0 ? options.noise : measureNoise(scan, options.threads);
+  const float slope = 1 / std::tan(options.angle * 0.017453293f);
+  parallelRanges(scan.ranges.size(), options.threads, [&](Index begin, Index end) {
+    BeamWindow window;
+    for (Index i = begin; i < end; ++i) {
+      fillWindow(scan, i, window);
+      veil[scan.columns[i]] = isVeil(window, scan.noise, slope);
+    }
+  });
 }
 
 /// `columns` without repetitions of the same point; `first` gets for each column the one that stays.
@@ -175,7 +162,7 @@ void validate(const Points& points, const Points& viewpoints, const VeilOptions&
   require(options.angle > 0 && options.angle < 90, "veil points: angle ", options.angle, " is not in 0..90 degrees");
   require(options.noise >= 0 && std::isfinite(options.noise), "veil points: noise ", options.noise,
           " is negative or not finite");
-  require(options.k >= 4, "veil points: k ", options.k, " is below 4");
+  require(options.k >= 8 && options.k <= 64, "veil points: k ", options.k, " is not in 8..64");
 }
 } // namespace
 

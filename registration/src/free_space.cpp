@@ -8,6 +8,7 @@ namespace {
 constexpr float infinity = std::numeric_limits<float>::infinity();
 constexpr std::size_t most_maps = 16;   // further viewpoints join the nearest map
 constexpr double points_per_cell = 3.0; // mean over the sphere: sparse scans get wide cells
+constexpr double coherent_share = 0.05; // of the range: within it and `grain`, ranges of one direction are one surface
 
 // Cell of a direction on a cube map with 6 * side * side cells.
 std::size_t cellOf(const Eigen::Vector3f& direction, int side)
@@ -68,6 +69,7 @@ FreeSpace::FreeSpace(const Points& points, const Points& viewpoints, float grain
     weight += static_cast<double>(group.members.size());
   }
   coherence_ /= weight;
+  coverage_ /= static_cast<double>(groups.size());
 }
 
 FreeSpace::Map FreeSpace::buildMap(const Points& points, const std::vector<Index>& members,
@@ -98,9 +100,11 @@ FreeSpace::Map FreeSpace::buildMap(const Points& points, const std::vector<Index
   for (std::vector<float>& cell : ranges) {
     if (cell.empty())
       continue;
+    coverage_ += 1.0 / static_cast<double>(cells);
     const double middle = median(cell);
-    coherence_ += static_cast<double>(std::count_if(
-        cell.begin(), cell.end(), [&](float range) { return std::abs(range - middle) < grain_ + 0.1 * middle; }));
+    coherence_ += static_cast<double>(std::count_if(cell.begin(), cell.end(), [&](float range) {
+      return std::abs(range - middle) < grain_ + coherent_share * middle;
+    }));
   }
   return map;
 }

@@ -33,6 +33,9 @@ public:
 
   bool empty() const { return maps_.empty(); }
 
+  /// Share of all directions in which something was measured, 0..1.
+  double coverage() const { return coverage_; }
+
   /// Share of the directions in which the ranges lie in one narrow band, 0..1: high where the viewpoints are the true
   /// ones.
   double coherence() const { return coherence_; }
@@ -46,6 +49,6 @@ private:
   std::vector<Map> maps_;
   int side_ = 0; ///< cells per edge of a cube face
   float grain_ = 0.f;
-  double coherence_ = 0.0;
+  double coherence_ = 0.0, coverage_ = 0.0;
 };
 } // namespace fresco

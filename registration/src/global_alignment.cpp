@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "global_alignment.h"
+#include "pose_graph.h"
 #include <algorithm>
 #include <fresco/common/parallel.h>
 namespace fresco {
@@ -8,6 +9,10 @@ constexpr Index quick_features = 300; // the most distinctive ones, for the rank
 constexpr std::size_t all_pairs = 30; // up to this many pairs are tried without ranking
 constexpr Index partners_a_round = 4; // of each scan
 constexpr int most_rounds = 6;
+constexpr double narrow_view = 0.4; // share of the sphere: a scanner that saw more stood where it is said to have stood
+constexpr double edge_reach = 6.0;  // tolerances between a pair and the poses of its cluster: beyond, it is wrong
+constexpr int fewest_pairs = 2;     // that must speak of a viewpoint
+constexpr double blamed_share = 0.25; // of max_violation: mean violation from which a viewpoint is wrong
 
 struct RankedPair {
   Index a, b;
@@ -76,8 +81,7 @@ std::vector<RankedPair> takeRound(std::vector<RankedPair>& pairs, std::size_t sc
 
 class GlobalAligner {
 public:
-  GlobalAligner(const std::vector<PreparedScan>& scans, const ScanCluster& known,
-                const ScanRegistrationOptions& options)
+  GlobalAligner(std::vector<PreparedScan>& scans, const ScanCluster& known, const ScanRegistrationOptions& options)
       : scans_(scans), known_(known), options_(options)
   {}
 
@@ -86,9 +90,12 @@ public:
 private:
   void describe(const Progress& progress);
   void alignPairs(const std::vector<RankedPair>& round);
+  std::vector<char> wrongViewpoints() const;
+  void correctViewpoints();
+  void closeLoops(ScanCluster& cluster) const;
   GraphOptions graphOptions() const;
 
-  const std::vector<PreparedScan>& scans_;
+  std::vector<PreparedScan>& scans_;
   const ScanCluster& known_;
   const ScanRegistrationOptions& options_;
   std::vector<ScanFeatures> features_;
@@ -110,6 +117,7 @@ void GlobalAligner::alignPairs(const std::vector<RankedPair>& round)
   PairAlignmentOptions options;
   options.min_overlap = options_.min_overlap;
   options.max_violation = options_.max_violation;
+  options.upright = options_.upright;
   std::vector<PairAlignment> aligned(round.size());
   parallelFor(
       static_cast<Index>(round.size()), options_.threads,
@@ -125,6 +133,86 @@ void GlobalAligner::alignPairs(const std::vector<RankedPair>& round)
   result_.pairs.insert(result_.pairs.end(), aligned.begin(), aligned.end());
   std::sort(result_.pairs.begin(), result_.pairs.end(),
             [](const PairAlignment& x, const PairAlignment& y) { return std::pair(x.a, x.b) < std::pair(y.a, y.b); });
+}
+
+// Scans whose free space contradicts what many features agree on.
+std::vector<char> GlobalAligner::wrongViewpoints() const
+{
+  std::vector<double> violations(scans_.size(), 0.0);
+  std::vector<int> counts(scans_.size(), 0);
+  for (const PairAlignment& pair : result_.pairs) {
+    const PairModes& modes = pair.refuted.empty() ? pair.modes : pair.refuted;
+    if (modes.empty() || modes[0].votes < many_votes)
+      continue;
+    const auto a = static_cast<std::size_t>(pair.a), b = static_cast<std::size_t>(pair.b);
+    violations[a] += modes[0].check.violation_a;
+    violations[b] += modes[0].check.violation_b;
+    ++counts[a];
+    ++counts[b];
+  }
+  std::vector<char> wrong(scans_.size(), 0), narrow(scans_.size(), 0);
+  std::ptrdiff_t known_wrong = 0;
+  for (std::size_t i = 0; i < scans_.size(); ++i) {
+    narrow[i] = !scans_[i].free_space.empty() && scans_[i].free_space.coverage() < narrow_view;
+    known_wrong += scans_[i].problem.empty() && scans_[i].free_space.empty() ? 1 : 0;
+    wrong[i] =
+        narrow[i] && counts[i] >= fewest_pairs && violations[i] > counts[i] * blamed_share * options_.max_violation;
+  }
+  // Where most are wrong, the rest comes from the same source.
+  known_wrong += std::count(wrong.begin(), wrong.end(), 1);
+  return 2 * known_wrong > static_cast<std::ptrdiff_t>(scans_.size()) ? narrow : wrong;
+}
+
+// Aligns the pairs of scans with wrong viewpoints again, without their free space.
+void GlobalAligner::correctViewpoints()
+{
+  FeatureOptions features;
+  features.threads = options_.threads;
+  for (std::vector<char> wrong = wrongViewpoints(); std::find(wrong.begin(), wrong.end(), 1) != wrong.end();
+       wrong = wrongViewpoints()) {
+    for (std::size_t i = 0; i < scans_.size(); ++i)
+      if (wrong[i]) {
+        distrustViewpoint(scans_[i]);
+        features_[i] = describeScan(scans_[i], features);
+      }
+    std::vector<RankedPair> again;
+    std::vector<PairAlignment> kept;
+    for (const PairAlignment& pair : result_.pairs)
+      if (wrong[static_cast<std::size_t>(pair.a)] || wrong[static_cast<std::size_t>(pair.b)])
+        again.push_back({pair.a, pair.b, 0});
+      else
+        kept.push_back(pair);
+    result_.pairs = kept;
+    alignPairs(again);
+  }
+}
+
+// Joining used one pair at a time; all pairs between the cluster's scans that tell of its poses have a say.
+void GlobalAligner::closeLoops(ScanCluster& cluster) const
+{
+  const auto position = [&](Index scan) {
+    return std::find(cluster.scans.begin(), cluster.scans.end(), scan) - cluster.scans.begin();
+  };
+  const Index n = static_cast<Index>(cluster.scans.size());
+  PoseGraphOptions options;
+  options.size = scans_[static_cast<std::size_t>(cluster.scans[0])].size;
+  options.tolerance = graphOptions().tolerance;
+  for (const Index scan : cluster.scans)
+    options.fixed.push_back(isKnown(known_, scan));
+  if (std::find(options.fixed.begin(), options.fixed.end(), 1) == options.fixed.end())
+    options.fixed[0] = 1;
+  PoseEdges edges;
+  for (const PairAlignment& pair : result_.pairs) {
+    const Index a = position(pair.a), b = position(pair.b);
+    if (a == n || b == n)
+      continue;
+    const Eigen::Isometry3d T =
+        cluster.poses[static_cast<std::size_t>(a)].inverse() * cluster.poses[static_cast<std::size_t>(b)];
+    for (const PairMode& mode : pair.modes)
+      if (poseDistance(T, mode.T_a_b, options.size) < edge_reach * options.tolerance)
+        edges.push_back({a, b, mode.T_a_b, mode.support});
+  }
+  cluster.poses = optimizePoseGraph(cluster.poses, edges, options);
 }
 
 GraphOptions GlobalAligner::graphOptions() const
@@ -146,15 +234,18 @@ GlobalAlignment GlobalAligner::run(const Progress& progress)
   for (int round = 0; round < most_rounds; ++round) {
     report(progress, "align pairs", 0.3 + 0.7 * round / most_rounds);
     alignPairs(ranked ? takeRound(pairs, scans_.size()) : pairs);
+    correctViewpoints();
     result_.graph = buildScanGraph(scans_, result_.pairs, known_, graphOptions());
     if (!ranked || pairs.empty() || result_.graph.clusters.size() <= 1)
       break;
   }
+  for (ScanCluster& cluster : result_.graph.clusters)
+    closeLoops(cluster);
   return std::move(result_);
 }
 } // namespace
 
-GlobalAlignment alignGlobally(const std::vector<PreparedScan>& scans, const ScanCluster& known,
+GlobalAlignment alignGlobally(std::vector<PreparedScan>& scans, const ScanCluster& known,
                               const ScanRegistrationOptions& options, const Progress& progress)
 {
   return GlobalAligner(scans, known, options).run(progress);

@@ -11,7 +11,9 @@ struct GlobalAlignment {
 
 /// Joins scans without start poses to clusters in common frames. Pairs that look most alike are tried first; once all
 /// scans hang together, no more are.
+/// A scan of narrow view that contradicts most of its pairs by its free space has another viewpoint than was thought:
+/// distrustViewpoint() is called on it.
 /// @param known scans that already share a frame; they become one cluster, whose frame stays. May be empty.
-GlobalAlignment alignGlobally(const std::vector<PreparedScan>& scans, const ScanCluster& known,
+GlobalAlignment alignGlobally(std::vector<PreparedScan>& scans, const ScanCluster& known,
                               const ScanRegistrationOptions& options, const Progress& progress);
 } // namespace fresco

@@ -15,6 +15,7 @@ constexpr double damping = 1e-4;      // of the mean information: holds directio
 constexpr float final_distance = 2.f; // voxels of a level: correspondences at its end
 constexpr float angle_limit = 1.0f;   // radians between the normals of a match
 constexpr float bend_limit = 0.1f;    // of the target's neighbourhood: beyond, its plane means little
+constexpr double plain_bend = 0.01;   // of both neighbourhoods together, halves the weight: noisy surfaces say less
 constexpr Index fewest_matches = 30;  // of a direction of a pair
 constexpr Index overlap_samples = 400;
 
@@ -195,7 +196,8 @@ PairSystem Refinement::accumulateBlock(const Block& block) const
       continue;
     const Eigen::Vector3d x = (T * source.points.col(source.samples[static_cast<std::size_t>(k)])).cast<double>();
     const Eigen::Vector3d n = target.normals.col(match.target).cast<double>();
-    const double weight = (1.0 - u * u) * (1.0 - u * u), r = match.residual;
+    const double bend = source.bend[source.samples[static_cast<std::size_t>(k)]] + target.bend[match.target];
+    const double weight = (1.0 - u * u) * (1.0 - u * u) * plain_bend / (plain_bend + bend), r = match.residual;
     Vector6d J;
     J << x.cross(n), n;
     system.G.noalias() += weight * J * J.transpose();

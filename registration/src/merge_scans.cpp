@@ -49,18 +49,29 @@ PointSet placedScan(const PointSet& scan, const Eigen::Matrix4d& T_world_scan, c
 
 PointSet mergeScans(const std::vector<PointSet>& scans, const std::vector<Pose>& poses, int threads)
 {
-  require(scans.size() == poses.size(), "merge: ", scans.size(), " scans, ", poses.size(), " poses");
+  return mergeScans(
+      ScanSource{static_cast<Index>(scans.size()), [&](Index i) { return scans[static_cast<std::size_t>(i)]; }}, poses,
+      threads);
+}
+
+PointSet mergeScans(const ScanSource& scans, const std::vector<Pose>& poses, int threads)
+{
+  require(static_cast<std::size_t>(scans.count) == poses.size(), "merge: ", scans.count, " scans, ", poses.size(),
+          " poses");
   PointSet merged;
-  for (std::size_t i = 0; i < scans.size(); ++i) {
-    validatePointSet(scans[i]);
-    if (!poses[i] || scans[i].size() == 0)
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    if (!poses[i])
+      continue;
+    const PointSet scan = scans.read(static_cast<Index>(i));
+    validatePointSet(scan);
+    if (scan.size() == 0)
       continue;
     if (merged.size() == 0) {
       const Eigen::Vector3d place = poses[i]->topRightCorner<3, 1>();
       merged.origin =
           place.norm() > large_coordinate ? Eigen::Vector3d(place.array().round()) : Eigen::Vector3d::Zero();
     }
-    merged = mergePoints(merged, placedScan(scans[i], *poses[i], merged.origin, threads));
+    merged = mergePoints(merged, placedScan(scan, *poses[i], merged.origin, threads));
   }
   return merged;
 }

@@ -11,6 +11,8 @@ constexpr std::size_t checked_most = 20;   // hypotheses that are checked for vi
 constexpr std::size_t refined_most = 8;    // hypotheses that are refined
 constexpr double comparable_overlap = 0.3; // share of the best overlap
 constexpr double color_difference = 0.3;   // of correlations: above, colours decide
+constexpr double refuted_overlap = 0.2;    // the same of overlaps
+constexpr double upright_cosine = 0.93;    // 21 degrees: twice the tilt of an upright scanner
 constexpr Index quick_samples = 300;       // of the first overlap test
 
 double quickOverlap(const PreparedScan& a, const PreparedScan& b, const Eigen::Isometry3d& T_a_b)
@@ -61,6 +63,20 @@ void rankHypotheses(const PairGeometry& pair, Hypotheses& hypotheses)
   keepBest(hypotheses, checked_most);
 }
 
+PairMode refinedMode(const PairGeometry& pair, const Hypothesis& hypothesis)
+{
+  PairMode mode;
+  mode.T_a_b = refined(pair.a, pair.b, hypothesis.T_a_b);
+  mode.votes = hypothesis.votes;
+  mode.check = checkPair(pair.a, pair.b, mode.T_a_b, check_level);
+  // Without free space on both sides, features are the only other witnesses.
+  const bool blind = pair.a.free_space.empty() || pair.b.free_space.empty();
+  const double trust = blind ? std::min(1.0, static_cast<double>(mode.votes) / static_cast<double>(many_votes)) : 1.0;
+  mode.support = trust * mode.check.overlap;
+  mode.score = trust * alignmentScore(mode.check);
+  return mode;
+}
+
 // Distinct refined hypotheses, checked at the finest level.
 PairModes refineHypotheses(const PairGeometry& pair, const Hypotheses& hypotheses)
 {
@@ -75,14 +91,9 @@ PairModes refineHypotheses(const PairGeometry& pair, const Hypotheses& hypothese
       break;
     if (known(hypothesis.T_a_b, 3.0))
       continue;
-    PairMode mode;
-    mode.T_a_b = refined(pair.a, pair.b, hypothesis.T_a_b);
-    if (known(mode.T_a_b, 1.0))
-      continue;
-    mode.votes = hypothesis.votes;
-    mode.check = checkPair(pair.a, pair.b, mode.T_a_b, check_level);
-    mode.score = alignmentScore(mode.check);
-    modes.push_back(mode);
+    const PairMode mode = refinedMode(pair, hypothesis);
+    if (!known(mode.T_a_b, 1.0))
+      modes.push_back(mode);
   }
   return modes;
 }
@@ -94,12 +105,13 @@ double alignmentScore(const PairCheck& check)
   return check.overlap * color * std::exp(-check.violation / violation_scale);
 }
 
-bool comparable(const PairCheck& best, const PairCheck& other)
+bool comparable(const PairMode& best, const PairMode& other)
 {
-  if (best.color && other.color && std::abs(*best.color - *other.color) > color_difference)
+  const PairCheck &first = best.check, &second = other.check;
+  if (first.color && second.color && std::abs(*first.color - *second.color) > color_difference)
     return false;
-  return other.violation <= std::max(2.0 * best.violation, best.violation + violation_scale) &&
-         other.overlap > comparable_overlap * best.overlap;
+  return second.violation <= std::max(2.0 * first.violation, first.violation + violation_scale) &&
+         other.support > comparable_overlap * best.support;
 }
 
 PairAlignment alignPair(const PreparedScan& a, const PreparedScan& b, const ScanFeatures& features_a,
@@ -112,6 +124,11 @@ PairAlignment alignPair(const PreparedScan& a, const PreparedScan& b, const Scan
   consensus.size = static_cast<float>(pair.size);
   Hypotheses hypotheses =
       findConsensus(features_a, features_b, matchFeatures(features_a, features_b, options.matches), consensus);
+  if (options.upright)
+    hypotheses.erase(std::remove_if(hypotheses.begin(), hypotheses.end(),
+                                    [](const Hypothesis& h) { return h.T_a_b.linear()(2, 2) < upright_cosine; }),
+                     hypotheses.end());
+  const Hypotheses popular(hypotheses.begin(), hypotheses.begin() + (hypotheses.empty() ? 0 : 1));
   rankHypotheses(pair, hypotheses);
 
   PairAlignment alignment;
@@ -121,7 +138,12 @@ PairAlignment alignPair(const PreparedScan& a, const PreparedScan& b, const Scan
   std::stable_sort(alignment.modes.begin(), alignment.modes.end(),
                    [](const PairMode& x, const PairMode& y) { return x.score > y.score; });
   for (std::size_t k = 1; k < alignment.modes.size(); ++k)
-    alignment.ambiguous = alignment.ambiguous || comparable(alignment.modes[0].check, alignment.modes[k].check);
+    alignment.ambiguous = alignment.ambiguous || comparable(alignment.modes[0], alignment.modes[k]);
+  if (alignment.modes.empty() && !popular.empty() && popular[0].votes >= many_votes) {
+    const PairMode mode = refinedMode(pair, popular[0]);
+    if (mode.check.violation > options.max_violation && mode.check.overlap >= refuted_overlap)
+      alignment.refuted = {mode};
+  }
   return alignment;
 }
 } // namespace fresco

@@ -8,21 +8,26 @@ namespace fresco {
 struct PairMode {
   Eigen::Isometry3d T_a_b = Eigen::Isometry3d::Identity();
   PairCheck check;
-  Index votes = 0;    ///< features that agree
-  double score = 0.0; ///< overlap, discounted by violations; larger is better
+  Index votes = 0;      ///< features that agree
+  double support = 0.0; ///< overlap; less where few features agree and no free space bears witness, 0..1
+  double score = 0.0;   ///< support, discounted by violations; larger is better
 };
 using PairModes = std::vector<PairMode, Eigen::aligned_allocator<PairMode>>;
+
+constexpr Index many_votes = 40; ///< agreeing features: hardly by chance
 
 /// All that is known of one pair of scans without a start pose.
 struct PairAlignment {
   Index a = 0, b = 0;
   PairModes modes;        ///< best first, distinct; empty = the pair has no acceptable relative pose
   bool ambiguous = false; ///< several modes explain the scans about equally well
+  PairModes refuted;      ///< none or one: pose that many features agree on, but which free space contradicts
 };
 
 struct PairAlignmentOptions {
   float min_overlap = 0.1f;
   float max_violation = 0.04f;
+  bool upright = false;       ///< whether both scanners stood upright
   std::size_t matches = 1500; ///< correspondences of features
 };
 
@@ -30,7 +35,7 @@ struct PairAlignmentOptions {
 double alignmentScore(const PairCheck& check);
 
 /// Whether `other` explains two scans about as well as `best` does.
-bool comparable(const PairCheck& best, const PairCheck& other);
+bool comparable(const PairMode& best, const PairMode& other);
 
 /// Global alignment of two scans from their features: hypotheses by consensus, the best by overlap and free space,
 /// refined and checked again.

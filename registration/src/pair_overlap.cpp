@@ -84,7 +84,9 @@ PairCheck checkPair(const PreparedScan& a, const PreparedScan& b, const Eigen::I
   test.oriented = a.oriented && b.oriented;
   PairCheck check;
   check.overlap = std::max(overlapShare(level_b, level_a, T_ab, test), overlapShare(level_a, level_b, T_ba, test));
-  check.violation = std::max(violationShare(a.free_space, level_b, T_ab), violationShare(b.free_space, level_a, T_ba));
+  check.violation_a = violationShare(a.free_space, level_b, T_ab);
+  check.violation_b = violationShare(b.free_space, level_a, T_ba);
+  check.violation = std::max(check.violation_a, check.violation_b);
   check.color = colorCorrelation(level_b, level_a, T_ab, test.distance / 2.f);
   return check;
 }

@@ -21,6 +21,7 @@ struct PairCheck {
   double overlap = 0.0;   ///< larger of the two shares of points with a counterpart, 0..1
   double violation = 0.0; ///< larger share of comparable points that lie, together with their neighbours, in space
                           ///< that the other scan saw through, 0..1
+  double violation_a = 0.0, violation_b = 0.0; ///< what a's and what b's free space says of the other
   std::optional<double>
       color; ///< correlation of the colours of corresponding points, -1..1; absent without enough of them
 };

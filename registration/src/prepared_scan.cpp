@@ -14,7 +14,8 @@ constexpr int neighbor_count = 16;         // of a normal
 constexpr float widest_neighborhood = 6.f; // voxels
 constexpr float line_limit = 0.02f;        // second / largest eigenvalue: below, the neighbours lie on a line
 constexpr double coherence_limit = 0.7;    // of the free space: below, the viewpoint is not believed
-constexpr float grid_limit = 1 << 20;      // cells from the centre; points further out are left out
+constexpr double range_spread = 2.0;  // median range / median distance from the centroid: above, the points lie far off
+constexpr float grid_limit = 1 << 20; // cells from the centre; points further out are left out
 
 struct RawScan {
   Points points, viewpoints, colors; // no columns of colours where the scan has none
@@ -203,10 +204,15 @@ double scanSize(const PointSet& scan)
   const RawScan raw = finitePoints(scan, workingCenter(scan));
   if (raw.points.cols() == 0)
     return 0.0;
-  const Eigen::VectorXf distances = (raw.points - raw.viewpoints).colwise().norm();
-  std::vector<float> values(distances.data(), distances.data() + distances.size());
-  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
-  return values[values.size() / 2];
+  const auto medianOf = [](const Eigen::VectorXf& distances) {
+    std::vector<float> values(distances.data(), distances.data() + distances.size());
+    std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
+    return static_cast<double>(values[values.size() / 2]);
+  };
+  const Eigen::Vector3f mean = raw.points.cast<double>().rowwise().mean().cast<float>();
+  const double range = medianOf((raw.points - raw.viewpoints).colwise().norm()),
+               spread = medianOf((raw.points.colwise() - mean).colwise().norm());
+  return spread > 0.0 ? std::min(range, range_spread * spread) : range;
 }
 
 double fittingVoxel(const PointSet& scan, double least)
@@ -218,6 +224,17 @@ double fittingVoxel(const PointSet& scan, double least)
        voxel *= std::cbrt(2.0))
     count = thin(raw, static_cast<float>(voxel)).points.cols();
   return voxel;
+}
+
+void distrustViewpoint(PreparedScan& scan)
+{
+  scan.oriented = false;
+  scan.free_space = {};
+  const Eigen::Vector3f middle = scan.levels.front().points.rowwise().mean();
+  for (ScanLevel& level : scan.levels)
+    for (Index i = 0; i < level.points.cols(); ++i)
+      if (level.normals.col(i).dot(middle - level.points.col(i)) < 0.f)
+        level.normals.col(i) *= -1.f;
 }
 
 PreparedScan prepareScan(const PointSet& scan, float voxel, int threads)

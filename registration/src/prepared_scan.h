@@ -42,6 +42,9 @@ double scanSize(const PointSet& scan);
 /// The smallest voxel, `least` or more, that a scan of this density fills; length.
 double fittingVoxel(const PointSet& scan, double least);
 
+/// For a scan whose viewpoint turned out wrong: no free space, normals towards the middle of the scan.
+void distrustViewpoint(PreparedScan& scan);
+
 /// @param voxel finest thinning, length
 PreparedScan prepareScan(const PointSet& scan, float voxel, int threads);
 } // namespace fresco

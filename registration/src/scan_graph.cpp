@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scan_graph.h"
+#include "scan_contest.h"
 #include <algorithm>
 #include <cmath>
-#include <fresco/common/parallel.h>
 namespace fresco {
 namespace {
 constexpr double telling_color = 0.6; // correlation of colours that the upper quarter of the pairs reaches: then
@@ -95,19 +95,7 @@ bool GraphBuilder::supported(const Candidate& candidate, const Eigen::Isometry3d
 bool GraphBuilder::contradicted(const ScanCluster& first, const ScanCluster& second,
                                 const Eigen::Isometry3d& T_first_second) const
 {
-  const std::size_t n = first.scans.size(), m = second.scans.size();
-  std::vector<char> violated(n * m, 0);
-  parallelFor(
-      static_cast<Index>(n * m), options_.threads,
-      [&](Index k) {
-        const std::size_t i = static_cast<std::size_t>(k) / m, j = static_cast<std::size_t>(k) % m;
-        const PreparedScan& a = scans_[static_cast<std::size_t>(first.scans[i])];
-        const PreparedScan& b = scans_[static_cast<std::size_t>(second.scans[j])];
-        const Eigen::Isometry3d T_a_b = first.poses[i].inverse() * T_first_second * second.poses[j];
-        violated[static_cast<std::size_t>(k)] = checkPair(a, b, T_a_b, check_level).violation > options_.max_violation;
-      },
-      1);
-  return std::find(violated.begin(), violated.end(), 1) != violated.end();
+  return worstViolation(scans_, first, second, T_first_second, options_.threads) > options_.max_violation;
 }
 
 // The frame of the cluster that stands first stays.
@@ -129,9 +117,11 @@ bool GraphBuilder::tryJoin(const Candidate& candidate)
   if (a == b)
     return false;
   const Eigen::Isometry3d T = clusterPose(candidate);
-  if (candidate.mode->check.overlap < options_.strong_overlap && !supported(candidate, T))
+  if (candidate.mode->support < options_.strong_overlap && !supported(candidate, T))
     return false;
   if (contradicted(graph_.clusters[a], graph_.clusters[b], T))
+    return false;
+  if (isContested(scans_, pairs_, graph_.clusters, {a, b, T, candidate.mode->check.overlap}, options_))
     return false;
   join(candidate, T);
   return true;
@@ -165,19 +155,23 @@ bool GraphBuilder::joinUnambiguous()
   return joined;
 }
 
-// A pair whose modes are all contradicted but one is not ambiguous any more.
+// A pair of whose modes the other scans rule out all but one is not ambiguous any more.
 bool GraphBuilder::joinAmbiguous()
 {
   for (const PairAlignment& pair : pairs_) {
     const std::size_t a = placeOf(pair.a).cluster, b = placeOf(pair.b).cluster;
     if (!pair.ambiguous || a == b)
       continue;
-    std::vector<Candidate> left;
-    for (const PairMode& mode : pair.modes)
-      if (mode.check.color.value_or(1.0) >= least_color_ &&
-          !contradicted(graph_.clusters[a], graph_.clusters[b], clusterPose({&pair, &mode})))
-        left.push_back({&pair, &mode});
-    if (left.size() == 1 && tryJoin(left[0]))
+    std::vector<std::pair<double, Candidate>> left;
+    for (const PairMode& mode : pair.modes) {
+      const Candidate candidate{&pair, &mode};
+      const double violation =
+          worstViolation(scans_, graph_.clusters[a], graph_.clusters[b], clusterPose(candidate), options_.threads);
+      if (mode.check.color.value_or(1.0) >= least_color_ && violation <= options_.max_violation)
+        left.emplace_back(violation, candidate);
+    }
+    std::stable_sort(left.begin(), left.end(), [](const auto& x, const auto& y) { return x.first < y.first; });
+    if (!left.empty() && (left.size() == 1 || clearlyWorse(left[1].first, left[0].first)) && tryJoin(left[0].second))
       return true;
   }
   return false;

@@ -12,12 +12,11 @@ namespace {
 constexpr float distance_voxels = 20.f; // basin of start poses
 constexpr double size_ratio = 100.0;    // between scans of one job: above, one of them is in millimetres
 
-void validate(const std::vector<PointSet>& scans, const std::vector<Pose>& start,
-              const ScanRegistrationOptions& options)
+void validate(const ScanSource& scans, const std::vector<Pose>& start, const ScanRegistrationOptions& options)
 {
-  require(!scans.empty(), "registration: no scans");
-  require(start.empty() || start.size() == scans.size(), "registration: ", scans.size(), " scans, ", start.size(),
-          " start poses");
+  require(scans.count > 0, "registration: no scans");
+  const auto count = static_cast<std::size_t>(scans.count);
+  require(start.empty() || start.size() == count, "registration: ", count, " scans, ", start.size(), " start poses");
   require(options.voxel >= 0.f && std::isfinite(options.voxel), "registration: voxel ", options.voxel,
           " is negative or NaN");
   require(options.max_distance >= 0.f && std::isfinite(options.max_distance), "registration: max_distance ",
@@ -27,10 +26,8 @@ void validate(const std::vector<PointSet>& scans, const std::vector<Pose>& start
   require(options.max_violation >= 0.f && options.max_violation <= 1.f, "registration: max_violation ",
           options.max_violation, " is not in 0..1");
   require(options.max_iterations >= 1, "registration: max_iterations ", options.max_iterations, " is below 1");
-  require(options.names.empty() || options.names.size() == scans.size(), "registration: ", scans.size(), " scans, ",
+  require(options.names.empty() || options.names.size() == count, "registration: ", count, " scans, ",
           options.names.size(), " names");
-  for (const PointSet& scan : scans)
-    validatePointSet(scan);
   for (const Pose& pose : start)
     require(!pose || pose->allFinite(), "registration: a start pose is not finite");
 }
@@ -51,11 +48,29 @@ double commonSize(const std::vector<double>& sizes, const ScanRegistrationOption
   return median;
 }
 
-float chooseVoxel(const std::vector<PointSet>& scans, double size)
+// What is known of the scans before they are thinned.
+struct Survey {
+  std::vector<double> sizes, voxels; // that suit each scan
+};
+
+Survey surveyScans(const ScanSource& scans)
+{
+  Survey survey;
+  for (Index i = 0; i < scans.count; ++i) {
+    const PointSet scan = scans.read(i);
+    validatePointSet(scan);
+    survey.sizes.push_back(scanSize(scan));
+    const double size = survey.sizes.back();
+    survey.voxels.push_back(size > 0.0 ? fittingVoxel(scan, size / voxels_per_size) : 0.0);
+  }
+  return survey;
+}
+
+float chooseVoxel(const Survey& survey, double size)
 {
   std::vector<double> voxels;
-  for (const PointSet& scan : scans)
-    voxels.push_back(fittingVoxel(scan, size / voxels_per_size));
+  for (const double voxel : survey.voxels)
+    voxels.push_back(std::max(voxel, size / voxels_per_size));
   std::nth_element(voxels.begin(), voxels.begin() + static_cast<std::ptrdiff_t>(voxels.size() / 2), voxels.end());
   return static_cast<float>(voxels[voxels.size() / 2]);
 }
@@ -65,13 +80,13 @@ Eigen::Isometry3d workingToScan(const PreparedScan& scan)
   return Eigen::Isometry3d(Eigen::Translation3d(scan.center));
 }
 
-std::vector<PreparedScan> prepareAll(const std::vector<PointSet>& scans, const ScanRegistrationOptions& options,
+std::vector<PreparedScan> prepareAll(const ScanSource& scans, const ScanRegistrationOptions& options,
                                      const Progress& progress)
 {
   std::vector<PreparedScan> prepared;
-  for (std::size_t i = 0; i < scans.size(); ++i) {
-    report(progress, "prepare", static_cast<double>(i) / static_cast<double>(scans.size()));
-    prepared.push_back(prepareScan(scans[i], options.voxel, options.threads));
+  for (Index i = 0; i < scans.count; ++i) {
+    report(progress, "prepare", static_cast<double>(i) / static_cast<double>(scans.count));
+    prepared.push_back(prepareScan(scans.read(i), options.voxel, options.threads));
   }
   return prepared;
 }
@@ -90,7 +105,7 @@ ScanCluster startCluster(const std::vector<PreparedScan>& scans, const std::vect
 }
 
 // Start poses where all scans have one, else what global alignment finds.
-std::vector<ScanCluster> findClusters(const std::vector<PreparedScan>& scans, const std::vector<Pose>& start,
+std::vector<ScanCluster> findClusters(std::vector<PreparedScan>& scans, const std::vector<Pose>& start,
                                       const ScanRegistrationOptions& options, const Progress& progress)
 {
   const ScanCluster known = startCluster(scans, start);
@@ -129,19 +144,25 @@ std::string scanName(const ScanRegistrationOptions& options, Index scan)
 }
 
 ScanRegistrationResult registerScans(const std::vector<PointSet>& scans, const std::vector<Pose>& start,
+                                     const ScanRegistrationOptions& options, const Progress& progress)
+{
+  return registerScans(
+      ScanSource{static_cast<Index>(scans.size()), [&](Index i) { return scans[static_cast<std::size_t>(i)]; }}, start,
+      options, progress);
+}
+
+ScanRegistrationResult registerScans(const ScanSource& scans, const std::vector<Pose>& start,
                                      const ScanRegistrationOptions& given, const Progress& progress)
 {
   validate(scans, start, given);
-  std::vector<double> sizes;
-  for (const PointSet& scan : scans)
-    sizes.push_back(scanSize(scan));
-  const double size = commonSize(sizes, given);
+  const Survey survey = surveyScans(scans);
+  const double size = commonSize(survey.sizes, given);
   ScanRegistrationOptions options = given;
   if (!(options.voxel > 0.f))
-    options.voxel = size > 0.0 ? chooseVoxel(scans, size) : 1.f;
+    options.voxel = size > 0.0 ? chooseVoxel(survey, size) : 1.f;
   if (!(options.max_distance > 0.f))
     options.max_distance = distance_voxels * options.voxel;
-  const std::vector<PreparedScan> prepared = prepareAll(scans, options, subProgress(progress, 0.0, 0.3));
+  std::vector<PreparedScan> prepared = prepareAll(scans, options, subProgress(progress, 0.0, 0.3));
 
   const std::vector<ScanCluster> clusters = findClusters(prepared, start, options, subProgress(progress, 0.3, 0.6));
   std::vector<Placement> placements;

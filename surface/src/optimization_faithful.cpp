@@ -7,9 +7,10 @@
 namespace fresco {
 namespace {
 constexpr int default_iterations = 200;
-constexpr double default_kappa1 = 0.02, default_kappa2 = 1.0;
+constexpr double default_kappa1 = 0.1, default_kappa2 = 0.1;
 constexpr double least_robust = 3.0;    // mean edge lengths
 constexpr double first_move = 0.1;      // of the vertex that moves most in the first step tried, mean edge lengths
+constexpr double step_share = 0.1;      // of the tolerance: a step along one line is shorter than a solution
 constexpr int restart_after = 50;       // iterations
 constexpr double reduction = 0.5;       // of kappa_2, each time the vertices come to rest
 constexpr double resting = 5.0;         // moves below so many tolerances are rest
@@ -105,6 +106,7 @@ void runFaithful(OptimizationProblem& problem, const SurfaceOptimizationOptions&
 {
   const int most = options.iterations > 0 ? options.iterations : default_iterations;
   ConjugateGradients optimizer(problem, options);
+  const double tolerance = step_share * options.tolerance;
   const double least_kappa2 = last_share * optimizer.kappa2();
   for (int i = 0; i < most && !result.converged; ++i) {
     report(progress, "optimize", 0.1 + 0.85 * i / most);
@@ -112,12 +114,12 @@ void runFaithful(OptimizationProblem& problem, const SurfaceOptimizationOptions&
       followFaces(problem.graph, problem.x, problem.data, options.threads);
     const OptimizationStep step = optimizer.improve();
     result.steps.push_back(step);
-    if (step.move > resting * options.tolerance)
+    if (step.move > resting * tolerance)
       continue;
     if (optimizer.kappa2() > least_kappa2)
       optimizer.setKappa2(std::max(least_kappa2, reduction * optimizer.kappa2()));
     else
-      result.converged = step.move <= options.tolerance;
+      result.converged = step.move <= tolerance;
   }
 }
 } // namespace fresco

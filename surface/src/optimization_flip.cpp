@@ -145,12 +145,10 @@ std::array<int, 6> facesConcerned(const MeshGraph& graph, const Quad& q)
     }
   return faces;
 }
-} // namespace
 
-Index flipEdges(OptimizationProblem& problem, double noise, int threads)
+// Edges that gain, the largest gain first.
+std::vector<int> bestFirst(const OptimizationProblem& problem, const Flipper& flipper, int threads)
 {
-  const FacePoints lists = pointsOfFaces(problem.data, problem.graph.faceCount());
-  const Flipper flipper(problem, lists, noise);
   std::vector<double> gains(at(problem.graph.edgeCount()));
   parallelFor(problem.graph.edgeCount(), threads, [&](Index e) {
     const auto [a, b] = problem.graph.edges[at(e)];
@@ -161,16 +159,21 @@ Index flipEdges(OptimizationProblem& problem, double noise, int threads)
     if (gains[e] > 0.0)
       order.push_back(static_cast<int>(e));
   std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return gains[at(a)] > gains[at(b)]; });
-  std::vector<char> used(at(problem.graph.faceCount()), 0), touched(at(problem.graph.vertexCount()), 0);
-  Faces faces = problem.graph.faces;
+  return order;
+}
+
+// Flips in that order, leaving out what touches an earlier one: its gain is not what it was, and two flips at one
+// vertex could make the same edge.
+Index flipApart(const MeshGraph& graph, const Flipper& flipper, const std::vector<int>& order, Faces& faces)
+{
+  std::vector<char> used(at(graph.faceCount()), 0), touched(at(graph.vertexCount()), 0);
   Index count = 0;
   for (const int e : order) {
     Quad q;
     flipper.quadOf(e, q);
-    const std::array<int, 6> concerned = facesConcerned(problem.graph, q);
-    const bool is_free = std::none_of(concerned.begin(), concerned.end(), [&](int f) { return f >= 0 && used[at(f)]; });
-    // Two flips at one vertex could make the same edge, or leave it too few.
-    if (!is_free || touched[at(q.a)] || touched[at(q.b)] || touched[at(q.c)] || touched[at(q.d)])
+    const std::array<int, 6> concerned = facesConcerned(graph, q);
+    if (std::any_of(concerned.begin(), concerned.end(), [&](int f) { return f >= 0 && used[at(f)]; }) ||
+        touched[at(q.a)] || touched[at(q.b)] || touched[at(q.c)] || touched[at(q.d)])
       continue;
     for (const int f : concerned)
       if (f >= 0)
@@ -181,6 +184,16 @@ Index flipEdges(OptimizationProblem& problem, double noise, int threads)
     faces.col(q.right) << q.d, q.b, q.c;
     ++count;
   }
+  return count;
+}
+} // namespace
+
+Index flipEdges(OptimizationProblem& problem, double noise, int threads)
+{
+  const FacePoints lists = pointsOfFaces(problem.data, problem.graph.faceCount());
+  const Flipper flipper(problem, lists, noise);
+  Faces faces = problem.graph.faces;
+  const Index count = flipApart(problem.graph, flipper, bestFirst(problem, flipper, threads), faces);
   if (count > 0)
     problem.graph = buildGraph(faces, problem.graph.vertexCount(), threads);
   return count;

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "optimization_normals.h"
-#include <cmath>
 #include <fresco/common/parallel.h>
 namespace fresco {
 namespace {
@@ -9,11 +8,7 @@ namespace {
 constexpr float lonely_share = 0.65f;
 
 using Eigen::Vector3f;
-#define env(n, d)                                                                                                      \
-  ([] {                                                                                                                \
-    static const double v = std::getenv(n) ? atof(std::getenv(n)) : d;                                                 \
-    return v;                                                                                                          \
-  }())
+
 // Tukey's biweight, 0 from `reach` on.
 float biweight(float squared, float squared_reach)
 {

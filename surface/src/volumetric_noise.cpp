@@ -11,7 +11,7 @@ constexpr Index partners = 3; ///< following samples that a sample is compared w
 constexpr float least_cosine = 0.9f;
 /// Noise of the mean of the samples in a cell, in cells, that the normal field
 /// is meant to have at most.
-constexpr float tolerated_mean_noise = 0.4f;
+constexpr float tolerated_mean_noise = 0.6f;
 /// Median of |a - b| of two normal distributions in standard deviations of one.
 constexpr float median_of_difference = 0.6745f * 1.41421356f;
 

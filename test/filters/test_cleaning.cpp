@@ -140,7 +140,8 @@ TEST(VeilPoints, OddInput)
   rejects([](VeilOptions& o) { o.angle = 0; });
   rejects([](VeilOptions& o) { o.angle = 90; });
   rejects([](VeilOptions& o) { o.noise = -1; });
-  rejects([](VeilOptions& o) { o.k = 3; });
+  rejects([](VeilOptions& o) { o.k = 7; });
+  rejects([](VeilOptions& o) { o.k = 65; });
 }
 
 TEST(VoxelThinning, OnePointPerCellTheNearestToTheCentroid)

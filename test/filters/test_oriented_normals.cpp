@@ -87,6 +87,14 @@ TEST(OrientedNormals, EdgesStayWithNoise)
   EXPECT_LT(with, 0.9 * without);
 }
 
+/// Sixteen nearest points closer together than the noise is thick would give directions at random, 57 degrees off.
+TEST(OrientedNormals, DenseNoisyScansGetNormalsOfTheSurface)
+{
+  const Cloud flat = test::flatSquare(40000, 3);
+  const Points noisy = test::withNoise(flat.points, 0.01f, 4);
+  EXPECT_LT(test::meanAngle(estimateNormals(seenFrom(noisy, {0, 0, 5})).normals, flat.normals), 15);
+}
+
 TEST(OrientedNormals, WithoutViewpointClosedObjectsPointOutward)
 {
   for (const float noise : {0.f, 0.01f}) {

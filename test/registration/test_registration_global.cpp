@@ -88,6 +88,37 @@ TEST(GlobalRegistration, AmbiguousPairIsNotForced)
   EXPECT_EQ(placedCount(result), 1u);
 }
 
+// A pair that is held together must lie right, in whatever group.
+void expectNoFalsePair(const ScanRegistrationResult& result, const ScannedScene& scene)
+{
+  for (const PairResult& pair : result.pairs) {
+    const auto a = static_cast<std::size_t>(pair.a), b = static_cast<std::size_t>(pair.b);
+    const Eigen::Isometry3d found(result.scans[a].T_group_scan.inverse() * result.scans[b].T_group_scan),
+        truth = scene.truth[a].inverse() * scene.truth[b];
+    if (pair.accepted && result.scans[a].group == result.scans[b].group) {
+      EXPECT_LT((found.matrix() - truth.matrix()).norm(), 0.02) << a << " and " << b;
+    }
+  }
+}
+
+// What is seen through the doors outweighs that the rooms look alike.
+TEST(GlobalRegistration, TwinRoomsAreToldApartByWhatTheDoorsShow)
+{
+  const ScannedScene scene = test::scanTwinRooms(true);
+  const auto result = registerScans(scene.scans);
+  expectNoFalsePair(result, scene);
+  EXPECT_EQ(placedCount(result), scene.scans.size());
+  EXPECT_LT(relativeError(result.poses, scene).translation, 0.01);
+}
+
+TEST(GlobalRegistration, TwinRoomsThatNothingTellsApartAreNotMerged)
+{
+  const ScannedScene scene = test::scanTwinRooms(false);
+  const auto result = registerScans(scene.scans);
+  expectNoFalsePair(result, scene);
+  EXPECT_LT(placedCount(result), scene.scans.size());
+}
+
 TEST(GlobalRegistration, FewPointsAreNotPlaced)
 {
   ScannedScene scene = test::scanTwoRooms(20000);
@@ -95,6 +126,70 @@ TEST(GlobalRegistration, FewPointsAreNotPlaced)
   const auto result = registerScans({scene.scans[0], scene.scans[1]});
   EXPECT_TRUE(result.poses[0].has_value());
   EXPECT_FALSE(result.poses[1].has_value());
+}
+
+// The flipped room fits as well; that scanners stand upright rules it out.
+TEST(GlobalRegistration, UprightHintRulesOutPoses)
+{
+  const ScannedScene scene = test::scanTwoRooms(30000);
+  ScanRegistrationOptions options;
+  options.upright = true;
+  const auto result = registerScans(scene.scans, {}, options);
+  EXPECT_EQ(placedCount(result), scene.scans.size());
+  EXPECT_LT(relativeError(result.poses, scene).translation, 0.005);
+  for (const Pose& pose : result.poses)
+    EXPECT_GT((*pose)(2, 2), 0.93);
+}
+
+TEST(GlobalRegistration, OtherUnitsAreNamed)
+{
+  ScannedScene scene = test::scanTwoRooms(5000);
+  scene.scans[2].points *= 1000.f;
+  ScanRegistrationOptions options;
+  options.names = {"a.pcd", "b.pcd", "c.pcd", "d.pcd", "e.pcd"};
+  try {
+    registerScans(scene.scans, {}, options);
+    FAIL() << "millimetres among metres were taken";
+  } catch (const std::invalid_argument& error) {
+    EXPECT_NE(std::string(error.what()).find("c.pcd"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("unit"), std::string::npos) << error.what();
+  }
+}
+
+TEST(GlobalRegistration, IdenticalScansCoincide)
+{
+  const ScannedScene scene = test::scanTwoRooms(20000);
+  const auto result = registerScans({scene.scans[0], scene.scans[0], scene.scans[0]});
+  ASSERT_EQ(placedCount(result), 3u);
+  for (const Pose& pose : result.poses)
+    EXPECT_LT((*pose - Eigen::Matrix4d::Identity()).norm(), 1e-3);
+}
+
+TEST(GlobalRegistration, NotANumberIsLeftOut)
+{
+  ScannedScene scene = test::scanTwoRooms(30000);
+  for (Index i = 0; i < scene.scans[1].size(); i += 3)
+    scene.scans[1].points(i % 3, i) = std::numeric_limits<float>::quiet_NaN();
+  const auto result = registerScans({scene.scans[0], scene.scans[1]});
+  EXPECT_EQ(placedCount(result), 2u);
+  EXPECT_LT(relativeError(result.poses, scene).translation, 0.005);
+}
+
+// One wall says nothing of the motions along it: either the pair is left alone, or the free motion is named.
+TEST(GlobalRegistration, WallsAreNotForcedTogether)
+{
+  test::Boxes wall;
+  test::addBox(wall, {-20, 3, -20}, {20, 3.1, 20});
+  const auto result = registerScans({test::scanBoxes(wall, test::stationPose({0, 0, 0}, 0, 0), 20000, 0.002, 1),
+                                     test::scanBoxes(wall, test::stationPose({1.2, 0, 0}, 0.7, 0), 20000, 0.002, 2)});
+  EXPECT_TRUE(!result.poses[1] || result.scans[1].free_motion);
+}
+
+TEST(GlobalRegistration, ScansAreReadOneAfterTheOther)
+{
+  const ScannedScene scene = test::scanTwoRooms(20000);
+  const ScanSource source{2, [&](Index i) { return scene.scans[static_cast<std::size_t>(i)]; }};
+  EXPECT_EQ(registerScans(source).poses, registerScans({scene.scans[0], scene.scans[1]}).poses);
 }
 
 TEST(GlobalRegistration, RealLaserScans)

@@ -100,6 +100,7 @@ TEST(VolumetricInput, OptionsOutOfRangeAreAnError)
   reject([](VolumetricOptions& o) { o.scale = inf; });
   reject([](VolumetricOptions& o) { o.samples_per_node = 0; });
   reject([](VolumetricOptions& o) { o.trim = -1; });
+  reject([](VolumetricOptions& o) { o.trim_levels = -1; });
   reject([](VolumetricOptions& o) { o.iterations = 0; });
   reject([](VolumetricOptions& o) { o.threads = -1; });
 }

@@ -54,7 +54,7 @@ public:
         corners_(patchTexels(scene.patches, scene.charts[scene.face_chart[scene.patches.parent[patch]]], patch))
   {
     for (int k = 0; k < 3; ++k)
-      least_[k] = goesOn(scene, patch, (k + 1) % 3) ? -far_beyond : 0;
+      least_[k] = goesOn(scene, patch, (k + 1) % 3) ? -far_beyond : inset(k);
     const Eigen::Vector2d middle = corners_.rowwise().mean();
     const Eigen::Vector2f at = pixel(middle), dx = pixel(middle + Eigen::Vector2d(1, 0)) - at,
                           dy = pixel(middle + Eigen::Vector2d(0, 1)) - at;
@@ -88,6 +88,18 @@ private:
            scene.patches.normals.col(other).dot(scene.patches.normals.col(patch)) > straight;
   }
 
+  /// Weight of corner k at edge_pixels from the side opposite of it: nearer to an edge, pixels mix with what is beyond.
+  double inset(int k) const
+  {
+    constexpr double edge_pixels = 0.75, most = 0.2; // a patch of few pixels keeps its middle
+    Eigen::Matrix<double, 2, 3> c;
+    for (int i = 0; i < 3; ++i)
+      c.col(i) = view_(points_.col(i).cast<float>()).head<2>().cast<double>();
+    const Eigen::Vector2d side = c.col((k + 2) % 3) - c.col((k + 1) % 3), to = c.col(k) - c.col((k + 1) % 3);
+    const double height = std::abs(side.x() * to.y() - side.y() * to.x()) / std::max(side.norm(), 1e-9);
+    return std::min(most, edge_pixels / std::max(height, 1e-9));
+  }
+
   Eigen::Vector2f pixel(const Eigen::Vector2d& texel) const
   {
     const Eigen::Vector3d inside =
@@ -100,7 +112,7 @@ private:
   const Image& photo_;
   Eigen::Matrix3d points_;
   Eigen::Matrix<double, 2, 3> corners_;
-  Eigen::Vector3d least_; ///< of the corners' weights: below 0 only where the surface goes on straight and is seen
+  Eigen::Vector3d least_; ///< of the corners' weights: below 0 where the surface goes on straight and is seen
   int steps_;
 };
 

@@ -7,7 +7,7 @@
 namespace fresco {
 namespace {
 constexpr Index most_labels = 16; // per patch, the best ones: the others lose by their cost anyway
-constexpr int rounds = 40;
+constexpr int rounds = 24;
 constexpr float damping = 0.5f;
 constexpr float crease_share = 0.1f; // of a seam's cost where the surface bends sharply: it does not show there
 constexpr float bend_from = 0.7f, bend_to = 0.3f; // cosines of the normals, 46 and 73 degrees
@@ -58,9 +58,8 @@ float visibleLength(const PatchMesh& patches, Index patch, int side)
 /// Vision".
 class Propagation {
 public:
-  Propagation(const PatchMesh& patches, const Labels& labels, double seam)
-      : patches_(patches), labels_(labels), seam_(static_cast<float>(seam)), now_(3 * labels.list.size(), 0.f),
-        next_(now_)
+  Propagation(const PatchMesh& patches, const Labels& labels, const Eigen::Matrix3Xf& seams)
+      : patches_(patches), labels_(labels), seams_(seams), now_(3 * labels.list.size(), 0.f), next_(now_)
   {}
 
   void round(int threads)
@@ -99,7 +98,7 @@ private:
   {
     if (labels_.count(from) == 0)
       return;
-    const float edge = seam_ * visibleLength(patches_, i, side);
+    const float edge = seams_(side, i);
     int back = 0; // the side of `from` that it shares with i
     while (back < 2 && patches_.neighbors(back, from) != i)
       ++back;
@@ -119,12 +118,12 @@ private:
 
   const PatchMesh& patches_;
   const Labels& labels_;
-  float seam_;
+  const Eigen::Matrix3Xf& seams_;
   std::vector<float> now_, next_; ///< 3 per label: from the patch across each side
 };
 
 /// Each patch in turn takes the label that costs least given its neighbours, until none changes.
-void settle(const PatchMesh& patches, const Labels& labels, double seam, Eigen::VectorXi& view)
+void settle(const PatchMesh& patches, const Labels& labels, const Eigen::Matrix3Xf& seams, Eigen::VectorXi& view)
 {
   constexpr int most_sweeps = 20;
   bool changed = true;
@@ -137,7 +136,7 @@ void settle(const PatchMesh& patches, const Labels& labels, double seam, Eigen::
         float cost = labels.list[l].cost;
         for (int side = 0; side < 3; ++side)
           if (const int other = patches.neighbors(side, i); other >= 0 && view[other] != labels.list[l].view)
-            cost += static_cast<float>(seam) * visibleLength(patches, i, side);
+            cost += seams(side, i);
         if (cost < least || (cost == least && labels.list[l].view == view[i])) {
           least = cost;
           best = labels.list[l].view;
@@ -159,13 +158,19 @@ float edgeLength(const PatchMesh& patches, Index patch, int side)
 Eigen::VectorXi selectViews(const PatchMesh& patches, const ViewCosts& costs, double seam, int threads)
 {
   const Labels labels = labelsOf(patches, costs);
-  Propagation propagation(patches, labels, seam);
+  Eigen::Matrix3Xf seams = Eigen::Matrix3Xf::Zero(3, patches.size()); // cost of each side
+  parallelFor(patches.size(), threads, [&](Index i) {
+    for (int side = 0; side < 3; ++side)
+      if (patches.neighbors(side, i) >= 0)
+        seams(side, i) = static_cast<float>(seam) * visibleLength(patches, i, side);
+  });
+  Propagation propagation(patches, labels, seams);
   if (seam > 0)
     for (int r = 0; r < rounds; ++r)
       propagation.round(threads);
   Eigen::VectorXi view(patches.size());
   parallelFor(patches.size(), threads, [&](Index i) { view[i] = propagation.best(i); });
-  settle(patches, labels, seam, view);
+  settle(patches, labels, seams, view);
   return view;
 }
 

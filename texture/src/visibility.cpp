@@ -45,14 +45,14 @@ Footprint footprintOf(const Eigen::Matrix3f& pixels, float step)
   return out;
 }
 
-/// Cells from a place to the triangle's nearest side, positive inside.
+/// Cells from a place to the triangle's nearest side, positive inside; some number below -1 where it lies further out.
 float depthInside(const Footprint& patch, const Eigen::Vector2f& p)
 {
   const auto& c = patch.corners;
   const Eigen::Vector2f u = c.col(1) - c.col(0), v = c.col(2) - c.col(0);
   const float turn = u.x() * v.y() - u.y() * v.x() > 0 ? 1.f : -1.f;
   float depth = std::numeric_limits<float>::infinity();
-  for (int k = 0; k < 3; ++k) {
+  for (int k = 0; k < 3 && depth >= -1; ++k) {
     const Eigen::Vector2f edge = c.col((k + 1) % 3) - c.col(k), to = p - c.col(k);
     depth = std::min(depth, turn * (edge.x() * to.y() - edge.y() * to.x()) / std::max(edge.norm(), 1e-6f));
   }

@@ -28,12 +28,16 @@ PointSet smoothed(const PointSet& set, const ModelOptions& options, const Progre
   return selectPoints(result, kept);
 }
 
+/// Beams of a sparser scan stand too far apart to tell a veil point from an edge: see docs/filters.md.
+constexpr Index least_points_for_veil = 100000;
+
 /// Without veil points at depth jumps and isolated points.
 PointSet cleaned(const PointSet& scan, int threads)
 {
   VeilOptions veil;
   veil.threads = threads;
-  const PointSet unveiled = selectPoints(scan, withoutVeil(scan.points, scan.viewpoints, veil));
+  const PointSet unveiled =
+      scan.size() < least_points_for_veil ? scan : selectPoints(scan, withoutVeil(scan.points, scan.viewpoints, veil));
   OutlierOptions outliers;
   outliers.relative = true; // density falls with the distance from the scanner
   outliers.sigma = 3;

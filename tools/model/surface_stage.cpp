@@ -8,12 +8,12 @@ namespace fresco {
 nlohmann::ordered_json makeSurface(const ModelFiles& files, const ModelOptions& options, const Progress& progress)
 {
   report(progress, "read", 0.0);
-  const PointSet points = readPoints(files.points);
+  PointSet points = readPoints(files.points);
   VolumetricOptions volumetric;
   volumetric.cell_size = options.cell;
   volumetric.threads = options.threads;
   volumetric.trim_levels = static_cast<float>(options.trim);
-  const VolumetricResult result = reconstructVolumetric(points, volumetric, progress);
+  const VolumetricResult result = reconstructVolumetric(std::move(points), volumetric, progress);
   if (result.mesh.faceCount() == 0)
     throw std::runtime_error(files.points + ": no surface could be made of the points");
   writeMesh(files.surface, result.mesh);

@@ -55,6 +55,7 @@ nlohmann::ordered_json makeTexture(const ModelInput& input, const ModelFiles& fi
           {"atlas_width", result.model.atlases.empty() ? 0 : result.model.atlases[0].width},
           {"atlas_used", result.used},
           {"texel", result.texel},
+          {"warnings", result.warnings},
           {"seconds", phases}};
 }
 } // namespace fresco

@@ -6,6 +6,7 @@
 #include <fresco/common/require.h>
 #include <stdexcept>
 #include <string>
+#include <sys/resource.h>
 namespace fresco {
 namespace {
 [[noreturn]] void fail(const std::string& what)
@@ -41,8 +42,18 @@ EGLDisplay deviceDisplay(PFNEGLGETPLATFORMDISPLAYEXTPROC get_display)
   return EGL_NO_DISPLAY;
 }
 
+/// Where the process's memory is limited, Mesa's software renderer may fail to start its threads and then waits for
+/// them for ever: it shall do without.
+void renderWithoutThreadsIfMemoryIsLimited()
+{
+  rlimit limit{};
+  if (getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY)
+    setenv("LP_NUM_THREADS", "0", 0);
+}
+
 EGLDisplay openDisplay()
 {
+  renderWithoutThreadsIfMemoryIsLimited();
   setenv("EGL_LOG_LEVEL", "fatal", 0); // Mesa writes its warnings to stderr; failures are reported by exceptions here
   const char* extensions = eglQueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS);
   const auto get_display =

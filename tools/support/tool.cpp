@@ -4,13 +4,17 @@
 #include <atomic>
 #include <chrono>
 #include <cmath>
+#include <condition_variable>
 #include <csignal>
 #include <fresco/common/parallel.h>
 #include <fresco/common/require.h>
+#include <fresco/common/unfinished_files.h>
 #include <iostream>
 #include <memory>
 #include <mutex>
 #include <new>
+#include <system_error>
+#include <thread>
 #include <unistd.h>
 namespace fresco {
 namespace {
@@ -22,6 +26,52 @@ void askToStop(int signal)
   stop_asked = true;
   std::signal(signal, SIG_DFL);
 }
+
+/// Ends the process where a step goes on for long after the user has asked to stop, without half files.
+class Guard {
+public:
+  explicit Guard(const std::string& name)
+  {
+    try {
+      thread_ = std::thread([this, name] { watch(name); });
+    } catch (const std::system_error&) { // no thread to be had: a step then ends when it ends
+    }
+  }
+  ~Guard()
+  {
+    {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      done_ = true;
+    }
+    wake_.notify_one();
+    if (thread_.joinable())
+      thread_.join();
+  }
+  Guard(const Guard&) = delete;
+  Guard& operator=(const Guard&) = delete;
+
+private:
+  void watch(const std::string& name)
+  {
+    using namespace std::chrono_literals;
+    std::unique_lock<std::mutex> lock(mutex_);
+    const auto is_done = [this] { return done_; };
+    while (!stop_asked)
+      if (wake_.wait_for(lock, 100ms, is_done))
+        return;
+    if (wake_.wait_for(lock, 500ms, is_done))
+      return;
+    abandonUnfinishedFiles();
+    const std::string line = name + ": cancelled\n";
+    [[maybe_unused]] const ssize_t written = ::write(STDERR_FILENO, line.data(), line.size());
+    _exit(1);
+  }
+
+  std::mutex mutex_;
+  std::condition_variable wake_;
+  bool done_ = false;
+  std::thread thread_;
+};
 
 std::string oneLine(std::string text)
 {
@@ -119,6 +169,7 @@ try {
   std::signal(SIGINT, askToStop);
   std::signal(SIGTERM, askToStop);
   std::signal(SIGXFSZ, SIG_IGN); // a file that grows beyond its limit is an error like a full disk
+  const Guard guard(name);
   body();
   return 0;
 } catch (const HelpShown&) {

@@ -292,6 +292,14 @@ const frescoViewer = (() => {
     root.append(bar);
   }
 
+  function note(root, words) {
+    const text = document.createElement('div');
+    text.className = 'message';
+    text.textContent = words;
+    root.append(text);
+    return text;
+  }
+
   async function show(root, bytes, options) {
     const canvas = document.createElement('canvas');
     canvas.tabIndex = 0;
@@ -299,7 +307,8 @@ const frescoViewer = (() => {
     const gl = canvas.getContext('webgl2', { antialias: true, alpha: false });
     if (!gl) throw new Error('this browser does not offer WebGL 2');
     const up = unit(options.up || [0, 0, 1]), scene = new Scene(gl, up);
-    await scene.load(bytes);
+    const loading = note(root, 'Loading the model ...');
+    await scene.load(bytes).finally(() => loading.remove());
     const camera = new Camera(up, 0.5 * norm(add(scene.high, scene.low, -1)) || 1);
     let wanted = false, last = 0;
     const frame = now => {
@@ -327,9 +336,6 @@ const frescoViewer = (() => {
 
   return (root, bytes, options = {}) => show(root, bytes, options).then(() => { root.dataset.state = 'ready'; }, error => {
     root.dataset.state = 'error';
-    const text = document.createElement('div');
-    text.className = 'message';
-    text.textContent = 'The model cannot be shown: ' + error.message;
-    root.append(text);
+    note(root, 'The model cannot be shown: ' + error.message);
   });
 })();

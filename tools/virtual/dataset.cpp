@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "virtual/dataset.h"
+#include "virtual/labels.h"
 #include "virtual/views.h"
 #include <cstdio>
 #include <filesystem>
@@ -10,6 +11,7 @@
 #include <fresco/common/point_io.h>
 #include <fresco/common/poses.h>
 #include <fresco/common/require.h>
+#include <optional>
 namespace fresco {
 using Eigen::Vector3f;
 
@@ -48,6 +50,9 @@ std::vector<Pose> writeScans(const Run& run, const Points& stations, std::vector
   const std::string folder = run.folder + "/scans";
   makeFolder(folder);
   std::vector<Pose> poses;
+  std::optional<TriangleTree> surfaces;
+  if (run.options.labels)
+    surfaces.emplace(run.lit.scene.mesh, run.options.threads);
   for (int k = 0; k < static_cast<int>(stations.cols()); ++k) {
     report(progress, "scan " + std::to_string(k + 1) + " of " + std::to_string(stations.cols()),
            static_cast<double>(k) / static_cast<double>(stations.cols()));
@@ -62,7 +67,14 @@ std::vector<Pose> writeScans(const Run& run, const Points& stations, std::vector
                                " has no point: nothing sends enough light back within the range");
     for (const int face : scan.faces)
       ++returns[static_cast<std::size_t>(face)];
-    writePoints(folder + "/" + numbered("scan_%02d.pcd", k), scan.points);
+    const std::string file = folder + "/" + numbered("scan_%02d.pcd", k);
+    if (surfaces) {
+      Eigen::Matrix4d T_truth_scan = pose;
+      T_truth_scan.topRightCorner<3, 1>() -= run.lit.scene.mesh.origin;
+      writeLabelledScan(file, scan.points, labelPoints(scan, *surfaces, T_truth_scan));
+    } else {
+      writePoints(file, scan.points);
+    }
     poses.emplace_back(pose);
   }
   return poses;

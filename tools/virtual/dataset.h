@@ -11,6 +11,7 @@ struct DatasetOptions {
   LaserOptions laser;
   int views = 60;                 ///< photographs, >= 1; 0 = none
   int width = 1280, height = 960; ///< pixels of a photograph, 16..20000
+  bool labels = false;            ///< scans have a field `label`, see PointLabel
   double focal = 0.9;             ///< focal length / width, > 0.1
   float exposure_spread = 0.2f;   ///< brightness of photographs is 1 +- this, 0..0.9
   float sensor_noise = 0.6f;      ///< deviation, grey levels of 0..255, >= 0

@@ -56,6 +56,7 @@ struct Return {
   float range = -1.f; ///< metres, negative: nothing
   int face = -1;
   bool mixed = false;
+  float deviation = 0.f; ///< of the noise, metres
   Eigen::Matrix<std::uint8_t, 3, 1> color;
 };
 
@@ -95,7 +96,9 @@ public:
     if (options_.veil)
       widen(direction, hit, back);
     const double grazing = std::sqrt(std::max(cosine, 0.12f));
-    back.range += static_cast<float>(options_.noise * (0.6 + 0.1 * back.range) / grazing * random.gaussian());
+    const double deviation = options_.noise * (0.6 + 0.1 * back.range) / grazing;
+    back.deviation = static_cast<float>(deviation);
+    back.range += static_cast<float>(deviation * random.gaussian());
     const Vector3f color = brightness_ * surfaceColor(lit_, hit, 2.f * radius(hit.distance));
     back.color = (255.f * color).array().round().max(0.f).min(255.f).cast<std::uint8_t>();
     return back;
@@ -200,6 +203,7 @@ LaserScan scanScene(const LitScene& lit, const Eigen::Matrix4d& T_world_scan, co
     scan.points.colors.col(next++) = back.color;
     scan.faces.push_back(back.face);
     scan.mixed.push_back(back.mixed);
+    scan.deviations.push_back(back.deviation);
   }
   return scan;
 }

@@ -20,6 +20,7 @@ struct LaserScan {
   PointSet points;         ///< in the sensor's own frame, coloured, viewpoint (0, 0, 0)
   std::vector<int> faces;  ///< per point, the face that the middle of the beam met
   std::vector<bool> mixed; ///< per point, whether its range belongs to more than one surface or to a neighbouring one
+  std::vector<float> deviations; ///< per point, of the noise of its range, metres
 };
 
 /// Pose of scan `number` at a station: any yaw, a tilt of up to 3 degrees. World from scan, 4x4 rigid.

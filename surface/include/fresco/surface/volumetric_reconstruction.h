@@ -39,6 +39,8 @@ public:
   bool getConfidence() const { return options_.confidence; }
   void setTrim(float trim) { options_.trim = trim; }
   float getTrim() const { return options_.trim; }
+  void setTrimLevels(float levels) { options_.trim_levels = levels; }
+  float getTrimLevels() const { return options_.trim_levels; }
   void setIterations(int iterations) { options_.iterations = iterations; }
   int getIterations() const { return options_.iterations; }
   void setThreads(int threads) { options_.threads = threads; }

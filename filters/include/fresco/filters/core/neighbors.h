@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include <cstdint>
+#include <cstring>
 #include <fresco/common/types.h>
 #include <limits>
 #include <vector>
@@ -43,16 +44,27 @@ public:
   /// by distance, then position.
   using Key = std::uint64_t;
   static int position(Key key) { return static_cast<int>(key & 0xffffffffu); }
-  static float squaredDistance(Key key);
-  static Key key(float squared_distance, Index position);
+  static float squaredDistance(Key key)
+  {
+    const auto bits = static_cast<std::uint32_t>(key >> 32);
+    float value;
+    std::memcpy(&value, &bits, sizeof value);
+    return value;
+  }
+  static Key key(float squared_distance, Index position)
+  {
+    std::uint32_t bits;
+    std::memcpy(&bits, &squared_distance, sizeof bits);
+    return static_cast<Key>(bits) << 32 | static_cast<std::uint32_t>(position);
+  }
 
   /// As nearest() with keys in no order.
   /// @param bound no smaller than the squared distance of the k-th neighbour: speeds the search up
   void nearestKeys(const Eigen::Vector3f& query, int k, std::vector<Key>& found,
                    float bound = std::numeric_limits<float>::infinity()) const;
 
-  /// As within() with keys in order of position.
-  void withinKeys(const Eigen::Vector3f& query, float radius, std::vector<Key>& found) const;
+  /// As within() with keys in order of position, or, not sorted, in an order of the tree in which near ones are close.
+  void withinKeys(const Eigen::Vector3f& query, float radius, std::vector<Key>& found, bool sorted = true) const;
 
 private:
   static constexpr Index leaf_size = 8; ///< points; measured: 8 beats 16 and 32 for k = 16

@@ -7,17 +7,18 @@ struct VeilOptions {
   float angle =
       20; ///< degrees, 0 < angle < 90: between a beam and the way to a neighbouring point; below, no surface joins them
   float noise = 0; ///< length, >= 0: deviation of the ranges; 0 = measured from the scan
-  int k = 12;      ///< neighbouring beams, >= 4
+  int k = 24;      ///< neighbouring beams, 8..64
   int threads = 0; ///< 0 = all cores; the result does not depend on it
 };
 
 /// Veil points: a laser beam that meets two surfaces at a depth jump returns a range between theirs, a point in the
-/// air. Seen along its beam, such a point has neighbours clearly in front of it and others clearly behind, and hardly
-/// any that a surface could join it with: the way to them leaves the beam at less than `angle`. Points of a silhouette
-/// have nobody in front, points beside it nobody behind, thin legs have neighbours along themselves, and surfaces seen
-/// at a grazing angle hold half of the neighbours in one plane: all of these stay. A jump smaller than the distance of
-/// neighbouring points over tan(angle) cannot be told from a slope; the denser the scan, the smaller the jumps that are
-/// found.
+/// air. Such a point has beams around it that are clearly nearer and others that are clearly farther, a surface could
+/// join it with few of them (the way to the others leaves the beam at less than `angle`), and its nearest neighbour in
+/// space is much farther than its nearest beam. The surfaces on its sides, continued as planes, pass in front of it and
+/// behind it, or none of them meets it. Points of a silhouette have nobody in front, points beside it nobody behind,
+/// thin legs have neighbours along themselves, and edges continue the surface of one side: all of these stay. A jump
+/// smaller than the distance of neighbouring points over tan(angle) cannot be told from a slope; the denser the scan,
+/// the smaller the jumps that are found.
 /// @param viewpoints 3xN or 3x1; points of one viewpoint are judged among themselves, all stay if they are 12 or fewer
 /// @return indices of the points that stay, ascending; finite ones only
 /// @throws std::invalid_argument if sizes differ, a viewpoint is not finite or an option is out of range

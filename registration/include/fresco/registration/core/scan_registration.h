@@ -3,8 +3,10 @@
 #include <fresco/common/point_set.h>
 #include <fresco/common/poses.h>
 #include <fresco/common/progress.h>
+#include <functional>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 namespace fresco {
 /// Registration of many scans: global alignment of scans without a start pose, then joint point-to-plane refinement.
@@ -14,8 +16,17 @@ struct ScanRegistrationOptions {
   float min_overlap = 0.1f;    ///< share of a scan's points with a counterpart from which a pair is used, 0..1
   float max_violation = 0.04f; ///< share of a scan's points in space that the other saw through: above, a pair is wrong
   int max_iterations = 40;     ///< of the joint refinement, per resolution, >= 1
-  int threads = 0;             ///< 0 = all cores; the result does not depend on it
+  bool upright = false; ///< whether all scanners stood upright to 10 degrees, z upwards: fewer poses are possible
+  int threads = 0;      ///< 0 = all cores; the result does not depend on it
   std::vector<std::string> names; ///< of the scans, for messages; empty = their numbers
+};
+
+/// Scans that need not be in memory all at once.
+struct ScanSource {
+  Index count;
+  std::function<PointSet(Index)> read; ///< is called more than once for each scan, for one after the other
+
+  ScanSource(Index scan_count, std::function<PointSet(Index)> reader) : count(scan_count), read(std::move(reader)) {}
 };
 
 /// What messages call a scan.
@@ -72,9 +83,14 @@ struct ScanRegistrationResult {
 ScanRegistrationResult registerScans(const std::vector<PointSet>& scans, const std::vector<Pose>& start = {},
                                      const ScanRegistrationOptions& options = {}, const Progress& progress = {});
 
+/// The same; at any time one scan is in memory, and thinned copies of all.
+ScanRegistrationResult registerScans(const ScanSource& scans, const std::vector<Pose>& start = {},
+                                     const ScanRegistrationOptions& options = {}, const Progress& progress = {});
+
 /// All placed scans in the world, one after the other, without non-finite points. Normals (those of the scans turned,
 /// else estimated) point to each point's own viewpoint, which is kept per point. Colours, intensities and confidences
 /// are kept where all placed scans have them. `origin` differs from zero where the world's coordinates are large.
 /// @throws std::invalid_argument if sizes differ or an attribute is malformed
 PointSet mergeScans(const std::vector<PointSet>& scans, const std::vector<Pose>& poses, int threads = 0);
+PointSet mergeScans(const ScanSource& scans, const std::vector<Pose>& poses, int threads = 0);
 } // namespace fresco

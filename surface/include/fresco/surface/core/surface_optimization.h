@@ -15,23 +15,26 @@ enum class OptimizationMode {
 /// every model.
 struct SurfaceOptimizationOptions {
   OptimizationMode mode = OptimizationMode::best;
-  int iterations = 0;      ///< at most, 0..10000, correspondences are found anew in each; 0 = 30 (best), 200 (faithful)
-  double kappa1 = -1;      ///< weight of E_smooth, >= 0; negative = 1 (best), 0.02 (faithful)
-  double kappa2 = -1;      ///< weight of E_topology at the start, >= 0; negative = 0.1 (best), 1 (faithful)
-  bool flip = false;       ///< edges are flipped so that they follow the creases
-  double tolerance = 1e-3; ///< ends when no step moves the vertices more than this (RMS, mean edge lengths), >= 0
-  int threads = 0;         ///< 0 = all cores; the result does not depend on it
+  int iterations = 0; ///< at most, 0..10000, correspondences are found anew in each; 0 = 15 (best), 200 (faithful)
+  double kappa1 = -1; ///< weight of E_smooth, >= 0; negative = 1 (best), 0.1 (faithful)
+  double kappa2 = -1; ///< weight of E_topology at the start, >= 0; negative = 0.1
+  bool flip = false;  ///< edges are flipped so that they follow the creases
+  double tolerance =
+      1e-3;        ///< ends when a step moves the vertices by less (RMS, mean edge lengths; faithful: a tenth), >= 0
+  int threads = 0; ///< 0 = all cores; the result does not depend on it
 };
 
-/// The state after an accepted step. Terms in units of the mean edge length, before their weights.
+/// The state after an accepted step; sums, with the mean edge length as unit. In best mode the terms are those of the
+/// quadratic energy of the step, weights included; in faithful mode they are without kappa_1 and kappa_2.
 struct OptimizationStep {
-  double fit = 0;      ///< E_fit: robust squared distances of data to their faces, mean over the data
-  double smooth = 0;   ///< E_smooth: edge length times potential of the normal difference, mean over edges
-  double topology = 0; ///< E_topology: squared differences of the one-rings from their reference, mean over vertices
-  double kappa2 = 0;   ///< weight of E_topology in this step
-  double before = 0;   ///< weighted sum ahead of the step, with the correspondences and weights of this step
-  double after = 0;    ///< the same sum after it; never above `before`
-  double move = 0;     ///< RMS move of the vertices, mean edge lengths
+  double fit = 0;    ///< E_fit: robust squared distances of the data, times the area that each stands for
+  double smooth = 0; ///< E_smooth: faithful: edge length times potential of the normal difference; best: squared slopes
+  double topology =
+      0; ///< E_topology: squared differences of the one-rings from those at the start; best: from relaxed ones
+  double kappa2 = 0; ///< weight of E_topology in this step
+  double before = 0; ///< weighted sum ahead of the step, with the correspondences and weights of this step
+  double after = 0;  ///< the same sum after it; never above `before`
+  double move = 0;   ///< RMS move of the vertices, mean edge lengths
 };
 
 /// Lengths are in the unit of the mesh unless said otherwise.

@@ -1,0 +1,32 @@
+# Debian packages: cpack -G DEB in the build folder gives fresco (libraries, tools, manual) and libfresco-dev (headers,
+# CMake package). Configure with -DCMAKE_INSTALL_PREFIX=/usr, so that libraries go to Debian's folder for them.
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_NAME fresco)
+set(CPACK_PACKAGE_VENDOR "The fresco authors")
+set(CPACK_PACKAGE_CONTACT "The fresco authors <fresco@example.org>")
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "${PROJECT_DESCRIPTION}")
+set(CPACK_RESOURCE_FILE_LICENSE "${PROJECT_SOURCE_DIR}/LICENSE")
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_PACKAGE_DIRECTORY "${PROJECT_BINARY_DIR}/packages")
+set(CPACK_STRIP_FILES ON)
+set(CPACK_VERBATIM_VARIABLES ON)
+set(CPACK_COMPONENTS_ALL runtime development)
+
+set(CPACK_DEB_COMPONENT_INSTALL ON)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_RELEASE 1)
+set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
+set(CPACK_DEBIAN_RUNTIME_PACKAGE_NAME fresco)
+set(CPACK_DEBIAN_RUNTIME_PACKAGE_SECTION graphics)
+set(CPACK_DEBIAN_RUNTIME_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS ON)
+set(CPACK_DEBIAN_RUNTIME_PACKAGE_DEPENDS "libegl-mesa0, libgl1-mesa-dri") # loaded by libEGL when pictures are drawn
+set(CPACK_COMPONENT_RUNTIME_DESCRIPTION
+    "Libraries and command line tools that clean and register laser or RGB-D scans,\nreconstruct a watertight surface and \
+texture it from calibrated photographs.")
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libfresco-dev)
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
+    "fresco (= ${PROJECT_VERSION}-1), libpcl-dev (>= 1.13), libeigen3-dev (>= 3.4)")
+set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION "Headers and CMake package of fresco: PCL-compatible classes.")
+include(CPack)

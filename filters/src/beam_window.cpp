@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "beam_window.h"
+#include <Eigen/Dense>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <fresco/common/parallel.h>
+namespace fresco {
+namespace {
+constexpr float pi = 3.14159265f;
+constexpr int most_beams = 64;          // of a window
+constexpr float largest_rms = 1.6f;     // deviations, of beams that lie on a plane
+constexpr float grazing = 0.05f;        // cosine of the incidence beyond which ranges tell nothing
+constexpr float largest_leverage = 9.f; // variance of a continuation / variance of a range
+
+using Places = std::array<const BeamWindow::Beam*, most_beams>;
+
+struct Plane {
+  Eigen::Vector3d inverse_depth; ///< at the middle, and per unit of place
+  double leverage = 0;           ///< variance of its value at the middle / variance of a beam's
+};
+
+Plane fitInverseDepth(const Places& beams, int count)
+{
+  Eigen::Matrix3d A = 1e-9 * Eigen::Matrix3d::Identity();
+  Eigen::Vector3d b = Eigen::Vector3d::Zero();
+  for (int k = 0; k < count; ++k) {
+    const Eigen::Vector3d row(1, beams[k]->place.x(), beams[k]->place.y());
+    A += row * row.transpose();
+    b += static_cast<double>(beams[k]->inverse_depth) * row;
+  }
+  const Eigen::Matrix3d inverse = A.inverse();
+  return {inverse * b, inverse(0, 0)};
+}
+
+struct Misfit {
+  double rms = 0; ///< of depths, length
+  int worst = 0;
+};
+
+Misfit misfitOf(const Plane& plane, const Places& beams, int count)
+{
+  Misfit misfit;
+  double largest = -1;
+  for (int k = 0; k < count; ++k) {
+    const double on_plane = plane.inverse_depth.dot(Eigen::Vector3d(1, beams[k]->place.x(), beams[k]->place.y()));
+    const double off = std::abs(1 / static_cast<double>(beams[k]->inverse_depth) - 1 / on_plane);
+    misfit.rms += off * off;
+    if (off > largest) {
+      largest = off;
+      misfit.worst = k;
+    }
+  }
+  misfit.rms = std::sqrt(misfit.rms / std::max(1, count - 3));
+  return misfit;
+}
+
+/// The value below which `share` of the values lie; not empty.
+float quantile(std::vector<float>& values, double share)
+{
+  const auto at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), at, values.end());
+  return *at;
+}
+} // namespace
+
+void fillWindow(const BeamScan& scan, Index i, BeamWindow& window)
+{
+  const Eigen::Vector3f middle = scan.directions.col(i), e1 = middle.unitOrthogonal(), e2 = middle.cross(e1);
+  window.beams.clear();
+  window.range = scan.ranges[i];
+  for (const int* j = scan.lists.first(i); j != scan.lists.last(i); ++j) {
+    const Eigen::Vector3f beam = scan.directions.col(*j);
+    const float forward = beam.dot(middle);
+    if (*j == i || !(forward > 0.5f) || window.beams.size() == most_beams)
+      continue;
+    const Eigen::Vector2f place(beam.dot(e1) / forward, beam.dot(e2) / forward);
+    const float range = scan.ranges[*j];
+    window.beams.push_back({place, std::atan2(place.y(), place.x()), 1 / (range * forward), range,
+                            place.norm() * std::min(range, window.range)});
+  }
+  window.spacing = window.beams.empty() ? 0.f : std::max(window.beams.front().place.norm(), 1e-6f);
+  for (BeamWindow::Beam& beam : window.beams)
+    beam.place /= window.spacing;
+}
+
+std::optional<Continuation> continueSide(const BeamWindow& window, float bearing, float reach, int most, float noise)
+{
+  Places beams{};
+  int count = 0;
+  for (const BeamWindow::Beam& beam : window.beams)
+    if (count < most && std::abs(std::remainder(beam.bearing - bearing, 2 * pi)) <= reach)
+      beams[count++] = &beam;
+  const int fewest = std::max(4, count * 2 / 3);
+  for (; count >= fewest; --count) {
+    const Plane plane = fitInverseDepth(beams, count);
+    const Eigen::Vector3d& at = plane.inverse_depth;
+    if (!(at[0] * window.range > 1e-3))
+      return {};
+    const double cosine = at[0] / Eigen::Vector3d(at[0], at[1] / window.spacing, at[2] / window.spacing).norm();
+    if (cosine < grazing)
+      return {};
+    const auto scaled = noise / static_cast<float>(std::sqrt(cosine));
+    const Misfit misfit = misfitOf(plane, beams, count);
+    if (misfit.rms <= largest_rms * scaled)
+      return Continuation{static_cast<float>(1 / at[0]),
+                          scaled * std::sqrt(1 + std::min(largest_leverage, static_cast<float>(plane.leverage)))};
+    std::swap(beams[misfit.worst], beams[count - 1]);
+  }
+  return {};
+}
+
+float measureNoise(const BeamScan& scan, int threads)
+{
+  constexpr int around = 12;
+  std::vector<float> differences(scan.columns.size());
+  parallelRanges(scan.ranges.size(), threads, [&](Index begin, Index end) {
+    BeamWindow window;
+    Places beams{};
+    for (Index i = begin; i < end; ++i) {
+      fillWindow(scan, i, window);
+      const int count = std::min(around, static_cast<int>(window.beams.size()));
+      for (int k = 0; k < count; ++k)
+        beams[k] = &window.beams[k];
+      const Plane plane = fitInverseDepth(beams, count);
+      const auto off = static_cast<float>(std::abs(window.range - 1 / plane.inverse_depth[0]) /
+                                          std::sqrt(1 + std::min<double>(largest_leverage, plane.leverage)));
+      differences[i] = count >= 4 && std::isfinite(off) ? off : 0.f;
+    }
+  });
+  const float middle = quantile(differences, 0.5) / 0.6745f;
+  return std::max(middle, 0.5f * quantile(differences, 0.75) / 1.15f);
+}
+} // namespace fresco

@@ -1,0 +1,235 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "targets.h"
+#include "model/rgbd.h"
+#include "model/stage_log.h"
+#include "support/args.h"
+#include <filesystem>
+#include <fresco/common/cloud_file.h>
+#include <fresco/common/colmap.h>
+#include <fresco/common/file.h>
+#include <fresco/common/mesh_io.h>
+#include <fresco/common/point_io.h>
+#include <fresco/common/poses.h>
+#include <fresco/common/require.h>
+#include <fstream>
+namespace fresco::fuzz {
+namespace {
+namespace fs = std::filesystem;
+using Bytes = std::string_view;
+
+void store(const std::string& path, Bytes bytes)
+{
+  std::ofstream(path, std::ios::binary | std::ios::trunc)
+      .write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+}
+
+void expect(bool ok, const std::string& what)
+{
+  if (!ok)
+    throw std::logic_error(what);
+}
+
+/// The first part of `bytes`; they then begin behind its separator.
+Bytes takePart(Bytes& bytes)
+{
+  const std::size_t end = bytes.find(separator);
+  const Bytes part = bytes.substr(0, end);
+  bytes.remove_prefix(end == Bytes::npos ? bytes.size() : end + separator.size());
+  return part;
+}
+
+/// Runs `read`; its errors must be those that the readers promise.
+void readChecked(const std::string& folder, const std::function<void()>& read)
+try {
+  read();
+} catch (const std::runtime_error& error) {
+  const std::string text = error.what();
+  expect(text.find('\n') == std::string::npos, "an error of several lines: " + text);
+  expect(text.find(folder) != std::string::npos, "an error that names no file: " + text);
+}
+
+void checkMesh(const TriangleMesh& mesh)
+{
+  expect(mesh.vertexCount() > 0, "a mesh without vertices");
+  expect(mesh.faceCount() == 0 || (mesh.faces.minCoeff() >= 0 && mesh.faces.maxCoeff() < mesh.vertexCount()),
+         "a face of vertices that are not there");
+  for (const Index count : {mesh.normals.cols(), mesh.colors.cols()})
+    expect(count == 0 || count == mesh.vertexCount(), "an attribute without or with too many values");
+  for (const auto& [name, values] : mesh.fields)
+    expect(values.size() == mesh.vertexCount(), "a field without or with too many values");
+  expect(mesh.origin.allFinite(), "an origin that is not finite");
+}
+
+void checkModel(const TexturedMesh& model)
+{
+  checkMesh(model.mesh);
+  const Index faces = model.mesh.faceCount();
+  expect(model.face_atlas.size() == faces && model.texcoord_faces.cols() == faces, "faces without texture indices");
+  for (Index f = 0; f < faces; ++f) {
+    expect(model.face_atlas[f] < static_cast<int>(model.atlases.size()), "an atlas that is not there");
+    for (int k = 0; k < 3; ++k)
+      expect(model.texcoord_faces(k, f) < model.texcoords.cols(), "a texture coordinate that is not there");
+  }
+}
+
+void readPointsAndCloud(const std::string& path)
+{
+  const PointSet set = readPoints(path);
+  expect(set.size() > 0 && set.origin.allFinite(), "no point, or an origin that is not finite");
+  validatePointSet(set);
+  expect(toPointSet(readCloud(path)).size() == set.size(), "a cloud and its points differ in size");
+}
+
+/// One file of the given type.
+Target fileTarget(const std::string& name, std::vector<std::function<void(const std::string&)>> readers)
+{
+  return {name, [name, readers = std::move(readers)](Bytes bytes, const std::string& folder) {
+            const std::string path = folder + "/input." + name;
+            store(path, bytes);
+            for (const auto& read : readers)
+              readChecked(folder, [&] { read(path); });
+          }};
+}
+
+const auto as_points = [](const std::string& path) { readPointsAndCloud(path); };
+const auto as_mesh = [](const std::string& path) { checkMesh(readMesh(path)); };
+const auto as_model = [](const std::string& path) { checkModel(readTexturedMesh(path)); };
+
+/// Part one: OBJ, part two: the material library input.mtl.
+void readObj(Bytes bytes, const std::string& folder)
+{
+  const std::string path = folder + "/input.obj";
+  store(path, takePart(bytes));
+  store(folder + "/input.mtl", bytes);
+  for (const auto& read :
+       {std::function<void()>([&] { as_points(path); }), std::function<void()>([&] { as_mesh(path); }),
+        std::function<void()>([&] { as_model(path); })})
+    readChecked(folder, read);
+}
+
+/// Part one: cameras, part two: images.
+void readColmapModel(Bytes bytes, const std::string& folder, const std::string& kind)
+{
+  store(folder + "/cameras" + kind, takePart(bytes));
+  store(folder + "/images" + kind, bytes);
+  readChecked(folder, [&] {
+    const CameraSet set = readColmap(folder);
+    for (const View& view : set.views) {
+      expect(view.camera >= 0 && view.camera < static_cast<int>(set.cameras.size()), "a camera that is not there");
+      expect(view.T_camera_world.matrix().allFinite(), "a pose that is not finite");
+    }
+    for (const CameraModel& camera : set.cameras) {
+      expect(camera.width > 0 && camera.height > 0 && camera.fx > 0 && camera.fy > 0, "no camera");
+      if (camera.hasDistortion())
+        unproject(camera, {0.3 * camera.width, 0.7 * camera.height});
+    }
+  });
+}
+
+void readPoseFile(Bytes bytes, const std::string& folder)
+{
+  const std::string path = folder + "/poses.txt";
+  store(path, bytes);
+  readChecked(folder, [&] {
+    const std::vector<Pose> poses = readPoses(path);
+    for (const Pose& pose : poses)
+      expect(!pose || (pose->allFinite() && std::abs(pose->topLeftCorner<3, 3>().determinant() - 1) < 0.1), "no pose");
+    writePoses(path, poses);
+    expect(readPoses(path).size() == poses.size(), "poses are lost on the way through a file");
+  });
+}
+
+/// Part one: camera matrix, part two: pose of the first frame, part three: its depth image.
+void readRgbd(Bytes bytes, const std::string& folder)
+{
+  store(folder + "/camera-intrinsics.txt", takePart(bytes));
+  store(folder + "/frame-000000.pose.txt", takePart(bytes));
+  store(folder + "/frame-000000.color.jpg", "stands for a photograph");
+  store(folder + "/frame-000000.depth.png", bytes);
+  readChecked(folder, [&] {
+    const RgbdFolder room = readRgbdFolder(folder);
+    expect(room.camera.fx > 0 && room.camera.fy > 0 && !room.frames.empty(), "no camera or no frame");
+    const Image16 depth = readImage16(room.frames[0].depth);
+    if (depth.data.size() < 5000)
+      depthPoints(depth, room.camera, {}, 1);
+  });
+}
+
+/// The record of a stage that an earlier run left.
+void readStageLog(Bytes bytes, const std::string& folder)
+{
+  store(folder + "/stage.json", bytes);
+  readChecked(folder, [&] {
+    StageLog log(folder, "input", true, {});
+    log.run({"stage", "options", {}, [](const Progress&) { return nlohmann::ordered_json{{"answer", 42}}; }});
+    expect(log.records().size() == 1, "a stage without a record");
+    log.records()[0].figures.dump();
+  });
+}
+
+/// One word of the command line per line.
+void parseArgs(Bytes bytes, const std::string&)
+{
+  int n = 1, width = 4, height = 3;
+  float f = 1;
+  double d = 1;
+  std::string text;
+  bool on = false;
+  Args args("fresco_x IN OUT [options]", "Does things.");
+  args.option("n", n, "whole number");
+  args.option("f", f, "number");
+  args.option("d", d, "number");
+  args.option("text", text, "words");
+  args.flag("on", on, "switch");
+  args.size("size", width, height, "of a picture");
+  args.values("xyz", "X Y Z", "numbers", [&](const auto& words) {
+    for (const std::string& word : words)
+      d = Args::number("xyz", word);
+  });
+  std::vector<std::string> words{"fresco_x"};
+  for (std::size_t at = 0; at < bytes.size() && words.size() < 100;) {
+    const std::size_t end = std::min(bytes.find('\n', at), bytes.size());
+    words.push_back(std::string(bytes.substr(at, end - at)).c_str()); // arguments end at their first zero
+    at = end + 1;
+  }
+  std::vector<char*> pointers;
+  for (std::string& word : words)
+    pointers.push_back(word.data());
+  try {
+    const auto files = args.parse(static_cast<int>(pointers.size()), pointers.data(), 1, 3);
+    expect(!files.empty() && files.size() <= 3, "too many or too few files");
+    expect(std::isfinite(f) && std::isfinite(d), "a number that is not finite");
+    expect(width > 0 && height > 0, "a picture without pixels");
+  } catch (const UsageError&) {
+  } catch (const HelpShown&) {
+  }
+}
+} // namespace
+
+const std::vector<Target>& targets()
+{
+  static const std::vector<Target> all = {
+      fileTarget("ply", {as_points, as_mesh}),
+      fileTarget("pcd", {as_points}),
+      fileTarget("vtk", {as_points, as_mesh}),
+      fileTarget("xyz", {as_points}),
+      fileTarget("glb", {as_model}),
+      {"obj", readObj},
+      {"colmap_text", [](Bytes bytes, const std::string& folder) { readColmapModel(bytes, folder, ".txt"); }},
+      {"colmap_binary", [](Bytes bytes, const std::string& folder) { readColmapModel(bytes, folder, ".bin"); }},
+      {"poses", readPoseFile},
+      {"rgbd", readRgbd},
+      {"stage_log", readStageLog},
+      {"args", parseArgs},
+  };
+  return all;
+}
+
+const Target& findTarget(const std::string& name)
+{
+  for (const Target& target : targets())
+    if (target.name == name)
+      return target;
+  throw std::invalid_argument("no fuzz target '" + name + "'");
+}
+} // namespace fresco::fuzz

@@ -1,0 +1,56 @@
+#!/usr/bin/env bash
+# Installs the Debian packages on a clean Debian 12, runs the tools there, and removes them again. As root:
+#   test/package/deb_test.sh PACKAGE_DIR [CHROOT]   CHROOT is made by debootstrap where it is missing
+# PACKAGE_DIR: as cpack -G DEB writes it (cmake --preset package, cmake --build --preset package --target package).
+set -euo pipefail
+[ $# -ge 1 ] && [ "$(id -u)" -eq 0 ] || { sed -n '2,4s/^# //p' "$0" >&2; exit 2; }
+packages=$(realpath "$1") root=$(realpath -m "${2:-/var/tmp/fresco-clean}")
+[ -x "$root/usr/bin/apt-get" ] || debootstrap --variant=minbase bookworm "$root" http://deb.debian.org/debian
+inside() { chroot "$root" env DEBIAN_FRONTEND=noninteractive LC_ALL=C PATH=/usr/sbin:/usr/bin:/sbin:/bin "$@"; }
+mount -t proc proc "$root/proc"
+trap 'umount "$root/proc"' EXIT
+rm -rf "$root/packages" "$root/job"
+mkdir "$root/packages" "$root/job"
+cp "$packages"/*.deb "$root/packages/"
+cp /etc/resolv.conf "$root/etc/resolv.conf"
+list() { (cd "$root" && find usr etc -name '*fresco*' | sort); }
+
+[ -z "$(list)" ] || { echo "the system is not clean: $(list)" >&2; exit 1; }
+inside apt-get -q update >/dev/null
+inside sh -c 'apt-get -q -y install --no-install-recommends /packages/fresco_*.deb' >"$root/job/install.log" 2>&1 ||
+  { tail -20 "$root/job/install.log" >&2; exit 1; }
+for tool in $(cd "$root/usr/bin" && ls fresco_*); do
+  inside "$tool" -h >"$root/job/$tool.txt"
+  [ -f "$root/usr/share/man/man1/$tool.1" ] || { echo "$tool has no manual page" >&2; exit 1; }
+done
+cat >"$root/job/cube.obj" <<'END'
+v 0 0 0
+v 2 0 0
+v 2 2 0
+v 0 2 0
+v 0 0 2
+v 2 0 2
+v 2 2 2
+v 0 2 2
+f 4 3 2 1
+f 5 6 7 8
+f 1 2 6 5
+f 3 4 8 7
+f 2 3 7 6
+f 1 5 8 4
+END
+inside sh -ec 'cd /job
+fresco_scan cube.obj scan -stations 1 -points 20000 -no_images -quiet
+fresco_filter scan/scans/scan_00.pcd clean.pcd -veil 20 -quiet
+fresco_normals clean.pcd oriented.pcd -bilateral 1 -quiet
+fresco_reconstruct oriented.pcd mesh.ply -depth 6 -quiet
+fresco_compare mesh.ply mesh.ply >compare.txt
+fresco_snapshot mesh.ply mesh.png -size 320x240 -quiet'
+[ -s "$root/job/mesh.png" ]
+
+inside sh -c 'apt-get -q -y install --no-install-recommends /packages/libfresco-dev_*.deb' >>"$root/job/install.log" 2>&1 ||
+  { tail -20 "$root/job/install.log" >&2; exit 1; }
+[ -f "$root/usr/include/fresco/common/mesh.h" ]
+inside apt-get -q -y purge fresco libfresco-dev >>"$root/job/install.log" 2>&1
+[ -z "$(list)" ] || { echo "left behind: $(list)" >&2; exit 1; }
+echo "packages: installed, ran $(cd "$root/job" && ls fresco_*.txt | wc -l) tools, removed"
