@@ -66,7 +66,7 @@ struct RayScene::Embree {
   Embree()
   {
     if (!scene)
-      throw std::runtime_error("ray casting: Embree does not start");
+      throw std::runtime_error("ray casting: Embree does not start (not enough memory?)");
     rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
   }
   ~Embree()

@@ -4,9 +4,12 @@
 #include <array>
 #include <cstdlib>
 #include <fresco/common/require.h>
+#include <fstream>
+#include <new>
 #include <stdexcept>
 #include <string>
 #include <sys/resource.h>
+#include <unistd.h>
 namespace fresco {
 namespace {
 [[noreturn]] void fail(const std::string& what)
@@ -43,17 +46,25 @@ EGLDisplay deviceDisplay(PFNEGLGETPLATFORMDISPLAYEXTPROC get_display)
 }
 
 /// Where the process's memory is limited, Mesa's software renderer may fail to start its threads and then waits for
-/// them for ever: it shall do without.
-void renderWithoutThreadsIfMemoryIsLimited()
+/// them for ever, and it does not check what it allocates: it does without threads, and is not asked at all where
+/// hardly anything is left. @throws std::bad_alloc
+void checkMemoryLimit()
 {
+  constexpr std::size_t needed = std::size_t{768}
+                                 << 20; // libraries, compiler, buffers of a picture, with room to spare
   rlimit limit{};
-  if (getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY)
-    setenv("LP_NUM_THREADS", "0", 0);
+  if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY)
+    return;
+  setenv("LP_NUM_THREADS", "0", 0);
+  std::size_t pages = 0;
+  std::ifstream("/proc/self/statm") >> pages;
+  if (pages * static_cast<std::size_t>(sysconf(_SC_PAGESIZE)) + needed > limit.rlim_cur)
+    throw std::bad_alloc();
 }
 
 EGLDisplay openDisplay()
 {
-  renderWithoutThreadsIfMemoryIsLimited();
+  checkMemoryLimit();
   setenv("EGL_LOG_LEVEL", "fatal", 0); // Mesa writes its warnings to stderr; failures are reported by exceptions here
   const char* extensions = eglQueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS);
   const auto get_display =

@@ -20,7 +20,7 @@ struct ViewRays::Data {
 ViewRays::ViewRays(const TriangleMesh& mesh) : data_(std::make_unique<Data>())
 {
   if (!data_->device)
-    throw std::runtime_error("Embree does not start");
+    throw std::runtime_error("Embree does not start (not enough memory?)");
   data_->scene = rtcNewScene(data_->device);
   RTCGeometry geometry = rtcNewGeometry(data_->device, RTC_GEOMETRY_TYPE_TRIANGLE);
   auto* vertices =
