@@ -41,6 +41,10 @@ Request parse(int argc, char** argv)
   if (request.mode != "best" && request.mode != "faithful")
     throw fresco::UsageError("-mode is best or faithful, not '" + request.mode + "'");
   o.mode = request.mode == "best" ? fresco::OptimizationMode::best : fresco::OptimizationMode::faithful;
+  if (o.iterations < 0 || o.iterations > 10000)
+    throw fresco::UsageError(fresco::concat("option -iterations: ", o.iterations, " is not within 0 and 10000"));
+  if (o.tolerance < 0)
+    throw fresco::UsageError(fresco::concat("option -tolerance: ", o.tolerance, " is negative"));
   o.threads = request.common.threads;
   return request;
 }

@@ -100,8 +100,8 @@ void expectRefused(const std::string& folder, const std::string& command, const 
 
 const std::vector<std::string>& tools()
 {
-  static const std::vector<std::string> all = {"scan",    "filter",  "normals",  "register", "reconstruct",
-                                               "texture", "compare", "snapshot", "model"};
+  static const std::vector<std::string> all = {"scan",     "filter",  "normals", "register", "reconstruct",
+                                               "optimize", "texture", "compare", "snapshot", "model"};
   return all;
 }
 
@@ -127,8 +127,8 @@ TEST(Tools, BadClouds)
   const std::string folder = soundFolder();
   for (const std::string bad :
        {"missing.pcd", "empty.pcd", "cut.pcd", "noise.pcd", "pointless.pcd", "cut.ply", "mesh.doc", "images"})
-    for (const std::string command :
-         {"filter BAD out.pcd", "normals BAD out.pcd", "reconstruct BAD out.ply", "register BAD cloud.pcd -o out"}) {
+    for (const std::string command : {"filter BAD out.pcd", "normals BAD out.pcd", "reconstruct BAD out.ply",
+                                      "optimize mesh.ply BAD out.ply", "register BAD cloud.pcd -o out"}) {
       std::string line = command;
       line.replace(line.find("BAD"), 3, bad);
       expectRefused(folder, line, bad);
@@ -140,8 +140,9 @@ TEST(Tools, BadMeshes)
   const std::string folder = soundFolder();
   for (const std::string bad :
        {"missing.ply", "empty.ply", "cut.ply", "noise.ply", "pointless.ply", "mesh.doc", "images"})
-    for (const std::string command : {"compare BAD mesh.ply", "compare mesh.ply BAD", "snapshot BAD out.png",
-                                      "texture BAD cameras images out.obj", "scan BAD out"}) {
+    for (const std::string command :
+         {"compare BAD mesh.ply", "compare mesh.ply BAD", "snapshot BAD out.png", "texture BAD cameras images out.obj",
+          "optimize BAD cloud.pcd out.ply", "scan BAD out"}) {
       std::string line = command;
       line.replace(line.find("BAD"), 3, bad);
       expectRefused(folder, line, bad);
@@ -163,7 +164,8 @@ TEST(Tools, UnwritableOutput)
        {"filter cloud.pcd none/out.pcd", "normals cloud.pcd none/out.pcd",
         "reconstruct cloud.pcd none/out.ply -depth 4", "texture mesh.ply cameras images none/out.obj",
         "texture mesh.ply cameras images none/out.glb", "snapshot mesh.ply none/out.png",
-        "compare mesh.ply mesh.ply -json none/out.json", "compare mesh.ply mesh.ply -colored none/out.ply"})
+        "optimize mesh.ply mesh.ply none/out.ply", "compare mesh.ply mesh.ply -json none/out.json",
+        "compare mesh.ply mesh.ply -colored none/out.ply"})
     expectRefused(folder, command, "none/out");
   for (const std::string command :
        {"register cloud.pcd -o file", "scan mesh.ply file -stations 1", "model in file -poses"})
@@ -176,7 +178,7 @@ TEST(Tools, WrongKindOfOutput)
   const std::string folder = soundFolder();
   for (const std::string command :
        {"filter cloud.pcd out.doc", "normals cloud.pcd out.doc", "reconstruct cloud.pcd out.doc -depth 4",
-        "texture mesh.ply cameras images out.doc", "snapshot mesh.ply out.doc"}) {
+        "texture mesh.ply cameras images out.doc", "snapshot mesh.ply out.doc", "optimize mesh.ply mesh.ply out.doc"}) {
     const auto before = listing(folder);
     const Outcome outcome = run(folder, command + " -quiet");
     EXPECT_TRUE(outcome.status == 1 || outcome.status == 2) << command << outcome.status;
