@@ -80,4 +80,26 @@ Constraints splatNormals(const Octree& tree, const Samples& samples, int threads
   }
   return constraints;
 }
+
+void addCoarser(const Octree& tree, int depth, int threads, Constraints& constraints)
+{
+  const auto d = static_cast<std::size_t>(depth);
+  if (depth == 2)
+    return;
+  const BrickLevel& level = tree.levels[d];
+  const NodeField& coarse = constraints.own[d - 1];
+  parallelFor(level.size(), threads, [&](Index b) {
+    float values[brick_stride] = {};
+    const auto i = static_cast<std::size_t>(b);
+    interpolateToChild(coarse.brick(level.parents[i]), static_cast<int>(level.codes[i] & 7), values);
+    // Per unit volume the interpolated density is the same; a cell has 1/8 of
+    // the volume and 1/2 of the side.
+    for (int k = 0; k < brick_nodes * brick_nodes * brick_nodes; ++k) {
+      constraints.fine[d].brick(b)[k] += 0.25f * values[k];
+      if (depth < tree.depth)
+        constraints.own[d].brick(b)[k] += 0.25f * values[k];
+    }
+  });
+  constraints.own[d - 1] = NodeField();
+}
 } // namespace fresco::volumetric

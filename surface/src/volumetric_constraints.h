@@ -15,4 +15,8 @@ struct Constraints {
 };
 
 Constraints splatNormals(const Octree& tree, const Samples& samples, int threads);
+
+/// Adds to the right-hand side of a depth what was splatted at coarser ones, interpolated; these must be complete, so
+/// depths come in rising order. `own` of the next coarser depth is freed.
+void addCoarser(const Octree& tree, int depth, int threads, Constraints& constraints);
 } // namespace fresco::volumetric

@@ -14,7 +14,7 @@ void estimateNoise(Samples& samples, int threads);
 inline float screeningWeight(float noise)
 {
   constexpr float gain = 2.5f;      // measured: less leaves ripples of the normal field, more follows every sample
-  constexpr float tolerated = 0.1f; // noise at which the weight is halved
-  return gain / (1.f + noise / tolerated);
+  constexpr float tolerated = 0.2f; // noise at which the weight is halved; far beyond, it falls as 1 / variance
+  return gain / (1.f + noise * noise / (tolerated * tolerated));
 }
 } // namespace fresco::volumetric

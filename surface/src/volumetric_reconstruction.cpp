@@ -3,6 +3,7 @@
 #include "volumetric_base.h"
 #include "volumetric_constraints.h"
 #include "volumetric_density.h"
+#include "volumetric_filter.h"
 #include "volumetric_isosurface.h"
 #include "volumetric_noise.h"
 #include "volumetric_solver.h"
@@ -38,30 +39,6 @@ std::vector<SampleLevel> sampleLevels(const Samples& samples, int threads)
   return levels;
 }
 
-/// Adds to the right-hand side of a depth what was splatted at coarser ones,
-/// interpolated.
-void addCoarser(const Octree& tree, int depth, Constraints& constraints, int threads)
-{
-  const auto d = static_cast<std::size_t>(depth);
-  if (depth == 2)
-    return;
-  const BrickLevel& level = tree.levels[d];
-  const NodeField& coarse = constraints.own[d - 1];
-  parallelFor(level.size(), threads, [&](Index b) {
-    float values[brick_stride] = {};
-    const auto i = static_cast<std::size_t>(b);
-    interpolateToChild(coarse.brick(level.parents[i]), static_cast<int>(level.codes[i] & 7), values);
-    // Per unit volume the interpolated density is the same; a cell has 1/8 of
-    // the volume and 1/2 of the side.
-    for (int k = 0; k < brick_nodes * brick_nodes * brick_nodes; ++k) {
-      constraints.fine[d].brick(b)[k] += 0.25f * values[k];
-      if (depth < tree.depth)
-        constraints.own[d].brick(b)[k] += 0.25f * values[k];
-    }
-  });
-  constraints.own[d - 1] = NodeField();
-}
-
 NodeField interpolateLevel(const BrickLevel& level, const NodeField& coarse, int threads)
 {
   NodeField x(level.size());
@@ -83,17 +60,17 @@ Solution solve(const Octree& tree, Constraints& constraints, const std::vector<S
   Solution solution;
   solution.chi.resize(tree.levels.size());
   for (int d = 2; d <= tree.full_depth; ++d)
-    addCoarser(tree, d, constraints, options.threads);
+    addCoarser(tree, d, options.threads, constraints);
   solution.chi[static_cast<std::size_t>(tree.full_depth)] =
       solveBase(tree, constraints.fine, levels, options.point_weight, options.threads);
   for (int depth = tree.full_depth + 1; depth <= tree.depth; ++depth) {
     report(progress, "solve", 0.35 + 0.35 * (depth - tree.full_depth) / (tree.depth - tree.full_depth + 1));
     const auto d = static_cast<std::size_t>(depth);
-    addCoarser(tree, depth, constraints, options.threads);
+    addCoarser(tree, depth, options.threads, constraints);
     const BrickLevel& level = tree.levels[d];
     solution.chi[d] = interpolateLevel(level, solution.chi[d - 1], options.threads);
-    const LevelSystem system(level, levels[std::min(d + 1, levels.size() - 1)], tree.depth, options.point_weight,
-                             options.threads);
+    const SampleLevel& joined = levels[std::min(d + 1, levels.size() - 1)];
+    const LevelSystem system(level, joined, tree.depth, options.point_weight, options.threads);
     system.smooth(constraints.fine[d], options.iterations, solution.chi[d]);
     if (depth == tree.depth) {
       const LevelSystem::Norms norms = system.residual(constraints.fine[d], solution.chi[d]);
@@ -101,6 +78,7 @@ Solution solve(const Octree& tree, Constraints& constraints, const std::vector<S
     } else {
       system.addPull(solution.chi[d], constraints.own[d]);
     }
+    WaveFilter(level, joined, tree.depth, options.threads).apply(solution.chi[d], constraints.fine[d]);
     constraints.fine[d] = NodeField();
   }
   return solution;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "volumetric_solver.h"
+#include "volumetric_halo.h"
 #include "volumetric_noise.h"
 #include "volumetric_splat.h"
 #include <algorithm>
@@ -7,9 +8,6 @@
 #include <fresco/common/parallel.h>
 namespace fresco::volumetric {
 namespace {
-constexpr int halo_row = 8,
-              halo_slice = 6 * halo_row; ///< nodes -1..4 of a brick, rows padded
-constexpr int own_nodes = brick_cells * brick_cells * brick_cells;
 /// Sweeps over a brick while it is in the cache.
 constexpr int local_sweeps = 2;
 /// Area, in faces of a cell, beyond which an isolated sample pulls no harder: three depths below what the data sustain.
@@ -18,24 +16,15 @@ constexpr float most_faces = 64.f;
 /// Stencil of integral grad B_i . grad B_j for hat functions of a unit grid, by
 /// the number of axes on which i and j differ.
 constexpr float laplacian[4] = {8.f / 3.f, 0.f, -1.f / 6.f, -1.f / 12.f};
-
-/// Four nodes in a row along x, at any address.
-using Line [[gnu::vector_size(16), gnu::aligned(4), gnu::may_alias]] = float;
-inline Line& line(float* p) { return *reinterpret_cast<Line*>(p); }
-inline const Line& line(const float* p) { return *reinterpret_cast<const Line*>(p); }
-
-constexpr int haloIndex(int x, int y, int z) { return (x + 1) + halo_row * (y + 1) + halo_slice * (z + 1); }
-constexpr int haloStep(int k) { return (k % 3 - 1) + halo_row * (k / 3 % 3 - 1) + halo_slice * (k / 9 - 1); }
-constexpr int ownIndex(int x, int y, int z) { return x + brick_cells * (y + brick_cells * z); }
 } // namespace
 
 /// A brick with what lies around it, in the cache.
 struct LevelSystem::Block {
-  float x[6 * halo_slice] = {};
+  float x[halo_size] = {};
   float rows[27][own_nodes]; ///< matrix entries by offsetIndex()
   float inverse[own_nodes];  ///< of the diagonal
   float right[own_nodes];
-  bool unknown[own_nodes];
+  std::uint64_t fixed; ///< see fixedNodes()
 
   void sweep();
   Norms residual() const;
@@ -55,8 +44,7 @@ LevelSystem::LevelSystem(const BrickLevel& level, const SampleLevel& samples, in
     samples_[static_cast<std::size_t>(i)] = {s.position * scale, weight, isolated};
   });
   for (int k = 0; k < 27; ++k) {
-    const int axes = (k % 3 != 1) + (k / 3 % 3 != 1) + (k / 9 != 1);
-    std::fill_n(laplacian_rows_[k], own_nodes, laplacian[axes]);
+    std::fill_n(laplacian_rows_[k], own_nodes, laplacian[axesOf(k)]);
   }
 }
 
@@ -98,54 +86,14 @@ void LevelSystem::load(Index brick, const NodeField& b, const NodeField& x, Bloc
   const float* right = b.brick(brick);
   for (int y_z = 0; y_z < brick_cells * brick_cells; ++y_z)
     line(&block.right[y_z * brick_cells]) = line(&right[nodeIndex(0, y_z & 3, y_z >> 2)]);
-  const auto& neighbors = level_.neighbors[static_cast<std::size_t>(brick)];
-  for (int o = 0; o < 27; ++o) {
-    const int d[3] = {o % 3 - 1, o / 3 % 3 - 1, o / 9 - 1};
-    int h[3] = {d[0], d[1], d[2]}; // offset of the brick that holds the nodes
-    int holder = neighbors[static_cast<std::size_t>(o)];
-    for (int m = 1; m < 8 && holder < 0; ++m) { // else one that has them on its upper faces
-      for (int a = 0; a < 3; ++a)
-        h[a] = m >> a & 1 ? std::min(d[a], 0) : d[a];
-      holder = neighbors[static_cast<std::size_t>(offsetIndex(h[0], h[1], h[2]))];
-    }
-    copyPart(holder < 0 ? nullptr : x.brick(holder), d, h, block);
-  }
-}
-
-/// Nodes of the brick at offset `d`, as far as they belong to the halo, from those of the brick at offset `h`; else
-/// zeros.
-void LevelSystem::copyPart(const float* nodes, const int d[3], const int h[3], Block& block)
-{
-  int first[3], last[3];
-  for (int a = 0; a < 3; ++a) {
-    first[a] = d[a] < 0 ? -1 : d[a] > 0 ? brick_cells : 0;
-    last[a] = d[a] == 0 ? brick_cells - 1 : first[a];
-  }
-  for (int z = first[2]; z <= last[2]; ++z)
-    for (int y = first[1]; y <= last[1]; ++y) {
-      float* to = &block.x[haloIndex(first[0], y, z)];
-      const float* from = nodes ? nodes + nodeIndex(first[0] - 4 * h[0], y - 4 * h[1], z - 4 * h[2]) : nullptr;
-      if (d[0] == 0)
-        line(to) = from ? line(from) : Line{};
-      else
-        *to = from ? *from : 0.f;
-    }
+  loadHalo(level_, brick, x, block.x);
 }
 
 void LevelSystem::excludeFixed(Index brick, Block& block) const
 {
-  const auto& neighbors = level_.neighbors[static_cast<std::size_t>(brick)];
-  unsigned missing = 0; // bit o: the brick below in the axes of o's bits
-  for (int o = 1; o < 8; ++o)
-    if (neighbors[static_cast<std::size_t>(offsetIndex(-(o & 1), -(o >> 1 & 1), -(o >> 2)))] < 0)
-      missing |= 1u << o;
-  for (int i = 0; i < own_nodes; ++i) {
-    const int on_face = ((i & 3) == 0) | ((i >> 2 & 3) == 0) << 1 | ((i >> 4) == 0) << 2;
-    bool fixed = false;
-    for (int o = 1; o < 8; ++o)
-      fixed |= (o & ~on_face) == 0 && (missing >> o & 1);
-    block.unknown[i] = !fixed;
-    if (!fixed)
+  block.fixed = fixedNodes(level_, brick);
+  for (int i = 0; i < own_nodes && block.fixed >> i != 0; ++i) {
+    if (!(block.fixed >> i & 1))
       continue;
     for (auto& row : block.rows)
       row[i] = 0.f;
@@ -177,7 +125,7 @@ LevelSystem::Norms LevelSystem::Block::residual() const
     for (int k = 0; k < 27; ++k)
       sum -= line(&rows[k][own]) * line(at + haloStep(k));
     for (int i = 0; i < brick_cells; ++i)
-      if (unknown[own + i]) {
+      if (!(fixed >> (own + i) & 1)) {
         norms.residual += static_cast<double>(sum[i]) * static_cast<double>(sum[i]);
         norms.right += static_cast<double>(right[own + i]) * static_cast<double>(right[own + i]);
       }

@@ -39,7 +39,6 @@ private:
   void load(Index brick, const NodeField& b, const NodeField& x, Block& block) const;
   void smoothBrick(Index brick, const NodeField& b, int sweeps, NodeField& x) const;
   void excludeFixed(Index brick, Block& block) const;
-  static void copyPart(const float* nodes, const int d[3], const int h[3], Block& block);
 
   /// A sample at this depth.
   struct Constraint {

@@ -37,16 +37,14 @@ void removeSpecks(IsoSurface& surface)
   for (Index f = 0; f < surface.faces.cols(); ++f)
     ++faces[static_cast<std::size_t>(components.root(surface.faces(0, f)))];
   const int largest = faces.empty() ? 0 : *std::max_element(faces.begin(), faces.end());
-  const auto isSpeck = [&](int v) {
-    const int n = faces[static_cast<std::size_t>(components.root(v))];
-    return n < least_faces && n < least_share * largest;
-  };
+  const auto isSmall = [&](int n) { return n < least_faces && n < least_share * largest; };
+  if (std::none_of(faces.begin(), faces.end(), [&](int n) { return n > 0 && isSmall(n); }))
+    return;
+  const auto isSpeck = [&](int v) { return isSmall(faces[static_cast<std::size_t>(components.root(v))]); };
   Index kept = 0;
   for (Index f = 0; f < surface.faces.cols(); ++f)
     if (!isSpeck(surface.faces(0, f)))
       surface.faces.col(kept++) = surface.faces.col(f).eval();
-  if (kept == surface.faces.cols())
-    return;
   surface.faces.conservativeResize(3, kept);
   std::vector<int> new_index(faces.size());
   int count = 0;
