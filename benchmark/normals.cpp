@@ -2,10 +2,12 @@
 #include "support/tool.h"
 #include "virtual/dataset.h"
 #include "virtual/places.h"
+#include <Eigen/Eigenvalues>
 #include <array>
 #include <chrono>
 #include <cstdio>
 #include <ctime>
+#include <fresco/common/parallel.h>
 #include <fresco/filters/core/bilateral_normals.h>
 #include <fresco/filters/core/neighbors.h>
 #include <fresco/filters/core/oriented_normals.h>
@@ -21,6 +23,7 @@ namespace {
 struct MeasureOptions {
   std::string scene = "conference_room";
   int stations = 2, points = 1000000, k = 16;
+  bool oracle = false;
   float edge = 0.02f;    ///< metres to a crease: "beside an edge"
   float plane = 0.1f;    ///< metres without any bend around: "on planes"
   float bend = 1.f;      ///< degrees between faces of one plane at most
@@ -30,6 +33,7 @@ struct MeasureOptions {
 
 struct Sample {
   Points points, truth;    ///< sensor frame
+  Points exact;            ///< where the beams meet the faces, without noise
   std::vector<char> place; ///< 0 = beside an edge, 1 = on a plane, 2 = elsewhere: bent surfaces, near edges
 };
 
@@ -82,11 +86,14 @@ Sample takeSample(const LitScene& lit, const Creases& creases, const Vector3f& s
   pose.topRightCorner<3, 1>() = station.cast<double>() + lit.scene.mesh.origin;
   const LaserScan scan = scanScene(lit, pose, laser, 0);
   const Index n = scan.points.size();
-  Sample sample{scan.points.points, Points(3, n), std::vector<char>(static_cast<std::size_t>(n))};
+  Sample sample{scan.points.points, Points(3, n), Points(3, n), std::vector<char>(static_cast<std::size_t>(n))};
   for (Index i = 0; i < n; ++i) {
     const Vector3f normal = faceNormal(lit.scene.mesh, scan.faces[static_cast<std::size_t>(i)]);
     sample.truth.col(i) = scan.mixed[static_cast<std::size_t>(i)] ? Vector3f::Constant(NAN) : normal;
-    const Vector3f at = sample.points.col(i) + station;
+    const Index corner = lit.scene.mesh.faces(0, scan.faces[static_cast<std::size_t>(i)]);
+    const Vector3f beam = sample.points.col(i), on_face = Vector3f(lit.scene.mesh.vertices.col(corner)) - station;
+    sample.exact.col(i) = beam * (normal.dot(on_face) / normal.dot(beam));
+    const Vector3f at = beam + station;
     sample.place[static_cast<std::size_t>(i)] = creases.sharp.nearest(at, options.edge).index >= 0   ? 0
                                                 : creases.bends.nearest(at, options.plane).index < 0 ? 1
                                                                                                      : 2;
@@ -147,6 +154,48 @@ Points pclNormals(const Points& points, int k, int threads)
   return normals;
 }
 
+/// Least squares planes through those of the k nearest that lie on the same true surface: no choice of neighbours among
+/// them can tell the sides of an edge apart better.
+Points oracleNormals(const Sample& sample, const PointTree& tree, int k, int threads)
+{
+  const NeighborLists lists = nearestLists(tree, k, threads);
+  Points normals = Points::Constant(3, sample.points.cols(), NAN);
+  parallelFor(lists.size(), threads, [&](Index i) {
+    const int column = tree.columns()[static_cast<std::size_t>(i)];
+    const Vector3f truth = sample.truth.col(column), here = sample.points.col(column);
+    Eigen::Matrix3f A = Eigen::Matrix3f::Zero();
+    Vector3f sum = Vector3f::Zero();
+    int count = 0;
+    for (const int* j = lists.first(i); j != lists.last(i); ++j) {
+      const int other = tree.columns()[static_cast<std::size_t>(*j)];
+      const Vector3f way = sample.exact.col(other) - sample.exact.col(column);
+      if (!(truth.dot(sample.truth.col(other)) > 0.985f) || std::abs(truth.dot(way)) > 0.001f + 0.1f * way.norm())
+        continue;
+      const Vector3f offset = sample.points.col(other) - here;
+      A += offset * offset.transpose();
+      sum += offset;
+      ++count;
+    }
+    const auto n = static_cast<float>(std::max(1, count));
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f> eigen(A / n - sum / n * (sum / n).transpose());
+    const Vector3f normal = count < 3 ? Vector3f(-here.normalized()) : Vector3f(eigen.eigenvectors().col(0));
+    normals.col(column) = normal.dot(here) > 0 ? Vector3f(-normal) : normal;
+  });
+  return normals;
+}
+
+void printOracles(const std::vector<Sample>& samples, int threads)
+{
+  for (const int k : {16, 32, 64, 128}) {
+    Errors errors;
+    for (const Sample& sample : samples) {
+      const PointTree tree(sample.points, threads);
+      errors.add(sample, timed(errors, [&] { return oracleNormals(sample, tree, k, threads); }));
+    }
+    errors.print(("neighbours sorted by truth, k = " + std::to_string(k)).c_str());
+  }
+}
+
 void compareAtNoise(const std::vector<Sample>& samples, int k, int threads)
 {
   Errors pcl_errors, ours, smooth[3];
@@ -183,6 +232,8 @@ int main(int argc, char** argv)
     CommonOptions common;
     Args args("fresco_benchmark_normals [options]",
               "Angles between estimated and true normals of generated laser scans, beside edges and elsewhere.");
+    args.option("scene", options.scene, "conference_room, apartment or a mesh file");
+    args.flag("oracle", options.oracle, "also plane fits to those of k neighbours that truly lie on one surface");
     args.option("stations", options.stations, "laser stations");
     args.option("points", options.points, "laser points per station, about");
     args.option("k", options.k, "neighbours");
@@ -211,6 +262,8 @@ int main(int argc, char** argv)
                   "|---|---|---|---|---|---|\n",
                   options.k);
       compareAtNoise(samples, options.k, common.threads);
+      if (options.oracle)
+        printOracles(samples, common.threads);
     }
   });
 }

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "near_groups.h"
 #include <algorithm>
 #include <cmath>
 #include <fresco/common/parallel.h>
@@ -10,6 +11,8 @@
 namespace fresco {
 namespace {
 using Keys = std::vector<PointTree::Key>;
+constexpr Index group_leaves = 8;        // searched for at once; measured
+constexpr std::size_t most_leaves = 256; // around them; beyond, each point is searched for alone
 
 /// An upper bound of the squared distance from `to` to its k-th neighbour, from that of a point nearby.
 float boundFromNearby(const Eigen::Vector3f& from, float squared_distance, const Eigen::Vector3f& to)
@@ -26,6 +29,25 @@ NeighborLists evenLists(Index n, Index k)
     lists.begin[i] = i * k;
   lists.index.resize(static_cast<std::size_t>(n * k));
   return lists;
+}
+
+/// The distance of the k-th neighbour of one point, and a little more, tells how far around its group to look.
+/// @param bound squared distance to the k-th neighbour of the point before the group; of its last one afterwards
+void nearestOfGroup(const PointTree& tree, NearGroup& group, float& bound, Keys& keys, NeighborLists& lists)
+{
+  const Index middle = (group.begin() + group.end()) / 2;
+  const int k = static_cast<int>(lists.count(middle));
+  if (group.begin() > 0)
+    bound = boundFromNearby(tree.point(group.begin() - 1), bound, tree.point(middle));
+  tree.nearestKeys(tree.point(middle), k, keys, bound);
+  const auto farthest = std::max_element(keys.begin(), keys.end());
+  group.gather(1.25f * std::sqrt(farthest == keys.end() ? 0.f : PointTree::squaredDistance(*farthest)), most_leaves);
+  bound = std::numeric_limits<float>::infinity();
+  for (Index i = group.begin(); i < group.end(); ++i) {
+    if (i > group.begin())
+      bound = boundFromNearby(tree.point(i - 1), bound, tree.point(i));
+    bound = group.nearest(i, k, bound, lists.index.data() + lists.begin[i]);
+  }
 }
 
 /// Lists found range by range (lists_of_range.index, and counts in lists_of_range.begin) joined to one.
@@ -95,19 +117,14 @@ NeighborLists nearestLists(const PointTree& tree, int k, int threads)
   require(k > 0, "neighbour search: k ", k, " is below 1");
   const Index each = std::min<Index>(k, tree.size());
   NeighborLists lists = evenLists(tree.size(), each);
-  parallelRanges(tree.size(), threads, [&](Index begin, Index end) {
+  const std::vector<Index> groups = tree.subtrees(group_leaves);
+  parallelRanges(static_cast<Index>(groups.size()) - 1, threads, [&](Index begin, Index end) {
+    NearGroup group(tree);
     Keys keys;
     float bound = std::numeric_limits<float>::infinity();
-    for (Index i = begin; i < end; ++i) {
-      const Eigen::Vector3f query = tree.point(i);
-      if (i > begin)
-        bound = boundFromNearby(tree.point(i - 1), bound, query);
-      tree.nearestKeys(query, static_cast<int>(each), keys, bound);
-      std::sort(keys.begin(), keys.end());
-      // Distances beyond the range of float are not found; such a point is its own neighbour instead.
-      keys.resize(static_cast<std::size_t>(each), PointTree::key(std::numeric_limits<float>::infinity(), i));
-      bound = PointTree::squaredDistance(keys.back());
-      std::transform(keys.begin(), keys.end(), lists.index.begin() + lists.begin[i], PointTree::position);
+    for (Index g = begin; g < end; ++g) {
+      group.enter(groups[g], groups[g + 1]);
+      nearestOfGroup(tree, group, bound, keys, lists);
     }
   });
   return lists;

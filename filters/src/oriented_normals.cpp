@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "edge_fit.h"
+#include "near_groups.h"
+#include "view_direction.h"
 #include <algorithm>
 #include <cmath>
 #include <fresco/common/parallel.h>
@@ -9,8 +11,11 @@
 #include <numeric>
 namespace fresco {
 namespace {
-constexpr int fewest = 6;          // neighbours within a radius; below, the nearest are taken
-constexpr int most = 256;          // neighbours within a radius; beyond, evenly chosen
+constexpr int fewest = 6;                  // neighbours within a radius; below, the nearest are taken
+constexpr int most = 256;                  // neighbours within a radius; beyond, evenly chosen
+constexpr Index group_leaves = 8;          // searched for at once
+constexpr std::size_t most_leaves = 65536; // around them; beyond, each point is searched for alone
+constexpr Index spread = 2;        // times the neighbours of a point are kept in dense parts to choose them from
 constexpr float least_width = 6.f; // radius of a neighbourhood / deviation of the points from the surface
 
 void validate(const PointSet& set, const NormalOptions& options)
@@ -51,21 +56,46 @@ float surfaceNoise(const PointTree& tree, const NeighborLists& lists, int thread
   return deviations.empty() ? 0.f : *middle;
 }
 
+/// Writes as many points as list i has, spread evenly, from as far as `radius`.
+void widenList(const PointTree& tree, float radius, NearGroup& group, NeighborLists& lists, Index i)
+{
+  thread_local std::vector<PointTree::Key> keys;
+  int* list = lists.index.data() + lists.begin[i];
+  const auto count = static_cast<std::size_t>(lists.count(i));
+  const std::size_t found = group.within(i, radius);
+  const bool enough = found >= count;
+  if (!enough)
+    tree.withinKeys(tree.point(i), radius, keys, false);
+  const double step = static_cast<double>(enough ? found : keys.size()) / static_cast<double>(count);
+  for (std::size_t j = 0; step >= 1 && j < count; ++j) {
+    const auto at = static_cast<std::size_t>((static_cast<double>(j) + 0.5) * step);
+    list[j] = enough ? group.positions()[at] : PointTree::position(keys[at]);
+  }
+}
+
 /// Neighbourhoods that noise makes as thick as wide have no normal: where the scan is so dense, the same number of
 /// neighbours is taken, spread evenly, from as far as `radius`.
 void widenLists(const PointTree& tree, float radius, NeighborLists& lists, int threads)
 {
-  parallelRanges(tree.size(), threads, [&](Index begin, Index end) {
-    std::vector<PointTree::Key> keys;
-    for (Index i = begin; i < end; ++i) {
-      int* list = lists.index.data() + lists.begin[i];
-      const auto count = static_cast<std::size_t>(lists.count(i));
-      if (!((tree.point(list[count - 1]) - tree.point(i)).norm() < radius))
+  const auto narrow = [&](Index i) { return (tree.point(*(lists.last(i) - 1)) - tree.point(i)).norm() < radius; };
+  const std::vector<Index> groups = tree.subtrees(group_leaves);
+  parallelRanges(static_cast<Index>(groups.size()) - 1, threads, [&](Index begin, Index end) {
+    NearGroup group(tree);
+    for (Index g = begin; g < end; ++g) {
+      group.enter(groups[g], groups[g + 1]);
+      std::vector<Index> members;
+      for (Index i = group.begin(); i < group.end(); ++i)
+        if (narrow(i))
+          members.push_back(i);
+      if (members.empty())
         continue;
-      tree.withinKeys(tree.point(i), radius, keys, false);
-      const double step = static_cast<double>(keys.size()) / static_cast<double>(count);
-      for (std::size_t j = 0; step >= 1 && j < count; ++j)
-        list[j] = PointTree::position(keys[static_cast<std::size_t>((static_cast<double>(j) + 0.5) * step)]);
+      group.gather(radius, most_leaves);
+      const auto wanted = static_cast<std::size_t>(spread * lists.count(members.front()));
+      const std::size_t found = group.within(members[members.size() / 2], radius);
+      if (found >= 2 * wanted)
+        group.thin(found / wanted);
+      for (const Index i : members)
+        widenList(tree, radius, group, lists, i);
     }
   });
 }
@@ -87,15 +117,6 @@ Neighborhoods findNeighborhoods(const PointSet& set, const NormalOptions& option
   }
   const PointTree tree(set.points, options.threads);
   return {tree.points(), tree.columns(), options.radius > 0 ? listsWithin(tree, options) : listsByCount(tree, options)};
-}
-
-/// Direction to the viewpoint, not normalised; zero where it is unknown.
-Eigen::Vector3f viewDirection(const PointSet& set, Index column)
-{
-  if (set.viewpoints.cols() == 0)
-    return Eigen::Vector3f::Zero();
-  const Eigen::Vector3f view = set.viewpoints.col(set.viewpoints.cols() == 1 ? 0 : column) - set.points.col(column);
-  return view.allFinite() ? view : Eigen::Vector3f::Zero();
 }
 
 /// Unit normal that `fit` and the direction `view` leave, oriented to `view`; NaN if they leave none.
@@ -168,7 +189,7 @@ NormalField estimateNormals(const PointSet& set, const NormalOptions& options, c
   report(progress, "fit planes", 0.6);
   std::vector<PlaneFit> fits = fitLists(all, options.threads);
   if (options.edges)
-    refitAtEdges(all, fits, options.threads);
+    refitAtEdges(set, all, fits, options.threads);
   report(progress, "orient normals", 0.9);
   NormalField field = toField(set, all, fits, options.threads);
   if (set.viewpoints.cols() == 0)

@@ -224,6 +224,53 @@ void PointTree::withinKeys(const Eigen::Vector3f& query, float radius, std::vect
     std::sort(found.begin(), found.end(), [](Key a, Key b) { return position(a) < position(b); });
 }
 
+void PointTree::leavesWithin(const Eigen::Vector3f& low, const Eigen::Vector3f& high, std::vector<int>& leaves) const
+{
+  leaves.clear();
+  if (leaves_ == 0)
+    return;
+  Part stack[64];
+  int height = 0;
+  stack[height++] = {0, 0, leaves_};
+  while (height > 0) {
+    Part part = stack[--height];
+    while (part.end - part.begin > 1) {
+      const Node& node = nodes_[part.node];
+      const Index middle = part.middle();
+      const Part left = {part.node + 1, part.begin, middle};
+      const Part right = {part.node + middle - part.begin, middle, part.end};
+      const bool in_left = low[node.axis] <= node.low, in_right = high[node.axis] >= node.high;
+      if (!in_left && !in_right)
+        break;
+      if (in_left && in_right)
+        stack[height++] = right;
+      part = in_left ? left : right;
+    }
+    if (part.end - part.begin == 1)
+      leaves.push_back(static_cast<int>(part.begin));
+  }
+}
+
+std::vector<Index> PointTree::subtrees(Index most) const
+{
+  std::vector<Index> first;
+  std::vector<Part> open;
+  if (leaves_ > 0)
+    open.push_back({0, 0, leaves_});
+  while (!open.empty()) {
+    const Part part = open.back();
+    open.pop_back();
+    if (part.end - part.begin <= most) {
+      first.push_back(part.begin);
+      continue;
+    }
+    open.push_back({0, part.middle(), part.end}); // nodes are not needed
+    open.push_back({0, part.begin, part.middle()});
+  }
+  first.push_back(leaves_);
+  return first;
+}
+
 namespace {
 void toNeighbors(std::vector<PointTree::Key>& keys, const std::vector<int>& columns, std::vector<Neighbor>& found)
 {

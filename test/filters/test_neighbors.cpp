@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "../../filters/src/near_kernels.h"
 #include "clouds.h"
 #include <algorithm>
 #include <fresco/filters/core/local_sampling.h>
@@ -119,6 +120,70 @@ TEST(PointTree, ListsHoldThePointAndDoNotDependOnThreads)
     for (int k = 0; k < 12; ++k)
       EXPECT_NEAR((tree.point(one.first(i)[k]) - tree.point(i)).squaredNorm(),
                   found[static_cast<std::size_t>(k)].squared_distance, 1e-8f);
+  }
+}
+
+/// Positions of the k nearest of point i, by distance, then position.
+std::vector<int> nearestOfAll(const PointTree& tree, Index i, std::size_t k)
+{
+  std::vector<PointTree::Key> keys;
+  for (Index j = 0; j < tree.size(); ++j) {
+    const Eigen::Vector3f d = tree.point(j) - tree.point(i);
+    keys.push_back(PointTree::key(d.x() * d.x() + d.y() * d.y() + d.z() * d.z(), j));
+  }
+  std::sort(keys.begin(), keys.end());
+  std::vector<int> positions;
+  for (std::size_t j = 0; j < std::min(k, keys.size()); ++j)
+    positions.push_back(PointTree::position(keys[j]));
+  return positions;
+}
+
+TEST(PointTree, NearestListsAreThoseOfASearchOfAllPoints)
+{
+  Points grid(3, 900); // many points at the same distance
+  for (Index i = 0; i < grid.cols(); ++i)
+    grid.col(i) << static_cast<float>(i % 30), static_cast<float>(i / 30), 0.f;
+  Points far = unevenPoints(2000, 4);
+  far.rightCols(1000).colwise() += Eigen::Vector3f(50, 0, 0);
+  for (const Points& points : {grid, far, unevenPoints(700, 5)}) {
+    const PointTree tree(points);
+    for (const int k : {1, 9, 16, 150}) {
+      const NeighborLists lists = nearestLists(tree, k);
+      for (Index i = 0; i < tree.size(); i += 3)
+        EXPECT_EQ(std::vector<int>(lists.first(i), lists.last(i)), nearestOfAll(tree, i, static_cast<std::size_t>(k)));
+    }
+  }
+}
+
+TEST(NearKernels, TheFastOnesGiveTheSameBits)
+{
+  const NearKernels *fast = avx2NearKernels(), &slow = portableNearKernels();
+  if (!fast)
+    GTEST_SKIP() << "no AVX2";
+  const PointTree tree(unevenPoints(1001, 6));
+  std::vector<int> leaves(static_cast<std::size_t>(tree.leafCount()));
+  std::iota(leaves.begin(), leaves.end(), 0);
+  const std::size_t room = 8 * leaves.size() + 8;
+  std::vector<float> squared(room), same_squared(room);
+  std::vector<int> positions(room), same_positions(room), ranks(room), same_ranks(room);
+  for (const float bound : {0.f, 1e-4f, 0.01f, 0.3f, 100.f, std::numeric_limits<float>::infinity()}) {
+    const Eigen::Vector3f query = tree.point(500);
+    const auto run = [&](const NearKernels& kernels, std::vector<float>& d, std::vector<int>& p, std::vector<int>& r) {
+      const std::size_t count =
+          kernels.closer(tree.leafCoordinates(), leaves.data(), leaves.size(), query.data(), bound, d.data(), p.data());
+      kernels.rank(d.data(), count, r.data());
+      d.resize(count), p.resize(count), r.resize(count);
+      return count;
+    };
+    const std::size_t count = run(*fast, squared, positions, ranks);
+    EXPECT_EQ(count, run(slow, same_squared, same_positions, same_ranks));
+    EXPECT_EQ(squared, same_squared);
+    EXPECT_EQ(positions, same_positions);
+    EXPECT_EQ(ranks, same_ranks);
+    for (std::size_t i = 0; i < count; i += 17)
+      EXPECT_EQ(ranks[i], std::count_if(squared.begin(), squared.end(), [&](float d) { return d < squared[i]; }));
+    squared.resize(room), same_squared.resize(room), positions.resize(room), same_positions.resize(room);
+    ranks.resize(room), same_ranks.resize(room);
   }
 }
 
