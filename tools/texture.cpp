@@ -37,6 +37,8 @@ void declare(Args& args, TextureOptions& options, ToolOptions& tool)
   args.flag("no_level", tool.no_level, "leave the steps of colour at seams");
   args.flag("no_examples", tool.no_examples, "colour unseen parts smoothly, without structure");
   args.option("strip", options.strip, "pixels over which one photograph passes into the next at a seam, 0..100");
+  args.option("rounds", options.rounds,
+              "how often texels are corrected by all photographs, where these agree within half a pixel, 0..100");
   args.option(
       "keep_out", tool.keep_out,
       "every Nth photograph (the Nth, 2Nth ...) is aligned with the others but not used, to judge by; 0 = none");

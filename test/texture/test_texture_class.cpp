@@ -57,6 +57,7 @@ TEST(TextureReconstruction, SettersReachTheOptions)
   texture.setSmoothness(0.5);
   texture.setMargin(7);
   texture.setDepthTolerance(0.02);
+  texture.setBackProjectionRounds(2);
   texture.setUseExamples(false);
   texture.setMemory(64);
   texture.setThreads(2);
@@ -66,6 +67,7 @@ TEST(TextureReconstruction, SettersReachTheOptions)
   EXPECT_EQ(texture.getSmoothness(), 0.5);
   EXPECT_EQ(texture.getMargin(), 7);
   EXPECT_EQ(texture.getDepthTolerance(), 0.02);
+  EXPECT_EQ(texture.getBackProjectionRounds(), 2);
   EXPECT_FALSE(texture.getUseExamples());
   EXPECT_EQ(texture.getMemory(), 64);
   EXPECT_EQ(texture.getThreads(), 2);

@@ -122,7 +122,7 @@ TEST(TextureUnseen, GapsTakeTheColourOfTheChartsBesideThem)
 {
   Chart chart;
   chart.width = chart.height = 4;
-  chart.owner.assign(16, 0);
+  chart.texels = OwnedTexels::from(std::vector<int>(16, 0), 4);
   chart.atlas = 0;
   chart.x = chart.y = 10;
   std::vector<Image> atlases{Image(40, 40, 3, 128)};

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "atlas_gaps.h"
+#include <algorithm>
 #include <fresco/common/parallel.h>
 namespace fresco {
 namespace {
@@ -10,10 +11,10 @@ std::vector<std::uint8_t> ownTexels(const std::vector<Chart>& charts, int atlas,
 {
   std::vector<std::uint8_t> round(static_cast<std::size_t>(image.width) * image.height, 0);
   for (const Chart& chart : charts)
-    for (int y = 0; y < chart.height && chart.atlas == atlas; ++y)
-      for (int x = 0; x < chart.width; ++x)
-        if (chart.owner[static_cast<std::size_t>(y) * chart.width + x] >= 0)
-          round[static_cast<std::size_t>(chart.y + y) * image.width + chart.x + x] = 1;
+    if (chart.atlas == atlas)
+      for (const TexelSpan& span : chart.texels.spans)
+        std::fill_n(round.begin() + static_cast<std::ptrdiff_t>(chart.y + span.y) * image.width + chart.x + span.x,
+                    span.length, std::uint8_t(1));
   return round;
 }
 

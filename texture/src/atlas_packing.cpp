@@ -27,10 +27,9 @@ Mask maskOf(const Chart& chart, int block)
   mask.width = (chart.width + block - 1) / block;
   mask.height = (chart.height + block - 1) / block;
   std::vector<char> taken(static_cast<std::size_t>(mask.width) * mask.height, 0);
-  for (int y = 0; y < chart.height; ++y)
-    for (int x = 0; x < chart.width; ++x)
-      if (chart.owner[static_cast<std::size_t>(y) * chart.width + x] >= 0)
-        taken[static_cast<std::size_t>(y / block) * mask.width + x / block] = 1;
+  for (const TexelSpan& span : chart.texels.spans)
+    for (int x = span.x / block; x <= (span.x + span.length - 1) / block; ++x)
+      taken[static_cast<std::size_t>(span.y / block) * mask.width + x] = 1;
   mask.rows.resize(mask.height);
   for (int y = 0; y < mask.height; ++y) {
     const char* row = taken.data() + static_cast<std::size_t>(y) * mask.width;
@@ -197,7 +196,7 @@ double ownedTexels(const std::vector<Chart>& charts)
 {
   double sum = 0;
   for (const Chart& chart : charts)
-    sum += static_cast<double>(std::count_if(chart.owner.begin(), chart.owner.end(), [](int o) { return o >= 0; }));
+    sum += static_cast<double>(chart.texels.count());
   return sum;
 }
 

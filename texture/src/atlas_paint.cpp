@@ -1,118 +1,80 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "atlas_paint.h"
-#include "chart_raster.h"
+#include "patch_frame.h"
 #include <algorithm>
 #include <cmath>
 #include <fresco/common/parallel.h>
 namespace fresco {
 namespace {
-struct Texel {
-  int x, y;                ///< in the atlas
-  Eigen::Vector2d center;  ///< in the chart's texels
-  Eigen::Vector3d weights; ///< of the patch's corners
-};
-
-/// visit(Texel) for each texel that belongs to the patch
-template <typename Visit>
-void forOwnTexels(const PaintScene& scene, Index patch, const Visit& visit)
-{
-  const int c = scene.face_chart[scene.patches.parent[patch]];
-  if (c < 0)
-    return;
-  const Chart& chart = scene.charts[c];
-  const Eigen::Matrix<double, 2, 3> corners = patchTexels(scene.patches, chart, patch);
-  const Eigen::Vector2i low = corners.rowwise().minCoeff().array().floor().cast<int>().matrix(),
-                        high = corners.rowwise().maxCoeff().array().floor().cast<int>().matrix();
-  const int reach = scene.border + 1;
-  for (int y = std::max(0, low.y() - reach); y <= std::min(chart.height - 1, high.y() + reach); ++y)
-    for (int x = std::max(0, low.x() - reach); x <= std::min(chart.width - 1, high.x() + reach); ++x)
-      if (chart.owner[static_cast<std::size_t>(y) * chart.width + x] == patch) {
-        const Eigen::Vector2d center(x + 0.5, y + 0.5);
-        visit(Texel{chart.x + x, chart.y + y, center, barycentric(corners, center)});
-      }
-}
-
-Eigen::Matrix3d cornerPoints(const PatchMesh& patches, Index patch)
-{
-  Eigen::Matrix3d out;
-  for (int k = 0; k < 3; ++k)
-    out.col(k) = patches.vertices.col(patches.faces(k, patch)).cast<double>();
-  return out;
-}
-
 void store(const Eigen::Vector3f& color, std::uint8_t* pixel)
 {
   for (int c = 0; c < 3; ++c)
-    pixel[c] = static_cast<std::uint8_t>(std::lround(std::clamp(color[c], 0.f, 255.f)));
+    pixel[c] = static_cast<std::uint8_t>(std::clamp(color[c], 0.f, 255.f) + 0.5f);
 }
 
-/// Where the chart's texels lie in a photograph, for one patch.
+/// Colours of a patch's texels in one photograph.
 class PatchSampler {
 public:
-  PatchSampler(const PaintScene& scene, const Projector& view, const Image& photo, Index patch)
-      : view_(view), photo_(photo), points_(cornerPoints(scene.patches, patch)),
-        corners_(patchTexels(scene.patches, scene.charts[scene.face_chart[scene.patches.parent[patch]]], patch))
+  /// @param map that looks at the photograph
+  PatchSampler(const PaintScene& scene, const PatchMap& map, const Image& photo, Index patch) : map_(map), photo_(photo)
   {
     for (int k = 0; k < 3; ++k)
       least_[k] = goesOn(scene, patch, (k + 1) % 3) ? -far_beyond : inset(k);
-    const Eigen::Vector2d middle = corners_.rowwise().mean();
-    const Eigen::Vector2f at = pixel(middle), dx = pixel(middle + Eigen::Vector2d(1, 0)) - at,
-                          dy = pixel(middle + Eigen::Vector2d(0, 1)) - at;
+    const Eigen::Vector2f middle = map.place(Eigen::Vector3f::Constant(1.f / 3));
     constexpr float most = 16;
-    const float pixels_per_texel = std::max(dx.norm(), dy.norm());
+    const float pixels_per_texel = map.steps(middle.x(), middle.y()).colwise().norm().maxCoeff();
     steps_ =
         std::isfinite(pixels_per_texel) ? static_cast<int>(std::lround(std::clamp(pixels_per_texel, 1.f, most))) : 1;
   }
 
   /// Mean over the texel.
-  Eigen::Vector3f operator()(const Eigen::Vector2d& center) const
+  Eigen::Vector3f operator()(const Eigen::Vector2f& center) const
   {
+    if (steps_ == 1) {
+      const Eigen::Vector2f p = pixel(center);
+      return samplePhoto(photo_, p.x(), p.y());
+    }
     Eigen::Vector3f sum = Eigen::Vector3f::Zero();
+    const float step = 1.f / static_cast<float>(steps_);
     for (int j = 0; j < steps_; ++j)
       for (int i = 0; i < steps_; ++i) {
-        const Eigen::Vector2f p = pixel(center + Eigen::Vector2d((i + 0.5) / steps_ - 0.5, (j + 0.5) / steps_ - 0.5));
+        const Eigen::Vector2f p = pixel(center + Eigen::Vector2f((static_cast<float>(i) + 0.5f) * step - 0.5f,
+                                                                 (static_cast<float>(j) + 0.5f) * step - 0.5f));
         sum += samplePhoto(photo_, p.x(), p.y());
       }
-    return sum / static_cast<float>(steps_ * steps_);
+    return sum * (step * step);
   }
 
 private:
-  static constexpr double far_beyond = 1e3;
-
-  /// Whether the seen surface goes on straight beyond a side of the patch.
-  static bool goesOn(const PaintScene& scene, Index patch, int side)
-  {
-    constexpr float straight = 0.95f; // cosine of 18 degrees
-    const int other = scene.patches.neighbors(side, patch);
-    return other >= 0 && scene.view[other] >= 0 &&
-           scene.patches.normals.col(other).dot(scene.patches.normals.col(patch)) > straight;
-  }
+  static constexpr float far_beyond = 1e3f;
 
   /// Weight of corner k at edge_pixels from the side opposite of it: nearer to an edge, pixels mix with what is beyond.
-  double inset(int k) const
+  float inset(int k) const
   {
-    constexpr double edge_pixels = 0.75, most = 0.2; // a patch of few pixels keeps its middle
-    Eigen::Matrix<double, 2, 3> c;
-    for (int i = 0; i < 3; ++i)
-      c.col(i) = view_(points_.col(i).cast<float>()).head<2>().cast<double>();
-    const Eigen::Vector2d side = c.col((k + 2) % 3) - c.col((k + 1) % 3), to = c.col(k) - c.col((k + 1) % 3);
-    const double height = std::abs(side.x() * to.y() - side.y() * to.x()) / std::max(side.norm(), 1e-9);
-    return std::min(most, edge_pixels / std::max(height, 1e-9));
+    constexpr float edge_pixels = 0.75f, most = 0.2f; // a patch of few pixels keeps its middle
+    Eigen::Matrix<float, 2, 3> c;
+    for (int i = 0; i < 3; ++i) {
+      const Eigen::Vector2f at = map_.place(Eigen::Vector3f::Unit(i));
+      c.col(i) = map_.pixel(at.x(), at.y());
+    }
+    const Eigen::Vector2f side = c.col((k + 2) % 3) - c.col((k + 1) % 3), to = c.col(k) - c.col((k + 1) % 3);
+    const float height = std::abs(side.x() * to.y() - side.y() * to.x()) / std::max(side.norm(), 1e-6f);
+    return std::min(most, edge_pixels / std::max(height, 1e-6f));
   }
 
-  Eigen::Vector2f pixel(const Eigen::Vector2d& texel) const
+  Eigen::Vector2f pixel(const Eigen::Vector2f& texel) const
   {
-    const Eigen::Vector3d inside =
-        barycentric(corners_, texel).cwiseMax(least_); // what lies beyond may be another surface
-    const Eigen::Vector3d point = points_ * (inside / inside.sum());
-    return view_(point.cast<float>()).head<2>();
+    const Eigen::Vector3f weights = map_.weights(texel.x(), texel.y());
+    if (!(weights.array() < least_.array()).any())
+      return map_.pixel(texel.x(), texel.y());
+    const Eigen::Vector3f inside = weights.cwiseMax(least_); // what lies beyond may be another surface
+    const Eigen::Vector2f at = map_.place(inside / inside.sum());
+    return map_.pixel(at.x(), at.y());
   }
 
-  const Projector& view_;
+  const PatchMap& map_;
   const Image& photo_;
-  Eigen::Matrix3d points_;
-  Eigen::Matrix<double, 2, 3> corners_;
-  Eigen::Vector3d least_; ///< of the corners' weights: below 0 where the surface goes on straight and is seen
+  Eigen::Vector3f least_; ///< of the corners' weights: below 0 where the surface goes on straight and is seen
   int steps_;
 };
 
@@ -137,28 +99,38 @@ private:
   std::vector<std::pair<int, std::shared_ptr<const Image>>> kept_; ///< the newest last
 };
 
-void paintPatch(const PaintScene& scene, const PaintSources& sources, TaskPhotos& photos, Index patch, Image& atlas)
+/// What one task paints with.
+struct PaintDesk {
+  TaskPhotos photos;
+  std::vector<Eigen::Vector3f> colors; ///< of the texels of a patch
+};
+
+void paintPatch(const PaintScene& scene, const PaintSources& sources, PaintDesk& desk, Index patch, Image& atlas)
 {
-  std::vector<Texel> texels;
-  forOwnTexels(scene, patch, [&](const Texel& texel) {
-    texels.push_back(texel);
-    texels.back().weights = texel.weights.cwiseMax(0.0);
-    texels.back().weights /= texels.back().weights.sum();
-  });
-  Points colors = Points::Zero(3, static_cast<Index>(texels.size()));
+  PatchFrame frame(scene, patch);
+  desk.colors.clear();
   for (Index s = sources.blend.begin[patch]; s < sources.blend.begin[patch + 1]; ++s) {
     const BlendShare& share = sources.blend.list[s];
-    const PatchSampler sampler(scene, sources.views[share.view], photos[share.view], patch);
+    if (!frame.map.look(sources.views[share.view]))
+      continue;
+    const PatchSampler sampler(scene, frame.map, desk.photos[share.view], patch);
     const Eigen::Vector3f gain = sources.gains.col(share.view);
-    for (std::size_t t = 0; t < texels.size(); ++t) {
-      const Eigen::Vector3f corners = texels[t].weights.cast<float>();
+    const bool first = desk.colors.empty();
+    std::size_t next = 0;
+    frame.forTexels([&](const Eigen::Vector2f& center, int, int) {
+      if (first)
+        desk.colors.emplace_back(Eigen::Vector3f::Zero());
+      Eigen::Vector3f& color = desk.colors[next++];
+      const Eigen::Vector3f corners = frame.inside(center);
       if (const float weight = share.weights.dot(corners); weight > 0)
-        colors.col(static_cast<Index>(t)) +=
-            weight * (gain.cwiseProduct(sampler(texels[t].center)) + share.offsets * corners);
-    }
+        color += weight * (gain.cwiseProduct(sampler(center)) + share.offsets * corners);
+    });
   }
-  for (std::size_t t = 0; t < texels.size(); ++t)
-    store(colors.col(static_cast<Index>(t)), atlas.pixel(texels[t].x, texels[t].y));
+  std::size_t next = 0;
+  if (!desk.colors.empty())
+    frame.forTexels([&](const Eigen::Vector2f&, int x, int y) {
+      store(desk.colors[next++], atlas.pixel(frame.chart.x + x, frame.chart.y + y));
+    });
 }
 
 /// Patches of one view that one task paints.
@@ -172,7 +144,7 @@ void paintSeen(const PaintScene& scene, const PaintSources& sources, std::vector
 {
   std::vector<int> order;
   for (Index i = 0; i < scene.patches.size(); ++i)
-    if (scene.view[i] >= 0 && scene.face_chart[scene.patches.parent[i]] >= 0)
+    if (scene.isSeen(i))
       order.push_back(static_cast<int>(i));
   std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return scene.view[a] < scene.view[b]; });
   constexpr std::size_t most_patches = 2048;
@@ -185,10 +157,9 @@ void paintSeen(const PaintScene& scene, const PaintSources& sources, std::vector
   parallelFor(
       static_cast<Index>(tasks.size()), scene.threads,
       [&](Index t) {
-        TaskPhotos photos(sources.photos);
+        PaintDesk desk{TaskPhotos(sources.photos), {}};
         for (std::size_t i = tasks[t].begin; i < tasks[t].end; ++i)
-          paintPatch(scene, sources, photos, order[i],
-                     atlases[scene.charts[scene.face_chart[scene.patches.parent[order[i]]]].atlas]);
+          paintPatch(scene, sources, desk, order[i], atlases[scene.chartOf(order[i])->atlas]);
       },
       1);
 }
@@ -197,18 +168,18 @@ Points patchColors(const PaintScene& scene, const std::vector<Image>& atlases)
 {
   Points colors = Points::Constant(3, scene.patches.size(), -1.f);
   parallelFor(scene.patches.size(), scene.threads, [&](Index i) {
-    const int c = scene.face_chart[scene.patches.parent[i]];
-    if (scene.view[i] < 0 || c < 0)
+    if (!scene.isSeen(i))
       return;
-    Eigen::Vector3f sum = Eigen::Vector3f::Zero();
-    int count = 0;
-    forOwnTexels(scene, i, [&](const Texel& texel) {
-      const std::uint8_t* p = atlases[scene.charts[c].atlas].pixel(texel.x, texel.y);
-      sum += Eigen::Vector3f(p[0], p[1], p[2]);
+    const Chart& chart = *scene.chartOf(i);
+    int sum[3] = {0, 0, 0}, count = 0;
+    chart.texels.forTexels(scene.slots[i], [&](int x, int y) {
+      const std::uint8_t* p = atlases[chart.atlas].pixel(chart.x + x, chart.y + y);
+      for (int c = 0; c < 3; ++c)
+        sum[c] += p[c];
       ++count;
     });
     if (count > 0)
-      colors.col(i) = sum / static_cast<float>(count);
+      colors.col(i) = Eigen::Vector3f(sum[0], sum[1], sum[2]) / static_cast<float>(count);
   });
   return colors;
 }
@@ -216,18 +187,36 @@ Points patchColors(const PaintScene& scene, const std::vector<Image>& atlases)
 void paintUnseen(const PaintScene& scene, const Points& colors, std::vector<Image>& atlases, std::vector<Image>& masks)
 {
   parallelFor(scene.patches.size(), scene.threads, [&](Index i) {
-    const int c = scene.face_chart[scene.patches.parent[i]];
-    if (scene.view[i] >= 0 || c < 0)
+    const Chart* chart = scene.chartOf(i);
+    if (scene.view[i] >= 0 || scene.slots[i] < 0)
       return;
-    const int atlas = scene.charts[c].atlas;
     Eigen::Matrix3f corners;
     for (int k = 0; k < 3; ++k)
       corners.col(k) = colors.col(scene.patches.faces(k, i));
-    forOwnTexels(scene, i, [&](const Texel& texel) {
-      const Eigen::Vector3d inside = texel.weights.cwiseMax(0.0);
-      store(corners * (inside / inside.sum()).cast<float>(), atlases[atlas].pixel(texel.x, texel.y));
-      *masks[atlas].pixel(texel.x, texel.y) = 255;
+    const PatchFrame frame(scene, i);
+    frame.forTexels([&](const Eigen::Vector2f& center, int x, int y) {
+      x += chart->x;
+      y += chart->y;
+      store(corners * frame.inside(center), atlases[chart->atlas].pixel(x, y));
+      *masks[chart->atlas].pixel(x, y) = 255;
     });
   });
+}
+
+std::vector<int> texelSlots(const std::vector<Chart>& charts, Index patches)
+{
+  std::vector<int> slots(static_cast<std::size_t>(patches), -1);
+  for (const Chart& chart : charts)
+    for (std::size_t s = 0; s < chart.texels.patches.size(); ++s)
+      slots[chart.texels.patches[s]] = static_cast<int>(s);
+  return slots;
+}
+
+bool goesOn(const PaintScene& scene, Index patch, int side)
+{
+  constexpr float straight = 0.95f; // cosine of 18 degrees
+  const int other = scene.patches.neighbors(side, patch);
+  return other >= 0 && scene.view[other] >= 0 &&
+         scene.patches.normals.col(other).dot(scene.patches.normals.col(patch)) > straight;
 }
 } // namespace fresco

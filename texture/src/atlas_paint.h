@@ -9,9 +9,23 @@ struct PaintScene {
   const std::vector<Chart>& charts;
   const Eigen::VectorXi& face_chart; ///< F, -1 = none
   const Eigen::VectorXi& view;       ///< P, -1 = unseen
-  int border;                        ///< texels
+  const std::vector<int>& slots;     ///< P, number of the patch in its chart's texels, -1 = it has none
   int threads;
+
+  const Chart* chartOf(Index patch) const ///< null = none
+  {
+    const int c = face_chart[patches.parent[patch]];
+    return c < 0 ? nullptr : &charts[c];
+  }
+  /// Whether a patch has texels and is painted from photographs.
+  bool isSeen(Index patch) const { return view[patch] >= 0 && slots[patch] >= 0; }
 };
+
+/// P, see PaintScene::slots.
+std::vector<int> texelSlots(const std::vector<Chart>& charts, Index patches);
+
+/// Whether the seen surface goes on straight beyond a side of the patch, the one from corner `side` to the next.
+bool goesOn(const PaintScene& scene, Index patch, int side);
 
 /// Where colours come from.
 struct PaintSources {

@@ -1,16 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include "patch_mesh.h"
+#include "texel_spans.h"
 #include <vector>
 namespace fresco {
 /// Faces projected along one direction into a rectangle of texels.
 struct Chart {
-  std::vector<int> faces;              ///< of the mesh, joined by edges, those that decided on the axis first
-  Eigen::Vector3f axis;                ///< unit; every face is turned towards it
-  Eigen::Matrix<double, 2, 3> T_texel; ///< texel = T_texel * vertex + offset; texel i covers i .. i+1
+  std::vector<int> faces; ///< of the mesh, joined by edges, those that decided on the axis first
+  Eigen::Vector3f axis;   ///< unit; every face is turned towards it
+  Eigen::Matrix<double, 2, 3> T_texel =
+      Eigen::Matrix<double, 2, 3>::Zero(); ///< texel = T_texel * vertex + offset; texel i covers i .. i+1
   Eigen::Vector2d offset = Eigen::Vector2d::Zero();
   int width = 0, height = 0;    ///< texels, border included
-  std::vector<int> owner;       ///< rows from the top: patch that gives the texel its colour, -1 = none
+  OwnedTexels texels;           ///< by the patches that give them their colours
   int atlas = -1, x = 0, y = 0; ///< place of the upper left texel
 
   Eigen::Vector2d texel(const Eigen::Vector3f& vertex) const { return T_texel * vertex.cast<double>() + offset; }

@@ -44,12 +44,10 @@ void forTexels(const PatchMesh& patches, const Chart& chart, int patch, const Vi
 
 class Raster {
 public:
-  Raster(const PatchMesh& patches, const std::vector<int>& first_patch, Chart& chart)
+  Raster(const PatchMesh& patches, const std::vector<int>& first_patch, const Chart& chart)
       : patches_(patches), first_(first_patch), chart_(chart),
-        claimed_(static_cast<std::size_t>(chart.width) * chart.height, 0)
-  {
-    chart.owner.assign(claimed_.size(), -1);
-  }
+        claimed_(static_cast<std::size_t>(chart.width) * chart.height, 0), owner_(claimed_.size(), -1)
+  {}
 
   /// @return false if the face would cover a texel that is firmly another's; nothing is drawn then
   bool draw(int face)
@@ -57,51 +55,80 @@ public:
     bool free = true;
     for (int i = first_[face]; i < first_[face + 1] && free; ++i)
       forTexels(patches_, chart_, i, [&](std::size_t at, double depth) {
-        free = free && !(claimed_[at] && depth > inside_margin && patches_.parent[chart_.owner[at]] != face);
+        free = free && !(claimed_[at] && depth > inside_margin && patches_.parent[owner_[at]] != face);
       });
     for (int i = first_[face]; i < first_[face + 1] && free; ++i)
       forTexels(patches_, chart_, i, [&](std::size_t at, double depth) {
-        if (chart_.owner[at] < 0 || depth > inside_margin)
-          chart_.owner[at] = i;
+        if (owner_[at] < 0 || depth > inside_margin)
+          owner_[at] = i;
         claimed_[at] = claimed_[at] || depth > inside_margin;
       });
     return free;
   }
 
+  /// The texel under the middle of a patch that covers no texel's centre, so that it is not left without colour.
+  void drawSpeck(int patch)
+  {
+    const Eigen::Vector2d middle = patchTexels(patches_, chart_, patch).rowwise().mean();
+    const int x = std::clamp(static_cast<int>(middle.x()), 0, chart_.width - 1),
+              y = std::clamp(static_cast<int>(middle.y()), 0, chart_.height - 1);
+    int& owner = owner_[static_cast<std::size_t>(y) * chart_.width + x];
+    if (owner < 0)
+      owner = patch;
+  }
+
+  /// Rows from the top: patch of each texel, -1 = none.
+  std::vector<int> takeOwners() { return std::move(owner_); }
+
 private:
   const PatchMesh& patches_;
   const std::vector<int>& first_;
-  Chart& chart_;
+  const Chart& chart_;
   std::vector<char> claimed_; ///< whether the owner's inside, not only its edge, covers the texel's centre
+  std::vector<int> owner_;
 };
 
-/// Texels without owner take that of a neighbour, round by round.
-void growOwners(Chart& chart, int rounds)
+/// Texels without owner take that of a neighbour, round by round; each round looks only around what the last one added.
+void growOwners(int rounds, int width, std::vector<int>& owner)
 {
   const int offsets[8][2] = {{1, 0}, {0, 1}, {-1, 0}, {0, -1}, {1, 1}, {-1, 1}, {-1, -1}, {1, -1}};
+  const int height = static_cast<int>(owner.size() / static_cast<std::size_t>(width));
+  const auto ownerBeside = [&](std::size_t at) {
+    const int x = static_cast<int>(at % static_cast<std::size_t>(width)),
+              y = static_cast<int>(at / static_cast<std::size_t>(width));
+    for (const auto& [dx, dy] : offsets)
+      if (x + dx >= 0 && y + dy >= 0 && x + dx < width && y + dy < height)
+        if (const int other = owner[static_cast<std::size_t>(y + dy) * width + x + dx]; other >= 0)
+          return other;
+    return -1;
+  };
+  std::vector<std::pair<std::size_t, int>> grown; // texel, patch
+  std::vector<std::size_t> front;
   for (int round = 0; round < rounds; ++round) {
-    const std::vector<int> before = chart.owner;
-    for (int y = 0; y < chart.height; ++y)
-      for (int x = 0; x < chart.width; ++x) {
-        int& owner = chart.owner[static_cast<std::size_t>(y) * chart.width + x];
-        for (int k = 0; k < 8 && owner < 0; ++k) {
-          const int i = x + offsets[k][0], j = y + offsets[k][1];
-          if (i >= 0 && j >= 0 && i < chart.width && j < chart.height)
-            owner = before[static_cast<std::size_t>(j) * chart.width + i];
-        }
-      }
+    grown.clear();
+    const auto visit = [&](std::size_t at) {
+      if (owner[at] < 0)
+        if (const int patch = ownerBeside(at); patch >= 0)
+          grown.emplace_back(at, patch);
+    };
+    if (round == 0)
+      for (std::size_t at = 0; at < owner.size(); ++at)
+        visit(at);
+    else
+      for (const std::size_t at : front)
+        visit(at);
+    front.clear();
+    for (const auto& [at, patch] : grown) {
+      owner[at] = patch;
+      const int x = static_cast<int>(at % static_cast<std::size_t>(width)),
+                y = static_cast<int>(at / static_cast<std::size_t>(width));
+      for (const auto& [dx, dy] : offsets)
+        if (x + dx >= 0 && y + dy >= 0 && x + dx < width && y + dy < height)
+          front.push_back(static_cast<std::size_t>(y + dy) * width + x + dx);
+    }
+    std::sort(front.begin(), front.end());
+    front.erase(std::unique(front.begin(), front.end()), front.end());
   }
-}
-
-/// The texel under the middle of a patch that covers no texel's centre, so that it is not left without colour.
-void drawSpeck(const PatchMesh& patches, int patch, Chart& chart)
-{
-  const Eigen::Vector2d middle = patchTexels(patches, chart, patch).rowwise().mean();
-  const int x = std::clamp(static_cast<int>(middle.x()), 0, chart.width - 1),
-            y = std::clamp(static_cast<int>(middle.y()), 0, chart.height - 1);
-  int& owner = chart.owner[static_cast<std::size_t>(y) * chart.width + x];
-  if (owner < 0)
-    owner = patch;
 }
 } // namespace
 
@@ -143,8 +170,10 @@ std::vector<int> rasterizeChart(const PatchMesh& patches, const std::vector<int>
   chart.faces = std::move(kept);
   for (const int face : chart.faces)
     for (int i = first_patch[face]; i < first_patch[face + 1]; ++i)
-      drawSpeck(patches, i, chart);
-  growOwners(chart, border);
+      raster.drawSpeck(i);
+  std::vector<int> owner = raster.takeOwners();
+  growOwners(border, chart.width, owner);
+  chart.texels = OwnedTexels::from(owner, chart.width);
   return out;
 }
 } // namespace fresco

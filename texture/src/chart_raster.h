@@ -5,7 +5,7 @@ namespace fresco {
 /// Patches of each face: those of face f are first[f] .. first[f + 1] - 1.
 std::vector<int> patchesOfFaces(const PatchMesh& patches, Index faces);
 
-/// Fills chart.owner from its frame. A face that would cover a texel of an earlier face of the chart is taken out of
+/// Fills chart.texels from its frame. A face that would cover a texel of an earlier face of the chart is taken out of
 /// it. Texels up to `border` away from the chart belong to the patch nearest by.
 /// @return the faces taken out
 std::vector<int> rasterizeChart(const PatchMesh& patches, const std::vector<int>& first_patch, int border,

@@ -22,30 +22,29 @@ struct ChartTexels {
   const Chart& chart;
   const Image& mask;
 
-  bool isOwned(int i) const { return chart.owner[static_cast<std::size_t>(i)] >= 0; }
-  bool isUnseen(int i) const
-  {
-    return isOwned(i) && *mask.pixel(chart.x + i % chart.width, chart.y + i / chart.width) != 0;
-  }
+  bool isUnseen(int x, int y) const { return *mask.pixel(chart.x + x, chart.y + y) != 0; }
 };
 
 std::vector<Hole> holesOf(const ChartTexels& texels, std::size_t number)
 {
   const int w = texels.chart.width, h = texels.chart.height;
-  std::vector<char> done(texels.chart.owner.size(), 0);
+  std::vector<char> open(static_cast<std::size_t>(w) * h, 0); // unseen and of no hole yet
+  for (const TexelSpan& span : texels.chart.texels.spans)
+    for (int x = span.x; x < span.x + span.length; ++x)
+      open[static_cast<std::size_t>(span.y) * w + x] = texels.isUnseen(x, span.y);
   std::vector<Hole> holes;
   for (int start = 0; start < w * h; ++start) {
-    if (done[start] || !texels.isUnseen(start))
+    if (!open[start])
       continue;
     Hole hole{number, {}, {start}};
-    done[start] = 1;
+    open[start] = 0;
     for (std::size_t k = 0; k < hole.texels.size(); ++k) {
       const int x = hole.texels[k] % w, y = hole.texels[k] / w;
       hole.box.extend(Eigen::Vector2i(x, y));
       for (int j = std::max(0, y - 1); j <= std::min(h - 1, y + 1); ++j)
         for (int i = std::max(0, x - 1); i <= std::min(w - 1, x + 1); ++i)
-          if (const int at = j * w + i; !done[at] && texels.isUnseen(at)) {
-            done[at] = 1;
+          if (const int at = j * w + i; open[at]) {
+            open[at] = 0;
             hole.texels.push_back(at);
           }
     }
@@ -79,12 +78,11 @@ HolePicture pictureOf(const ChartTexels& texels, const Hole& hole, const Eigen::
     out.color[pixel] = Eigen::Vector3f(p[0], p[1], p[2]);
     out.state[pixel] = state;
   };
-  for (int y = box.min().y(); y <= box.max().y(); ++y)
-    for (int x = box.min().x(); x <= box.max().x(); ++x) {
-      const int at = y * chart.width + x;
-      if (texels.isOwned(at) && !texels.isUnseen(at))
-        set(at, HolePicture::known);
-    }
+  for (const TexelSpan& span : chart.texels.spans)
+    if (span.y >= box.min().y() && span.y <= box.max().y())
+      for (int x = std::max<int>(span.x, box.min().x()); x <= std::min(span.x + span.length - 1, box.max().x()); ++x)
+        if (!texels.isUnseen(x, span.y))
+          set(span.y * chart.width + x, HolePicture::known);
   for (const int at : hole.texels)
     set(at, HolePicture::hole);
   return out;

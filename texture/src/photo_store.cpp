@@ -84,22 +84,39 @@ void PhotoStore::drop()
   }
 }
 
+namespace {
+constexpr int taps = 4;
+
+/// Rows weighted and added first: sum[3 * a + c] of tap a and channel c.
+void addRow(const std::uint8_t* row, float weight, float* sum)
+{
+  for (int i = 0; i < 3 * taps; ++i)
+    sum[i] += weight * static_cast<float>(row[i]);
+}
+} // namespace
+
 Eigen::Vector3f samplePhoto(const Image& photo, float x, float y)
 {
   const float u = std::clamp(x - 0.5f, 0.f, photo.width - 1.f), v = std::clamp(y - 0.5f, 0.f, photo.height - 1.f);
   const int i = static_cast<int>(u), j = static_cast<int>(v);
   const Eigen::Vector4f wx = cubicWeights(u - i), wy = cubicWeights(v - j);
-  Eigen::Vector3f sum = Eigen::Vector3f::Zero();
-  for (int b = 0; b < 4; ++b) {
+  float sum[3 * taps] = {};
+  const bool inside = i >= 1 && i + 2 < photo.width;
+  for (int b = 0; b < taps; ++b) {
     const int row = std::clamp(j + b - 1, 0, photo.height - 1);
-    Eigen::Vector3f line = Eigen::Vector3f::Zero();
-    for (int a = 0; a < 4; ++a) {
-      const std::uint8_t* p = photo.pixel(std::clamp(i + a - 1, 0, photo.width - 1), row);
-      line += wx[a] * Eigen::Vector3f(p[0], p[1], p[2]);
+    if (inside) {
+      addRow(photo.pixel(i - 1, row), wy[b], sum);
+      continue;
     }
-    sum += wy[b] * line;
+    std::uint8_t pixels[3 * taps];
+    for (int a = 0; a < taps; ++a)
+      std::copy_n(photo.pixel(std::clamp(i + a - 1, 0, photo.width - 1), row), 3, pixels + 3 * a);
+    addRow(pixels, wy[b], sum);
   }
-  return sum.cwiseMax(0.f).cwiseMin(255.f);
+  Eigen::Vector3f out;
+  for (int c = 0; c < 3; ++c)
+    out[c] = wx[0] * sum[c] + wx[1] * sum[3 + c] + wx[2] * sum[6 + c] + wx[3] * sum[9 + c];
+  return out.cwiseMax(0.f).cwiseMin(255.f);
 }
 
 Eigen::Vector3f samplePhotoQuickly(const Image& photo, float x, float y)

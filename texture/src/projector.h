@@ -12,6 +12,9 @@ public:
   /// hold.
   Eigen::Vector3f operator()(const Eigen::Vector3f& point) const;
 
+  /// The point in the camera's frame: x right, y down, z forward.
+  Eigen::Vector3f inCamera(const Eigen::Vector3f& point) const { return R_ * point + t_; }
+
   const CameraModel& camera() const { return camera_; }
   Eigen::Vector3f center() const { return center_; }
   /// Direction in mesh coordinates whose multiple by the depth leads from the centre to what the pixel shows.

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "atlas_gaps.h"
-#include "atlas_packing.h"
 #include "atlas_paint.h"
+#include "back_projection.h"
 #include "camera_refinement.h"
-#include "chart_layout.h"
 #include "color_diffusion.h"
 #include "exemplar_inpainting.h"
 #include "exif.h"
 #include "exposure.h"
 #include "photo_consistency.h"
 #include "resolution.h"
+#include "texture_atlas.h"
 #include "view_selection.h"
 #include <algorithm>
 #include <chrono>
@@ -19,8 +19,7 @@
 #include <fresco/texture/core/texture_reconstruction.h>
 namespace fresco {
 namespace {
-constexpr int largest_atlas = 8192; // every graphics card takes it
-constexpr float patch_pixels = 16;  // longest side of a patch in a typical view
+constexpr float patch_pixels = 16; // longest side of a patch in a typical view
 
 void validateView(const TextureView& view, std::size_t index)
 {
@@ -53,6 +52,7 @@ void validate(const TriangleMesh& mesh, const std::vector<TextureView>& views, c
   require(options.depth_tolerance >= 0 && options.depth_tolerance <= 0.5, "texture: depth tolerance ",
           options.depth_tolerance, " is not in 0..0.5");
   require(options.strip >= 0 && options.strip <= 100, "texture: strip ", options.strip, " is not in 0..100");
+  require(options.rounds >= 0 && options.rounds <= 100, "texture: rounds ", options.rounds, " is not in 0..100");
   require(options.memory >= 1, "texture: memory ", options.memory, " MB is below 1");
   for (std::size_t v = 0; v < views.size(); ++v)
     validateView(views[v], v);
@@ -132,6 +132,13 @@ double doubtOf(const TextureResult& result)
   return result.disagreement_before > 0 ? std::clamp(doubt, least, 1.0) : 1.0;
 }
 
+/// Whether texels may be made of several photographs: they are known to agree, in place and in colour.
+bool agrees(const TextureResult& result, const TextureOptions& options)
+{
+  constexpr double most = 0.5; // pixels
+  return options.exposure && result.disagreement_before > 0 && result.disagreement_after <= most;
+}
+
 /// For each face the view that most of its area is taken from.
 Eigen::VectorXi viewsOfFaces(const PatchMesh& patches, const Eigen::VectorXi& view, Index faces)
 {
@@ -150,59 +157,6 @@ Eigen::VectorXi viewsOfFaces(const PatchMesh& patches, const Eigen::VectorXi& vi
                              })->first;
   }
   return out;
-}
-
-Eigen::VectorXi chartsOfFaces(const std::vector<Chart>& charts, Index faces)
-{
-  Eigen::VectorXi out = Eigen::VectorXi::Constant(faces, -1);
-  for (std::size_t c = 0; c < charts.size(); ++c)
-    for (const int f : charts[c].faces)
-      out[f] = static_cast<int>(c);
-  return out;
-}
-
-/// Texture coordinates of every face; a vertex has one per chart.
-void fillTexcoords(const std::vector<Chart>& charts, int side, TexturedMesh& model)
-{
-  const TriangleMesh& mesh = model.mesh;
-  model.texcoord_faces = Eigen::Matrix3Xi::Constant(3, mesh.faceCount(), -1);
-  model.face_atlas = Eigen::VectorXi::Constant(mesh.faceCount(), -1);
-  std::vector<Eigen::Vector2f> coords;
-  std::vector<int> number(mesh.vertexCount(), -1); // of the vertex's coordinate, if not below `begin`
-  for (const Chart& chart : charts) {
-    const int begin = static_cast<int>(coords.size());
-    for (const int f : chart.faces) {
-      model.face_atlas[f] = chart.atlas;
-      for (int k = 0; k < 3; ++k) {
-        const int v = mesh.faces(k, f);
-        if (number[v] < begin) {
-          number[v] = static_cast<int>(coords.size());
-          const Eigen::Vector2d at = (chart.texel(mesh.vertices.col(v)) + Eigen::Vector2d(chart.x, chart.y)) / side;
-          coords.emplace_back(static_cast<float>(at.x()), static_cast<float>(1 - at.y()));
-        }
-        model.texcoord_faces(k, f) = number[v];
-      }
-    }
-  }
-  model.texcoords = Eigen::Map<const Eigen::Matrix2Xf>(coords.front().data(), 2, static_cast<Index>(coords.size()));
-}
-
-double typicalTexel(const std::vector<Chart>& charts, const FaceGraph& graph)
-{
-  std::vector<std::pair<double, double>> sizes; // texel, area
-  double total = 0, sum = 0;
-  for (const Chart& chart : charts) {
-    double area = 0;
-    for (const int f : chart.faces)
-      area += graph.areas[f];
-    sizes.emplace_back(1 / chart.T_texel.row(0).norm(), area);
-    total += area;
-  }
-  std::sort(sizes.begin(), sizes.end());
-  for (const auto& [texel, area] : sizes)
-    if ((sum += area) >= 0.5 * total)
-      return texel;
-  return 0;
 }
 
 class Stopwatch {
@@ -255,25 +209,6 @@ void fillFigures(const PatchMesh& patches, const Eigen::VectorXi& view, TextureR
   result.face_view = viewsOfFaces(patches, view, result.model.mesh.faceCount());
 }
 
-std::vector<Chart> makeAtlas(const PatchMesh& patches, const Eigen::VectorXf& density, const TextureOptions& options,
-                             TextureResult& result)
-{
-  const FaceGraph graph = buildFaceGraph(result.model.mesh, options.threads);
-  const int side = options.atlas > 0 ? options.atlas : largest_atlas;
-  LayoutOptions layout;
-  layout.border = options.border;
-  layout.largest = side - side / 16; // packing rounds up to its blocks
-  layout.threads = options.threads;
-  std::vector<Chart> charts = layOutCharts(patches, graph, density, layout);
-  const Packing packing = packCharts(charts, options.atlas, largest_atlas);
-  fillTexcoords(charts, packing.side, result.model);
-  result.model.atlases.assign(packing.atlases, Image(packing.side, packing.side, 3, 128));
-  result.masks.assign(packing.atlases, Image(packing.side, packing.side, 1));
-  result.used = packing.used;
-  result.charts = static_cast<Index>(charts.size());
-  result.texel = typicalTexel(charts, graph);
-  return charts;
-}
 } // namespace
 
 TextureResult reconstructTexture(const TriangleMesh& mesh, const std::vector<TextureView>& views,
@@ -309,8 +244,7 @@ TextureResult reconstructTexture(const TriangleMesh& mesh, const std::vector<Tex
   watch.lap("view selection");
   report(progress, "charts", 0.6);
   const Eigen::VectorXf resolution = patchResolutions(patches, projectors, view);
-  const std::vector<Chart> charts =
-      makeAtlas(patches, wantedDensities(patches, mesh.faceCount(), resolution, options.texel), options, result);
+  const std::vector<Chart> charts = makeAtlas(patches, resolution, options, result);
   watch.lap("charts");
   report(progress, "seams", 0.7);
   const Blend blend = blendViews(patches, candidates, view, result.gains,
@@ -318,9 +252,13 @@ TextureResult reconstructTexture(const TriangleMesh& mesh, const std::vector<Tex
   watch.lap("seams");
   report(progress, "painting", 0.8);
   const Eigen::VectorXi face_chart = chartsOfFaces(charts, mesh.faceCount());
-  const PaintScene scene{patches, charts, face_chart, view, options.border, options.threads};
+  const std::vector<int> slots = texelSlots(charts, patches.size());
+  const PaintScene scene{patches, charts, face_chart, view, slots, options.threads};
   paintSeen(scene, {projectors, result.gains, blend, photos}, result.model.atlases);
   watch.lap("painting");
+  if (agrees(result, options))
+    backProject(scene, {projectors, result.gains, photos, candidates, odd}, options.rounds, result.model.atlases);
+  watch.lap("back-projection");
   report(progress, "inpainting", 0.9);
   const Points colors = diffuseColors(patches, patchColors(scene, result.model.atlases), options.threads);
   paintUnseen(scene, colors, result.model.atlases, result.masks);

@@ -56,6 +56,8 @@ public:
   bool getLevelSeams() const { return options_.level; }
   void setBlendStrip(double pixels) { options_.strip = pixels; }
   double getBlendStrip() const { return options_.strip; }
+  void setBackProjectionRounds(int rounds) { options_.rounds = rounds; }
+  int getBackProjectionRounds() const { return options_.rounds; }
   void setUseExamples(bool use) { options_.examples = use; }
   bool getUseExamples() const { return options_.examples; }
   void setMemory(int megabytes) { options_.memory = megabytes; }

@@ -27,9 +27,11 @@ struct TextureOptions {
   bool consistency = true; ///< avoid photographs whose colour differs from what most show of the same surface
   bool level = true;       ///< take away what steps of colour are left at seams
   double strip = 6;        ///< pixels over which one photograph passes into the next at a seam, 0..100
-  bool examples = true;    ///< give larger unseen parts the fine structure of the seen surface beside them
-  int memory = 1024;       ///< MB of photographs kept at a time, decoded or as grey copies, >= 1
-  int threads = 0;         ///< 0 = all cores; the result does not depend on it
+  int rounds = 3;       ///< of making texels of all photographs together, 0..100; only where refinement found them to
+                        ///< agree within half a pixel and exposures are brought together
+  bool examples = true; ///< give larger unseen parts the fine structure of the seen surface beside them
+  int memory = 1024;    ///< MB of photographs kept at a time, decoded or as grey copies, >= 1
+  int threads = 0;      ///< 0 = all cores; the result does not depend on it
 };
 
 /// One photograph with its calibration.

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "patch_map.h"
+#include "texel_spans.h"
+#include "texture_scene.h"
+#include <gtest/gtest.h>
+namespace fresco::test {
+namespace {
+/// Structure of a few pixels in the photographs below, no two places alike.
+Eigen::Vector3d fine(const Eigen::Vector3d& p)
+{
+  const double a = std::sin(60 * p.x() + 7 * p.y()) + std::sin(9 * p.x() - 55 * p.y() + 3 * p.z()) +
+                   std::sin(58 * p.z() + 5 * p.x());
+  const double b = std::sin(4 * p.x() + 3 * p.y()) + std::cos(5 * p.z() - 2 * p.y());
+  return {128 + 25 * a + 20 * b, 128 + 25 * a - 20 * b, 128 + 20 * b};
+}
+
+/// Every pixel the mean of what it sees: a photograph twice as large, shrunk.
+TextureView shrunk(const TextureView& large)
+{
+  TextureView out = large;
+  out.camera = camera(large.camera.width / 2, large.camera.height / 2, large.camera.fx / 2);
+  out.image = Image(out.camera.width, out.camera.height);
+  for (int y = 0; y < out.image.height; ++y)
+    for (int x = 0; x < out.image.width; ++x)
+      for (int c = 0; c < 3; ++c)
+        out.image.pixel(x, y)[c] = static_cast<std::uint8_t>(
+            (large.image.pixel(2 * x, 2 * y)[c] + large.image.pixel(2 * x + 1, 2 * y)[c] +
+             large.image.pixel(2 * x, 2 * y + 1)[c] + large.image.pixel(2 * x + 1, 2 * y + 1)[c] + 2) /
+            4);
+  return out;
+}
+
+std::vector<TextureView> finePhotographs(const TriangleMesh& mesh)
+{
+  std::vector<TextureView> views = photographsAround(mesh, fine, 3.2, camera(560, 560, 740));
+  for (TextureView& view : views)
+    view = shrunk(view);
+  return views;
+}
+
+TextureOptions withRounds(int rounds, int threads = 0)
+{
+  TextureOptions options = withThreads(threads);
+  options.rounds = rounds;
+  return options;
+}
+} // namespace
+
+TEST(TextureDetail, AllPhotographsTogetherShowMoreThanTheBestOne)
+{
+  const TriangleMesh mesh = cube();
+  const auto views = finePhotographs(mesh);
+  const TextureResult painted = reconstructTexture(mesh, views, withRounds(0)),
+                      corrected = reconstructTexture(mesh, views, withRounds(3));
+  ASSERT_LT(corrected.disagreement_after, 0.5);
+  EXPECT_LT(colorError(corrected.model, fine).mean, 0.85 * colorError(painted.model, fine).mean);
+}
+
+TEST(TextureDetail, ThreadsDoNotChangeIt)
+{
+  const TriangleMesh mesh = cube();
+  const auto views = finePhotographs(mesh);
+  EXPECT_TRUE(sameAtlases(reconstructTexture(mesh, views, withRounds(2, 1)),
+                          reconstructTexture(mesh, views, withRounds(2, 4))));
+}
+
+TEST(TextureDetail, NotWherePhotographsAreNotKnownToAgree)
+{
+  const TriangleMesh mesh = cube();
+  const auto views = finePhotographs(mesh);
+  TextureOptions painted = withRounds(0), asked = withRounds(3);
+  painted.refine = asked.refine = false;
+  EXPECT_TRUE(sameAtlases(reconstructTexture(mesh, views, painted), reconstructTexture(mesh, views, asked)));
+}
+
+TEST(TextureDetail, PatchMapIsTheProjection)
+{
+  PatchMesh patches;
+  patches.vertices.resize(3, 3);
+  patches.vertices << 0.f, 0.1f, 0.02f, 0.f, 0.01f, 0.12f, 0.f, 0.03f, -0.02f;
+  patches.faces.resize(3, 1);
+  patches.faces << 0, 1, 2;
+  CameraModel lens = camera();
+  lens.k1 = -0.2;
+  lens.p1 = 0.01;
+  Eigen::Matrix<double, 2, 3> corners;
+  corners << 1003.5, 1020.1, 1007, 2001.2, 2003.9, 2022.4;
+  for (const CameraModel& model : {camera(), lens}) {
+    const Projector view(model, lookAt({0.4, 0.3, 2}, {0.1, 0.1, 0}), Eigen::Vector3d::Zero());
+    PatchMap map(patches, 0, corners, {1000, 2000});
+    ASSERT_TRUE(map.look(view));
+    for (const Eigen::Vector3f& weights : {Eigen::Vector3f(1, 0, 0), Eigen::Vector3f(0, 1, 0), Eigen::Vector3f(0, 0, 1),
+                                           Eigen::Vector3f(0.2f, 0.5f, 0.3f)}) {
+      const Eigen::Vector2f at = map.place(weights);
+      EXPECT_LT((map.weights(at.x(), at.y()) - weights).norm(), 1e-4f);
+      const Eigen::Vector2f truth = view(patches.vertices * weights).head<2>();
+      EXPECT_LT((map.pixel(at.x(), at.y()) - truth).norm(), model.hasDistortion() ? 0.02f : 2e-3f); // of 16 pixels
+    }
+  }
+  const Projector behind(camera(), lookAt({0, 0, -2}, {0, 0, -4}), Eigen::Vector3d::Zero());
+  PatchMap map(patches, 0, corners, {1000, 2000});
+  EXPECT_FALSE(map.look(behind));
+}
+
+TEST(TextureDetail, SpansHoldEveryTexelOnce)
+{
+  std::mt19937 random(3);
+  constexpr int width = 23, height = 17;
+  std::vector<int> owner(width * height);
+  for (int& o : owner)
+    o = static_cast<int>(random() % 5) - 1;
+  const OwnedTexels texels = OwnedTexels::from(owner, width);
+  std::vector<int> back(owner.size(), -1);
+  for (std::size_t s = 0; s < texels.patches.size(); ++s)
+    texels.forTexels(static_cast<int>(s), [&](int x, int y) {
+      EXPECT_EQ(back[y * width + x], -1);
+      back[y * width + x] = texels.patches[s];
+    });
+  EXPECT_EQ(back, owner);
+  EXPECT_EQ(texels.count(), static_cast<std::size_t>(owner.size() - std::count(owner.begin(), owner.end(), -1)));
+  EXPECT_EQ(OwnedTexels::from({}, 0).count(), 0u);
+}
+} // namespace fresco::test
