@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "model/pipeline.h"
+#include "model/report.h"
 #include "support/args.h"
 #include "support/tool.h"
 int main(int argc, char** argv)
@@ -33,9 +34,7 @@ int main(int argc, char** argv)
     options.optimize = !no_optimize;
     const fresco::ModelReport report =
         fresco::buildModel(fresco::readModelInput(words[0]), words[1], options, fresco::printProgress(common.quiet));
-    for (fresco::StageRecord stage : report.stages) {
-      stage.figures.erase("pictures");
-      fresco::inform(common.quiet, stage.name + (stage.resumed ? " (earlier run)" : "") + ": " + stage.figures.dump());
-    }
+    for (const fresco::StageRecord& stage : report.stages)
+      fresco::inform(common.quiet, fresco::stageSummary(stage));
   });
 }

@@ -29,6 +29,10 @@ std::string besides(const std::string& path)
 
 constexpr std::size_t buffer_size = std::size_t{1} << 20;
 
+/// Bytes per call of the operating system. A process cannot end, nor its file be removed, before the call under way
+/// has: no call may have gigabytes to write, nor fsync() find gigabytes that wait for the disk.
+constexpr std::size_t piece_size = std::size_t{8} << 20;
+
 /// Temporary files that are neither renamed nor removed yet. Never destroyed: files may outlive main().
 struct Unfinished {
   std::mutex mutex;
@@ -47,6 +51,19 @@ void abandonUnfinishedFiles() noexcept
   unfinished().mutex.lock(); // and never unlocked
   for (const std::string& path : unfinished().paths)
     ::unlink(path.c_str());
+}
+
+TemporaryFile::TemporaryFile(std::string path) : path_(std::move(path))
+{
+  const std::lock_guard<std::mutex> lock(unfinished().mutex);
+  unfinished().paths.insert(path_);
+}
+
+TemporaryFile::~TemporaryFile()
+{
+  const std::lock_guard<std::mutex> lock(unfinished().mutex);
+  ::unlink(path_.c_str());
+  unfinished().paths.erase(path_);
 }
 
 OutputFile::OutputFile(std::string path) : path_(std::move(path)), temporary_(besides(path_))
@@ -75,33 +92,46 @@ void OutputFile::write(const void* data, std::size_t bytes)
   const char* from = static_cast<const char*>(data);
   if (buffer_.size() + bytes > buffer_size)
     flush();
-  if (bytes < buffer_size) {
+  if (bytes < buffer_size)
     buffer_.append(from, bytes);
-    return;
-  }
+  else
+    store(from, bytes);
+}
+
+void OutputFile::flush()
+{
+  store(buffer_.data(), buffer_.size());
+  buffer_.clear();
+}
+
+void OutputFile::store(const char* from, std::size_t bytes)
+{
   while (bytes > 0) {
-    const ssize_t done = ::write(descriptor_, from, bytes);
+    const ssize_t done = ::write(descriptor_, from, std::min(bytes, piece_size));
     if (done < 0 && errno == EINTR)
       continue;
     if (done < 0)
       fail(path_, std::string("cannot be written (") + std::strerror(errno) + ")");
     from += done;
     bytes -= static_cast<std::size_t>(done);
+    written_ += static_cast<std::size_t>(done);
+    if (written_ - sent_ >= piece_size)
+      send();
   }
 }
 
-void OutputFile::flush()
+void OutputFile::send()
 {
-  std::size_t at = 0;
-  while (at < buffer_.size()) {
-    const ssize_t done = ::write(descriptor_, buffer_.data() + at, buffer_.size() - at);
-    if (done < 0 && errno == EINTR)
-      continue;
-    if (done < 0)
-      fail(path_, std::string("cannot be written (") + std::strerror(errno) + ")");
-    at += static_cast<std::size_t>(done);
-  }
-  buffer_.clear();
+#ifdef __linux__
+  const auto bytes = [](std::size_t at) { return static_cast<off64_t>(at); };
+  int failed = ::sync_file_range(descriptor_, bytes(sent_), bytes(written_ - sent_), SYNC_FILE_RANGE_WRITE);
+  if (failed == 0 && sent_ > awaited_) // a length of 0 would stand for the rest of the file
+    failed = ::sync_file_range(descriptor_, bytes(awaited_), bytes(sent_ - awaited_), SYNC_FILE_RANGE_WAIT_BEFORE);
+  if (failed != 0 && errno != ESPIPE && errno != EINVAL && errno != ENOSYS) // what cannot be synchronised so
+    fail(path_, std::string("cannot be written (") + std::strerror(errno) + ")");
+#endif
+  awaited_ = sent_;
+  sent_ = written_;
 }
 
 void OutputFile::commit()

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include "point_io_table.h"
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -44,4 +45,7 @@ PlyContent parsePly(std::string_view content);
 /// Binary little-endian. A sensor pose becomes the element `camera` that PCL reads.
 /// @param faces 0 columns: no element `face`
 void writePly(const std::string& path, PointTable vertices, const Faces& faces);
+
+/// The same without faces, with part(begin, end) = rows begin .. end - 1: the whole table is never in memory.
+void writePly(const std::string& path, Index rows, const std::function<PointTable(Index, Index)>& part);
 } // namespace fresco::detail

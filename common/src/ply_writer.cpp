@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ply.h"
 #include "point_io_text.h"
+#include <algorithm>
 #include <array>
 #include <fresco/common/file.h>
 #include <fresco/common/require.h>
@@ -49,7 +50,7 @@ std::string propertyLines(const PointTable& table)
 }
 
 /// The element `camera` as PCL writes it.
-std::pair<std::string, std::string> cameraElement(const PointTable& table)
+std::pair<std::string, std::string> cameraElement(const PointTable& table, Index rows)
 {
   std::string header = "element camera 1\n", row;
   const auto add = [&](const std::string& name, auto value) {
@@ -69,7 +70,7 @@ std::pair<std::string, std::string> cameraElement(const PointTable& table)
   for (const char* name : {"focal", "scalex", "scaley", "centerx", "centery"})
     add(name, 0.f);
   const bool organised = table.height > 0;
-  add("viewportx", static_cast<int>(organised ? table.width : table.rows));
+  add("viewportx", static_cast<int>(organised ? table.width : rows));
   add("viewporty", static_cast<int>(organised ? table.height : 1));
   add("k1", 0.f);
   add("k2", 0.f);
@@ -89,29 +90,60 @@ void writeFaces(OutputFile& file, const Faces& faces)
   parallelFor(faces.cols(), 0, store, rows_per_task);
   file.write(rows.data(), rows.size() * sizeof(Row));
 }
+/// Colours as bytes, and only what PLY has types for.
+void prepare(const std::string& path, PointTable& table)
+{
+  unpackColors(table);
+  for (const Column& column : table.columns)
+    if (column.type == Scalar::int64 || column.type == Scalar::uint64)
+      throw std::runtime_error(concat(path, ": PLY has no 64-bit integers for the field ", column.name));
+}
+
+/// Everything before the first vertex of `rows`, and what comes after faces.
+std::pair<std::string, std::string> headerAndEnd(const PointTable& table, Index rows, Index faces)
+{
+  std::string header = concat("ply\nformat binary_little_endian 1.0\nelement vertex ", rows, '\n');
+  header += propertyLines(table);
+  if (faces > 0)
+    header += concat("element face ", faces, "\nproperty list uchar int vertex_indices\n");
+  std::string camera;
+  if (table.sensor) {
+    const auto [lines, row] = cameraElement(table, rows);
+    header += lines;
+    camera = row;
+  }
+  return {header + "end_header\n", camera};
+}
 } // namespace
 
 void writePly(const std::string& path, PointTable vertices, const Faces& faces)
 {
-  unpackColors(vertices);
-  for (const Column& column : vertices.columns)
-    if (column.type == Scalar::int64 || column.type == Scalar::uint64)
-      throw std::runtime_error(concat(path, ": PLY has no 64-bit integers for the field ", column.name));
+  prepare(path, vertices);
   OutputFile file(path);
-  std::string header = concat("ply\nformat binary_little_endian 1.0\nelement vertex ", vertices.rows, '\n');
-  header += propertyLines(vertices);
-  std::string camera;
-  if (faces.cols() > 0)
-    header += concat("element face ", faces.cols(), "\nproperty list uchar int vertex_indices\n");
-  if (vertices.sensor) {
-    const auto [lines, row] = cameraElement(vertices);
-    header += lines;
-    camera = row;
-  }
-  file.write(header + "end_header\n");
+  const auto [header, end] = headerAndEnd(vertices, vertices.rows, faces.cols());
+  file.write(header);
   file.write(vertices.data.data(), vertices.data.size());
   writeFaces(file, faces);
-  file.write(camera);
+  file.write(end);
+  file.commit();
+}
+
+void writePly(const std::string& path, Index rows, const std::function<PointTable(Index, Index)>& part)
+{
+  constexpr Index at_most = Index{1} << 19;
+  const Index parts = std::max<Index>(1, (rows + at_most - 1) / at_most); // of about the same size
+  PointTable table = part(0, rows / parts);
+  prepare(path, table);
+  OutputFile file(path);
+  const auto [header, end] = headerAndEnd(table, rows, 0);
+  file.write(header);
+  file.write(table.data.data(), table.data.size());
+  for (Index i = 1; i < parts; ++i) {
+    table = part(rows * i / parts, rows * (i + 1) / parts);
+    prepare(path, table);
+    file.write(table.data.data(), table.data.size());
+  }
+  file.write(end);
   file.commit();
 }
 } // namespace fresco::detail

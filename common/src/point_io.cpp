@@ -8,6 +8,28 @@
 #include <fresco/common/point_io.h>
 namespace fresco {
 namespace {
+/// Points begin .. end - 1.
+PointSet pointsBetween(const PointSet& set, Index begin, Index end)
+{
+  const auto part = [&](const auto& all) {
+    return all.middleCols(all.cols() > 0 ? begin : 0, all.cols() > 0 ? end - begin : 0);
+  };
+  PointSet result;
+  result.origin = set.origin;
+  result.points = part(set.points);
+  result.normals = part(set.normals);
+  result.colors = part(set.colors);
+  if (set.intensities.size() > 0)
+    result.intensities = set.intensities.segment(begin, end - begin);
+  if (set.confidences.size() > 0)
+    result.confidences = set.confidences.segment(begin, end - begin);
+  if (set.viewpoints.cols() == 1)
+    result.viewpoints = set.viewpoints;
+  else
+    result.viewpoints = part(set.viewpoints);
+  return result;
+}
+
 bool isTextCloud(const std::string& type) { return type == ".xyz" || type == ".txt" || type == ".asc"; }
 } // namespace
 
@@ -59,5 +81,14 @@ PointSet readPoints(const std::string& path)
   }
 }
 
-void writePoints(const std::string& path, const PointSet& set) { detail::writeTable(path, detail::pointsToTable(set)); }
+void writePoints(const std::string& path, const PointSet& set)
+{
+  if (extension(path) != ".ply") {
+    detail::writeTable(path, detail::pointsToTable(set));
+    return;
+  }
+  validatePointSet(set);
+  detail::writePly(path, set.size(),
+                   [&](Index begin, Index end) { return detail::pointsToTable(pointsBetween(set, begin, end)); });
+}
 } // namespace fresco

@@ -3,13 +3,24 @@
 #include <fresco/common/require.h>
 namespace fresco {
 namespace {
+/// Columns of `b` behind those of `a`, in the memory of `a` where that can grow; nothing unless both have some.
 template <typename Matrix>
-Matrix joined(const Matrix& a, const Matrix& b, bool keep)
+void append(Matrix& a, const Matrix& b)
 {
-  Matrix result(a.rows(), keep ? a.cols() + b.cols() : 0);
+  const Index count = a.cols();
+  const bool keep = count > 0 && b.cols() > 0;
+  a.conservativeResize(Eigen::NoChange, keep ? count + b.cols() : 0);
   if (keep)
-    result << a, b;
-  return result;
+    a.rightCols(b.cols()) = b;
+}
+
+void append(Eigen::VectorXf& a, const Eigen::VectorXf& b)
+{
+  const Index count = a.size();
+  const bool keep = count > 0 && b.size() > 0;
+  a.conservativeResize(keep ? count + b.size() : 0);
+  if (keep)
+    a.tail(b.size()) = b;
 }
 
 Points expandedViewpoints(const PointSet& set)
@@ -69,36 +80,34 @@ PointSet selectPoints(const PointSet& set, const std::vector<Index>& indices)
 
 PointSet mergePoints(const PointSet& a, const PointSet& b)
 {
+  PointSet result = a;
+  appendPoints(result, b);
+  return result;
+}
+
+void appendPoints(PointSet& a, const PointSet& b)
+{
   validatePointSet(a);
   validatePointSet(b);
   if (b.size() == 0)
-    return a;
-  const Eigen::Vector3d shift = a.size() > 0 ? Eigen::Vector3d(b.origin - a.origin) : Eigen::Vector3d::Zero();
-  if (a.size() == 0)
-    return b;
-  const auto both = [](Index x, Index y) { return x > 0 && y > 0; };
-  PointSet result;
-  result.origin = a.origin;
-  result.points = joined(a.points, shifted(b.points, shift), true);
-  result.normals = joined(a.normals, b.normals, both(a.normals.cols(), b.normals.cols()));
-  result.colors = joined(a.colors, b.colors, both(a.colors.cols(), b.colors.cols()));
-  const bool intensities = both(a.intensities.size(), b.intensities.size());
-  if (intensities) {
-    result.intensities.resize(result.size());
-    result.intensities << a.intensities, b.intensities;
+    return;
+  if (a.size() == 0) {
+    a = b;
+    return;
   }
-  if (both(a.confidences.size(), b.confidences.size())) {
-    result.confidences.resize(result.size());
-    result.confidences << a.confidences, b.confidences;
-  }
+  const Eigen::Vector3d shift = b.origin - a.origin;
   const Points b_viewpoints = shifted(b.viewpoints, shift);
-  if (sameViewpoint(a, b_viewpoints)) {
-    result.viewpoints = a.viewpoints;
-  } else if (both(a.viewpoints.cols(), b.viewpoints.cols())) {
-    const Points b_expanded = b_viewpoints.cols() == 1 ? Points(b_viewpoints.replicate(1, b.size())) : b_viewpoints;
-    result.viewpoints = joined(expandedViewpoints(a), b_expanded, true);
+  if (a.viewpoints.cols() == 0 || b_viewpoints.cols() == 0) {
+    a.viewpoints.resize(3, 0);
+  } else if (!sameViewpoint(a, b_viewpoints)) {
+    a.viewpoints = expandedViewpoints(a);
+    append(a.viewpoints, b_viewpoints.cols() == 1 ? Points(b_viewpoints.replicate(1, b.size())) : b_viewpoints);
   }
-  return result;
+  append(a.points, shifted(b.points, shift));
+  append(a.normals, b.normals);
+  append(a.colors, b.colors);
+  append(a.intensities, b.intensities);
+  append(a.confidences, b.confidences);
 }
 
 PointSet transformPoints(const PointSet& set, const Eigen::Matrix4d& T_target_source)

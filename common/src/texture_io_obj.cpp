@@ -70,13 +70,24 @@ std::string imageName(std::string entry)
   return entry;
 }
 
+/// Result of `read`, which reads a file that `path` names: errors say who wanted it.
+template <typename Read>
+auto readFor(const std::string& path, const Read& read)
+{
+  try {
+    return read();
+  } catch (const std::runtime_error& error) {
+    throw std::runtime_error(path + ": " + error.what());
+  }
+}
+
 /// Image file of each material name, "" for a material without one.
 std::map<std::string, std::string> readLibraries(const std::string& path, const ObjContent& obj)
 {
   std::map<std::string, std::string> images;
   for (const std::string& library : obj.libraries) {
     const fs::path file = fs::path(path).parent_path() / library;
-    for (const auto& [name, entry] : parseMtl(readFile(file.string())))
+    for (const auto& [name, entry] : readFor(path, [&] { return parseMtl(readFile(file.string())); }))
       images[name] = entry.empty() ? "" : (file.parent_path() / imageName(entry)).string();
   }
   return images;
@@ -98,7 +109,7 @@ std::vector<int> readAtlases(const std::string& path, const ObjContent& obj, std
     }
     const auto [entry, is_new] = known.emplace(file->second, static_cast<int>(atlases.size()));
     if (is_new)
-      atlases.push_back(readImage(file->second));
+      atlases.push_back(readFor(path, [&] { return readImage(file->second); }));
     of_material.push_back(entry->second);
   }
   return of_material;

@@ -71,7 +71,7 @@ PointSet mergeScans(const ScanSource& scans, const std::vector<Pose>& poses, int
       merged.origin =
           place.norm() > large_coordinate ? Eigen::Vector3d(place.array().round()) : Eigen::Vector3d::Zero();
     }
-    merged = mergePoints(merged, placedScan(scan, *poses[i], merged.origin, threads));
+    appendPoints(merged, placedScan(scan, *poses[i], merged.origin, threads));
   }
   return merged;
 }

@@ -5,6 +5,7 @@
 #include <fresco/common/image.h>
 #include <fresco/common/poses.h>
 #include <fresco/common/progress.h>
+#include <fresco/common/unfinished_files.h>
 #include <fstream>
 namespace {
 using namespace fresco;
@@ -63,6 +64,32 @@ TEST(OutputFile, LargeAndSmallWritesKeepTheirOrder)
   }
   file.commit();
   EXPECT_EQ(readFile(path), all);
+}
+
+TEST(OutputFile, ManyPiecesAreWhole)
+{
+  const std::string path = test::scratchFolder() + "/out.bin";
+  std::string all(std::size_t{45} << 20, '\0');
+  for (std::size_t i = 0; i < all.size(); i += 4096)
+    all[i] = static_cast<char>(i >> 12);
+  writeFile(path, all); // in one call
+  EXPECT_TRUE(readFile(path) == all);
+  OutputFile file(path);
+  for (std::size_t at = 0; at < all.size(); at += 999999)
+    file.write(all.substr(at, 999999));
+  file.commit();
+  EXPECT_TRUE(readFile(path) == all);
+}
+
+TEST(TemporaryFile, GoesWithItsObject)
+{
+  const std::string folder = test::scratchFolder();
+  {
+    const TemporaryFile first(folder + "/.first"), never_made(folder + "/.second");
+    writeFile(first.path(), "content");
+    EXPECT_EQ(entries(folder), 1U);
+  }
+  EXPECT_EQ(entries(folder), 0U);
 }
 
 TEST(OutputFile, NamesWhatCannotBeWritten)

@@ -41,6 +41,20 @@ TEST(PointIo, EveryAttributeSurvivesEveryFormat)
   }
 }
 
+TEST(PointIo, ManyPointsAreWrittenInParts)
+{
+  const std::string folder = test::scratchFolder();
+  for (const Index count : {(Index{1} << 19) + 1, (Index{1} << 20) + 1}) {
+    PointSet set = fullPointSet(count);
+    writePoints(folder + "/cloud.ply", set);
+    expectSame(readPoints(folder + "/cloud.ply"), set, "a viewpoint each");
+    set.viewpoints = Points::Constant(3, 1, 0.5f);
+    set.colors.resize(3, 0);
+    writePoints(folder + "/cloud.ply", set);
+    expectSame(readPoints(folder + "/cloud.ply"), set, "one viewpoint");
+  }
+}
+
 TEST(PointIo, SubsetsOfAttributesSurvive)
 {
   const std::string folder = test::scratchFolder();

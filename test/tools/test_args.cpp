@@ -1,7 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "support/args.h"
 #include "support/tool.h"
-#include <gtest/gtest.h>
+#include "test_data.h"
+#include <chrono>
+#include <csignal>
+#include <fresco/common/file.h>
+#include <thread>
+#include <unistd.h>
 namespace {
 using namespace fresco;
 
@@ -97,6 +102,40 @@ TEST(Tool, ExitStatusAndOneLine)
   EXPECT_EQ(status([] { throw UsageError("unknown option -x"); }, said), 2);
   EXPECT_EQ(std::count(said.begin(), said.end(), '\n'), 1);
   EXPECT_EQ(status([] { throw std::bad_alloc(); }, said), 1);
+}
+
+/// Ends the process by the way that a tool ends when `body` is at work.
+void runAndExit(const std::function<void()>& body) { _exit(runTool("tool", body)); }
+
+TEST(Tool, ExceptionOfAnotherThreadIsOneLine)
+{
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  const std::string folder = test::scratchFolder();
+  EXPECT_EXIT(runAndExit([&] {
+                OutputFile file(folder + "/half");
+                std::thread([] { throw std::bad_alloc(); }).join();
+              }),
+              testing::ExitedWithCode(1), "^tool: not enough memory\n$");
+  EXPECT_EXIT(runAndExit([] { std::thread([] { throw std::runtime_error("a\nb"); }).join(); }),
+              testing::ExitedWithCode(1), "^tool: a b\n$");
+  EXPECT_TRUE(std::filesystem::is_empty(folder));
+}
+
+TEST(Tool, StopsWhileAStepGoesOn)
+{
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  const auto start = std::chrono::steady_clock::now();
+  const std::string folder = test::scratchFolder();
+  for (const int stop : {SIGINT, SIGTERM, SIGHUP})
+    EXPECT_EXIT(runAndExit([&] {
+                  OutputFile file(folder + "/half");
+                  file.write("half");
+                  std::raise(stop);
+                  std::this_thread::sleep_for(std::chrono::minutes(5)); // a step that asks nobody
+                }),
+                testing::ExitedWithCode(1), "^tool: cancelled\n$");
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(60));
+  EXPECT_TRUE(std::filesystem::is_empty(folder));
 }
 
 TEST(Tool, QuietProgressPrintsNothing)

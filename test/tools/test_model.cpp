@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "model/fusion.h"
+#include "model/optimization_stage.h"
 #include "model/pipeline.h"
 #include "model/report.h"
 #include "test_data.h"
@@ -71,6 +72,25 @@ TEST(Fusion, SamplesOfOneSurfaceBecomeOneAndBothSidesOfASheetStayTwo)
   EXPECT_THROW(PointFusion(0.0), std::invalid_argument);
 }
 
+TEST(Fusion, OptimisationGetsNoMorePointsThanVerticesCanUse)
+{
+  PointSet set; // a square of 0.6 m, cells of 2 cm: about 900 vertices
+  set.points = 0.3f * Points::Random(3, 50000);
+  set.points.row(2) = 0.001f * Eigen::RowVectorXf::Random(50000);
+  set.normals = Points::Zero(3, 50000);
+  set.normals.row(2).setOnes();
+  set.viewpoints = set.points;
+  set.origin = {1000, 2000, 3000};
+  const PointSet same = pointsForVertices(set, 4000, 0.02);
+  EXPECT_EQ(same.points, set.points);
+  const PointSet thinned = pointsForVertices(set, 900, 0.02);
+  EXPECT_LE(thinned.size(), 2 * 92 * 92); // two layers of cells meet at z = 0
+  EXPECT_GT(thinned.size(), 90 * 90);
+  EXPECT_EQ(thinned.origin, set.origin);
+  EXPECT_NEAR(thinned.confidences.sum(), 50000.f, 1.f);
+  EXPECT_NEAR(thinned.points.row(2).mean(), 0.f, 1e-4f);
+}
+
 struct Job {
   std::string folder;
   int runs_a = 0, runs_b = 0;
@@ -114,6 +134,18 @@ TEST(Stages, ResumeTakesOverOnlyWhatIsStillValid)
   std::ofstream(job.folder + "/work/a.json") << "{ broken";
   job.run("other input", "y", true);
   EXPECT_EQ(job.runs_a, 5);
+}
+
+TEST(Report, SummaryOfAStageIsOneLineForPeople)
+{
+  StageRecord stage;
+  stage.name = "surface";
+  stage.seconds = 1.25;
+  stage.cpu_seconds = 2.5;
+  stage.peak_megabytes = 300.2;
+  stage.resumed = true;
+  stage.figures = {{"vertices", 85709}, {"cell", 0.0200004}, {"seconds", {{"solve", 1.0}}}, {"up", {0, 0, 1}}};
+  EXPECT_EQ(stageSummary(stage), "surface (earlier run): 1.2 s, 2.5 s of CPU, 300 MB, vertices 85709, cell 0.02");
 }
 
 TEST(Report, IsWholeAndEscaped)

@@ -34,6 +34,16 @@ std::string shown(const Json& value)
   return value.is_string() ? value.get<std::string>() : value.dump();
 }
 
+/// Figures for people; lists and what describes the pictures are in report.json.
+std::vector<std::pair<std::string, std::string>> shownFigures(const StageRecord& stage)
+{
+  std::vector<std::pair<std::string, std::string>> figures;
+  for (const auto& [name, value] : stage.figures.items())
+    if (name != "pictures" && name != "up")
+      figures.emplace_back(name, shown(value));
+  return figures;
+}
+
 Json toJson(const ModelReport& report)
 {
   Json json{
@@ -61,9 +71,8 @@ std::string stageTable(const ModelReport& report)
     html += "<tr><td>" + escaped(stage.name) + (stage.resumed ? " (earlier run)" : "") + "<td>" +
             fixed(stage.seconds, 1) + "<td>" + fixed(stage.cpu_seconds, 1) + "<td>" + fixed(stage.peak_megabytes, 0) +
             "<td>";
-    for (const auto& [name, value] : stage.figures.items())
-      if (name != "pictures" && name != "up")
-        html += "<span><b>" + escaped(name) + "</b> " + escaped(shown(value)) + "</span> ";
+    for (const auto& [name, value] : shownFigures(stage))
+      html += "<span><b>" + escaped(name) + "</b> " + escaped(value) + "</span> ";
     html += "</tr>\n";
   }
   return html + "</table>\n";
@@ -100,6 +109,16 @@ std::string toHtml(const ModelReport& report, const ModelFiles& files)
   return html + "</body></html>\n";
 }
 } // namespace
+
+std::string stageSummary(const StageRecord& stage)
+{
+  std::string line = stage.name + (stage.resumed ? " (earlier run)" : "") + ": " + fixed(stage.seconds, 1) + " s, " +
+                     fixed(stage.cpu_seconds, 1) + " s of CPU, " + fixed(stage.peak_megabytes, 0) + " MB";
+  for (const auto& [name, value] : shownFigures(stage))
+    if (value.find_first_of("{[") == std::string::npos)
+      line += ", " + name + " " + value;
+  return line;
+}
 
 void writeReport(const ModelReport& report, const ModelFiles& files)
 {

@@ -2,6 +2,9 @@
 #pragma once
 #include "model/pipeline.h"
 namespace fresco {
+/// One line with time, memory and figures of a stage.
+std::string stageSummary(const StageRecord& stage);
+
 /// report.json: times, memory and figures per stage, and report.html: the same with the pictures inside, readable
 /// offline.
 void writeReport(const ModelReport& report, const ModelFiles& files);

@@ -2,30 +2,82 @@
 #include "support/tool.h"
 #include <algorithm>
 #include <atomic>
+#include <cerrno>
 #include <chrono>
 #include <cmath>
 #include <condition_variable>
 #include <csignal>
+#include <exception>
 #include <fresco/common/parallel.h>
 #include <fresco/common/require.h>
 #include <fresco/common/unfinished_files.h>
-#include <iostream>
 #include <memory>
 #include <mutex>
 #include <new>
+#include <sys/ioctl.h>
 #include <system_error>
 #include <thread>
 #include <unistd.h>
 namespace fresco {
 namespace {
-std::atomic<bool> stop_asked{false};
+std::atomic<int> stops_asked{0};
 
-// The first signal asks to stop at the next step; the second ends the process as usual.
+// The first signal asks to stop at the next step, the second at once; the third ends the process as usual.
 void askToStop(int signal)
 {
-  stop_asked = true;
-  std::signal(signal, SIG_DFL);
+  if (++stops_asked > 1)
+    std::signal(signal, SIG_DFL);
 }
+
+std::string oneLine(std::string text)
+{
+  for (char& c : text)
+    if (c == '\n' || c == '\r')
+      c = ' ';
+  return text;
+}
+
+std::atomic<bool> bar_stands{false}; ///< the cursor is behind a bar, not at the start of a line
+
+/// A line of its own on stderr, also where a bar stands. Neither locks nor allocates for the stream.
+void printLine(const std::string& text)
+{
+  const std::string line = (bar_stands.exchange(false) ? "\n" : "") + oneLine(text) + "\n";
+  for (std::size_t at = 0; at < line.size();) {
+    const ssize_t written = ::write(STDERR_FILENO, line.data() + at, line.size() - at);
+    if (written < 0 && errno != EINTR)
+      return;
+    at += static_cast<std::size_t>(std::max<ssize_t>(written, 0));
+  }
+}
+
+/// Ends the process without half files and without the memory being given back piece by piece.
+[[noreturn]] void leave(const std::string& line)
+{
+  abandonUnfinishedFiles();
+  printLine(line);
+  _exit(1);
+}
+
+/// What is being thrown right now, in one line.
+std::string reasonOfException(const std::string& otherwise)
+{
+  try {
+    if (std::current_exception())
+      throw;
+  } catch (const std::bad_alloc&) {
+    return "not enough memory";
+  } catch (const std::exception& error) {
+    return error.what();
+  } catch (...) {
+  }
+  return otherwise;
+}
+
+std::string tool_name; ///< for what has no way to be told
+
+/// An exception left a thread of a library, or a destructor: nobody can catch it any more.
+[[noreturn]] void endAfterUncaught() { leave(tool_name + ": " + reasonOfException("ended by a library")); }
 
 /// Ends the process where a step goes on for long after the user has asked to stop, without half files.
 class Guard {
@@ -56,15 +108,13 @@ private:
     using namespace std::chrono_literals;
     std::unique_lock<std::mutex> lock(mutex_);
     const auto is_done = [this] { return done_; };
-    while (!stop_asked)
-      if (wake_.wait_for(lock, 100ms, is_done))
+    while (stops_asked == 0)
+      if (wake_.wait_for(lock, 50ms, is_done))
         return;
-    if (wake_.wait_for(lock, 500ms, is_done))
-      return;
-    abandonUnfinishedFiles();
-    const std::string line = name + ": cancelled\n";
-    [[maybe_unused]] const ssize_t written = ::write(STDERR_FILENO, line.data(), line.size());
-    _exit(1);
+    for (int i = 0; i < 6 && stops_asked == 1; ++i)
+      if (wake_.wait_for(lock, 50ms, is_done))
+        return;
+    leave(name + ": cancelled");
   }
 
   std::mutex mutex_;
@@ -73,18 +123,17 @@ private:
   std::thread thread_;
 };
 
-std::string oneLine(std::string text)
-{
-  for (char& c : text)
-    if (c == '\n' || c == '\r')
-      c = ' ';
-  return text;
-}
-
 std::string shownTime(double seconds)
 {
-  const auto whole = static_cast<long>(std::lround(seconds));
+  const long whole = std::max(1L, std::lround(seconds));
   return whole < 120 ? concat(whole, " s") : concat((whole + 30) / 60, " min");
+}
+
+/// Columns of the terminal on stderr.
+std::size_t terminalWidth()
+{
+  winsize size{};
+  return ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
 }
 
 /// A bar per job; a job begins where the fraction falls.
@@ -97,7 +146,7 @@ public:
     const std::lock_guard<std::mutex> lock(mutex_);
     if (!quiet_)
       print(std::string(step), std::clamp(fraction, 0.0, 1.0));
-    return !stop_asked;
+    return stops_asked == 0;
   }
 
 private:
@@ -110,16 +159,28 @@ private:
       last_.clear();
     }
     fraction_ = fraction;
-    const int percent = static_cast<int>(std::lround(100 * fraction));
-    if (terminal_) {
-      const int filled = percent * 30 / 100;
-      std::cerr << "\r\033[K[" << std::string(static_cast<std::size_t>(filled), '#')
-                << std::string(static_cast<std::size_t>(30 - filled), '.') << "] " << percent << " % " << step
-                << remaining() << (fraction >= 1 ? "\n" : "") << std::flush;
-    } else if (step != last_) {
-      std::cerr << step << " (" << percent << " %)\n";
-    }
+    if (terminal_)
+      drawBar(step);
+    else if (step != last_)
+      printLine(concat(step, " (", percent(), " %)"));
     last_ = step;
+  }
+
+  int percent() const // 100 is for what is done
+  {
+    return fraction_ < 1 ? std::min(99, static_cast<int>(std::lround(100 * fraction_))) : 100;
+  }
+
+  void drawBar(const std::string& step)
+  {
+    const auto filled = static_cast<std::size_t>(percent() * 30 / 100);
+    std::string line = concat('[', std::string(filled, '#'), std::string(30 - filled, '.'), "] ", percent(), " % ",
+                              oneLine(step), remaining());
+    if (const std::size_t most = terminalWidth() - 1; line.size() > most) // a bar of two lines could not be redrawn
+      line.resize(most);
+    line = "\r\033[K" + line + (fraction_ >= 1 ? "\n" : "");
+    bar_stands = fraction_ < 1;
+    [[maybe_unused]] const ssize_t written = ::write(STDERR_FILENO, line.data(), line.size());
   }
 
   /// Time left if the rest goes on as fast as what is done; nothing while that would be a guess.
@@ -161,13 +222,17 @@ Progress printProgress(bool quiet)
 void inform(bool quiet, const std::string& line)
 {
   if (!quiet)
-    std::cerr << line << std::endl;
+    printLine(line);
 }
 
 int runTool(const std::string& name, const std::function<void()>& body)
 try {
-  std::signal(SIGINT, askToStop);
-  std::signal(SIGTERM, askToStop);
+  tool_name = name;
+  std::set_terminate(endAfterUncaught);
+  for (const int stop : {SIGINT, SIGTERM})
+    std::signal(stop, askToStop);
+  if (std::signal(SIGHUP, askToStop) == SIG_IGN) // nohup
+    std::signal(SIGHUP, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN); // a file that grows beyond its limit is an error like a full disk
   const Guard guard(name);
   body();
@@ -175,13 +240,10 @@ try {
 } catch (const HelpShown&) {
   return 0;
 } catch (const UsageError& error) {
-  std::cerr << name << ": " << oneLine(error.what()) << " (see " << name << " -h)\n";
+  printLine(name + ": " + error.what() + " (see " + name + " -h)");
   return 2;
-} catch (const std::bad_alloc&) {
-  std::cerr << name << ": not enough memory\n";
-  return 1;
-} catch (const std::exception& error) {
-  std::cerr << name << ": " << oneLine(error.what()) << "\n";
+} catch (...) {
+  printLine(name + ": " + reasonOfException("unknown error"));
   return 1;
 }
 } // namespace fresco

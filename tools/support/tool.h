@@ -19,6 +19,8 @@ Progress printProgress(bool quiet);
 void inform(bool quiet, const std::string& line);
 
 /// Runs `body` and turns its end into an exit status: 0 done; 1 could not do it, with one line on stderr
-/// "NAME: reason"; 2 wrong usage, with one line and a hint at -h. Asks `body` to stop on SIGINT and SIGTERM.
+/// "NAME: reason"; 2 wrong usage, with one line and a hint at -h. SIGINT, SIGTERM and SIGHUP ask `body` to stop; where
+/// it does not within a third of a second, and where an exception leaves another thread, the process ends with 1 and
+/// one line from there, after the unfinished files have been removed.
 int runTool(const std::string& name, const std::function<void()>& body);
 } // namespace fresco

@@ -26,7 +26,10 @@ public:
 
 private:
   void flush();
+  void store(const char* from, std::size_t bytes);
+  void send(); // lets the disk begin with what was written, waits for what was sent the time before
   std::string path_, temporary_, buffer_;
+  std::size_t written_ = 0, sent_ = 0, awaited_ = 0; // bytes from the start of the file, in falling order
   int descriptor_ = -1;
 };
 

@@ -27,6 +27,9 @@ PointSet selectPoints(const PointSet& set, const std::vector<Index>& indices);
 /// `a` followed by `b`, in the frame (origin) of `a`. An attribute is kept where both have it.
 PointSet mergePoints(const PointSet& a, const PointSet& b);
 
+/// The same in place, which needs less memory. `b` is another object than `a`.
+void appendPoints(PointSet& a, const PointSet& b);
+
 /// R p + t for points and viewpoints, R n for normals; `origin` is folded in and becomes zero.
 /// @param T_target_source 4x4 rigid
 PointSet transformPoints(const PointSet& set, const Eigen::Matrix4d& T_target_source);
