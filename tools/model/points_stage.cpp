@@ -65,10 +65,11 @@ PreparedScan preparedScan(const std::string& file, const ModelOptions& options, 
   return {smoothed(scan, options, subProgress(progress, 0.6, 1.0)), read.size()};
 }
 
-/// World from scan. Without -poses all scans are registered from scratch; the folder's first pose then only ties the
-/// result to the frame of the photographs.
-std::vector<Pose> placeScans(const std::vector<PointSet>& scans, const ModelInput& input, const ModelOptions& options,
-                             const Progress& progress, Json& figures)
+/// World from scan. Without -poses all scans are registered from scratch, as they were measured: what cleaning takes
+/// from a sparse scan is what its place would be known by. The folder's first pose then only ties the result to the
+/// frame of the photographs.
+std::vector<Pose> placeScans(const ModelInput& input, const ModelOptions& options, const Progress& progress,
+                             Json& figures)
 {
   if (options.use_poses) {
     figures["registration"] = "given poses";
@@ -76,6 +77,9 @@ std::vector<Pose> placeScans(const std::vector<PointSet>& scans, const ModelInpu
   }
   ScanRegistrationOptions registration;
   registration.threads = options.threads;
+  registration.names = input.scans;
+  const ScanSource scans{static_cast<Index>(input.scans.size()),
+                         [&](Index i) { return readPoints(input.scans[static_cast<std::size_t>(i)]); }};
   const ScanRegistrationResult result = registerScans(scans, {}, registration, progress);
   std::vector<Pose> poses = result.poses;
   figures["registration"] = "found";
@@ -108,7 +112,7 @@ Json pointsFromScans(const ModelInput& input, const ModelFiles& files, const Mod
     raw += scan.read;
     scans.push_back(std::move(scan.points));
   }
-  const std::vector<Pose> poses = placeScans(scans, input, options, subProgress(progress, 0.6, 0.9), figures);
+  const std::vector<Pose> poses = placeScans(input, options, subProgress(progress, 0.6, 0.9), figures);
   report(progress, "merge", 0.9);
   const PointSet merged = mergeScans(scans, poses, options.threads);
   writePoints(files.points, merged);
