@@ -19,7 +19,7 @@ picture() {
 }
 
 table_head() {
-  echo '| symmetric error at the vertices | max | mean | RMS | max, % | mean, % | RMS, % | normals, degrees | above 20, % | vertices |'
+  echo '| symmetric error at the vertices | max | mean | RMS | max, % | mean, % | RMS, % | normals, mean degrees | above 20, % | vertices |'
   echo '|---|---|---|---|---|---|---|---|---|---|'
 }
 
@@ -34,4 +34,14 @@ table_row() {
     }
     $1 == "mesh" && $2 == "V" { vertices = $3 }
     END { printf "| %s | %s | %.2f | %.2f | %s |\n", title, error, angle, share, vertices }'
+}
+
+# room_row TITLE MESH REFERENCE: from the mesh to the room only, since much of a room is hidden from the scanners.
+room_row() {
+  build/bin/fresco_compare "$2" "$3" -quiet | awk -v title="$1" '
+    $1 == "normals" { in_normals = 1 }
+    $1 == "mesh" && $2 == "to" && !in_normals { error = sprintf("%.3f | %.1f | %.1f", $4, 1000 * $5, 1000 * $6) }
+    $1 == "mesh" && $2 == "to" && in_normals { angles = sprintf("%.2f | %.1f", $5, $7) }
+    $1 == "mesh" && $2 == "V" { size = $3 " | " $5 }
+    END { printf "| %s | %s | %s | %s |\n", title, size, error, angles }'
 }

@@ -19,6 +19,7 @@ if(DOXYGEN_FOUND AND TARGET fresco_tools AND NOT CMAKE_CROSSCOMPILING)
   configure_file("${PROJECT_SOURCE_DIR}/docs/site/Doxyfile.in" "${FRESCO_SITE}/Doxyfile" @ONLY)
   add_custom_target(docs_site
     COMMAND Doxygen::doxygen "${FRESCO_SITE}/Doxyfile"
-    COMMAND "${CMAKE_COMMAND}" -D "WARNINGS=${FRESCO_SITE}/warnings.txt" -P "${PROJECT_SOURCE_DIR}/cmake/site_warnings.cmake"
+    COMMAND "${CMAKE_COMMAND}" -D "WARNINGS=${FRESCO_SITE}/warnings.txt"
+            -D "HTML=${FRESCO_SITE}/html" -P "${PROJECT_SOURCE_DIR}/cmake/site_warnings.cmake"
     DEPENDS ${tool_pages} COMMENT "Documentation in ${FRESCO_SITE}/html/index.html" VERBATIM)
 endif()

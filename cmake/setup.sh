@@ -19,7 +19,7 @@ fresco_missing() {
 
 fresco_install() {
   if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
-    fresco_say "no apt here: install the packages that README.md lists by hand"
+    fresco_say "no apt here: install the packages at the top of cmake/setup.sh by hand"
     return
   fi
   local missing as_root=()

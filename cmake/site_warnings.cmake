@@ -1,5 +1,20 @@
-# Fails where Doxygen had something to say: cmake -D WARNINGS=FILE -P site_warnings.cmake
+# Fails where Doxygen had something to say, or a page shows a picture that is not there:
+#   cmake -D WARNINGS=FILE -D HTML=FOLDER -P site_warnings.cmake
+cmake_minimum_required(VERSION 3.20)
 file(READ "${WARNINGS}" text)
+file(GLOB pages "${HTML}/*.html")
+foreach(page IN LISTS pages)
+  file(STRINGS "${page}" lines REGEX "<img [^>]*src=\"")
+  foreach(line IN LISTS lines)
+    string(REGEX MATCHALL "<img [^>]*src=\"[^\"]+\"" pictures "${line}")
+    foreach(picture IN LISTS pictures)
+      string(REGEX REPLACE ".*src=\"([^\"]+)\"" "\\1" picture "${picture}")
+      if(NOT picture MATCHES "^(https?|data):" AND NOT EXISTS "${HTML}/${picture}")
+        string(APPEND text "${page}: ${picture}: no such picture\n")
+      endif()
+    endforeach()
+  endforeach()
+endforeach()
 if(NOT text STREQUAL "")
   message(FATAL_ERROR "the documentation has mistakes:\n${text}")
 endif()

@@ -19,7 +19,7 @@ namespace {
 using namespace fresco;
 
 struct Request {
-  std::string model, output, reference, view = "corner";
+  std::string model, output, reference, room, view = "corner";
   std::vector<Shading> shadings{Shading::Gouraud};
   std::optional<Eigen::Vector3d> eye, look, up;
   std::optional<double> angle;
@@ -74,6 +74,9 @@ void declareView(Args& args, Request& request)
       "where to look from: " + joined(viewNames()) +
           " (the whole model is in the picture), inside (a room, at eye height), above (a room, its ceiling and "
           "near walls left out)");
+  args.option("room", request.room,
+              "mesh of the room that -view inside or above is chosen for, so that pictures of several models are taken "
+              "from one place (default: MODEL, which must have faces then)");
   const auto point = [&](const std::string& name, std::optional<Eigen::Vector3d>& value, const std::string& help) {
     args.values(name, "X Y Z", help, [&value, name](const auto& words) { value = vector(name, words); });
   };
@@ -82,7 +85,8 @@ void declareView(Args& args, Request& request)
   point("up", request.up, "upright direction (default: 0 0 1; with -view inside and above: found from the model)");
   args.values("angle", "DEG", "vertical opening angle, 1..170 degrees (default: 30; with -view inside: 62)",
               [&](const auto& words) { request.angle = Args::number("angle", words[0]); });
-  args.flag("cull", request.picture.cull_back_faces, "leave out faces seen from behind (always with -view above)");
+  args.flag("cull", request.picture.cull_back_faces,
+            "leave out faces, and points with normals, seen from behind (always with -view above)");
 }
 
 void declareLook(Args& args, Request& request)
@@ -100,6 +104,7 @@ void declareLook(Args& args, Request& request)
               [&](const auto& words) { setBackground(picture, words); });
   args.flag("transparent", picture.transparent, "no background: PNG with alpha");
   args.option("crease", picture.crease_angle, "edges that bend by more look sharp with gouraud, 0..180 degrees");
+  args.flag("plain", picture.plain, "leave out the colours of vertices and points: the shape alone");
   args.option("point_size", picture.point_size, "size of points, pixels; 0 = by their number");
   args.option("oversampling", picture.oversampling, "pixels drawn per pixel along each side, 1..4: finer, slower");
 }
@@ -112,6 +117,8 @@ void checkRequest(const Request& request, const Args& args)
     throw UsageError("-look needs -eye");
   const auto& names = viewNames();
   const bool indoor = request.view == "inside" || request.view == "above";
+  if (!indoor && !request.room.empty())
+    throw UsageError("-room needs -view inside or above");
   if (!indoor && std::find(names.begin(), names.end(), request.view) == names.end())
     throw UsageError("-view: '" + request.view + "' is none of " + joined(names) + ", inside, above");
   const bool error = std::count(request.shadings.begin(), request.shadings.end(), Shading::Error) > 0;
@@ -189,8 +196,11 @@ Viewpoint wholeModelView(const Request& request, const Model& model)
 
 Viewpoint indoorView(const Request& request, const Model& model)
 {
-  const TriangleMesh* mesh = meshOf(model);
-  require(mesh, "-view ", request.view, " needs a mesh with faces");
+  std::optional<TriangleMesh> room;
+  if (!request.room.empty())
+    room = readMesh(request.room);
+  const TriangleMesh* mesh = room ? &*room : meshOf(model);
+  require(mesh, "-view ", request.view, " needs a mesh with faces; -room names one");
   IndoorOptions options;
   options.up = request.up;
   options.threads = request.common.threads;

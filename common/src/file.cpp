@@ -53,19 +53,6 @@ void abandonUnfinishedFiles() noexcept
     ::unlink(path.c_str());
 }
 
-TemporaryFile::TemporaryFile(std::string path) : path_(std::move(path))
-{
-  const std::lock_guard<std::mutex> lock(unfinished().mutex);
-  unfinished().paths.insert(path_);
-}
-
-TemporaryFile::~TemporaryFile()
-{
-  const std::lock_guard<std::mutex> lock(unfinished().mutex);
-  ::unlink(path_.c_str());
-  unfinished().paths.erase(path_);
-}
-
 OutputFile::OutputFile(std::string path) : path_(std::move(path)), temporary_(besides(path_))
 {
   if (std::filesystem::path(path_).filename().empty() || std::filesystem::is_directory(path_))

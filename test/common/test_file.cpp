@@ -81,17 +81,6 @@ TEST(OutputFile, ManyPiecesAreWhole)
   EXPECT_TRUE(readFile(path) == all);
 }
 
-TEST(TemporaryFile, GoesWithItsObject)
-{
-  const std::string folder = test::scratchFolder();
-  {
-    const TemporaryFile first(folder + "/.first"), never_made(folder + "/.second");
-    writeFile(first.path(), "content");
-    EXPECT_EQ(entries(folder), 1U);
-  }
-  EXPECT_EQ(entries(folder), 0U);
-}
-
 TEST(OutputFile, NamesWhatCannotBeWritten)
 {
   const std::string folder = test::scratchFolder();

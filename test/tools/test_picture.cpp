@@ -201,6 +201,52 @@ TEST(Picture, PointsAreDrawnAndNonFiniteOnesLeftOut)
   EXPECT_LE(difference(rgb(renderPicture(set, options), 100, 75), {128, 0, 128}), 1);
 }
 
+TEST(Picture, PlainPicturesShowTheShapeAlone)
+{
+  TriangleMesh ball = sphere(1.f, 4);
+  PictureOptions options = optionsFor(Shading::Gouraud);
+  const Image bare = renderPicture(ball, options);
+  ball.colors = Colors::Constant(3, ball.vertexCount(), 9);
+  EXPECT_NE(renderPicture(ball, options).data, bare.data);
+  options.plain = true;
+  EXPECT_EQ(renderPicture(ball, options).data, bare.data);
+  PointSet set;
+  set.points = ball.vertices;
+  const Image points = renderPicture(set, options);
+  set.colors = ball.colors;
+  set.intensities = ball.vertices.row(0).transpose();
+  EXPECT_EQ(renderPicture(set, options).data, points.data);
+}
+
+TEST(Picture, CulledPointsAreThoseTurnedToTheEye)
+{
+  const TriangleMesh ball = sphere(1.f, 5);
+  PointSet set;
+  set.points = ball.vertices;
+  set.normals = ball.vertices; // outward
+  set.colors = Colors::Constant(3, set.size(), 40);
+  for (Index i = 0; i < set.size(); ++i)
+    if (set.points(1, i) < -0.2f) // what an eye 5 away sees of the ball
+      set.colors.col(i).setConstant(200);
+  PictureOptions options = optionsFor(Shading::PointCloud);
+  options.view = from({0, -5, 0}, 30);
+  options.point_size = 1; // the far half shows between the near points
+  const auto pixels = [&](std::uint8_t value) {
+    const Image image = renderPicture(set, options);
+    return std::count(image.data.begin(), image.data.end(), value) / 3;
+  };
+  const auto near = pixels(200), far = pixels(40);
+  EXPECT_GT(near, 100);
+  EXPECT_GT(far, 20);
+  options.cull_back_faces = true;
+  EXPECT_EQ(pixels(40), 0);
+  EXPECT_GT(pixels(200), near / 2);
+  set.normals =
+      -set.normals; // inward: the far side alone; a few pixels of its rim are mixed with white to the same grey
+  EXPECT_GT(pixels(40), far);
+  EXPECT_LT(pixels(200), near / 4);
+}
+
 long residentPages()
 {
   long size = 0, resident = 0;

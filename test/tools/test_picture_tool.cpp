@@ -97,6 +97,14 @@ TEST_F(SnapshotTool, IndoorViewsAndTexturesOfAFile)
     const Outcome result = run(folder_ + "/room.ply " + out_ + " -size 160x120 -view " + view);
     EXPECT_EQ(result.status, 0) << result.errors;
   }
+  PointSet points;
+  points.points = room.vertices;
+  writePoints(folder_ + "/points.ply", points);
+  const std::string inside = folder_ + "/points.ply " + out_ + " -size 160x120 -view inside";
+  EXPECT_EQ(run(inside + " -room " + folder_ + "/room.ply").status, 0);
+  fs::remove(out_);
+  expectFailure(inside, "-room");
+  EXPECT_EQ(run(mesh_ + " " + out_ + " -room " + folder_ + "/room.ply").status, 2);
   TexturedMesh square = texturedSquare(Image(16, 16, 3, 60));
   for (const char* name : {"/square.obj", "/square.glb"}) {
     writeTexturedMesh(folder_ + name, square);
@@ -122,8 +130,9 @@ TEST_F(SnapshotTool, HelpNamesEveryOption)
 {
   const Outcome result = run("-h");
   EXPECT_EQ(result.status, 0);
-  for (const char* option : {"-shading", "-reference", "-size", "-eye", "-look", "-up", "-angle", "-view",
-                             "-transparent", "-cull", "-limit", "-unit", "-background", "-threads", "-quiet"})
+  for (const char* option :
+       {"-shading", "-reference", "-size", "-eye", "-look", "-up", "-angle", "-view", "-transparent", "-cull", "-room",
+        "-plain", "-limit", "-unit", "-background", "-threads", "-quiet"})
     EXPECT_NE(result.output.find(option), std::string::npos) << option;
 }
 

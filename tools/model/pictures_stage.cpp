@@ -133,6 +133,7 @@ Json makePictures(const ModelInput& input, const ModelFiles& files, const ModelO
     picture.oversampling = shot.shading == Shading::Texture ? 2 : 1; // textures hold finer detail than the picture
     picture.view = shot.from == From::above ? above : shot.from == From::inside ? inside : photographs[shot.photograph];
     picture.cull_back_faces = shot.from == From::above;
+    picture.plain = shot.shading == Shading::Gouraud;
     const Image image =
         shot.shading == Shading::Texture ? renderPicture(model, picture) : renderPicture(model.mesh, picture);
     writeImage(pictureFiles(files)[i], image);

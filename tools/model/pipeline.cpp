@@ -64,7 +64,7 @@ ModelReport buildModel(const ModelInput& input, const std::string& folder, const
            {files.points, files.poses},
            [&](const Progress& inner) { return makePoints(input, files, options, inner); }});
   log.run({"surface", concat(options.cell, " ", options.trim), {files.surface}, [&](const Progress& inner) {
-             return makeSurface(files, options, inner);
+             return makeSurface(input, files, options, inner);
            }});
   log.run({"optimization", concat(options.optimize), {files.mesh}, [&](const Progress& inner) {
              return makeOptimizedSurface(files, options, inner);

@@ -5,13 +5,12 @@
 #include <algorithm>
 #include <fresco/common/point_io.h>
 #include <fresco/common/require.h>
-#include <fresco/common/unfinished_files.h>
 #include <fresco/filters/core/bilateral_normals.h>
 #include <fresco/filters/core/oriented_normals.h>
 #include <fresco/filters/core/outliers.h>
 #include <fresco/filters/core/veil_points.h>
 #include <fresco/registration/core/scan_registration.h>
-#include <memory>
+#include <utility>
 namespace fresco {
 namespace {
 using Json = nlohmann::ordered_json;
@@ -68,37 +67,11 @@ PreparedScan preparedScan(const std::string& file, const ModelOptions& options, 
   return {smoothed(scan, options, subProgress(progress, 0.6, 1.0)), read.size()};
 }
 
-/// Scans that are ready to be placed, in files that go with this object: all at once would need too much memory.
-class PreparedScans {
-public:
-  explicit PreparedScans(std::string folder) : folder_(std::move(folder)) {}
-
-  void add(const PointSet& scan)
-  {
-    files_.push_back(std::make_unique<TemporaryFile>(concat(folder_, "/.scan_", files_.size(), ".ply")));
-    sizes_.push_back(scan.size());
-    if (scan.size() > 0)
-      writePoints(files_.back()->path(), scan);
-  }
-
-  ScanSource source() const
-  {
-    return {static_cast<Index>(files_.size()), [this](Index scan) {
-              const auto i = static_cast<std::size_t>(scan);
-              return sizes_[i] > 0 ? readPoints(files_[i]->path()) : PointSet();
-            }};
-  }
-
-private:
-  std::string folder_;
-  std::vector<std::unique_ptr<TemporaryFile>> files_;
-  std::vector<Index> sizes_;
-};
-
-/// World from scan. Without -poses all scans are registered from scratch; the folder's first pose then only ties the
-/// result to the frame of the photographs.
-std::vector<Pose> placeScans(const ScanSource& scans, const ModelInput& input, const ModelOptions& options,
-                             const Progress& progress, Json& figures)
+/// World from scan. Without -poses all scans are registered from scratch, as they were measured: what cleaning takes
+/// from a sparse scan is what its place would be known by. The folder's first pose then only ties the result to the
+/// frame of the photographs.
+std::vector<Pose> placeScans(const ModelInput& input, const ModelOptions& options, const Progress& progress,
+                             Json& figures)
 {
   if (options.use_poses) {
     figures["registration"] = "given poses";
@@ -106,6 +79,9 @@ std::vector<Pose> placeScans(const ScanSource& scans, const ModelInput& input, c
   }
   ScanRegistrationOptions registration;
   registration.threads = options.threads;
+  registration.names = input.scans;
+  const ScanSource scans{static_cast<Index>(input.scans.size()),
+                         [&](Index i) { return readPoints(input.scans[static_cast<std::size_t>(i)]); }};
   const ScanRegistrationResult result = registerScans(scans, {}, registration, progress);
   std::vector<Pose> poses = result.poses;
   figures["registration"] = "found";
@@ -128,25 +104,24 @@ Json pointsFromScans(const ModelInput& input, const ModelFiles& files, const Mod
                      const Progress& progress)
 {
   Json figures;
-  PreparedScans prepared(files.work);
+  const auto count = static_cast<Index>(input.scans.size());
+  const std::vector<Pose> poses = placeScans(input, options, subProgress(progress, 0.0, 0.4), figures);
   Index raw = 0;
-  const double step = 0.6 / static_cast<double>(input.scans.size());
-  for (std::size_t s = 0; s < input.scans.size(); ++s) {
-    const double begin = step * static_cast<double>(s);
-    report(progress, concat("scan ", s + 1, " of ", input.scans.size()), begin);
-    const PreparedScan scan = preparedScan(input.scans[s], options, subProgress(progress, begin, begin + step));
+  const double step = 0.55 / static_cast<double>(count);
+  const auto prepared = [&](Index s) {
+    const double begin = 0.4 + step * static_cast<double>(s);
+    report(progress, concat("scan ", s + 1, " of ", count), begin);
+    PreparedScan scan =
+        preparedScan(input.scans[static_cast<std::size_t>(s)], options, subProgress(progress, begin, begin + step));
     raw += scan.read;
-    prepared.add(scan.points);
-  }
-  const ScanSource scans = prepared.source();
-  const std::vector<Pose> poses = placeScans(scans, input, options, subProgress(progress, 0.6, 0.9), figures);
-  report(progress, "merge", 0.9);
-  const PointSet merged = mergeScans(scans, poses, options.threads);
+    return std::move(scan.points);
+  };
+  const PointSet merged = mergeScans({count, prepared}, poses, options.threads);
   report(progress, "write", 0.95);
   writePoints(files.points, merged);
   writePoses(files.poses, poses);
-  figures["scans"] = scans.count;
-  figures["raw_points"] = raw;
+  figures["scans"] = count;
+  figures["raw_points"] = raw; // of the scans that have a place
   figures["points"] = merged.size();
   figures["unplaced_scans"] = std::count(poses.begin(), poses.end(), std::nullopt);
   return figures;

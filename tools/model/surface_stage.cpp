@@ -1,11 +1,71 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "model/surface_stage.h"
+#include "model/free_space.h"
+#include <algorithm>
 #include <fresco/common/mesh_io.h>
+#include <fresco/common/parallel.h>
 #include <fresco/common/point_io.h>
 #include <fresco/common/require.h>
+#include <fresco/filters/core/neighbors.h>
 #include <fresco/surface/core/volumetric_reconstruction.h>
 namespace fresco {
-nlohmann::ordered_json makeSurface(const ModelFiles& files, const ModelOptions& options, const Progress& progress)
+namespace {
+/// 1 where no point of the data is within a cell.
+std::vector<char> farFromPoints(const TriangleMesh& mesh, const PointSet& points, const ModelOptions& options)
+{
+  const PointTree tree(points.points, options.threads);
+  const Eigen::Vector3f shift = (mesh.origin - points.origin).cast<float>();
+  std::vector<char> far(static_cast<std::size_t>(mesh.vertexCount()));
+  parallelFor(mesh.vertexCount(), options.threads, [&](Index v) {
+    const Eigen::Vector3f place = mesh.vertices.col(v) + shift;
+    far[static_cast<std::size_t>(v)] = tree.nearest(place, static_cast<float>(options.cell)).index < 0;
+  });
+  return far;
+}
+
+FreeSpace askAllViews(const Points& places, const ModelInput& input, const ModelFiles& files,
+                      const ModelOptions& options)
+{
+  FreeSpace space(places, options.cell, options.threads);
+  if (input.rgbd)
+    for (const RgbdFrame& frame : input.rgbd->frames)
+      space.ask(readImage16(frame.depth), input.rgbd->camera, frame.T_world_camera);
+  const std::vector<Pose> poses = readPoses(files.poses);
+  for (std::size_t s = 0; s < input.scans.size(); ++s)
+    if (poses.at(s)) {
+      const PointSet scan = readPoints(input.scans[s]);
+      if (scan.viewpoints.cols() > 1) // of several stations: no one place that the beams come from
+        continue;
+      Eigen::Vector3f scanner = (-scan.origin).cast<float>();
+      if (scan.viewpoints.cols() == 1)
+        scanner = scan.viewpoints.col(0);
+      const Eigen::Translation3d T_frame_scanner(scan.origin + scanner.cast<double>());
+      space.ask((scan.points.colwise() - scanner).eval(), Eigen::Isometry3d(*poses[s]) * T_frame_scanner);
+    }
+  return space;
+}
+
+/// Without the surface in places that the sensors saw through and that no point is near to. Poses of depth cameras are
+/// not exact: there, one frame in thirty must have seen through.
+TriangleMesh carved(const TriangleMesh& mesh, const PointSet& points, const ModelInput& input, const ModelFiles& files,
+                    const ModelOptions& options)
+{
+  std::vector<char> removed = farFromPoints(mesh, points, options);
+  std::vector<Index> asked;
+  for (Index v = 0; v < mesh.vertexCount(); ++v)
+    if (removed[static_cast<std::size_t>(v)])
+      asked.push_back(v);
+  const Points places = (mesh.vertices(Eigen::all, asked).colwise() + mesh.origin.cast<float>()).eval();
+  const int least = input.rgbd ? std::max(2, static_cast<int>(input.rgbd->frames.size()) / 30) : 1;
+  const std::vector<char> empty = askAllViews(places, input, files, options).empty(least);
+  for (std::size_t i = 0; i < asked.size(); ++i)
+    removed[static_cast<std::size_t>(asked[i])] = empty[i];
+  return withoutVertices(mesh, std::move(removed));
+}
+} // namespace
+
+nlohmann::ordered_json makeSurface(const ModelInput& input, const ModelFiles& files, const ModelOptions& options,
+                                   const Progress& progress)
 {
   report(progress, "read", 0.0);
   PointSet points = readPoints(files.points);
@@ -13,7 +73,12 @@ nlohmann::ordered_json makeSurface(const ModelFiles& files, const ModelOptions& 
   volumetric.cell_size = options.cell;
   volumetric.threads = options.threads;
   volumetric.trim_levels = static_cast<float>(options.trim);
-  const VolumetricResult result = reconstructVolumetric(std::move(points), volumetric, progress);
+  VolumetricResult result = reconstructVolumetric(std::move(points), volumetric, subProgress(progress, 0.0, 0.7));
+  const Index before = result.mesh.vertexCount();
+  if (options.trim > 0) {
+    report(progress, "free space", 0.7);
+    result.mesh = carved(result.mesh, readPoints(files.points), input, files, options);
+  }
   if (result.mesh.faceCount() == 0)
     throw std::runtime_error(files.points + ": no surface could be made of the points");
   writeMesh(files.surface, result.mesh);
@@ -23,6 +88,7 @@ nlohmann::ordered_json makeSurface(const ModelFiles& files, const ModelOptions& 
           {"octree_depth", result.depth},
           {"cell", result.cell_size},
           {"trim_depth", result.trim_depth},
+          {"vertices_in_free_space", before - result.mesh.vertexCount()},
           {"components", topology.components},
           {"boundary_edges", topology.boundary_edges},
           {"non_manifold_edges", topology.nonmanifold_edges},

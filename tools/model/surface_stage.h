@@ -2,6 +2,8 @@
 #pragma once
 #include "model/pipeline.h"
 namespace fresco {
-/// Surface of the points: reads `files.points`, writes `files.surface`.
-nlohmann::ordered_json makeSurface(const ModelFiles& files, const ModelOptions& options, const Progress& progress);
+/// Surface of the points: reads `files.points`, writes `files.surface`. Unless it is to be closed, the surface in
+/// places that scans or frames saw through is left out.
+nlohmann::ordered_json makeSurface(const ModelInput& input, const ModelFiles& files, const ModelOptions& options,
+                                   const Progress& progress);
 } // namespace fresco

@@ -15,10 +15,11 @@ struct StudioLight {
   double intensity;
 };
 
-// The key light makes shapes readable, the others keep its shadow side and ceilings from going black. A face seen and
-// lit head-on has about its full colour.
-constexpr StudioLight studio[] = {
-    {{-0.45, 0.75, 0.85}, 0.78}, {{0.9, 0.05, 0.5}, 0.36}, {{0.15, -0.9, 0.35}, 0.2}, {{0.0, 0.0, 1.0}, 0.22}};
+// The key light makes shapes readable, the others keep its shadow side and ceilings from going black, and a lamp at the
+// eye lights every face that is seen, also those of a room around the eye. A face seen and lit head-on has about its
+// full colour.
+constexpr StudioLight studio[] = {{{-0.45, 0.75, 0.85}, 0.6}, {{0.9, 0.05, 0.5}, 0.34}, {{0.15, -0.9, 0.35}, 0.28}};
+constexpr double eye_lamp = 0.32;
 
 std::mutex& graphicsMutex()
 {
@@ -95,6 +96,12 @@ void Canvas::setLighting(Lighting lighting)
     light->SetIntensity(lamp.intensity);
     renderer_->AddLight(light);
   }
+  const vtkNew<vtkLight> lamp;
+  lamp->SetLightTypeToHeadlight();
+  lamp->PositionalOn();
+  lamp->SetConeAngle(180); // to all sides
+  lamp->SetIntensity(eye_lamp);
+  renderer_->AddLight(lamp);
 }
 
 void Canvas::setBackground(const std::array<std::uint8_t, 3>& color)

@@ -43,10 +43,9 @@ DrawMesh drawnFaces(const TriangleMesh& mesh, const PictureOptions& options)
 {
   if (options.shading == Shading::Normals)
     return normalColoredMesh(mesh, options.threads);
-  if (options.shading == Shading::Gouraud)
-    return creasedMesh(mesh, options.crease_angle, options.threads);
-  DrawMesh drawn = plainMesh(mesh);
-  if (options.shading == Shading::Wireframe)
+  DrawMesh drawn =
+      options.shading == Shading::Gouraud ? creasedMesh(mesh, options.crease_angle, options.threads) : plainMesh(mesh);
+  if (options.plain || options.shading == Shading::Wireframe)
     drawn.colors.resize(3, 0);
   return drawn;
 }
@@ -86,6 +85,22 @@ PointSet verticesOf(const TriangleMesh& mesh)
   return set;
 }
 
+/// The points to be drawn: with `cull_back_faces` those whose normals point to the side of the eye.
+PointSet drawnPoints(PointSet set, const PictureOptions& options, const Eigen::Vector3d& eye)
+{
+  if (options.plain) {
+    set.colors.resize(3, 0);
+    set.intensities.resize(0);
+  }
+  if (!options.cull_back_faces || !set.hasNormals())
+    return set;
+  const Eigen::Vector3f place = (eye - set.origin).cast<float>();
+  std::vector<Index> seen;
+  for (Index i = 0; i < set.size(); ++i)
+    if (set.normals.col(i).dot(place - set.points.col(i)) > 0.f)
+      seen.push_back(i);
+  return selectPoints(set, seen);
+}
 } // namespace
 
 const std::vector<std::string>& shadingNames()
@@ -124,7 +139,7 @@ Image renderPicture(const PointSet& set, const PictureOptions& options)
   validatePointSet(set);
   const Viewpoint view = chooseView(set, options);
   require(options.shading != Shading::Normals || set.hasNormals(), "picture: the points have no normals");
-  DrawMesh drawn = drawPoints(set);
+  DrawMesh drawn = drawPoints(drawnPoints(set, options, view.eye));
   if (options.shading == Shading::Normals)
     drawn.colors = normalColors(drawn.normals);
   return drawOne(drawn, pointLook(drawn, options), {view, set.origin}, options);
