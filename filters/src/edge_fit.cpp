@@ -63,6 +63,8 @@ Choice flattestAround(const Neighborhoods& all, const std::vector<Plane>& planes
 {
   const Plane& own = planes[i];
   Choice choice = {i, false};
+  if (!std::isfinite(own.variance))
+    return choice;
   float best_score = own.variance / ratio, closest = 1;
   for (const int* j = all.lists.first(i); j != all.lists.last(i); ++j) {
     closest = std::min(closest, std::abs(planes[*j].normal.dot(own.normal)));

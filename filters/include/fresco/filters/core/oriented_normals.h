@@ -22,8 +22,9 @@ struct NormalField {
 
 /// Normals of a surface from its points: least squares planes of neighbourhoods (Hoppe et al. 1992, "Surface
 /// reconstruction from unorganized points"); next to an edge, the fit is repeated with the points that lie on the
-/// flattest plane nearby that holds the point. Normals point to where the point was seen from (set.viewpoints); where
-/// no viewpoints are known, orientNormals() turns them.
+/// flattest plane nearby that holds the point, and where planes of both sides do, the ray from the viewpoint tells
+/// which it meets (noise is taken to lie along the ray). Normals point to where the point was seen from
+/// (set.viewpoints); where no viewpoints are known, orientNormals() turns them.
 /// @throws std::invalid_argument if an option is out of range, the set is malformed or a viewpoint is not finite
 /// @throws Cancelled
 NormalField estimateNormals(const PointSet& set, const NormalOptions& options = {}, const Progress& progress = {});
