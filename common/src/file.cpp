@@ -30,7 +30,7 @@ std::string besides(const std::string& path)
 constexpr std::size_t buffer_size = std::size_t{1} << 20;
 
 /// Bytes per call of the operating system. A process cannot end, nor its file be removed, before the call under way
-/// has: no call may have gigabytes to write, nor fsync() find gigabytes that wait for the disk.
+/// has: no call may have gigabytes to read or write, nor fsync() find gigabytes that wait for the disk.
 constexpr std::size_t piece_size = std::size_t{8} << 20;
 
 /// Temporary files that are neither renamed nor removed yet. Never destroyed: files may outlive main().
@@ -147,8 +147,12 @@ std::string readFile(const std::string& path)
   std::string content;
   const auto size = std::filesystem::file_size(path, error);
   content.resize(error ? 0 : size);
-  file.read(content.data(), static_cast<std::streamsize>(content.size()));
-  content.resize(static_cast<std::size_t>(file.gcount()));
+  std::size_t done = 0;
+  while (file && done < content.size()) {
+    file.read(&content[done], static_cast<std::streamsize>(std::min(piece_size, content.size() - done)));
+    done += static_cast<std::size_t>(file.gcount());
+  }
+  content.resize(done);
   if (content.empty())
     fail(path, "the file is empty");
   return content;
