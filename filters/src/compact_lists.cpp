@@ -16,17 +16,17 @@ void addNumber(std::uint32_t value, std::vector<std::uint8_t>& bytes)
 
 void CompactLists::add(const std::vector<int>& positions)
 {
-  std::uint32_t leaves = 0;
+  const auto leafOf = [&](std::size_t j) { return static_cast<std::uint32_t>(positions[j]) / 8; };
+  std::uint32_t leaves = 0, previous = 0;
   for (std::size_t j = 0; j < positions.size(); ++j)
-    leaves += j == 0 || positions[j] / 8 != positions[j - 1] / 8;
+    leaves += j == 0 || leafOf(j) != leafOf(j - 1);
   addNumber(leaves, bytes);
-  int previous = 0;
   for (std::size_t j = 0; j < positions.size();) {
-    const int leaf = positions[j] / 8;
+    const std::uint32_t leaf = leafOf(j);
     unsigned mask = 0;
-    for (; j < positions.size() && positions[j] / 8 == leaf; ++j)
-      mask |= 1u << (positions[j] % 8);
-    addNumber(static_cast<std::uint32_t>(leaf - previous), bytes);
+    for (; j < positions.size() && leafOf(j) == leaf; ++j)
+      mask |= 1u << (static_cast<unsigned>(positions[j]) % 8);
+    addNumber(leaf - previous, bytes);
     bytes.push_back(static_cast<std::uint8_t>(mask));
     previous = leaf;
   }
@@ -43,14 +43,18 @@ std::uint32_t CompactReader::number()
 
 void CompactReader::next(std::vector<int>& positions)
 {
-  positions.clear();
   int leaf = 0;
-  for (std::uint32_t leaves = number(); leaves > 0; --leaves) {
+  std::size_t found = 0;
+  const std::uint32_t leaves = number();
+  positions.resize(8 * static_cast<std::size_t>(leaves) + 1); // one more is written than found
+  for (std::uint32_t l = 0; l < leaves; ++l) {
     leaf += static_cast<int>(number());
     const unsigned mask = *at_++;
-    for (int lane = 0; lane < 8; ++lane)
-      if (mask >> lane & 1u)
-        positions.push_back(8 * leaf + lane);
+    for (int lane = 0; lane < 8; ++lane) { // without branches, which could not be foretold
+      positions[found] = 8 * leaf + lane;
+      found += mask >> lane & 1u;
+    }
   }
+  positions.resize(found);
 }
 } // namespace fresco
