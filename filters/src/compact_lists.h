@@ -4,7 +4,7 @@
 #include <fresco/filters/core/neighbors.h>
 #include <vector>
 namespace fresco {
-/// Lists of neighbours of consecutive points, read one after the other: about 0.6 bytes per neighbour, since those in
+/// Lists of neighbours of consecutive points, read one after the other: about half a byte per neighbour, since those in
 /// one leaf of the tree are the bits of one byte.
 struct CompactLists {
   Index begin = 0, end = 0; ///< positions of the points
