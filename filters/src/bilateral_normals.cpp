@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "compact_lists.h"
 #include "exponential.h"
 #include <Eigen/Geometry>
 #include <cmath>
@@ -17,7 +18,7 @@ struct Field {
   Eigen::VectorXf areas;    ///< a_j, any common factor
   Eigen::VectorXf scales_d; ///< 1 / (2 s_d^2), by point
   float scale_n = 0;        ///< 1 / (2 s_n^2)
-  NeighborLists lists;
+  std::vector<CompactLists> lists;
 };
 
 void validate(const Points& points, const Points& normals, const BilateralOptions& options)
@@ -52,16 +53,22 @@ Field makeField(const Points& points, const Points& normals, const BilateralOpti
   field.scales_d = 0.5f * sigmas.array().square().inverse();
   const float s_n = 1 - std::cos(options.sigma_n * 0.017453293f);
   field.scale_n = 0.5f / (s_n * s_n);
-  field.lists = radiusLists(tree, 2 * sigmas, most, options.threads);
+  field.lists = compactRadiusLists(tree, 2 * sigmas, most, options.threads);
   return field;
 }
 
-/// Weights of the neighbours of point i, in the order of its list.
-void neighborWeights(const Field& field, const Points& normals, Index i, Eigen::ArrayXf& weights)
+struct Neighborhood {
+  Index point = 0;
+  std::vector<int> list;
+  Eigen::ArrayXf weights; ///< in the order of the list
+};
+
+void weigh(const Field& field, const Points& normals, Neighborhood& around)
 {
-  const int* list = field.lists.first(i);
-  const Index count = field.lists.count(i);
+  const Index i = around.point, count = static_cast<Index>(around.list.size());
+  const int* list = around.list.data();
   const Eigen::Vector3f point = field.points.col(i), normal = normals.col(i);
+  Eigen::ArrayXf& weights = around.weights;
   weights.resize(count);
   for (Index j = 0; j < count; ++j) {
     const float difference = 1 - normal.dot(normals.col(list[j]));
@@ -73,20 +80,33 @@ void neighborWeights(const Field& field, const Points& normals, Index i, Eigen::
     weights[j] *= field.areas[list[j]];
 }
 
+/// use(neighborhood) for each point.
+template <typename Use>
+void forNeighborhoods(const Field& field, const Points& normals, int threads, const Use& use)
+{
+  const auto search = [&](Index range) {
+    const CompactLists& lists = field.lists[static_cast<std::size_t>(range)];
+    CompactReader reader(lists);
+    Neighborhood around;
+    for (around.point = lists.begin; around.point < lists.end; ++around.point) {
+      reader.next(around.list);
+      weigh(field, normals, around);
+      use(around);
+    }
+  };
+  parallelFor(static_cast<Index>(field.lists.size()), threads, search, 1);
+}
+
 Points smoothOnce(const Field& field, const Points& normals, int threads)
 {
   Points smooth(3, normals.cols());
-  parallelRanges(normals.cols(), threads, [&](Index begin, Index end) {
-    Eigen::ArrayXf weights;
-    for (Index i = begin; i < end; ++i) {
-      neighborWeights(field, normals, i, weights);
-      const int* list = field.lists.first(i);
-      Eigen::Vector3f sum = Eigen::Vector3f::Zero();
-      for (Index j = 0; j < weights.size(); ++j)
-        sum += weights[j] * normals.col(list[j]);
-      const float length = sum.norm();
-      smooth.col(i) = length > 0 ? Eigen::Vector3f(sum / length) : Eigen::Vector3f(normals.col(i));
-    }
+  forNeighborhoods(field, normals, threads, [&](const Neighborhood& around) {
+    const int* list = around.list.data();
+    Eigen::Vector3f sum = Eigen::Vector3f::Zero();
+    for (Index j = 0; j < around.weights.size(); ++j)
+      sum += around.weights[j] * normals.col(list[j]);
+    const float length = sum.norm();
+    smooth.col(around.point) = length > 0 ? Eigen::Vector3f(sum / length) : Eigen::Vector3f(normals.col(around.point));
   });
   return smooth;
 }
@@ -95,18 +115,14 @@ Points smoothOnce(const Field& field, const Points& normals, int threads)
 Points moveOnce(const Field& field, const Points& normals, int threads)
 {
   Points moved(3, normals.cols());
-  parallelRanges(normals.cols(), threads, [&](Index begin, Index end) {
-    Eigen::ArrayXf weights;
-    for (Index i = begin; i < end; ++i) {
-      neighborWeights(field, normals, i, weights);
-      const int* list = field.lists.first(i);
-      const Eigen::Vector3f point = field.points.col(i);
-      float step = 0;
-      for (Index j = 0; j < weights.size(); ++j)
-        step += weights[j] * normals.col(list[j]).dot(field.points.col(list[j]) - point);
-      const float total = weights.sum();
-      moved.col(i) = total > 0 ? Eigen::Vector3f(point + step / total * normals.col(i)) : point;
-    }
+  forNeighborhoods(field, normals, threads, [&](const Neighborhood& around) {
+    const int* list = around.list.data();
+    const Eigen::Vector3f point = field.points.col(around.point);
+    float step = 0;
+    for (Index j = 0; j < around.weights.size(); ++j)
+      step += around.weights[j] * normals.col(list[j]).dot(field.points.col(list[j]) - point);
+    const float total = around.weights.sum();
+    moved.col(around.point) = total > 0 ? Eigen::Vector3f(point + step / total * normals.col(around.point)) : point;
   });
   return moved;
 }

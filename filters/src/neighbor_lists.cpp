@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "compact_lists.h"
 #include "near_groups.h"
 #include <algorithm>
 #include <cmath>
@@ -13,6 +14,16 @@ namespace {
 using Keys = std::vector<PointTree::Key>;
 constexpr Index group_leaves = 8;        // searched for at once; measured
 constexpr std::size_t most_leaves = 256; // around them; beyond, each point is searched for alone
+
+struct Ball {
+  Index center; ///< position
+  float radius;
+};
+
+struct ListLimits {
+  int most; ///< neighbours
+  int threads;
+};
 
 /// An upper bound of the squared distance from `to` to its k-th neighbour, from that of a point nearby.
 float boundFromNearby(const Eigen::Vector3f& from, float squared_distance, const Eigen::Vector3f& to)
@@ -94,21 +105,66 @@ NeighborLists gatherLists(Index n, int threads, const Find& find)
   return joinLists(std::move(ranges), threads);
 }
 
-/// Every m-th of `keys`, and the one of `self`.
-void thinKeys(const Keys& keys, std::size_t most, int self, std::vector<int>& found)
+/// Every m-th of `positions`, and `self`; ascending as before.
+void thinPositions(std::size_t most, int self, std::vector<int>& positions)
 {
-  if (keys.size() <= most) {
-    for (const auto key : keys)
-      found.push_back(PointTree::position(key));
+  if (positions.size() <= most)
+    return;
+  const double step = static_cast<double>(positions.size()) / static_cast<double>(most);
+  for (std::size_t j = 0; j < most; ++j)
+    positions[j] = positions[static_cast<std::size_t>((static_cast<double>(j) + 0.5) * step)];
+  positions.resize(most);
+  const auto place = std::lower_bound(positions.begin(), positions.end(), self);
+  if (place == positions.end() || *place != self)
+    positions.insert(place, self);
+}
+
+/// All points in the ball, ascending, from the leaves gathered around the group of its centre or, where those were too
+/// many, from the tree.
+void findWithin(const PointTree& tree, NearGroup& group, const Ball& ball, std::vector<int>& found)
+{
+  const std::size_t count = group.within(ball.center, ball.radius);
+  if (count > 0) {
+    found.assign(group.positions().begin(), group.positions().begin() + static_cast<std::ptrdiff_t>(count));
     return;
   }
-  found.push_back(self);
-  const double step = static_cast<double>(keys.size()) / static_cast<double>(most);
-  for (std::size_t j = 0; j < most; ++j) {
-    const int position = PointTree::position(keys[static_cast<std::size_t>((static_cast<double>(j) + 0.5) * step)]);
-    if (position != self)
-      found.push_back(position);
-  }
+  thread_local Keys keys;
+  tree.withinKeys(tree.point(ball.center), ball.radius, keys);
+  found.resize(keys.size());
+  std::transform(keys.begin(), keys.end(), found.begin(), PointTree::position);
+}
+
+/// Lists of all points within a radius in the form of `Range`: ranges of points in their order.
+/// @param add add(range, i, found): point i of a range
+template <typename Range, typename Add>
+std::vector<Range> searchRadii(const PointTree& tree, const Eigen::VectorXf& radii, const ListLimits& limits,
+                               const Add& add)
+{
+  require(limits.most > 0, "neighbour search: ", limits.most, " neighbours at most");
+  require(radii.size() == 1 || radii.size() == tree.size(), "neighbour search: ", radii.size(), " radii for ",
+          tree.size(), " points");
+  require(radii.size() == 0 || radii.minCoeff() >= 0, "neighbour search: a radius is negative or NaN");
+  constexpr Index chunk = 32;
+  const std::vector<Index> groups = tree.subtrees(group_leaves);
+  const auto count = static_cast<Index>(groups.size()) - 1;
+  std::vector<Range> ranges(static_cast<std::size_t>((count + chunk - 1) / chunk));
+  const auto search = [&](Index begin, Index end) {
+    Range& range = ranges[static_cast<std::size_t>(begin / chunk)];
+    NearGroup group(tree);
+    std::vector<int> found;
+    for (Index g = begin; g < end; ++g) {
+      group.enter(groups[g], groups[g + 1]);
+      group.gather(radii.size() == 1 ? radii[0] : radii.segment(group.begin(), group.end() - group.begin()).maxCoeff(),
+                   most_leaves);
+      for (Index i = group.begin(); i < group.end(); ++i) {
+        findWithin(tree, group, {i, radii[radii.size() == 1 ? 0 : i]}, found);
+        thinPositions(static_cast<std::size_t>(limits.most), static_cast<int>(i), found);
+        add(range, i, found);
+      }
+    }
+  };
+  parallelRanges(count, limits.threads, search, chunk);
+  return ranges;
 }
 } // namespace
 
@@ -132,15 +188,25 @@ NeighborLists nearestLists(const PointTree& tree, int k, int threads)
 
 NeighborLists radiusLists(const PointTree& tree, const Eigen::VectorXf& radii, int most, int threads)
 {
-  require(most > 0, "neighbour search: ", most, " neighbours at most");
-  require(radii.size() == 1 || radii.size() == tree.size(), "neighbour search: ", radii.size(), " radii for ",
-          tree.size(), " points");
-  require(radii.size() == 0 || radii.minCoeff() >= 0, "neighbour search: a radius is negative or NaN");
-  return gatherLists(tree.size(), threads, [&](Index i, std::vector<int>& found) {
-    thread_local Keys keys;
-    tree.withinKeys(tree.point(i), radii[radii.size() == 1 ? 0 : i], keys);
-    thinKeys(keys, static_cast<std::size_t>(most), static_cast<int>(i), found);
-  });
+  const auto add = [](NeighborLists& range, Index, const std::vector<int>& found) {
+    range.begin.push_back(static_cast<std::int64_t>(found.size()));
+    range.index.insert(range.index.end(), found.begin(), found.end());
+  };
+  return joinLists(searchRadii<NeighborLists>(tree, radii, {most, threads}, add), threads);
+}
+
+std::vector<CompactLists> compactRadiusLists(const PointTree& tree, const Eigen::VectorXf& radii, int most, int threads)
+{
+  const auto add = [](CompactLists& range, Index i, const std::vector<int>& found) {
+    if (range.end == 0)
+      range.begin = i;
+    range.end = i + 1;
+    range.add(found);
+  };
+  std::vector<CompactLists> ranges = searchRadii<CompactLists>(tree, radii, {most, threads}, add);
+  for (CompactLists& range : ranges)
+    range.bytes.shrink_to_fit();
+  return ranges;
 }
 
 NeighborLists imageLists(const Points& points, Index width, int k, int threads)

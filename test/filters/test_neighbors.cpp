@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "../../filters/src/compact_lists.h"
 #include "../../filters/src/near_kernels.h"
 #include "clouds.h"
 #include <algorithm>
@@ -152,6 +153,54 @@ TEST(PointTree, NearestListsAreThoseOfASearchOfAllPoints)
       for (Index i = 0; i < tree.size(); i += 3)
         EXPECT_EQ(std::vector<int>(lists.first(i), lists.last(i)), nearestOfAll(tree, i, static_cast<std::size_t>(k)));
     }
+  }
+}
+
+std::vector<int> withinOfAll(const PointTree& tree, Index i, float radius)
+{
+  std::vector<int> positions;
+  for (Index j = 0; j < tree.size(); ++j) {
+    const Eigen::Vector3f d = tree.point(j) - tree.point(i);
+    if (d.x() * d.x() + d.y() * d.y() + d.z() * d.z() <= radius * radius)
+      positions.push_back(static_cast<int>(j));
+  }
+  return positions;
+}
+
+TEST(PointTree, RadiusListsAreThoseOfASearchOfAllPoints)
+{
+  Points far = unevenPoints(6000, 4);
+  far.rightCols(1000).colwise() += Eigen::Vector3f(50, 0, 0);
+  const PointTree tree(far);
+  Eigen::VectorXf radii(tree.size()); // of which some hold more leaves than are searched at once
+  for (Index i = 0; i < radii.size(); ++i)
+    radii[i] = i % 900 == 0 ? 100.f : 0.01f * static_cast<float>(i % 11);
+  const NeighborLists lists = radiusLists(tree, radii, 10000);
+  for (Index i = 0; i < tree.size(); i += 15)
+    EXPECT_EQ(std::vector<int>(lists.first(i), lists.last(i)), withinOfAll(tree, i, radii[i]));
+}
+
+TEST(PointTree, CompactListsHoldTheSame)
+{
+  for (const Index count : {0, 1, 9, 5000}) {
+    const PointTree tree(unevenPoints(count, 8));
+    for (const float radius : {0.f, 0.05f, 10.f})
+      for (const int most : {1, 20, 300}) {
+        const Eigen::VectorXf radii = Eigen::VectorXf::Constant(1, radius);
+        const NeighborLists lists = radiusLists(tree, radii, most);
+        Index i = 0;
+        std::vector<int> found;
+        for (const CompactLists& range : compactRadiusLists(tree, radii, most, 2)) {
+          EXPECT_EQ(range.begin, i);
+          CompactReader reader(range);
+          for (; i < range.end; ++i) {
+            reader.next(found);
+            ASSERT_EQ(found, std::vector<int>(lists.first(i), lists.last(i)));
+            EXPECT_TRUE(std::is_sorted(found.begin(), found.end()));
+          }
+        }
+        EXPECT_EQ(i, tree.size());
+      }
   }
 }
 
