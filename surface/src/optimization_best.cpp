@@ -18,6 +18,10 @@ constexpr double noise_spacing_lengths =
 constexpr double spacing_lengths = 0.5; // averaging length per distance between data
 constexpr double least_robust = 3.0;    // mean edge lengths: a datum this far off is judged an outlier
 constexpr double robust_noises = 4.0;
+constexpr double farthest =
+    3.0; // mean edge lengths from where a vertex began: what is off by more is not the grid's doing
+constexpr double settled_share = 0.9;  // of the step before: where steps shrink less than that
+constexpr double large_move = 0.05;    // and move the vertices by more (RMS, mean edge lengths), they wander
 constexpr double blurred_noise = 0.05; // mean edge lengths: from here on the normals of the data are blurred by noise
 constexpr double data_normal_weight = 2.0; // of the normal of a datum, against that of the same area of the mesh
 
@@ -39,6 +43,17 @@ double trustInNormals(double noise)
 {
   const double ratio = noise / blurred_noise;
   return data_normal_weight / (1.0 + ratio * ratio);
+}
+
+// Shortens moves that would end farther than `farthest` from the start: where data contradict each other, as on things
+// not much larger than their noise, vertices would wander on and draw the surface out into splinters.
+void keepNearStart(const OptimizationProblem& problem, Positions& move, int threads)
+{
+  parallelFor(move.cols(), threads, [&](Index v) {
+    const Eigen::Vector3d way = problem.x.col(v) + move.col(v) - problem.start.col(v);
+    if (const double length = way.norm(); length > farthest)
+      move.col(v) = problem.start.col(v) + way * (farthest / length) - problem.x.col(v);
+  });
 }
 
 OptimizationStep describe(const OptimizationProblem& problem, const QuadraticEnergy& energy, const Positions& move,
@@ -71,6 +86,7 @@ OptimizationStep improve(OptimizationProblem& problem, double kappa1, double kap
   const QuadraticEnergy energy =
       makeEnergy(problem, lists, normals, residuals, weightsFor(problem, noise, kappa1, kappa2), threads);
   Positions move = solveMoves(energy, problem.graph, problem.x, solver_rounds, threads);
+  keepNearStart(problem, move, threads);
   limitMoves(problem.graph, problem.x, normals, move, threads);
   OptimizationStep step = describe(problem, energy, move, threads);
   for (; step.after > step.before && step.move > 0.0; step = describe(problem, energy, move, threads))
@@ -80,6 +96,13 @@ OptimizationStep improve(OptimizationProblem& problem, double kappa1, double kap
   relaxFolds(problem.graph, problem.support.vertex, problem.x, threads);
   relaxStuck(problem.graph, problem.support.vertex, move, problem.x, threads);
   return step;
+}
+// Data that contradict each other, because of noise as large as the things they show, have no surface to converge to:
+// further steps only cut it into facets.
+bool wanders(const std::vector<OptimizationStep>& steps)
+{
+  const std::size_t n = steps.size();
+  return n > 1 && steps[n - 1].move > large_move && steps[n - 1].move > settled_share * steps[n - 2].move;
 }
 } // namespace
 
@@ -96,9 +119,11 @@ void runBest(OptimizationProblem& problem, const SurfaceOptimizationOptions& opt
     result.steps.push_back(improve(problem, kappa1, kappa2, noise, options.threads));
     result.converged = result.steps.back().move <= options.tolerance;
   };
-  for (int i = 0; i < most && !result.converged; ++i) {
+  bool wandering = false;
+  for (int i = 0; i < most && !result.converged && !wandering; ++i) {
     report(progress, "optimize", 0.1 + 0.75 * i / most);
     iterate();
+    wandering = wanders(result.steps);
   }
   for (int round = 0; options.flip && round < flip_rounds; ++round) {
     report(progress, "flip", 0.85 + 0.1 * round / flip_rounds);
@@ -107,7 +132,7 @@ void runBest(OptimizationProblem& problem, const SurfaceOptimizationOptions& opt
     result.flipped_edges += flipped;
     if (flipped == 0)
       break;
-    if ((round + 1) % flips_between == 0)
+    if ((round + 1) % flips_between == 0 && !wandering)
       iterate();
   }
   result.noise = noise;

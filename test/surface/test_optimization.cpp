@@ -7,6 +7,7 @@
 #include <fresco/surface/core/mesh_distance.h>
 #include <gtest/gtest.h>
 #include <limits>
+#include <random>
 namespace fresco {
 namespace {
 constexpr double cell = 2.0 / 20;
@@ -88,6 +89,21 @@ TEST_P(BothModes, NoDamageOnASphere)
                                    3;
     EXPECT_GT(normals.col(f).dot(middle.normalized()), std::cos(0.1)) << "a staircase";
   }
+}
+
+TEST(Optimization, ContradictingDataDrawNoSplinters)
+{
+  const TriangleMesh mesh = test::sphere(1.f, 3);
+  PointSet points;
+  points.points = test::sphere(1.f, 5).vertices;
+  std::mt19937 random(5);
+  for (Index i = 0; i < points.points.size(); ++i) // noise as large as an edge
+    points.points.data()[i] += 0.15f * (static_cast<float>(random() % 2000) / 1000.f - 1.f) * 1.7f;
+  const SurfaceOptimizationResult result = optimizeSurface(mesh, points);
+  const double farthest = (result.mesh.vertices - mesh.vertices).colwise().norm().maxCoeff();
+  EXPECT_LE(farthest, 4 * result.edge_length); // three, and what the mending of folds may add
+  EXPECT_LT(result.steps.size(), 15U);         // nothing to converge to: no steps are wasted
+  EXPECT_FALSE(result.converged);
 }
 
 TEST(Optimization, CreasesAreSharpAndFlatPartsFlat)
