@@ -78,90 +78,68 @@ private:
   int steps_;
 };
 
-/// The photographs that one task uses, so that it asks the store for each only once.
-class TaskPhotos {
-public:
-  explicit TaskPhotos(PhotoStore& store) : store_(store) {}
-  const Image& operator[](int view)
-  {
-    constexpr std::size_t most = 4;
-    for (auto& [v, photo] : kept_)
-      if (v == view)
-        return *photo;
-    if (kept_.size() >= most)
-      kept_.erase(kept_.begin());
-    kept_.emplace_back(view, store_.get(view));
-    return *kept_.back().second;
-  }
-
-private:
-  PhotoStore& store_;
-  std::vector<std::pair<int, std::shared_ptr<const Image>>> kept_; ///< the newest last
+/// A patch's share of one view.
+struct PaintedShare {
+  int patch;
+  bool first; ///< no view before has painted the patch
+  Index share;
 };
 
-/// What one task paints with.
-struct PaintDesk {
-  TaskPhotos photos;
-  std::vector<Eigen::Vector3f> colors; ///< of the texels of a patch
-};
-
-void paintPatch(const PaintScene& scene, const PaintSources& sources, PaintDesk& desk, Index patch, Image& atlas)
+/// By view, so that each photograph is read once, however many there are.
+std::vector<std::vector<PaintedShare>> sharesByView(const PaintScene& scene, const PaintSources& sources)
 {
-  PatchFrame frame(scene, patch);
-  desk.colors.clear();
-  for (Index s = sources.blend.begin[patch]; s < sources.blend.begin[patch + 1]; ++s) {
-    const BlendShare& share = sources.blend.list[s];
-    if (!frame.map.look(sources.views[share.view]))
+  std::vector<std::vector<PaintedShare>> out(sources.views.size());
+  for (Index i = 0; i < scene.patches.size(); ++i) {
+    if (!scene.isSeen(i))
       continue;
-    const PatchSampler sampler(scene, frame.map, desk.photos[share.view], patch);
-    const Eigen::Vector3f gain = sources.gains.col(share.view);
-    const bool first = desk.colors.empty();
-    std::size_t next = 0;
-    frame.forTexels([&](const Eigen::Vector2f& center, int, int) {
-      if (first)
-        desk.colors.emplace_back(Eigen::Vector3f::Zero());
-      Eigen::Vector3f& color = desk.colors[next++];
+    const Index begin = sources.blend.begin[i], end = sources.blend.begin[i + 1];
+    int lowest = sources.blend.list[begin].view;
+    for (Index s = begin; s < end; ++s)
+      lowest = std::min(lowest, sources.blend.list[s].view);
+    for (Index s = begin; s < end; ++s)
+      out[sources.blend.list[s].view].push_back({static_cast<int>(i), sources.blend.list[s].view == lowest, s});
+  }
+  return out;
+}
+
+void paintShare(const PaintScene& scene, const PaintSources& sources, const PaintedShare& part, const Image& photo,
+                Image& atlas)
+{
+  PatchFrame frame(scene, part.patch);
+  const BlendShare& share = sources.blend.list[part.share];
+  if (!frame.map.look(sources.views[share.view]))
+    return;
+  const PatchSampler sampler(scene, frame.map, photo, part.patch);
+  const Eigen::Vector3f gain = sources.gains.col(share.view);
+  const bool plain = share.weights.minCoeff() == 1 && share.offsets.isZero(0);
+  frame.forTexels([&](const Eigen::Vector2f& center, int x, int y) {
+    std::uint8_t* pixel = atlas.pixel(frame.chart.x + x, frame.chart.y + y);
+    Eigen::Vector3f color = Eigen::Vector3f::Zero();
+    if (!part.first)
+      color = Eigen::Vector3f(pixel[0], pixel[1], pixel[2]);
+    if (plain) {
+      color += gain.cwiseProduct(sampler(center));
+    } else {
       const Eigen::Vector3f corners = frame.inside(center);
       if (const float weight = share.weights.dot(corners); weight > 0)
         color += weight * (gain.cwiseProduct(sampler(center)) + share.offsets * corners);
-    });
-  }
-  std::size_t next = 0;
-  if (!desk.colors.empty())
-    frame.forTexels([&](const Eigen::Vector2f&, int x, int y) {
-      store(desk.colors[next++], atlas.pixel(frame.chart.x + x, frame.chart.y + y));
-    });
+    }
+    store(color, pixel);
+  });
 }
-
-/// Patches of one view that one task paints.
-struct Task {
-  int view;
-  std::size_t begin, end;
-};
 } // namespace
 
 void paintSeen(const PaintScene& scene, const PaintSources& sources, std::vector<Image>& atlases)
 {
-  std::vector<int> order;
-  for (Index i = 0; i < scene.patches.size(); ++i)
-    if (scene.isSeen(i))
-      order.push_back(static_cast<int>(i));
-  std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return scene.view[a] < scene.view[b]; });
-  constexpr std::size_t most_patches = 2048;
-  std::vector<Task> tasks;
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    if (tasks.empty() || tasks.back().view != scene.view[order[i]] || i - tasks.back().begin >= most_patches)
-      tasks.push_back({scene.view[order[i]], i, i});
-    tasks.back().end = i + 1;
+  const std::vector<std::vector<PaintedShare>> parts = sharesByView(scene, sources);
+  for (std::size_t v = 0; v < parts.size(); ++v) {
+    if (parts[v].empty())
+      continue;
+    const std::shared_ptr<const Image> photo = sources.photos.get(static_cast<Index>(v));
+    parallelFor(static_cast<Index>(parts[v].size()), scene.threads, [&](Index i) {
+      paintShare(scene, sources, parts[v][i], *photo, atlases[scene.chartOf(parts[v][i].patch)->atlas]);
+    });
   }
-  parallelFor(
-      static_cast<Index>(tasks.size()), scene.threads,
-      [&](Index t) {
-        PaintDesk desk{TaskPhotos(sources.photos), {}};
-        for (std::size_t i = tasks[t].begin; i < tasks[t].end; ++i)
-          paintPatch(scene, sources, desk, order[i], atlases[scene.chartOf(order[i])->atlas]);
-      },
-      1);
 }
 
 Points patchColors(const PaintScene& scene, const std::vector<Image>& atlases)

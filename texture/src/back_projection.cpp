@@ -8,7 +8,7 @@
 namespace fresco {
 namespace {
 constexpr float gain = 1.3f; // of the changes: what a pixel differs by is spread over texels that it only partly is
-constexpr float least_say = 0.04f;              // of the best view's: a fifth of its resolution
+constexpr float least_say = 0.1f;               // of the best view's: a third of its resolution
 constexpr std::size_t group_bytes = 512u << 20; // of errors held at a time; a choice that results depend on
 
 /// For every view the patches it shows, in their order.

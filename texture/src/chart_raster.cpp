@@ -2,6 +2,7 @@
 #include "chart_raster.h"
 #include <algorithm>
 #include <cmath>
+#include <utility>
 namespace fresco {
 namespace {
 constexpr double inside_margin = 1e-3; // texels: on a shared edge no face is inside another
@@ -119,15 +120,14 @@ void growOwners(int rounds, int width, std::vector<int>& owner)
         visit(at);
     front.clear();
     for (const auto& [at, patch] : grown) {
-      owner[at] = patch;
+      if (std::exchange(owner[at], patch) >= 0)
+        continue; // was reached from two sides
       const int x = static_cast<int>(at % static_cast<std::size_t>(width)),
                 y = static_cast<int>(at / static_cast<std::size_t>(width));
       for (const auto& [dx, dy] : offsets)
         if (x + dx >= 0 && y + dy >= 0 && x + dx < width && y + dy < height)
           front.push_back(static_cast<std::size_t>(y + dy) * width + x + dx);
     }
-    std::sort(front.begin(), front.end());
-    front.erase(std::unique(front.begin(), front.end()), front.end());
   }
 }
 } // namespace

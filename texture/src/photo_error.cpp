@@ -13,9 +13,12 @@ constexpr std::uint8_t overexposed = 254;
 class Canvas {
 public:
   /// @param size of the box, pixels
-  Canvas(PhotoError& sums, const Eigen::Vector2f& size)
-      : sums_(sums), half_(0.5f * size), per_size_(size.cwiseInverse()), small_(size.maxCoeff() <= 1)
-  {}
+  Canvas(PhotoError& sums, const Eigen::Vector2f& size) : sums_(sums), small_(size.maxCoeff() <= nearly_pixel)
+  {
+    const Eigen::Vector2f box = small_ ? Eigen::Vector2f(size.cwiseMin(1.f)) : size;
+    half_ = 0.5f * box;
+    per_size_ = box.cwiseInverse();
+  }
 
   void add(const Eigen::Vector2f& center, const Eigen::Vector4f& value)
   {
@@ -37,6 +40,8 @@ public:
   }
 
 private:
+  static constexpr float nearly_pixel = 1.2f; // taken as one pixel, which touches four at most
+
   void addLarge(const Eigen::Vector2f& low, const Eigen::Vector2f& high, const Eigen::Vector4f& value)
   {
     const Eigen::Vector4f share = value * per_size_.prod();

@@ -6,12 +6,12 @@
 #include <cmath>
 namespace fresco {
 namespace {
-constexpr double slowness = 0.3;  // weight of a change along an edge against a step between views
-constexpr double anchor = 1e-3;   // weight of the offset itself: it fades far from seams
+constexpr float slowness = 0.3f;  // weight of a change along an edge against a step between views
+constexpr float anchor = 1e-3f;   // weight of the offset itself: it fades far from seams
 constexpr float implausible = 40; // grey levels: a larger step is rather something that moved or stood in the way
 
-using Sparse = Eigen::SparseMatrix<double, Eigen::RowMajor>;
-using Triplet = Eigen::Triplet<double>;
+using Sparse = Eigen::SparseMatrix<float, Eigen::RowMajor>;
+using Triplet = Eigen::Triplet<float>;
 
 Eigen::Vector3f colorOf(const Candidate& c, const Points& gains)
 {
@@ -32,7 +32,7 @@ public:
   SeamOffsets run()
   {
     const Index n = out_.begin.back();
-    right_ = Eigen::MatrixXd::Zero(n, 3);
+    right_ = Eigen::MatrixXf::Zero(n, 3);
     for (Index i = 0; i < n; ++i)
       entries_.emplace_back(static_cast<int>(i), static_cast<int>(i), anchor);
     for (std::size_t v = 0; v < shares_.size(); ++v)
@@ -46,13 +46,13 @@ public:
     solver.compute(A);
     out_.offsets.resize(3, n);
     for (int c = 0; c < 3 && n > 0; ++c)
-      out_.offsets.row(c) = solver.solve(right_.col(c)).transpose().cast<float>();
+      out_.offsets.row(c) = solver.solve(right_.col(c)).transpose();
     return std::move(out_);
   }
 
 private:
   /// weight * (x_i - x_j - difference)^2
-  void addEquation(int i, int j, double weight, const Eigen::Vector3d& difference)
+  void addEquation(int i, int j, float weight, const Eigen::Vector3f& difference)
   {
     entries_.emplace_back(i, i, weight);
     entries_.emplace_back(j, j, weight);
@@ -80,9 +80,9 @@ private:
         if (!(count > 0))
           continue;
         step /= count;
-        const double trust = 1 / (1 + step.squaredNorm() / (implausible * implausible));
+        const float trust = 1 / (1 + step.squaredNorm() / (implausible * implausible));
         addEquation(out_.begin[v] + static_cast<int>(a), out_.begin[v] + static_cast<int>(b),
-                    4 * trust * std::min(list[a].weight, list[b].weight), step.cast<double>());
+                    4 * trust * std::min(list[a].weight, list[b].weight), step);
       }
   }
 
@@ -96,7 +96,7 @@ private:
         for (std::size_t s = 0, t = 0; s < a.size() && t < b.size();) {
           if (a[s].view == b[t].view)
             addEquation(out_.begin[p] + static_cast<int>(s), out_.begin[q] + static_cast<int>(t), slowness,
-                        Eigen::Vector3d::Zero());
+                        Eigen::Vector3f::Zero());
           const bool next_a = a[s].view <= b[t].view, next_b = b[t].view <= a[s].view;
           s += next_a;
           t += next_b;
@@ -111,7 +111,7 @@ private:
   const Points& gains_;
   SeamOffsets out_;
   std::vector<Triplet> entries_;
-  Eigen::MatrixXd right_;
+  Eigen::MatrixXf right_;
 };
 } // namespace
 

@@ -68,11 +68,11 @@ double diagonalOf(const TriangleMesh& mesh)
   return (high - low).norm();
 }
 
-/// Side that a typical view sees patch_pixels long; so large that there are at most two million patches by cutting.
+/// Side that a typical view sees patch_pixels long; so large that there are at most a million patches by cutting.
 float longestEdge(const TriangleMesh& mesh, const std::vector<Projector>& views)
 {
   constexpr Index samples = 2000;
-  constexpr double most_patches = 2e6;
+  constexpr double most_patches = 1e6;
   const Index stride = std::max<Index>(1, mesh.faceCount() / samples);
   std::vector<float> sizes; // of a pixel
   for (const Projector& view : views)
