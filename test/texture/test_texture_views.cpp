@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "texture/texture_scene.h"
+#include "visibility.h"
+#include <algorithm>
 #include <gtest/gtest.h>
+#include <random>
 namespace fresco::test {
 namespace {
 /// Waves with detail that corners can be found in.
@@ -140,6 +143,35 @@ TEST(TextureViews, SomebodyInTheWayIsIgnored)
   const double without = colorError(reconstructTexture(mesh, views, options).model, waves).mean;
   EXPECT_LT(with, 2.5);
   EXPECT_LT(with, 0.6 * without);
+}
+
+TEST(TextureViews, OfManyViewsThoseThatShowAPatchBestAreKept)
+{
+  constexpr Index patches = 50, views = 40, most = 8;
+  std::mt19937 random(5);
+  std::uniform_int_distribution<int> size(1, 12); // often the same
+  CandidateTable table(patches, most);
+  std::vector<std::vector<std::pair<float, int>>> added(patches); // -quality, view
+  for (int v = 0; v < views; ++v)
+    for (Index p = 0; p < patches; ++p)
+      if (random() % 2 == 0 && p % 5 != 0) {
+        const float resolution = static_cast<float>(size(random));
+        table.add(p, {v, {}, 0, resolution});
+        added[p].emplace_back(-resolution, v);
+      }
+  const Candidates kept = table.take();
+  ASSERT_EQ(kept.begin.size(), static_cast<std::size_t>(patches + 1));
+  for (Index p = 0; p < patches; ++p) {
+    std::sort(added[p].begin(), added[p].end());
+    added[p].resize(std::min<std::size_t>(added[p].size(), most));
+    ASSERT_EQ(kept.count(p), static_cast<Index>(added[p].size())) << p;
+    for (const auto& [quality, view] : added[p]) {
+      ASSERT_NE(kept.find(p, view), nullptr) << p; // found only where views are in order
+      EXPECT_EQ(kept.find(p, view)->resolution, -quality);
+    }
+  }
+  EXPECT_EQ(CandidateTable::mostPerPatch(100000, 60), 60); // a usual room: all
+  EXPECT_GE(CandidateTable::mostPerPatch(100000000, 1000), 8);
 }
 } // namespace
 } // namespace fresco::test

@@ -107,6 +107,10 @@ void paintShare(const PaintScene& scene, const PaintSources& sources, const Pain
 {
   PatchFrame frame(scene, part.patch);
   const BlendShare& share = sources.blend.list[part.share];
+  if (part.first)
+    frame.forTexels([&](const Eigen::Vector2f&, int x, int y) {
+      std::fill_n(atlas.pixel(frame.chart.x + x, frame.chart.y + y), 3, 0);
+    });
   if (!frame.map.look(sources.views[share.view]))
     return;
   const PatchSampler sampler(scene, frame.map, photo, part.patch);
@@ -114,9 +118,7 @@ void paintShare(const PaintScene& scene, const PaintSources& sources, const Pain
   const bool plain = share.weights.minCoeff() == 1 && share.offsets.isZero(0);
   frame.forTexels([&](const Eigen::Vector2f& center, int x, int y) {
     std::uint8_t* pixel = atlas.pixel(frame.chart.x + x, frame.chart.y + y);
-    Eigen::Vector3f color = Eigen::Vector3f::Zero();
-    if (!part.first)
-      color = Eigen::Vector3f(pixel[0], pixel[1], pixel[2]);
+    Eigen::Vector3f color(pixel[0], pixel[1], pixel[2]);
     if (plain) {
       color += gain.cwiseProduct(sampler(center));
     } else {
@@ -131,6 +133,10 @@ void paintShare(const PaintScene& scene, const PaintSources& sources, const Pain
 
 void paintSeen(const PaintScene& scene, const PaintSources& sources, std::vector<Image>& atlases)
 {
+  std::size_t bytes = 0;
+  for (const Image& atlas : atlases)
+    bytes += atlas.data.size();
+  sources.photos.setAside(bytes);
   const std::vector<std::vector<PaintedShare>> parts = sharesByView(scene, sources);
   for (std::size_t v = 0; v < parts.size(); ++v) {
     if (parts[v].empty())

@@ -76,12 +76,23 @@ void PhotoStore::setAside(std::size_t bytes)
 
 void PhotoStore::drop()
 {
-  while (bytes_ + aside_ > most_bytes_ && recent_.size() > 1) {
-    Slot& oldest = slots_[recent_.back()];
-    bytes_ -= oldest.image->data.size();
-    oldest.image.reset();
-    recent_.pop_back();
-  }
+  while (bytes_ + aside_ > most_bytes_ && recent_.size() > 1)
+    dropOldest();
+}
+
+void PhotoStore::dropOldest()
+{
+  Slot& oldest = slots_[recent_.back()];
+  bytes_ -= oldest.image->data.size();
+  oldest.image.reset();
+  recent_.pop_back();
+}
+
+void PhotoStore::dropUnlessAll()
+{
+  const std::lock_guard lock(mutex_);
+  while (recent_.size() < slots_.size() && !recent_.empty())
+    dropOldest();
 }
 
 namespace {

@@ -17,9 +17,12 @@ public:
   std::size_t mostBytes() const { return most_bytes_; }
   /// Keeps so much less while something else made of the photographs needs memory.
   void setAside(std::size_t bytes);
+  /// Forgets all photographs unless every one is kept: the next pass in the same order would find none in time.
+  void dropUnlessAll();
 
 private:
   void drop();
+  void dropOldest();
   std::shared_ptr<const Image> load(Index view) const;
   void keep(Index view, std::shared_ptr<const Image> image);
 

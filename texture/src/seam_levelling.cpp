@@ -33,14 +33,12 @@ public:
   {
     const Index n = out_.begin.back();
     right_ = Eigen::MatrixXf::Zero(n, 3);
-    for (Index i = 0; i < n; ++i)
-      entries_.emplace_back(static_cast<int>(i), static_cast<int>(i), anchor);
+    diagonal_ = Eigen::VectorXf::Constant(n, anchor);
     for (std::size_t v = 0; v < shares_.size(); ++v)
       addSteps(v);
     addSlowness();
-    Sparse A(n, n);
-    A.setFromTriplets(entries_.begin(), entries_.end());
-    Eigen::ConjugateGradient<Sparse, Eigen::Lower | Eigen::Upper> solver;
+    const Sparse A = matrix();
+    Eigen::ConjugateGradient<Sparse, Eigen::Lower> solver;
     solver.setMaxIterations(300);
     solver.setTolerance(1e-3); // of a grey level, about
     solver.compute(A);
@@ -51,13 +49,23 @@ public:
   }
 
 private:
+  /// Of the normal equations the lower half, which is all that the solver reads.
+  Sparse matrix()
+  {
+    for (Index i = 0; i < diagonal_.size(); ++i)
+      entries_.emplace_back(static_cast<int>(i), static_cast<int>(i), diagonal_[i]);
+    Sparse A(diagonal_.size(), diagonal_.size());
+    A.setFromTriplets(entries_.begin(), entries_.end());
+    entries_ = {};
+    return A;
+  }
+
   /// weight * (x_i - x_j - difference)^2
   void addEquation(int i, int j, float weight, const Eigen::Vector3f& difference)
   {
-    entries_.emplace_back(i, i, weight);
-    entries_.emplace_back(j, j, weight);
-    entries_.emplace_back(i, j, -weight);
-    entries_.emplace_back(j, i, -weight);
+    diagonal_[i] += weight;
+    diagonal_[j] += weight;
+    entries_.emplace_back(std::max(i, j), std::min(i, j), -weight);
     right_.row(i) += weight * difference.transpose();
     right_.row(j) -= weight * difference.transpose();
   }
@@ -89,6 +97,7 @@ private:
   /// Along every edge, for each view that takes part at both ends.
   void addSlowness()
   {
+    entries_.reserve(entries_.size() + static_cast<std::size_t>(4 * patches_.size()) + diagonal_.size());
     for (Index i = 0; i < patches_.size(); ++i)
       for (int k = 0; k < 3; ++k) {
         const int p = patches_.faces(k, i), q = patches_.faces((k + 1) % 3, i);
@@ -110,7 +119,8 @@ private:
   const Candidates& candidates_;
   const Points& gains_;
   SeamOffsets out_;
-  std::vector<Triplet> entries_;
+  std::vector<Triplet> entries_; ///< below the diagonal
+  Eigen::VectorXf diagonal_;
   Eigen::MatrixXf right_;
 };
 } // namespace

@@ -10,7 +10,7 @@
 namespace fresco {
 namespace {
 constexpr int largest_atlas = 8192;   // every graphics card takes it
-constexpr double most_texels = 250e6; // unless a size is asked for: four such atlases, a gigabyte with their masks
+constexpr double most_texels = 200e6; // unless a size is asked for: a gigabyte with the masks and what packing wastes
 
 /// Texture coordinates of every face; a vertex has one per chart.
 void fillTexcoords(const std::vector<Chart>& charts, int side, TexturedMesh& model)

@@ -17,6 +17,7 @@
 #include <fresco/common/parallel.h>
 #include <fresco/common/require.h>
 #include <fresco/texture/core/texture_reconstruction.h>
+#include <memory>
 namespace fresco {
 namespace {
 constexpr float patch_pixels = 16; // longest side of a patch in a typical view
@@ -188,10 +189,11 @@ void warnOfRotations(const std::vector<TextureView>& views, TextureResult& resul
 }
 
 /// Reads every photograph once, so that one that is missing or of another size is found before the long work.
-void checkPhotos(PhotoStore& photos, Index count, int threads)
+void checkPhotos(PhotoStore& photos, const std::vector<TextureView>& views, int threads, TextureResult& result)
 {
   parallelFor(
-      count, threads, [&](Index v) { photos.get(v); }, 1);
+      static_cast<Index>(views.size()), threads, [&](Index v) { photos.get(v); }, 1);
+  warnOfRotations(views, result);
 }
 
 void fillFigures(const PatchMesh& patches, const Eigen::VectorXi& view, TextureResult& result)
@@ -220,20 +222,19 @@ TextureResult reconstructTexture(const TriangleMesh& mesh, const std::vector<Tex
   Stopwatch watch(result);
   report(progress, "photographs", 0.0);
   PhotoStore photos(views, static_cast<std::size_t>(options.memory) << 20);
-  checkPhotos(photos, static_cast<Index>(views.size()), options.threads);
-  warnOfRotations(views, result);
+  checkPhotos(photos, views, options.threads, result);
   watch.lap("photographs");
-  const RayScene rays(mesh);
-  placeCameras(rays, views, photos, options, subProgress(progress, 0.05, 0.25), result);
+  auto rays = std::make_unique<RayScene>(mesh);
+  placeCameras(*rays, views, photos, options, subProgress(progress, 0.05, 0.25), result);
   watch.lap("camera refinement");
   const std::vector<Projector> projectors = projectorsOf(mesh, result.cameras);
   const PatchMesh patches = cutFaces(mesh, longestEdge(mesh, projectors), options.threads);
-  const Candidates candidates = findCandidates(patches, rays, {projectors, photos, paintable(views), doubtOf(result)},
+  const Candidates candidates = findCandidates(patches, *rays, {projectors, photos, paintable(views), doubtOf(result)},
                                                options, subProgress(progress, 0.25, 0.4));
+  rays.reset();
   watch.lap("visibility");
-  result.gains = Points::Ones(3, static_cast<Index>(views.size()));
-  if (options.exposure)
-    result.gains = solveGains(candidates, static_cast<Index>(views.size()));
+  const Index count = static_cast<Index>(views.size());
+  result.gains = options.exposure ? solveGains(candidates, count) : Points(Points::Ones(3, count));
   watch.lap("exposure");
   report(progress, "view selection", 0.4);
   const std::vector<float> odd = options.consistency ? oddityCosts(patches, candidates, result.gains, options.threads)

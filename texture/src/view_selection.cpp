@@ -28,6 +28,8 @@ Labels labelsOf(const PatchMesh& patches, const ViewCosts& costs)
 {
   Labels out;
   out.begin.assign(1, 0);
+  out.begin.reserve(static_cast<std::size_t>(patches.size()) + 1);
+  out.list.reserve(costs.candidates.list.size());
   std::vector<Label> kept;
   for (Index i = 0; i < patches.size(); ++i) {
     kept.clear();

@@ -244,6 +244,49 @@ private:
 };
 } // namespace
 
+CandidateTable::CandidateTable(Index patches, Index most) : most_(most), counts_(patches, 0), slots_(patches * most) {}
+
+Index CandidateTable::mostPerPatch(Index patches, Index views)
+{
+  constexpr Index most = 16'000'000; // of 12 bytes, in all
+  constexpr Index least = 8;         // per patch, however many patches there are
+  return std::clamp(most / std::max<Index>(patches, 1), least, std::max(views, least));
+}
+
+void CandidateTable::add(Index patch, const Candidate& candidate)
+{
+  Candidate *first = slots_.data() + patch * most_, *last = first + counts_[patch];
+  if (counts_[patch] == most_) {
+    Candidate* worst = first; // of equal ones the last
+    for (Candidate* c = first + 1; c < last; ++c)
+      if (!(c->quality() > worst->quality()))
+        worst = c;
+    if (!(candidate.quality() > worst->quality()))
+      return;
+    std::move(worst + 1, last, worst);
+    --last;
+  } else {
+    ++counts_[patch];
+  }
+  *last = candidate;
+}
+
+Candidates CandidateTable::take()
+{
+  Candidates out;
+  out.begin.assign(counts_.size() + 1, 0);
+  for (std::size_t i = 0; i < counts_.size(); ++i) {
+    const Index from = static_cast<Index>(i) * most_;
+    for (int k = 0; k < counts_[i]; ++k)
+      slots_[out.begin[i] + k] = slots_[from + k]; // never to behind where it was
+    out.begin[i + 1] = out.begin[i] + counts_[i];
+  }
+  slots_.resize(out.begin.back());
+  slots_.shrink_to_fit();
+  out.list = std::move(slots_);
+  return out;
+}
+
 const Candidate* Candidates::find(Index patch, int view) const
 {
   const Candidate *first = of(patch), *last = first + count(patch);
@@ -254,33 +297,27 @@ const Candidate* Candidates::find(Index patch, int view) const
 Candidates findCandidates(const PatchMesh& patches, const RayScene& scene, const ViewList& views,
                           const TextureOptions& options, const Progress& progress)
 {
-  std::vector<std::vector<Seen>> seen(views.used.size());
   constexpr Index batch = 16; // views between two reports
   const Index n = static_cast<Index>(views.used.size());
+  CandidateTable table(patches.size(), CandidateTable::mostPerPatch(patches.size(), n));
+  std::vector<std::vector<Seen>> seen(batch);
   const SightLimits limits = limitsFor(patches, views, options);
   for (Index first = 0; first < n; first += batch) {
     report(progress, "visibility", static_cast<double>(first) / static_cast<double>(n));
+    const Index count = std::min(batch, n - first);
     parallelFor(
-        std::min(batch, n - first), options.threads,
+        count, options.threads,
         [&](Index i) {
+          seen[i].clear();
           if (views.used[first + i])
-            seen[first + i] =
-                ViewTest(patches, views.projectors[first + i], limits).run(scene, *views.photos.get(first + i));
+            seen[i] = ViewTest(patches, views.projectors[first + i], limits).run(scene, *views.photos.get(first + i));
         },
         1);
+    for (Index i = 0; i < count; ++i)
+      for (const Seen& s : seen[i])
+        table.add(s.patch, {static_cast<int>(first + i), s.color, s.doubt, s.resolution});
   }
-  Candidates out;
-  out.begin.assign(patches.size() + 1, 0);
-  for (const auto& view : seen)
-    for (const Seen& s : view)
-      ++out.begin[s.patch + 1];
-  for (Index i = 0; i < patches.size(); ++i)
-    out.begin[i + 1] += out.begin[i];
-  out.list.resize(out.begin.back());
-  std::vector<Index> next(out.begin.begin(), out.begin.end() - 1);
-  for (Index v = 0; v < n; ++v)
-    for (const Seen& s : seen[v])
-      out.list[next[s.patch]++] = {static_cast<int>(v), s.color, s.doubt, s.resolution};
-  return out;
+  views.photos.dropUnlessAll();
+  return table.take();
 }
 } // namespace fresco

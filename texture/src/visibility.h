@@ -30,6 +30,24 @@ struct Candidates {
   const Candidate* find(Index patch, int view) const;
 };
 
+/// Collects candidates view by view and keeps the best ones of each patch.
+class CandidateTable {
+public:
+  /// @param most candidates kept per patch, > 0
+  CandidateTable(Index patches, Index most);
+  /// How many are to be kept: all, unless patches and views are so many that this would need much memory.
+  static Index mostPerPatch(Index patches, Index views);
+  /// @param candidate of a later view than any that was added for this patch; of equal ones the earlier view stays
+  void add(Index patch, const Candidate& candidate);
+  /// Everything that was kept; the table is of no use afterwards.
+  Candidates take();
+
+private:
+  Index most_;
+  std::vector<int> counts_;      ///< per patch
+  std::vector<Candidate> slots_; ///< most_ per patch
+};
+
 struct ViewList {
   const std::vector<Projector>& projectors;
   PhotoStore& photos;
