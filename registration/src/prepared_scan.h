@@ -22,7 +22,8 @@ struct ScanLevel {
 /// A motion other than the identity that maps a part of a scan onto another part of it: two places that look alike.
 struct SelfMotion {
   Eigen::Isometry3d T = Eigen::Isometry3d::Identity(); ///< in the scan's working frame
-  bool certain = false; ///< nothing that the scan saw speaks against it; else it is worth a try
+  bool certain = false;  ///< nothing that the scan saw speaks against it; else it is worth a try
+  double likeness = 0.0; ///< overlap of the scan with itself, if the motion would pass as a pair's; else 0
 };
 using SelfMotions = std::vector<SelfMotion, Eigen::aligned_allocator<SelfMotion>>;
 

@@ -51,6 +51,7 @@ private:
   double leastColor() const;
   double plainViolation() const;
   bool doubtful(const PairMode& mode) const { return mode.check.violation > plain_violation_; }
+  bool unconvincing(const Candidate& candidate) const;
   bool joinUnambiguous();
   bool joinAmbiguous();
   void markLookAlikes();
@@ -81,16 +82,32 @@ Eigen::Isometry3d GraphBuilder::clusterPose(const Candidate& candidate) const
   return pose(placeOf(candidate.pair->a)) * candidate.mode->T_a_b * pose(placeOf(candidate.pair->b)).inverse();
 }
 
+// Whether both scans fit to themselves at a wrong place about as well as to each other.
+bool GraphBuilder::unconvincing(const Candidate& candidate) const
+{
+  double likeness = 1.0;
+  for (const Index scan : {candidate.pair->a, candidate.pair->b}) {
+    double most = 0.0;
+    for (const SelfMotion& motion : scans_[static_cast<std::size_t>(scan)].twins)
+      most = std::max(most, motion.likeness);
+    likeness = std::min(likeness, most);
+  }
+  const PairCheck& check = candidate.mode->check;
+  return likeness > 0.0 && (check.overlap < likeness || clearlyWorse(check.violation, 0.0));
+}
+
 // Whether a second pair between the same clusters says the same.
 bool GraphBuilder::supported(const Candidate& candidate, const Eigen::Isometry3d& T_first_second) const
 {
   const std::size_t first = placeOf(candidate.pair->a).cluster, second = placeOf(candidate.pair->b).cluster;
+  const bool only_best = unconvincing(candidate);
   for (const PairAlignment& pair : pairs_) {
     const std::size_t a = placeOf(pair.a).cluster, b = placeOf(pair.b).cluster;
     if (&pair == candidate.pair || !((a == first && b == second) || (a == second && b == first)))
       continue;
     for (const PairMode& mode : pair.modes) {
-      if (doubtful(mode))
+      // What another pair holds merely possible does not make an unconvincing one certain.
+      if (doubtful(mode) || (only_best && &mode != &pair.modes[0]))
         continue;
       const Eigen::Isometry3d T = clusterPose({&pair, &mode});
       if (poseDistance(a == first ? T : T.inverse(), T_first_second, scans_[static_cast<std::size_t>(pair.a)].size) <
@@ -126,9 +143,13 @@ bool GraphBuilder::tryJoin(const Candidate& candidate)
   if (a == b)
     return false;
   const Eigen::Isometry3d T = clusterPose(candidate);
-  const bool weak = candidate.mode->support < options_.strong_overlap || doubtful(*candidate.mode);
-  if (weak && !supported(candidate, T))
+  const bool unsure = unconvincing(candidate);
+  const bool weak = candidate.mode->support < options_.strong_overlap || doubtful(*candidate.mode) || unsure;
+  if (weak && !supported(candidate, T)) {
+    if (unsure)
+      contested_.push_back(candidate.pair);
     return false;
+  }
   if (contradicted(graph_.clusters[a], graph_.clusters[b], T))
     return false;
   const ClusterJoin proposed{a, b, T, candidate.mode->check.overlap};

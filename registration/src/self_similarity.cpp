@@ -58,10 +58,14 @@ SelfMotions findSelfMotions(const PreparedScan& scan, const ScanFeatures& featur
   const auto apart = static_cast<float>(nearest_twin * scan.size);
   SelfMotions motions;
   for (const PairMode& mode :
-       acceptedModes(scan, scan, findConsensus(features, features, matchToSelf(features, apart), consensus), options))
-    if (poseDistance(mode.T_a_b, Eigen::Isometry3d::Identity(), scan.size) > apart)
-      motions.push_back({mode.T_a_b, mode.check.violation < twin_violation && mode.check.overlap > twin_overlap &&
-                                         mode.check.color.value_or(1.0) > twin_color});
+       acceptedModes(scan, scan, findConsensus(features, features, matchToSelf(features, apart), consensus), options)) {
+    if (poseDistance(mode.T_a_b, Eigen::Isometry3d::Identity(), scan.size) <= apart)
+      continue;
+    const bool wide = mode.check.overlap > twin_overlap;
+    motions.push_back(
+        {mode.T_a_b, wide && mode.check.violation < twin_violation && mode.check.color.value_or(1.0) > twin_color,
+         wide && mode.check.violation <= PairAlignmentOptions().max_violation ? mode.check.overlap : 0.0});
+  }
   return motions;
 }
 } // namespace fresco
