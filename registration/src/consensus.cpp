@@ -148,7 +148,12 @@ Hypotheses findConsensus(const ScanFeatures& a, const ScanFeatures& b, const std
   const BitMatrix matrix = agreement(points, options.tolerance);
   const std::vector<Seed> seeds = findSeeds(matrix, matches.size());
   Hypotheses found;
-  for (std::size_t s = 0; s < std::min(seeds_most, seeds.size()); ++s) {
+  std::vector<char> spent(matches.size(), 0);
+  std::size_t grown = 0;
+  for (std::size_t s = 0; s < seeds.size() && grown < seeds_most; ++s) {
+    if (spent[seeds[s].i] || spent[seeds[s].j])
+      continue;
+    ++grown;
     std::vector<Index> set = {static_cast<Index>(seeds[s].i), static_cast<Index>(seeds[s].j)};
     for (std::size_t k = 0; k < matches.size(); ++k)
       if (matrix.get(seeds[s].i, k) && matrix.get(seeds[s].j, k))
@@ -159,6 +164,8 @@ Hypotheses findConsensus(const ScanFeatures& a, const ScanFeatures& b, const std
       set = agreeingMatches(points, hypothesis.T_a_b, 1.5f * options.tolerance);
       hypothesis.votes = static_cast<Index>(set.size());
     }
+    for (const Index k : set)
+      spent[static_cast<std::size_t>(k)] = options.exclusive;
     const auto same = [&](const Hypothesis& other) {
       return poseDistance(other.T_a_b, hypothesis.T_a_b, options.size) < 4.0 * options.tolerance;
     };

@@ -13,9 +13,10 @@ struct Hypothesis {
 using Hypotheses = std::vector<Hypothesis, Eigen::aligned_allocator<Hypothesis>>;
 
 struct ConsensusOptions {
-  float tolerance = 0.f; ///< of distances between corresponding points, length
-  float size = 1.f;      ///< of the scans, length; makes rotations comparable with translations
-  std::size_t most = 60; ///< hypotheses
+  float tolerance = 0.f;  ///< of distances between corresponding points, length
+  float size = 1.f;       ///< of the scans, length; makes rotations comparable with translations
+  std::size_t most = 60;  ///< hypotheses
+  bool exclusive = false; ///< whether correspondences that agree with one pose start no other: finds the less popular
 };
 
 /// Poses supported by correspondences whose mutual distances and angles of normals agree in both scans. Sets of

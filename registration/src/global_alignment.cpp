@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "global_alignment.h"
 #include "pose_graph.h"
+#include "self_similarity.h"
 #include <algorithm>
 #include <fresco/common/parallel.h>
 namespace fresco {
@@ -12,7 +13,8 @@ constexpr int most_rounds = 6;
 constexpr double narrow_view = 0.4; // share of the sphere: a scanner that saw more stood where it is said to have stood
 constexpr double edge_reach = 6.0;  // tolerances between a pair and the poses of its cluster: beyond, it is wrong
 constexpr int fewest_pairs = 2;     // that must speak of a viewpoint
-constexpr double blamed_share = 0.25; // of max_violation: mean violation from which a viewpoint is wrong
+constexpr double blamed_share = 0.25; // of max_violation: mean violation from which a viewpoint is wrong, and
+constexpr double blamed_wide = 2.0;   // the same of a scanner of wide view: it must contradict nearly all it meets
 
 struct RankedPair {
   Index a, b;
@@ -110,6 +112,13 @@ void GlobalAligner::describe(const Progress& progress)
     report(progress, "describe", 0.3 * static_cast<double>(i) / static_cast<double>(scans_.size()));
     features_.push_back(scans_[i].problem.empty() ? describeScan(scans_[i], options) : ScanFeatures{});
   }
+  parallelFor(
+      static_cast<Index>(scans_.size()), options_.threads,
+      [&](Index k) {
+        PreparedScan& scan = scans_[static_cast<std::size_t>(k)];
+        scan.twins = findSelfMotions(scan, features_[static_cast<std::size_t>(k)]);
+      },
+      1);
 }
 
 void GlobalAligner::alignPairs(const std::vector<RankedPair>& round)
@@ -155,12 +164,16 @@ std::vector<char> GlobalAligner::wrongViewpoints() const
   for (std::size_t i = 0; i < scans_.size(); ++i) {
     narrow[i] = !scans_[i].free_space.empty() && scans_[i].free_space.coverage() < narrow_view;
     known_wrong += scans_[i].problem.empty() && scans_[i].free_space.empty() ? 1 : 0;
-    wrong[i] =
-        narrow[i] && counts[i] >= fewest_pairs && violations[i] > counts[i] * blamed_share * options_.max_violation;
+    const double share = narrow[i] ? blamed_share : blamed_wide;
+    wrong[i] = !scans_[i].free_space.empty() && counts[i] >= fewest_pairs &&
+               violations[i] > counts[i] * share * options_.max_violation;
   }
   // Where most are wrong, the rest comes from the same source.
   known_wrong += std::count(wrong.begin(), wrong.end(), 1);
-  return 2 * known_wrong > static_cast<std::ptrdiff_t>(scans_.size()) ? narrow : wrong;
+  if (2 * known_wrong > static_cast<std::ptrdiff_t>(scans_.size()))
+    for (std::size_t i = 0; i < scans_.size(); ++i)
+      wrong[i] = wrong[i] || narrow[i];
+  return wrong;
 }
 
 // Aligns the pairs of scans with wrong viewpoints again, without their free space.

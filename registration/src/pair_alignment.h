@@ -11,6 +11,7 @@ struct PairMode {
   Index votes = 0;      ///< features that agree
   double support = 0.0; ///< overlap; less where few features agree and no free space bears witness, 0..1
   double score = 0.0;   ///< support, discounted by violations; larger is better
+  bool twin = false;    ///< one of several places that look alike to a scan: little overlap says nothing against it
 };
 using PairModes = std::vector<PairMode, Eigen::aligned_allocator<PairMode>>;
 
@@ -29,13 +30,22 @@ struct PairAlignmentOptions {
   float max_violation = 0.04f;
   bool upright = false;       ///< whether both scanners stood upright
   std::size_t matches = 1500; ///< correspondences of features
+  std::size_t checked = 20;   ///< hypotheses that are checked for violations
+  std::size_t refined = 8;    ///< hypotheses that are refined
 };
 
 /// Discount of an overlap by violations.
 double alignmentScore(const PairCheck& check);
 
+/// Whether free space speaks clearly against a pose with `violation` when another one has `other`.
+bool clearlyWorse(double violation, double other);
+
 /// Whether `other` explains two scans about as well as `best` does.
 bool comparable(const PairMode& best, const PairMode& other);
+
+/// The hypotheses that pass the checks, refined, distinct, best first.
+PairModes acceptedModes(const PreparedScan& a, const PreparedScan& b, Hypotheses hypotheses,
+                        const PairAlignmentOptions& options);
 
 /// Global alignment of two scans from their features: hypotheses by consensus, the best by overlap and free space,
 /// refined and checked again.

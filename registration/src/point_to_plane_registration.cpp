@@ -22,7 +22,7 @@ void validate(const Eigen::Matrix4d& guess, const PointToPlaneOptions& options)
   require(options.samples >= 100, "point-to-plane registration: samples ", options.samples, " is below 100");
 }
 
-void summarize(const JointResult& joint, double size, PointToPlaneResult& result)
+void summarize(const JointResult& joint, const PreparedScan& source, PointToPlaneResult& result)
 {
   double squares = 0.0;
   for (const JointPair& pair : joint.pairs) {
@@ -34,7 +34,8 @@ void summarize(const JointResult& joint, double size, PointToPlaneResult& result
   if (result.matches == 0)
     return;
   result.rms = std::sqrt(squares / static_cast<double>(result.matches));
-  result.free_motion = describeUncertainty(joint.information[1], result.rms, size).free_motion;
+  result.free_motion =
+      describeUncertainty(joint.information[1], result.rms, source, joint.poses[1].linear()).free_motion;
 }
 } // namespace
 
@@ -71,7 +72,7 @@ PointToPlaneResult alignPointToPlane(const PreparedScan& source, const PreparedS
   PointToPlaneResult result;
   const Eigen::Isometry3d T_target_source = aligned.poses[1] * T_source.inverse();
   result.T_target_source = T_target_source.matrix();
-  summarize(aligned, source.size, result);
+  summarize(aligned, source, result);
   const PairCheck check = checkPair(target, source, aligned.poses[0].inverse() * aligned.poses[1], check_level);
   result.overlap = check.overlap;
   result.violation = check.violation;

@@ -12,10 +12,22 @@ double largestDeviation(const Eigen::Matrix3d& covariance)
   solver.computeDirect(covariance, Eigen::EigenvaluesOnly);
   return std::sqrt(solver.eigenvalues()[2]);
 }
+
+// Information about the scan's centre as information about a point `middle` away from it.
+Matrix6d movedInformation(const Matrix6d& information, const Eigen::Vector3d& middle)
+{
+  Matrix6d M = Matrix6d::Identity();
+  M.topRightCorner<3, 3>() << 0, middle.z(), -middle.y(), -middle.z(), 0, middle.x(), middle.y(), -middle.x(), 0;
+  return M * information * M.transpose();
+}
 } // namespace
 
-PoseUncertainty describeUncertainty(const Matrix6d& information, double rms, double size)
+PoseUncertainty describeUncertainty(const Matrix6d& about_center, double rms, const PreparedScan& scan,
+                                    const Eigen::Matrix3d& R_world_scan)
 {
+  const Eigen::Vector3d middle = scan.levels.front().points.cast<double>().rowwise().mean();
+  const Matrix6d information = movedInformation(about_center, R_world_scan * middle);
+  const double size = scan.size;
   const double weight = information.bottomRightCorner<3, 3>().trace();
   if (!(weight > 0.0))
     return {};

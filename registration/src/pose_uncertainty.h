@@ -10,8 +10,10 @@ struct PoseUncertainty {
   std::optional<FreeMotion> free_motion;
 };
 
+/// Of a scan's pose. Rotations are those about the middle of its points, wherever its frame's origin lies.
 /// @param information see JointResult
 /// @param rms         of the point-to-plane distances, length
-/// @param size        length that makes rotations comparable with translations
-PoseUncertainty describeUncertainty(const Matrix6d& information, double rms, double size);
+/// @param R_world_scan of the scan's pose
+PoseUncertainty describeUncertainty(const Matrix6d& information, double rms, const PreparedScan& scan,
+                                    const Eigen::Matrix3d& R_world_scan);
 } // namespace fresco

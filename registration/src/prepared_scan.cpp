@@ -230,6 +230,7 @@ void distrustViewpoint(PreparedScan& scan)
 {
   scan.oriented = false;
   scan.free_space = {};
+  scan.twins.clear();
   const Eigen::Vector3f middle = scan.levels.front().points.rowwise().mean();
   for (ScanLevel& level : scan.levels)
     for (Index i = 0; i < level.points.cols(); ++i)

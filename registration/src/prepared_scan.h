@@ -19,6 +19,14 @@ struct ScanLevel {
   std::vector<Index> samples;            ///< points with a normal; any prefix covers all directions of normals
 };
 
+/// A motion other than the identity that maps a part of a scan onto another part of it: two places that look alike.
+struct SelfMotion {
+  Eigen::Isometry3d T = Eigen::Isometry3d::Identity(); ///< in the scan's working frame
+  bool certain = false;  ///< nothing that the scan saw speaks against it; else it is worth a try
+  double likeness = 0.0; ///< overlap of the scan with itself, if the motion would pass as a pair's; else 0
+};
+using SelfMotions = std::vector<SelfMotion, Eigen::aligned_allocator<SelfMotion>>;
+
 /// What registration keeps of a scan.
 struct PreparedScan {
   std::string problem;                              ///< why it cannot be registered; empty = it can
@@ -27,6 +35,7 @@ struct PreparedScan {
   bool oriented = false;                            ///< normals point to the free side; else their sign means nothing
   std::vector<ScanLevel> levels;                    ///< coarse to fine, each half the voxel of the one before
   FreeSpace free_space;                             ///< empty unless oriented
+  SelfMotions twins;                                ///< found by findSelfMotions()
 };
 
 constexpr int level_count = 4;            ///< resolutions: voxel, 2, 4 and 8 voxels

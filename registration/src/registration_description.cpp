@@ -52,7 +52,7 @@ class Description {
 public:
   Description(const std::vector<PreparedScan>& scans, const std::vector<Pose>& start,
               const ScanRegistrationOptions& options)
-      : scans_(scans), start_(start), options_(options)
+      : scans_(scans), start_(start), options_(options), look_alike_(scans.size(), 0)
   {
     result_.voxel = options.voxel;
     result_.poses.resize(scans.size());
@@ -74,6 +74,7 @@ private:
   const std::vector<Pose>& start_;
   const ScanRegistrationOptions& options_;
   ScanRegistrationResult result_;
+  std::vector<char> look_alike_; // per scan
 };
 
 void Description::describeScans(const Placement& placement)
@@ -83,7 +84,8 @@ void Description::describeScans(const Placement& placement)
     const PreparedScan& prepared = scans_[static_cast<std::size_t>(i)];
     scan(i).T_group_scan = (placement.poses[m] * Eigen::Translation3d(-prepared.center)).matrix();
     scan(i).rms = pooledRms(placement.pairs, i);
-    const PoseUncertainty uncertainty = describeUncertainty(placement.joint.information[m], scan(i).rms, prepared.size);
+    const PoseUncertainty uncertainty =
+        describeUncertainty(placement.joint.information[m], scan(i).rms, prepared, placement.poses[m].linear());
     scan(i).translation_deviation = uncertainty.translation;
     scan(i).rotation_deviation = uncertainty.rotation;
     scan(i).free_motion = uncertainty.free_motion;
@@ -111,7 +113,9 @@ void Description::placeOther(const std::vector<Index>& group, const std::vector<
       scan(i).problem = "overlaps none of the other placed scans enough: its start pose is kept unconfirmed";
       result_.poses[static_cast<std::size_t>(i)] = scan(i).T_group_scan;
     } else {
-      scan(i).problem = "no place among the other scans is certain";
+      scan(i).problem = look_alike_[static_cast<std::size_t>(i)]
+                            ? "fits in several places that look alike, and nothing seen tells which is right"
+                            : "no place among the other scans is certain";
     }
   }
 }
@@ -123,6 +127,8 @@ ScanRegistrationResult Description::run(const std::vector<Placement>& placements
     result_.iterations = std::max(result_.iterations, placement.joint.iterations);
     result_.converged = (&placement == &placements.front() || result_.converged) && placement.joint.converged;
     describeScans(placement);
+    for (const Index i : placement.members)
+      look_alike_[static_cast<std::size_t>(i)] = placement.look_alike;
   }
   std::sort(result_.pairs.begin(), result_.pairs.end(),
             [](const PairResult& x, const PairResult& y) { return std::pair(x.a, x.b) < std::pair(y.a, y.b); });

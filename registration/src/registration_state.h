@@ -12,6 +12,7 @@ struct Placement {
   std::vector<Index> anchors;    ///< indices into members of the scans with a start pose
   JointResult joint;             ///< of the last refinement, indices into members
   std::vector<PairResult> pairs; ///< overlapping pairs, indices of scans
+  bool look_alike = false;       ///< see ScanCluster
 };
 
 /// Refines all members at once, then leaves out the pairs that contradict each other's free space and refines again,

@@ -4,9 +4,8 @@
 #include <fresco/common/parallel.h>
 namespace fresco {
 namespace {
-constexpr double clear_violation = 0.002; // difference of violations that mixed points do not cause
-constexpr double leg_overlap = 0.3;       // of a leg / of the contested pair: less is no rival
-constexpr double mode_overlap = 0.4;      // of a mode / of the best mode of its pair
+constexpr double leg_overlap = 0.3;  // of a leg / of the contested pair: less is no rival
+constexpr double mode_overlap = 0.4; // of a mode / of the best mode of its pair
 
 // A relative pose of two clusters by a mode of one pair.
 struct Leg {
@@ -120,8 +119,6 @@ bool Contest::run(const std::vector<PairAlignment>& pairs)
 }
 } // namespace
 
-bool clearlyWorse(double violation, double other) { return violation > std::max(2.0 * other, other + clear_violation); }
-
 double worstViolation(const std::vector<PreparedScan>& scans, const ScanCluster& first, const ScanCluster& second,
                       const Eigen::Isometry3d& T_first_second, int threads)
 {
@@ -144,5 +141,33 @@ bool isContested(const std::vector<PreparedScan>& scans, const std::vector<PairA
                  const std::vector<ScanCluster>& clusters, const ClusterJoin& join, const GraphOptions& options)
 {
   return Contest(scans, clusters, join, options).run(pairs);
+}
+
+bool hasTwin(const std::vector<PreparedScan>& scans, const std::vector<ScanCluster>& clusters, const ClusterJoin& join,
+             const GraphOptions& options)
+{
+  const ScanCluster &first = clusters[join.first], &second = clusters[join.second];
+  IsometryVector elsewhere;
+  const auto collect = [&](const ScanCluster& cluster, bool is_first) {
+    for (std::size_t k = 0; k < cluster.scans.size(); ++k)
+      for (const SelfMotion& motion : scans[static_cast<std::size_t>(cluster.scans[k])].twins)
+        if (motion.certain)
+          for (const Eigen::Isometry3d& S : {motion.T, motion.T.inverse()}) {
+            const Eigen::Isometry3d own = cluster.poses[k] * S * cluster.poses[k].inverse();
+            elsewhere.push_back(is_first ? own * join.T_first_second : join.T_first_second * own);
+          }
+  };
+  collect(first, true);
+  collect(second, false);
+  if (elsewhere.empty())
+    return false;
+  const double size = scans[static_cast<std::size_t>(first.scans[0])].size;
+  const double here = worstViolation(scans, first, second, join.T_first_second, options.threads);
+  return std::any_of(elsewhere.begin(), elsewhere.end(), [&](const Eigen::Isometry3d& T) {
+    if (poseDistance(T, join.T_first_second, size) < std::max<double>(3.0 * options.tolerance, 0.5 * size))
+      return false;
+    const double there = worstViolation(scans, first, second, T, options.threads);
+    return there <= options.max_violation && !clearlyWorse(there, here);
+  });
 }
 } // namespace fresco

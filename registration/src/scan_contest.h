@@ -13,13 +13,14 @@ struct ClusterJoin {
 double worstViolation(const std::vector<PreparedScan>& scans, const ScanCluster& first, const ScanCluster& second,
                       const Eigen::Isometry3d& T_first_second, int threads);
 
-/// Whether free space speaks clearly against a pose with `violation` when another one has `other`.
-bool clearlyWorse(double violation, double other);
-
 /// Whether the same two clusters fit together elsewhere about as well, by way of a third cluster: a room that has a
 /// twin. If a scan sees two places that a cluster fits in, high overlap with the one says nothing against the other;
 /// only what the scans saw through the doors does.
 /// @param join not contradicted by free space
 bool isContested(const std::vector<PreparedScan>& scans, const std::vector<PairAlignment>& pairs,
                  const std::vector<ScanCluster>& clusters, const ClusterJoin& join, const GraphOptions& options);
+
+/// The same by way of a place that a scan of either cluster saw twice.
+bool hasTwin(const std::vector<PreparedScan>& scans, const std::vector<ScanCluster>& clusters, const ClusterJoin& join,
+             const GraphOptions& options);
 } // namespace fresco

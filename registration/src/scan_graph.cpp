@@ -5,8 +5,10 @@
 #include <cmath>
 namespace fresco {
 namespace {
-constexpr double telling_color = 0.6; // correlation of colours that the upper quarter of the pairs reaches: then
-constexpr double color_share = 0.5;   // a pair must reach this share of it
+constexpr double telling_color = 0.6;     // correlation of colours that the upper quarter of the pairs reaches: then
+constexpr double color_share = 0.5;       // a pair must reach this share of it
+constexpr double plain_violation = 0.01;  // of scans of one state of a place: what moves or is misread,
+constexpr double violation_factor = 10.0; // or this multiple of what the best quarter of the pairs has
 
 struct Place {
   std::size_t cluster = 0, position = 0;
@@ -21,7 +23,8 @@ class GraphBuilder {
 public:
   GraphBuilder(const std::vector<PreparedScan>& scans, const std::vector<PairAlignment>& pairs,
                const ScanCluster& known, const GraphOptions& options)
-      : scans_(scans), pairs_(pairs), options_(options), known_count_(known.scans.size()), least_color_(leastColor())
+      : scans_(scans), pairs_(pairs), options_(options), known_count_(known.scans.size()), least_color_(leastColor()),
+        plain_violation_(plainViolation())
   {
     if (known_count_ > 0)
       graph_.clusters.push_back(known);
@@ -46,14 +49,19 @@ private:
   Eigen::Isometry3d clusterPose(const Candidate& candidate) const;
   void join(const Candidate& candidate, const Eigen::Isometry3d& T_a_b);
   double leastColor() const;
+  double plainViolation() const;
+  bool doubtful(const PairMode& mode) const { return mode.check.violation > plain_violation_; }
+  bool unconvincing(const Candidate& candidate) const;
   bool joinUnambiguous();
   bool joinAmbiguous();
+  void markLookAlikes();
 
   const std::vector<PreparedScan>& scans_;
   const std::vector<PairAlignment>& pairs_;
   const GraphOptions& options_;
   std::size_t known_count_;
-  double least_color_;
+  double least_color_, plain_violation_;
+  std::vector<const PairAlignment*> contested_;
   ScanGraph graph_;
 };
 
@@ -74,15 +82,33 @@ Eigen::Isometry3d GraphBuilder::clusterPose(const Candidate& candidate) const
   return pose(placeOf(candidate.pair->a)) * candidate.mode->T_a_b * pose(placeOf(candidate.pair->b)).inverse();
 }
 
+// Whether both scans fit to themselves at a wrong place about as well as to each other.
+bool GraphBuilder::unconvincing(const Candidate& candidate) const
+{
+  double likeness = 1.0;
+  for (const Index scan : {candidate.pair->a, candidate.pair->b}) {
+    double most = 0.0;
+    for (const SelfMotion& motion : scans_[static_cast<std::size_t>(scan)].twins)
+      most = std::max(most, motion.likeness);
+    likeness = std::min(likeness, most);
+  }
+  const PairCheck& check = candidate.mode->check;
+  return likeness > 0.0 && (check.overlap < likeness || clearlyWorse(check.violation, 0.0));
+}
+
 // Whether a second pair between the same clusters says the same.
 bool GraphBuilder::supported(const Candidate& candidate, const Eigen::Isometry3d& T_first_second) const
 {
   const std::size_t first = placeOf(candidate.pair->a).cluster, second = placeOf(candidate.pair->b).cluster;
+  const bool only_best = unconvincing(candidate);
   for (const PairAlignment& pair : pairs_) {
     const std::size_t a = placeOf(pair.a).cluster, b = placeOf(pair.b).cluster;
     if (&pair == candidate.pair || !((a == first && b == second) || (a == second && b == first)))
       continue;
     for (const PairMode& mode : pair.modes) {
+      // What another pair holds merely possible does not make an unconvincing one certain.
+      if (doubtful(mode) || (only_best && &mode != &pair.modes[0]))
+        continue;
       const Eigen::Isometry3d T = clusterPose({&pair, &mode});
       if (poseDistance(a == first ? T : T.inverse(), T_first_second, scans_[static_cast<std::size_t>(pair.a)].size) <
           slack())
@@ -117,12 +143,21 @@ bool GraphBuilder::tryJoin(const Candidate& candidate)
   if (a == b)
     return false;
   const Eigen::Isometry3d T = clusterPose(candidate);
-  if (candidate.mode->support < options_.strong_overlap && !supported(candidate, T))
+  const bool unsure = unconvincing(candidate);
+  const bool weak = candidate.mode->support < options_.strong_overlap || doubtful(*candidate.mode) || unsure;
+  if (weak && !supported(candidate, T)) {
+    if (unsure)
+      contested_.push_back(candidate.pair);
     return false;
+  }
   if (contradicted(graph_.clusters[a], graph_.clusters[b], T))
     return false;
-  if (isContested(scans_, pairs_, graph_.clusters, {a, b, T, candidate.mode->check.overlap}, options_))
+  const ClusterJoin proposed{a, b, T, candidate.mode->check.overlap};
+  if (isContested(scans_, pairs_, graph_.clusters, proposed, options_) ||
+      hasTwin(scans_, graph_.clusters, proposed, options_)) {
+    contested_.push_back(candidate.pair);
     return false;
+  }
   join(candidate, T);
   return true;
 }
@@ -139,6 +174,20 @@ double GraphBuilder::leastColor() const
   const auto upper = colors.begin() + static_cast<std::ptrdiff_t>(3 * colors.size() / 4);
   std::nth_element(colors.begin(), upper, colors.end());
   return *upper > telling_color ? color_share * *upper : -1.0;
+}
+
+// Where most pairs contradict free space hardly at all, one that does is a look-alike or has seen a change.
+double GraphBuilder::plainViolation() const
+{
+  std::vector<double> violations;
+  for (const PairAlignment& pair : pairs_)
+    if (!pair.modes.empty() && !pair.ambiguous)
+      violations.push_back(pair.modes[0].check.violation);
+  if (violations.empty())
+    return plain_violation;
+  const auto lower = violations.begin() + static_cast<std::ptrdiff_t>((violations.size() - 1) / 4);
+  std::nth_element(violations.begin(), lower, violations.end());
+  return std::max(plain_violation, violation_factor * *lower);
 }
 
 bool GraphBuilder::joinUnambiguous()
@@ -177,10 +226,22 @@ bool GraphBuilder::joinAmbiguous()
   return false;
 }
 
+// Clusters that stayed apart although pairs between them fit.
+void GraphBuilder::markLookAlikes()
+{
+  for (const PairAlignment& pair : pairs_) {
+    const std::size_t a = placeOf(pair.a).cluster, b = placeOf(pair.b).cluster;
+    const bool contested = std::find(contested_.begin(), contested_.end(), &pair) != contested_.end();
+    if (a != b && !pair.modes.empty() && (pair.ambiguous || contested))
+      graph_.clusters[a].look_alike = graph_.clusters[b].look_alike = true;
+  }
+}
+
 ScanGraph GraphBuilder::build()
 {
   while (joinUnambiguous() || joinAmbiguous())
     ;
+  markLookAlikes();
   std::stable_sort(graph_.clusters.begin() + (known_count_ > 0 ? 1 : 0), graph_.clusters.end(),
                    [](const ScanCluster& x, const ScanCluster& y) { return x.scans.size() > y.scans.size(); });
   return std::move(graph_);

@@ -6,7 +6,8 @@ namespace fresco {
 /// Scans in one common frame.
 struct ScanCluster {
   std::vector<Index> scans;
-  IsometryVector poses; ///< frame of the cluster from working frame
+  IsometryVector poses;    ///< frame of the cluster from working frame
+  bool look_alike = false; ///< whether it fits to other clusters in several ways between which nothing decides
 };
 
 struct ScanGraph {

@@ -128,6 +128,7 @@ Placement toPlacement(const ScanCluster& cluster, const std::vector<PreparedScan
   const auto first = static_cast<std::size_t>(cluster.scans[order[0]]);
   const Eigen::Isometry3d T_first_frame = workingToScan(scans[first]) * cluster.poses[order[0]].inverse();
   Placement placement;
+  placement.look_alike = cluster.look_alike;
   for (const std::size_t k : order) {
     if (hasStart(cluster.scans[k]))
       placement.anchors.push_back(static_cast<Index>(placement.members.size()));

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "../../registration/src/self_similarity.h"
+#include "registration/look_alike_scenes.h"
+#include <fresco/registration/core/point_to_plane_registration.h>
+#include <gtest/gtest.h>
+namespace fresco {
+namespace {
+using test::heldPairs;
+using test::HeldPairs;
+using test::LookAlikeScene;
+
+struct Outcome {
+  HeldPairs held;
+  std::size_t placed = 0;
+  ScanRegistrationResult result;
+};
+
+Outcome registered(const LookAlikeScene& place)
+{
+  Outcome outcome;
+  outcome.result = registerScans(place.scene.scans);
+  outcome.held = heldPairs(outcome.result, place.scene);
+  for (const Pose& pose : outcome.result.poses)
+    outcome.placed += pose ? 1 : 0;
+  return outcome;
+}
+
+SelfMotions selfMotions(const PointSet& set)
+{
+  const PreparedScan scan = prepareScan(set, registrationVoxel(set), 0);
+  return findSelfMotions(scan, describeScan(scan, {}));
+}
+
+bool anyCertain(const SelfMotions& motions)
+{
+  return std::any_of(motions.begin(), motions.end(), [](const SelfMotion& motion) { return motion.certain; });
+}
+
+// A corridor of equal bays maps onto itself by whole bays; by nothing else does it without contradiction.
+TEST(SelfSimilarity, EqualBaysAreFound)
+{
+  const LookAlikeScene place = test::bays({true, false});
+  int found = 0;
+  for (std::size_t i = 0; i < place.scene.scans.size(); ++i) {
+    const SelfMotions motions = selfMotions(place.scene.scans[i]);
+    found += anyCertain(motions) ? 1 : 0;
+    for (const SelfMotion& motion : motions)
+      if (motion.certain) {
+        const double bays = motion.T.translation().norm() / 3.0;
+        EXPECT_NEAR(bays, std::round(bays), 0.03);
+        EXPECT_LT(Eigen::AngleAxisd(motion.T.linear()).angle(), 0.02);
+      }
+  }
+  EXPECT_GE(found, 1);
+}
+
+TEST(SelfSimilarity, FurnishedRoomsHaveNone)
+{
+  for (const PointSet& scan : test::scanTwoRooms(30000).scans)
+    EXPECT_FALSE(anyCertain(selfMotions(scan)));
+  for (const PointSet& scan : test::bays({false, false}).scene.scans)
+    EXPECT_FALSE(anyCertain(selfMotions(scan)));
+}
+
+// What nothing tells apart is left in groups, and the report says why.
+TEST(LookAlikes, EqualBaysAreNotMerged)
+{
+  const LookAlikeScene place = test::bays({true, false});
+  const Outcome outcome = registered(place);
+  EXPECT_EQ(outcome.held.wrong, 0);
+  EXPECT_GT(outcome.result.groups, 1);
+  for (std::size_t i = 0; i < place.scene.scans.size(); ++i)
+    if (!outcome.result.poses[i]) {
+      EXPECT_NE(outcome.result.scans[i].problem.find("look alike"), std::string::npos) << i;
+    }
+}
+
+// Equal rooms that face each other: a scan from the corridor shows that there are two.
+TEST(LookAlikes, EqualRoomsSeenFromBetweenAreNotMerged)
+{
+  for (const test::Paint paint : {test::Paint::none, test::Paint::same, test::Paint::different}) {
+    const LookAlikeScene place = test::facingRooms({true, true, false, paint});
+    EXPECT_EQ(registered(place).held.wrong, 0) << place.name;
+  }
+}
+
+// The counterparts that only seem to look alike are joined.
+TEST(LookAlikes, WhatDiffersIsJoined)
+{
+  for (const LookAlikeScene& place :
+       {test::bays({false, true}), test::facingRooms({true, true, true, test::Paint::none}),
+        test::facingRooms({false, true, false, test::Paint::none})}) {
+    const Outcome outcome = registered(place);
+    EXPECT_EQ(outcome.placed, place.scene.scans.size()) << place.name;
+    EXPECT_EQ(outcome.held.wrong, 0) << place.name;
+  }
+}
+} // namespace
+} // namespace fresco
