@@ -24,7 +24,8 @@ struct ScanRegistrationOptions {
 /// Scans that need not be in memory all at once.
 struct ScanSource {
   Index count;
-  std::function<PointSet(Index)> read; ///< for one scan after the other; registerScans() calls it more than once for each
+  std::function<PointSet(Index)>
+      read; ///< for one scan after the other; registerScans() calls it more than once for each
 
   ScanSource(Index scan_count, std::function<PointSet(Index)> reader) : count(scan_count), read(std::move(reader)) {}
 };
