@@ -12,21 +12,6 @@ namespace fresco::test {
 namespace {
 using namespace volumetric;
 
-/// Area-weighted mean angle between the faces' normals and the directions from the origin, degrees.
-double meanAngleToSphere(const TriangleMesh& mesh)
-{
-  double sum = 0, area = 0;
-  for (Index f = 0; f < mesh.faceCount(); ++f) {
-    const Eigen::Vector3d a = mesh.vertices.col(mesh.faces(0, f)).cast<double>(),
-                          b = mesh.vertices.col(mesh.faces(1, f)).cast<double>(),
-                          c = mesh.vertices.col(mesh.faces(2, f)).cast<double>();
-    const Eigen::Vector3d n = (b - a).cross(c - a), out = a + b + c;
-    sum += std::atan2(n.cross(out).norm(), n.dot(out)) * n.norm();
-    area += n.norm();
-  }
-  return sum / area * 180 / pi;
-}
-
 TEST(VolumetricLaws, NormalsOfASmoothSurfaceShowNoGrid)
 {
   for (const int depth : {6, 7}) // flat triangles alone account for about a quarter of a degree at depth 7

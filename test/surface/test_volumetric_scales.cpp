@@ -175,21 +175,6 @@ TEST(VolumetricScales, FilterLeavesWhatComesFromTheCoarserDepth)
       }
 }
 
-/// Mean angle between the faces' normals and the directions from the origin, by area, degrees.
-double meanAngle(const TriangleMesh& mesh)
-{
-  double sum = 0, area = 0;
-  for (Index f = 0; f < mesh.faceCount(); ++f) {
-    const Eigen::Vector3d a = mesh.vertices.col(mesh.faces(0, f)).cast<double>(),
-                          b = mesh.vertices.col(mesh.faces(1, f)).cast<double>(),
-                          c = mesh.vertices.col(mesh.faces(2, f)).cast<double>();
-    const Eigen::Vector3d n = (b - a).cross(c - a), out = a + b + c;
-    sum += std::atan2(n.cross(out).norm(), n.dot(out)) * n.norm();
-    area += n.norm();
-  }
-  return sum / area * 180 / pi;
-}
-
 /// Cells finer than the noise add faces, not roughness. Without the filter it is 4.2 and 12.3 degrees.
 TEST(VolumetricScales, NormalsOfNoisyPointsDoNotCollapseAtFinerDepths)
 {
@@ -198,8 +183,8 @@ TEST(VolumetricScales, NormalsOfNoisyPointsDoNotCollapseAtFinerDepths)
   std::normal_distribution<float> noise(0.f, 0.01f);
   for (Index i = 0; i < points.size(); ++i)
     points.points.col(i) *= 1.f + noise(random);
-  EXPECT_LT(meanAngle(reconstructVolumetric(points, atDepth(6)).mesh), 3.5); // cells of 3.4 times the noise
-  EXPECT_LT(meanAngle(reconstructVolumetric(points, atDepth(8)).mesh), 10);  // of 0.86 times the noise
+  EXPECT_LT(meanAngleToSphere(reconstructVolumetric(points, atDepth(6)).mesh), 3.5); // cells of 3.4 times the noise
+  EXPECT_LT(meanAngleToSphere(reconstructVolumetric(points, atDepth(8)).mesh), 10);  // of 0.86 times the noise
 }
 } // namespace
 } // namespace fresco::test

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+#include <Eigen/Geometry>
 #include <cmath>
 #include <fresco/common/point_set.h>
 #include <fresco/surface/core/volumetric_reconstruction.h>
@@ -19,6 +20,21 @@ inline PointSet sphere(Index count)
   }
   set.normals = set.points;
   return set;
+}
+
+/// Area-weighted mean angle between the faces' normals and the directions from the origin, degrees.
+inline double meanAngleToSphere(const TriangleMesh& mesh)
+{
+  double sum = 0, area = 0;
+  for (Index f = 0; f < mesh.faceCount(); ++f) {
+    const Eigen::Vector3d a = mesh.vertices.col(mesh.faces(0, f)).cast<double>(),
+                          b = mesh.vertices.col(mesh.faces(1, f)).cast<double>(),
+                          c = mesh.vertices.col(mesh.faces(2, f)).cast<double>();
+    const Eigen::Vector3d n = (b - a).cross(c - a), out = a + b + c;
+    sum += std::atan2(n.cross(out).norm(), n.dot(out)) * n.norm();
+    area += n.norm();
+  }
+  return sum / area * 180 / pi;
 }
 
 /// Torus around the z axis with radii 1 and `tube`, sampled evenly by area.
