@@ -77,16 +77,7 @@ inline LookAlikeScene facingRooms(const FacingRooms& kind, Index rays = 30000)
   std::vector<unsigned> numbers;
   for (unsigned i = 0; i < boxes.size(); ++i)
     numbers.push_back(kind.paint == Paint::same ? i % static_cast<unsigned>(room.size()) : i);
-  addBox(boxes, {4.0, -4, -0.1}, {6, 8, 0});
-  addBox(boxes, {4.0, -4, 2.6}, {6, 8, 2.7});
-  addBox(boxes, {4.0, -4.1, 0}, {6, -4, 2.6});
-  addBox(boxes, {4.0, 8, 0}, {6, 8.1, 2.6});
-  addBox(boxes, {4.0, 5, 0}, {4.1, 8, 2.6});
-  addBox(boxes, {4.0, -4, 0}, {4.1, 0, 2.6});
-  addBox(boxes, {5.9, 4, 0}, {6, 8, 2.6});
-  addBox(boxes, {5.9, -4, 0}, {6, -1, 2.6});
-  if (kind.telling)
-    addBox(boxes, {5.4, 2.7, 0}, {5.9, 3.5, 1.9});
+  addCorridorBetweenRooms(kind.telling, boxes);
   while (numbers.size() < boxes.size())
     numbers.push_back(1000); // the corridor has one colour, whatever the rooms have
   LookAlikeScene made;

@@ -21,6 +21,21 @@ inline ScannedScene scanTwoRooms(Index rays = 20000, double noise = 0.004)
   return scene;
 }
 
+/// Corridor between two rooms that face each other; `telling`: with something in it that the rooms can see.
+inline void addCorridorBetweenRooms(bool telling, Boxes& boxes)
+{
+  addBox(boxes, {4.0, -4, -0.1}, {6, 8, 0});
+  addBox(boxes, {4.0, -4, 2.6}, {6, 8, 2.7});
+  addBox(boxes, {4.0, -4.1, 0}, {6, -4, 2.6});
+  addBox(boxes, {4.0, 8, 0}, {6, 8.1, 2.6});
+  addBox(boxes, {4.0, 5, 0}, {4.1, 8, 2.6});
+  addBox(boxes, {4.0, -4, 0}, {4.1, 0, 2.6});
+  addBox(boxes, {5.9, 4, 0}, {6, 8, 2.6});
+  addBox(boxes, {5.9, -4, 0}, {6, -1, 2.6});
+  if (telling)
+    addBox(boxes, {5.4, 2.7, 0}, {5.9, 3.5, 1.9});
+}
+
 /// Two equal furnished rooms on both sides of a corridor, each the other turned by half a turn, seen from two places in
 /// each and one in the corridor. The doors stand open.
 /// @param telling whether something stands in the corridor that can be seen from the rooms: without it, nothing in the
@@ -34,16 +49,7 @@ inline ScannedScene scanTwinRooms(bool telling, Index rays = 30000)
     boxes.push_back(box);
     boxes.push_back({{10 - box.center.x(), 4 - box.center.y(), box.center.z()}, box.half, box.yaw});
   }
-  addBox(boxes, {4.0, -4, -0.1}, {6, 8, 0});
-  addBox(boxes, {4.0, -4, 2.6}, {6, 8, 2.7});
-  addBox(boxes, {4.0, -4.1, 0}, {6, -4, 2.6});
-  addBox(boxes, {4.0, 8, 0}, {6, 8.1, 2.6});
-  addBox(boxes, {4.0, 5, 0}, {4.1, 8, 2.6});
-  addBox(boxes, {4.0, -4, 0}, {4.1, 0, 2.6});
-  addBox(boxes, {5.9, 4, 0}, {6, 8, 2.6});
-  addBox(boxes, {5.9, -4, 0}, {6, -1, 2.6});
-  if (telling)
-    addBox(boxes, {5.4, 2.7, 0}, {5.9, 3.5, 1.9});
+  addCorridorBetweenRooms(telling, boxes);
   ScannedScene scene;
   scene.truth = {stationPose({1, 1, 1.5}, 0.3, 0.02), stationPose({3, 2.5, 1.5}, 1.3, 0.01),
                  stationPose({9, 1, 1.5}, -2.3, 0.03), stationPose({7.2, 1.4, 1.5}, 2.3, 0.02),
