@@ -83,11 +83,13 @@ void run(const Options& options)
                               reference.faceCount(),
                               options.distance,
                               measureMeshDistance(mesh, reference, options.distance, subProgress(progress, 0.3, 1.0))};
-  if (!options.json.empty())
-    writeFile(options.json,
-              comparisonJson(comparison).dump(1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
-  if (!options.colored.empty())
-    writeColored(options, mesh, comparison.result);
+  writeOutputs([&] {
+    if (!options.json.empty())
+      writeFile(options.json,
+                comparisonJson(comparison).dump(1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+    if (!options.colored.empty())
+      writeColored(options, mesh, comparison.result);
+  });
   std::cout << comparisonText(comparison) << std::flush;
 }
 } // namespace

@@ -215,6 +215,6 @@ int main(int argc, char** argv)
     options.outliers.threads = options.veil.threads = common.threads;
     CloudFile file = readCloud(files[0]);
     filterCloud(file, files[0], args, options, common.quiet);
-    writeCloud(files[1], file);
+    writeOutputs([&] { writeCloud(files[1], file); });
   });
 }

@@ -159,7 +159,7 @@ int main(int argc, char** argv)
     field.normals.swap(smooth.normals);
     set.points.swap(smooth.points);
     writeResult(file, set, field, options);
-    writeCloud(files[1], file);
+    writeOutputs([&] { writeCloud(files[1], file); });
     inform(common.quiet, std::to_string(set.size()) + " points, normals " +
                              (set.viewpoints.cols() > 0 ? "towards the viewpoint" : "in agreement with each other"));
   });

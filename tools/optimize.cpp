@@ -82,9 +82,11 @@ void run(const Request& request)
     throw std::runtime_error(request.mesh + ": no faces");
   const fresco::SurfaceOptimizationResult result = fresco::optimizeSurface(
       mesh, fresco::readPoints(request.cloud), request.options, fresco::printProgress(request.common.quiet));
-  fresco::writeMesh(request.output, result.mesh);
-  if (!request.report.empty())
-    fresco::writeFile(request.report, toJson(result));
+  fresco::writeOutputs([&] {
+    fresco::writeMesh(request.output, result.mesh);
+    if (!request.report.empty())
+      fresco::writeFile(request.report, toJson(result));
+  });
   fresco::inform(request.common.quiet,
                  fresco::concat(result.steps.size(), " iterations", result.converged ? ", converged" : "", "; noise ",
                                 result.noise, ", mean edge ", result.edge_length, "; ", result.supported_vertices,

@@ -72,7 +72,7 @@ void run(const Request& request)
   }
   const fresco::VolumetricResult result =
       fresco::reconstructVolumetric(std::move(points), request.options, fresco::printProgress(request.common.quiet));
-  fresco::writeMesh(request.output, result.mesh);
+  fresco::writeOutputs([&] { fresco::writeMesh(request.output, result.mesh); });
   fresco::inform(request.common.quiet,
                  fresco::concat(result.mesh.vertexCount(), " vertices, ", result.mesh.faceCount(), " faces; depth ",
                                 result.depth, ", cell ", result.cell_size, "; ", result.used_points, " points used, ",

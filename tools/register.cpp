@@ -160,7 +160,7 @@ void run(int argc, char** argv)
   if (placed == 0)
     throw std::runtime_error(request.files[0] + ": " + result.scans[0].problem + "; no scan could be placed");
   fresco::report(progress, "write", 0.9);
-  write(request, scans, result);
+  fresco::writeOutputs([&] { write(request, scans, result); });
   fresco::report(progress, "done", 1.0);
   for (std::size_t i = 0; i < result.scans.size(); ++i)
     if (!result.scans[i].problem.empty())

@@ -271,8 +271,10 @@ void run(int argc, char** argv)
     throw std::runtime_error(request.model + ": " + error.what());
   }
   report(progress, "write", 0.9);
-  for (std::size_t i = 0; i < pictures.size(); ++i)
-    writeImage(outputName(request, request.shadings[i]), pictures[i]);
+  writeOutputs([&] {
+    for (std::size_t i = 0; i < pictures.size(); ++i)
+      writeImage(outputName(request, request.shadings[i]), pictures[i]);
+  });
   report(progress, "done", 1.0);
 }
 } // namespace

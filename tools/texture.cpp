@@ -135,11 +135,13 @@ void run(int argc, char** argv)
   if (!(result.coverage > 0))
     throw std::runtime_error(
         concat(files[1], ": none of the ", views.size(), " photographs sees any part of ", files[0]));
-  writeTexturedMesh(out, result.model);
-  for (std::size_t i = 0; i < result.masks.size(); ++i)
-    writeImage(maskPath(out, i, result.masks.size()), result.masks[i]);
-  if (!tool.cameras_out.empty())
-    writeColmap(tool.cameras_out, usedCameras(set, result));
+  writeOutputs([&] {
+    writeTexturedMesh(out, result.model);
+    for (std::size_t i = 0; i < result.masks.size(); ++i)
+      writeImage(maskPath(out, i, result.masks.size()), result.masks[i]);
+    if (!tool.cameras_out.empty())
+      writeColmap(tool.cameras_out, usedCameras(set, result));
+  });
   printFigures(result, views.size(), common.quiet);
 }
 } // namespace

@@ -9,6 +9,7 @@
 #include <fresco/common/require.h>
 #include <fresco/common/unfinished_files.h>
 #include <fstream>
+#include <map>
 #include <mutex>
 #include <set>
 #include <sys/stat.h>
@@ -37,12 +38,27 @@ constexpr std::size_t piece_size = std::size_t{8} << 20;
 struct Unfinished {
   std::mutex mutex;
   std::set<std::string> paths;
+  bool grouped = false;                      ///< an OutputGroup exists
+  std::map<std::string, std::string> stored; ///< of that group: temporary files and their names to be
 };
 
 Unfinished& unfinished()
 {
   static auto* const all = new Unfinished;
   return *all;
+}
+
+[[noreturn]] void failToWrite(const std::string& path)
+{
+  fail(path, std::string("cannot be written (") + std::strerror(errno) + ")");
+}
+
+/// To be called with the mutex locked.
+void giveName(const std::string& temporary, const std::string& path)
+{
+  if (::rename(temporary.c_str(), path.c_str()) != 0)
+    failToWrite(path);
+  unfinished().paths.erase(temporary);
 }
 } // namespace
 
@@ -60,7 +76,7 @@ OutputFile::OutputFile(std::string path) : path_(std::move(path)), temporary_(be
   const std::lock_guard<std::mutex> lock(unfinished().mutex);
   descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
   if (descriptor_ < 0)
-    fail(path_, std::string("cannot be written (") + std::strerror(errno) + ")");
+    failToWrite(path_);
   unfinished().paths.insert(temporary_);
 }
 
@@ -98,7 +114,7 @@ void OutputFile::store(const char* from, std::size_t bytes)
     if (done < 0 && errno == EINTR)
       continue;
     if (done < 0)
-      fail(path_, std::string("cannot be written (") + std::strerror(errno) + ")");
+      failToWrite(path_);
     from += done;
     bytes -= static_cast<std::size_t>(done);
     written_ += static_cast<std::size_t>(done);
@@ -115,7 +131,7 @@ void OutputFile::send()
   if (failed == 0 && sent_ > awaited_) // a length of 0 would stand for the rest of the file
     failed = ::sync_file_range(descriptor_, bytes(awaited_), bytes(sent_ - awaited_), SYNC_FILE_RANGE_WAIT_BEFORE);
   if (failed != 0 && errno != ESPIPE && errno != EINVAL && errno != ENOSYS) // what cannot be synchronised so
-    fail(path_, std::string("cannot be written (") + std::strerror(errno) + ")");
+    failToWrite(path_);
 #endif
   awaited_ = sent_;
   sent_ = written_;
@@ -126,12 +142,41 @@ void OutputFile::commit()
   flush();
   // A library may have replaced the file behind the descriptor, so the name is what counts.
   const bool stored = ::fsync(descriptor_) == 0 || errno == EINVAL;
+  if (!stored)
+    failToWrite(path_);
   const std::lock_guard<std::mutex> lock(unfinished().mutex);
-  if (!stored || ::rename(temporary_.c_str(), path_.c_str()) != 0)
-    fail(path_, std::string("cannot be written (") + std::strerror(errno) + ")");
-  unfinished().paths.erase(temporary_);
+  if (unfinished().grouped)
+    unfinished().stored[temporary_] = path_;
+  else
+    giveName(temporary_, path_);
   ::close(descriptor_);
   descriptor_ = -1;
+}
+
+OutputGroup::OutputGroup()
+{
+  const std::lock_guard<std::mutex> lock(unfinished().mutex);
+  require(!unfinished().grouped, "a group of outputs within another");
+  unfinished().grouped = true;
+}
+
+OutputGroup::~OutputGroup()
+{
+  const std::lock_guard<std::mutex> lock(unfinished().mutex);
+  for (const auto& [temporary, path] : unfinished().stored) {
+    ::unlink(temporary.c_str());
+    unfinished().paths.erase(temporary);
+  }
+  unfinished().stored.clear();
+  unfinished().grouped = false;
+}
+
+void OutputGroup::commit()
+{
+  const std::lock_guard<std::mutex> lock(unfinished().mutex);
+  auto& stored = unfinished().stored;
+  for (auto file = stored.begin(); file != stored.end(); file = stored.erase(file))
+    giveName(file->first, file->second);
 }
 
 std::string readFile(const std::string& path)

@@ -52,6 +52,32 @@ TEST(OutputFile, WholeOrAbsent)
   EXPECT_EQ(entries(folder), 1U);
 }
 
+TEST(OutputGroup, AllOrNone)
+{
+  const std::string folder = test::scratchFolder(), first = folder + "/first.txt";
+  writeFile(first, "old");
+  {
+    OutputGroup group;
+    writeFile(first, "new");
+    writeFile(folder + "/second.txt", "new");
+    EXPECT_EQ(readFile(first), "old");
+    EXPECT_THROW(OutputGroup(), std::invalid_argument);
+  }
+  EXPECT_EQ(readFile(first), "old");
+  EXPECT_EQ(entries(folder), 1U);
+  {
+    OutputGroup group;
+    writeFile(first, "new");
+    writeFile(folder + "/second.txt", "new");
+    group.commit();
+  }
+  EXPECT_EQ(readFile(first), "new");
+  EXPECT_EQ(readFile(folder + "/second.txt"), "new");
+  EXPECT_EQ(entries(folder), 2U);
+  writeFile(first, "newer");
+  EXPECT_EQ(readFile(first), "newer");
+}
+
 TEST(OutputFile, LargeAndSmallWritesKeepTheirOrder)
 {
   const std::string path = test::scratchFolder() + "/out.bin";

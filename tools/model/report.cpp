@@ -122,7 +122,9 @@ std::string stageSummary(const StageRecord& stage)
 
 void writeReport(const ModelReport& report, const ModelFiles& files)
 {
+  OutputGroup outputs;
   writeFile(files.report_html, toHtml(report, files));
   writeFile(files.report_json, toJson(report).dump(2) + "\n");
+  outputs.commit();
 }
 } // namespace fresco

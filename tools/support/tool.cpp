@@ -8,6 +8,7 @@
 #include <condition_variable>
 #include <csignal>
 #include <exception>
+#include <fresco/common/file.h>
 #include <fresco/common/parallel.h>
 #include <fresco/common/require.h>
 #include <fresco/common/unfinished_files.h>
@@ -21,6 +22,10 @@
 namespace fresco {
 namespace {
 std::atomic<int> stops_asked{0};
+std::mutex ending;                      ///< held by whom decides whether the process ends half-way or with its outputs
+std::atomic<bool> outputs_whole{false}; ///< only set while `ending` is held
+
+bool mustStop() { return stops_asked > 0 && !outputs_whole; }
 
 // The first signal asks to stop at the next step, the second at once; the third ends the process as usual.
 void askToStop(int signal)
@@ -107,14 +112,16 @@ private:
   {
     using namespace std::chrono_literals;
     std::unique_lock<std::mutex> lock(mutex_);
-    const auto is_done = [this] { return done_; };
-    while (stops_asked == 0)
+    const auto is_done = [this] { return done_ || outputs_whole; };
+    while (!mustStop())
       if (wake_.wait_for(lock, 50ms, is_done))
         return;
     for (int i = 0; i < 6 && stops_asked == 1; ++i)
       if (wake_.wait_for(lock, 50ms, is_done))
         return;
-    leave(name + ": cancelled");
+    const std::lock_guard<std::mutex> end(ending);
+    if (!outputs_whole)
+      leave(name + ": cancelled");
   }
 
   std::mutex mutex_;
@@ -146,7 +153,7 @@ public:
     const std::lock_guard<std::mutex> lock(mutex_);
     if (!quiet_)
       print(std::string(step), std::clamp(fraction, 0.0, 1.0));
-    return stops_asked == 0;
+    return !mustStop();
   }
 
 private:
@@ -223,6 +230,15 @@ void inform(bool quiet, const std::string& line)
 {
   if (!quiet)
     printLine(line);
+}
+
+void writeOutputs(const std::function<void()>& write)
+{
+  OutputGroup outputs;
+  write();
+  const std::lock_guard<std::mutex> lock(ending);
+  outputs.commit();
+  outputs_whole = true;
 }
 
 int runTool(const std::string& name, const std::function<void()>& body)

@@ -18,6 +18,10 @@ Progress printProgress(bool quiet);
 /// One line on stderr, unless `quiet`.
 void inform(bool quiet, const std::string& line);
 
+/// Runs `write`, which writes the last outputs of a tool: either all of them are there in the end and the process can
+/// no longer be asked to stop, or none is.
+void writeOutputs(const std::function<void()>& write);
+
 /// Runs `body` and turns its end into an exit status: 0 done; 1 could not do it, with one line on stderr
 /// "NAME: reason"; 2 wrong usage, with one line and a hint at -h. SIGINT, SIGTERM and SIGHUP ask `body` to stop; where
 /// it does not within a third of a second, and where an exception leaves another thread, the process ends with 1 and

@@ -33,6 +33,20 @@ private:
   int descriptor_ = -1;
 };
 
+/// Outputs that belong together: while one exists, commit() of an OutputFile stores its file, and commit() of the
+/// group gives all of them their names at once. Destroyed without commit(): none of them remains. One at a time, and
+/// for one thread.
+class OutputGroup {
+public:
+  OutputGroup();
+  ~OutputGroup();
+  OutputGroup(const OutputGroup&) = delete;
+  OutputGroup& operator=(const OutputGroup&) = delete;
+
+  /// @throws std::runtime_error naming the file and the reason; those that have their name by then keep it
+  void commit();
+};
+
 /// Whole content. @throws std::runtime_error naming the file if it is missing, a folder, empty or unreadable
 std::string readFile(const std::string& path);
 
