@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Not a library's loops: a caller that waits for threads which the system does not let run, or that yields in a loop
+// until they are, loses the machine to whatever else runs on it (docs/benchmarks.md).
+#include "thread_pool.h"
+#include <algorithm>
 #include <atomic>
 #include <fresco/common/parallel.h>
 #include <fresco/common/require.h>
-#include <tbb/global_control.h>
-#include <tbb/info.h>
-#include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
+#include <thread>
 namespace fresco {
 namespace {
 std::atomic<int> default_threads{0};
@@ -15,7 +16,7 @@ int threadCount(int threads)
 {
   require(threads >= 0, "threads ", threads, " is negative");
   const int chosen = threads > 0 ? threads : default_threads.load();
-  return chosen > 0 ? chosen : tbb::info::default_concurrency();
+  return chosen > 0 ? chosen : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
 }
 
 void setDefaultThreads(int threads)
@@ -28,16 +29,12 @@ namespace detail {
 void runChunks(Index count, int threads, const std::function<void(Index)>& run)
 {
   const int workers = static_cast<int>(std::min<Index>(threadCount(threads), count));
-  if (workers <= 1 || tbb::this_task_arena::current_thread_index() > 0) {
-    for (Index c = 0; c < count; ++c)
-      run(c);
+  if (workers > 1 && !ThreadPool::isAtWork()) {
+    ThreadPool::instance().run(count, workers, run);
     return;
   }
-  // The library caps its pool at the number of cores unless told otherwise; a caller who asks for more gets more.
-  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
-                                  static_cast<std::size_t>(std::max(workers, tbb::info::default_concurrency())));
-  tbb::task_arena arena(workers);
-  arena.execute([&] { tbb::parallel_for(Index(0), count, run, tbb::simple_partitioner()); });
+  for (Index c = 0; c < count; ++c)
+    run(c);
 }
 } // namespace detail
 } // namespace fresco

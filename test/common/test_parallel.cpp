@@ -82,6 +82,23 @@ TEST(Parallel, MoreThreadsThanCoresAreUsed)
   EXPECT_GE(most, wanted);
 }
 
+TEST(Parallel, LoopsOfSeveralThreadsAtOnce)
+{
+  std::vector<Index> sums(6);
+  std::vector<std::thread> callers;
+  for (Index caller = 0; caller < 6; ++caller)
+    callers.emplace_back([&sums, caller] {
+      for (int round = 0; round < 200; ++round) {
+        const auto own = [caller](Index i) { return i * caller; };
+        sums[static_cast<std::size_t>(caller)] += fresco::parallelSum(1000, 3, Index(0), own);
+      }
+    });
+  for (std::thread& caller : callers)
+    caller.join();
+  for (Index caller = 0; caller < 6; ++caller)
+    EXPECT_EQ(sums[static_cast<std::size_t>(caller)], 200 * 499500 * caller);
+}
+
 TEST(Parallel, NegativeThreadCountThrows)
 {
   EXPECT_THROW(fresco::parallelFor(4, -1, [](Index) {}), std::invalid_argument);
