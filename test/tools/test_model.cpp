@@ -111,6 +111,14 @@ struct Job {
   }
 };
 
+TEST(Stages, ProgramFilesAreTheProgramAndItsLibraries)
+{
+  const std::vector<std::string> files = programFiles();
+  EXPECT_EQ(fs::path(files.at(0)).filename(), "test_model");
+  for (const std::string& file : files)
+    EXPECT_TRUE(fs::is_regular_file(file)) << file;
+}
+
 TEST(Stages, ResumeTakesOverOnlyWhatIsStillValid)
 {
   Job job{test::scratchFolder()};

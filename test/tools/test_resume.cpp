@@ -220,7 +220,7 @@ TEST_F(Faults, ControlCEndsItSoonAndCleanly)
     const auto start = Clock::now();
     run.signal(SIGINT);
     const Outcome outcome = run.wait();
-    EXPECT_LT(secondsSince(start), 5.0);                       // a second on a machine that is not busy otherwise
+    EXPECT_LT(secondsSince(start), 10.0);                      // a second on a machine that is not busy otherwise
     if (outcome.status != 0 && outcome.status != 128 + SIGINT) // it may have ended, or not yet have begun
       expectOneLine(outcome);
     if (fs::exists(out)) {

@@ -58,7 +58,7 @@ ModelReport buildModel(const ModelInput& input, const std::string& folder, const
   const ModelFiles files(folder);
   makeFolder(files.folder);
   makeFolder(files.snapshots);
-  StageLog log(files.work, fingerprint(input.files()), options.resume, progress);
+  StageLog log(files.work, fingerprint(input.files()) + fingerprint(programFiles()), options.resume, progress);
   log.run({"points",
            concat(options.use_poses, " ", options.fuse, " ", options.bilateral),
            {files.points, files.poses},

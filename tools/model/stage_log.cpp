@@ -9,6 +9,7 @@
 #include <fresco/common/require.h>
 #include <fstream>
 #include <iomanip>
+#include <link.h>
 #include <sstream>
 namespace fresco {
 namespace {
@@ -49,6 +50,20 @@ std::string fingerprint(const std::vector<std::string>& files)
          << std::filesystem::last_write_time(file, error).time_since_epoch().count() << "\n";
   }
   return text.str();
+}
+
+std::vector<std::string> programFiles()
+{
+  std::error_code error;
+  std::vector<std::string> files{std::filesystem::read_symlink("/proc/self/exe", error).string()};
+  const auto add = [](dl_phdr_info* object, std::size_t, void* list) {
+    const std::string path = object->dlpi_name;
+    if (path.find("libfresco_") != std::string::npos)
+      static_cast<std::vector<std::string>*>(list)->push_back(path);
+    return 0;
+  };
+  dl_iterate_phdr(add, &files);
+  return files;
 }
 
 StageLog::StageLog(std::string folder, const std::string& key, bool resume, Progress progress)

@@ -47,4 +47,7 @@ private:
 
 /// Name, size and time of change of each file: changes when one of them does.
 std::string fingerprint(const std::vector<std::string>& files);
+
+/// The files that this program consists of: itself and the fresco libraries that it has loaded.
+std::vector<std::string> programFiles();
 } // namespace fresco
