@@ -95,6 +95,7 @@ protected:
     test::writeSmallRoom(folder_ + "/room", 150000);
     const TriangleMesh ball = test::sphere(1.f, 6);
     writeMesh(folder_ + "/ball.ply", ball);
+    writeMesh(folder_ + "/small.ply", test::sphere(1.f, 4));
     PointSet points;
     points.points = test::sphere(1.001f, 8).vertices;
     points.normals = points.points;
