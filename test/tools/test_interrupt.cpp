@@ -172,10 +172,8 @@ TEST_F(Interrupt, Texture)
 
 TEST_F(Interrupt, Scan) // what it has finished stays, poses.txt comes last
 {
-  expectStops(
-      {"scan",
-       {"conference_room", ".", "-views", "2", "-images", "160x120", "-stations", "1", "-points", "20000", "-quiet"}},
-      SIGINT, Remains::WholeFiles);
+  expectStops({"scan", {folder_ + "/small.ply", ".", "-no_images", "-stations", "2", "-quiet"}}, SIGINT,
+              Remains::WholeFiles);
 }
 
 TEST_F(Interrupt, Snapshot)
