@@ -73,7 +73,7 @@ StageLog::StageLog(std::string folder, const std::string& key, bool resume, Prog
 }
 
 bool StageLog::takeOver(const Stage& stage, const std::string& file)
-{
+try {
   const auto exists = [](const std::string& path) { return std::filesystem::exists(path); };
   if (!resume_ || !exists(file) || !std::all_of(stage.outputs.begin(), stage.outputs.end(), exists))
     return false;
@@ -83,6 +83,8 @@ bool StageLog::takeOver(const Stage& stage, const std::string& file)
   records_.push_back({stage.name, stored.value("seconds", 0.0), stored.value("cpu_seconds", 0.0),
                       stored.value("peak_megabytes", 0.0), true, stored["figures"]});
   return true;
+} catch (const Json::exception&) { // a value of another type: not a record of ours
+  return false;
 }
 
 void StageLog::run(const Stage& stage)
