@@ -3,6 +3,7 @@
 #include "view_direction.h"
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <fresco/common/parallel.h>
 #include <limits>
 #include <utility>
@@ -17,165 +18,199 @@ constexpr float half_same_side = 0.966f; // planes that differ from a third by n
 constexpr float grazing = 0.1f;          // cosine between ray and normal; below, the ray tells nothing
 constexpr int passes = 3, passes_without_rays = 2;
 
-PlaneFit fitList(const Neighborhoods& all, Index i)
+struct Update {
+  Index point;
+  Plane plane;
+};
+
+/// One pass over the points of a group.
+class GroupPass {
+public:
+  GroupPass(const PointSet& set, const Neighborhoods& all, const std::vector<Plane>& planes)
+      : set_(set), all_(all), planes_(planes)
+  {}
+  /// @param changed by position, whole leaves: planes that are new; no others can make a difference
+  std::vector<Update> run(const GroupLists& lists, const std::vector<char>& changed);
+
+private:
+  bool load(const GroupLists& lists, const std::vector<char>& changed);
+  bool anyChanged(const GroupLists& lists, Index i) const;
+  int choose(const GroupLists& lists, Index i) const;
+  int otherSide(const GroupLists& lists, Index i, const Plane& first) const;
+  Moments nearMoments(Index i, Index start);
+
+  const PointSet& set_;
+  const Neighborhoods& all_;
+  const std::vector<Plane>& planes_;
+  std::vector<Plane> near_; ///< planes of the leaves of the group
+  std::vector<char> near_changed_;
+  std::vector<float> offsets_[3];
+};
+
+/// @return whether any of the planes is new
+bool GroupPass::load(const GroupLists& lists, const std::vector<char>& changed)
 {
-  Moments moments;
-  const Eigen::Vector3f here = all.points.col(i);
-  for (const int* j = all.lists.first(i); j != all.lists.last(i); ++j)
-    moments.add(all.points.col(*j) - here);
-  return fitPlane(moments);
-}
-
-/// What the search for the best of the neighbouring fits reads, in half a cache line.
-struct alignas(32) Plane {
-  Eigen::Vector3f normal;
-  float height;          ///< of the plane over the point along the normal
-  Eigen::Vector3f point; ///< around which it was fitted
-  float variance;        ///< infinite where the fit is no plane
-
-  float squaredDistance(const Eigen::Vector3f& other) const
-  {
-    const float distance = normal.dot(other - point) - height;
-    return distance * distance;
+  near_.resize(8 * lists.leaves.size());
+  near_changed_.resize(near_.size());
+  std::uint64_t any = 0;
+  for (std::size_t l = 0; l < lists.leaves.size(); ++l) {
+    std::uint64_t eight;
+    std::memcpy(&eight, changed.data() + 8 * static_cast<std::size_t>(lists.leaves[l]), 8);
+    std::memcpy(near_changed_.data() + 8 * l, &eight, 8);
+    any |= eight;
   }
-  /// Small for a flat fit that holds the point `other`.
-  float score(const Eigen::Vector3f& other) const { return variance + 0.5f * squaredDistance(other); }
-};
-
-std::vector<Plane> toPlanes(const Neighborhoods& all, const std::vector<PlaneFit>& fits, int threads)
-{
-  std::vector<Plane> planes(fits.size());
-  parallelFor(all.lists.size(), threads, [&](Index i) {
-    const PlaneFit& fit = fits[i];
-    planes[i] = {fit.normal, fit.normal.dot(fit.center), all.points.col(i),
-                 fit.shape == PlaneFit::plane ? fit.variance : std::numeric_limits<float>::infinity()};
-  });
-  return planes;
-}
-
-struct Choice {
-  Index fit;   ///< the clearly flatter one that holds the point, or the point itself
-  bool crease; ///< some neighbours have another plane
-};
-
-/// @param ratio of variances that is clear where normals around tell of an edge too
-Choice flattestAround(const Neighborhoods& all, const std::vector<Plane>& planes, Index i, float ratio)
-{
-  const Plane& own = planes[i];
-  Choice choice = {i, false};
-  if (!std::isfinite(own.variance))
-    return choice;
-  float best_score = own.variance / ratio, closest = 1;
-  for (const int* j = all.lists.first(i); j != all.lists.last(i); ++j) {
-    closest = std::min(closest, std::abs(planes[*j].normal.dot(own.normal)));
-    if (!(planes[*j].variance < best_score))
-      continue;
-    const float score = planes[*j].score(own.point);
-    if (score < best_score) {
-      best_score = score;
-      choice.fit = *j;
-    }
+  for (std::size_t l = 0; any != 0 && l < lists.leaves.size(); ++l) {
+    const std::size_t from = 8 * static_cast<std::size_t>(lists.leaves[l]);
+    std::copy_n(planes_.data() + from, std::min<std::size_t>(8, planes_.size() - from), near_.data() + 8 * l);
   }
-  choice.crease = closest < half_same_side;
-  if (!choice.crease && best_score * clearly_flatter > own.variance)
-    choice.fit = i;
-  return choice;
+  return any != 0;
 }
 
-/// Plane of fit j as seen from point i: offset of its centre and normal towards the viewer.
-struct Side {
-  Eigen::Vector3f center, normal;
-  /// How far behind the point the ray meets the plane. @param ray unit, away from the viewer
-  float depth(const Eigen::Vector3f& ray) const { return normal.dot(center) / normal.dot(ray); }
-};
-
-Side sideOf(const PlaneFit& fit, const Eigen::Vector3f& offset, const Eigen::Vector3f& ray)
+bool GroupPass::anyChanged(const GroupLists& lists, Index i) const
 {
-  return {fit.center + offset, fit.normal.dot(ray) > 0 ? Eigen::Vector3f(-fit.normal) : fit.normal};
+  const std::uint16_t* list = lists.list(i);
+  return std::any_of(list, list + lists.count(i), [&](std::uint16_t code) { return near_changed_[code] != 0; });
 }
 
-/// The best fit around point i to the other side of a crease that is as flat and holds the point; -1 if there is none.
-Index otherSide(const Neighborhoods& all, const std::vector<Plane>& planes, Index i, Index first)
+/// Small for a flat plane that holds the point.
+float score(const Plane& plane, const Eigen::Vector3f& point)
 {
-  Index second = -1;
+  const float distance = plane.distance(point);
+  return plane.variance + 0.5f * distance * distance;
+}
+
+/// The code of the best plane to the other side of a crease that is as flat and holds the point; -1 if there is none.
+int GroupPass::otherSide(const GroupLists& lists, Index i, const Plane& first) const
+{
+  const Eigen::Vector3f here = all_.point(i);
+  int second = -1;
   float best_score = std::numeric_limits<float>::infinity();
-  for (const int* j = all.lists.first(i); j != all.lists.last(i); ++j) {
-    const Plane& plane = planes[*j];
-    const float score = plane.score(planes[i].point);
-    if (plane.variance <= as_flat * planes[first].variance && score < best_score &&
-        score - plane.variance <= 0.5f * holding * plane.variance &&
-        std::abs(plane.normal.dot(planes[first].normal)) < same_side) {
-      second = *j;
-      best_score = score;
+  for (std::size_t j = 0; j < lists.count(i); ++j) {
+    const std::uint16_t code = lists.list(i)[j];
+    const Plane& plane = near_[code];
+    if (!(plane.variance <= as_flat * first.variance) || std::abs(plane.normal.dot(first.normal)) >= same_side)
+      continue;
+    const float its_score = score(plane, here);
+    if (its_score < best_score && its_score - plane.variance <= 0.5f * holding * plane.variance) {
+      second = code;
+      best_score = its_score;
     }
   }
   return second;
 }
 
-/// Whether the ray sees `b` and not `a`, if they meet in a crease.
-/// @param ray unit, away from the viewer
-bool seesSecond(const Side& a, const Side& b, const Eigen::Vector3f& ray)
+Eigen::Vector3f towardsViewer(const Plane& plane, const Eigen::Vector3f& ray)
 {
-  const float a_over_b = b.normal.dot(a.center - b.center), b_over_a = a.normal.dot(b.center - a.center);
-  if (!(a_over_b * b_over_a > 0) || a.normal.dot(ray) > -grazing || b.normal.dot(ray) > -grazing)
-    return false; // neither hollow nor ridge
-  const bool hollow = a_over_b > 0;
-  return (b.depth(ray) < a.depth(ray)) == hollow;
+  return plane.normal.dot(ray) > 0 ? Eigen::Vector3f(-plane.normal) : plane.normal;
 }
 
-/// Fit to the neighbours of `i` and of `start`, weighted by a Gaussian of the distance to the plane of `start` of twice
-/// its standard deviation.
-PlaneFit fitNear(const Neighborhoods& all, const std::vector<PlaneFit>& fits, Index i, Index start)
+/// Whether the ray to `point` sees `b` and not `a`, if they meet in a crease.
+/// @param ray unit, away from the viewer
+bool seesSecond(const Plane& a, const Plane& b, const Eigen::Vector3f& point, const Eigen::Vector3f& ray)
 {
-  const Eigen::Vector3f here = all.points.col(i);
-  PlaneFit plane = fits[start];
-  plane.center += all.points.col(start) - here;
+  const Eigen::Vector3f a_normal = towardsViewer(a, ray), b_normal = towardsViewer(b, ray);
+  const float a_over_b = b_normal.dot(a.center - b.center), b_over_a = a_normal.dot(b.center - a.center);
+  const float a_facing = a_normal.dot(ray), b_facing = b_normal.dot(ray);
+  if (!(a_over_b * b_over_a > 0) || a_facing > -grazing || b_facing > -grazing)
+    return false; // neither hollow nor ridge
+  const bool hollow = a_over_b > 0;
+  const float a_depth = a_normal.dot(a.center - point) / a_facing, b_depth = b_normal.dot(b.center - point) / b_facing;
+  return (b_depth < a_depth) == hollow;
+}
+
+/// The code of the plane that the point lies on, or its own.
+int GroupPass::choose(const GroupLists& lists, Index i) const
+{
+  const int self = lists.codeOf(i);
+  const Plane& own = near_[static_cast<std::size_t>(self)];
+  if (!std::isfinite(own.variance) || lists.count(i) == 0)
+    return self;
+  const Eigen::Vector3f here = all_.point(i);
+  const BestPlane found =
+      planeKernels().best(near_.data()->normal.data(), lists.list(i), lists.count(i), own.normal.data(), here.data());
+  const bool crease = found.closest<half_same_side, rays = set_.viewpoints.cols()> 0;
+  const float ratio = rays && crease ? flatter : clearly_flatter;
+  const int best = found.score * ratio < own.variance ? lists.list(i)[found.which] : self;
+  const Eigen::Vector3f view = viewDirection(set_, all_.column(i), here);
+  if (!crease || !(view.squaredNorm() > 0))
+    return best;
+  const Plane& first = near_[static_cast<std::size_t>(best)];
+  const int other = otherSide(lists, i, first);
+  const bool seen = other >= 0 && seesSecond(first, near_[static_cast<std::size_t>(other)], here, -view.normalized());
+  return seen ? other : best;
+}
+
+/// Of the neighbours of `i` and of `start`, weighted by a Gaussian of the distance to the plane of `start` of twice its
+/// standard deviation.
+Moments GroupPass::nearMoments(Index i, Index start)
+{
+  const Eigen::Vector3f here = all_.point(i);
+  const Plane& plane = planes_[static_cast<std::size_t>(start)];
   const float scale = -0.125f / std::max(plane.variance, std::numeric_limits<float>::min());
-  Moments moments;
-  for (const Index list : {i, start})
-    for (const int* j = all.lists.first(list); j != all.lists.last(list); ++j) {
-      const Eigen::Vector3f offset = all.points.col(*j) - here;
-      const float distance = plane.distance(offset);
-      moments.add(offset, std::exp(scale * distance * distance));
+  std::size_t count = 0;
+  for (const Index point : {i, start}) {
+    const GroupLists& lists = all_.groupOf(point);
+    const std::uint16_t* list = lists.list(point);
+    const std::size_t end = count + lists.count(point);
+    for (auto& values : offsets_)
+      if (values.size() < end + 8)
+        values.resize(2 * end + 8);
+    for (; count < end; ++count) {
+      const Eigen::Vector3f offset = all_.point(lists.position(*list++)) - here;
+      for (int axis = 0; axis < 3; ++axis)
+        offsets_[axis][count] = offset[axis];
     }
-  const PlaneFit better = fitPlane(moments);
-  return better.shape == PlaneFit::plane ? better : plane;
+  }
+  const float row[4] = {plane.normal.x(), plane.normal.y(), plane.normal.z(), plane.normal.dot(plane.center - here)};
+  float sums[10];
+  planeKernels().weightedSums({offsets_[0].data(), offsets_[1].data(), offsets_[2].data(), count}, row, scale, sums);
+  Moments moments;
+  moments.weight = sums[0];
+  std::copy_n(sums + 1, 9, moments.sums);
+  return moments;
+}
+
+std::vector<Update> GroupPass::run(const GroupLists& lists, const std::vector<char>& changed)
+{
+  std::vector<Update> updates;
+  if (!load(lists, changed))
+    return updates;
+  PlaneBatch batch([&](Index i, const Plane& plane) { updates.push_back({i, plane}); });
+  std::vector<int> starts;
+  for (Index i = lists.begin; i < lists.end; ++i) {
+    const int best = anyChanged(lists, i) ? choose(lists, i) : lists.codeOf(i);
+    if (best == lists.codeOf(i))
+      continue;
+    starts.push_back(best);
+    batch.add(i, all_.point(i), nearMoments(i, lists.position(static_cast<std::uint16_t>(best))));
+  }
+  batch.finish();
+  for (std::size_t u = 0; u < updates.size(); ++u)
+    if (updates[u].plane.shape() != Plane::plane)
+      updates[u].plane = near_[static_cast<std::size_t>(starts[u])];
+  updates.shrink_to_fit();
+  return updates;
 }
 } // namespace
 
-std::vector<PlaneFit> fitLists(const Neighborhoods& all, int threads)
+void refitAtEdges(const PointSet& set, const Neighborhoods& all, std::vector<Plane>& planes, int threads)
 {
-  std::vector<PlaneFit> fits(static_cast<std::size_t>(all.lists.size()));
-  parallelFor(all.lists.size(), threads, [&](Index i) { fits[i] = fitList(all, i); });
-  return fits;
-}
-
-void refitAtEdges(const PointSet& set, const Neighborhoods& all, std::vector<PlaneFit>& fits, int threads)
-{
-  std::vector<char> changed(fits.size(), 1);
-  const bool rays = set.viewpoints.cols() > 0;
-  for (int pass = 0; pass < (rays ? passes : passes_without_rays); ++pass) {
-    const std::vector<char> changed_before(changed);
-    const std::vector<Plane> planes = toPlanes(all, fits, threads);
-    std::vector<PlaneFit> better(fits);
-    parallelFor(all.lists.size(), threads, [&](Index i) {
-      changed[i] = std::any_of(all.lists.first(i), all.lists.last(i), [&](int j) { return changed_before[j] != 0; });
-      if (!changed[i])
-        return;
-      auto [best, crease] = flattestAround(all, planes, i, rays ? flatter : clearly_flatter);
-      const Eigen::Vector3f view = viewDirection(set, all.columns[static_cast<std::size_t>(i)]);
-      const Index other = crease && view.squaredNorm() > 0 ? otherSide(all, planes, i, best) : -1;
-      if (other >= 0) {
-        const Eigen::Vector3f ray = -view.normalized(), here = planes[i].point;
-        if (seesSecond(sideOf(fits[best], planes[best].point - here, ray),
-                       sideOf(fits[other], planes[other].point - here, ray), ray))
-          best = other;
-      }
-      changed[i] = best != i;
-      if (best != i)
-        better[i] = fitNear(all, fits, i, best);
+  std::vector<char> changed((planes.size() + 7) / 8 * 8, 1);
+  const auto groups = static_cast<Index>(all.groups.size());
+  const int count = set.viewpoints.cols() > 0 ? passes : passes_without_rays;
+  for (int pass = 0; pass < count; ++pass) {
+    std::vector<std::vector<Update>> updates(all.groups.size());
+    parallelRanges(groups, threads, [&](Index begin, Index end) {
+      GroupPass work(set, all, planes);
+      for (Index g = begin; g < end; ++g)
+        updates[static_cast<std::size_t>(g)] = work.run(all.groups[static_cast<std::size_t>(g)], changed);
     });
-    fits.swap(better);
+    std::fill(changed.begin(), changed.end(), 0);
+    for (const auto& group : updates)
+      for (const Update& update : group) {
+        planes[static_cast<std::size_t>(update.point)] = update.plane;
+        changed[static_cast<std::size_t>(update.point)] = 1;
+      }
   }
 }
 } // namespace fresco

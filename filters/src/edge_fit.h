@@ -2,19 +2,7 @@
 #pragma once
 #include "plane_fit.h"
 #include <fresco/common/point_set.h>
-#include <fresco/filters/core/neighbors.h>
-#include <vector>
 namespace fresco {
-/// Points in an order good for loops, with their neighbours.
-struct Neighborhoods {
-  Points points;            ///< finite ones, or all of an image
-  std::vector<int> columns; ///< of the input
-  NeighborLists lists;      ///< each with the point itself
-};
-
-/// Least squares planes of the lists; centres are offsets from the point.
-std::vector<PlaneFit> fitLists(const Neighborhoods& all, int threads);
-
 /// Beside an edge a neighbourhood holds points of both sides and its plane is a mean of theirs. There the fit is
 /// replaced: of the planes of the neighbours, the flattest that holds the point is taken and fitted again to the
 /// neighbours of both that lie near it. Done three times (two where no viewpoint is known): the first time reaches the
@@ -24,5 +12,5 @@ std::vector<PlaneFit> fitLists(const Neighborhoods& all, int threads);
 /// along it only, and of two planes that meet in a crease the ray meets the nearer first where they form a hollow, the
 /// farther where they form a ridge.
 /// @param set what `all` was made of: viewpoints
-void refitAtEdges(const PointSet& set, const Neighborhoods& all, std::vector<PlaneFit>& fits, int threads);
+void refitAtEdges(const PointSet& set, const Neighborhoods& all, std::vector<Plane>& planes, int threads);
 } // namespace fresco

@@ -12,8 +12,9 @@
 namespace fresco {
 namespace {
 using Keys = std::vector<PointTree::Key>;
-constexpr Index group_leaves = 8;        // searched for at once; measured
-constexpr std::size_t most_leaves = 256; // around them; beyond, each point is searched for alone
+constexpr Index group_leaves = 8;         // searched for at once; measured
+constexpr std::size_t most_leaves = 2000; // around them; beyond, each point is searched for alone
+constexpr float reach_margin = 1.5f;      // how far to look for the k nearest / distance expected
 
 struct Ball {
   Index center; ///< position
@@ -25,13 +26,6 @@ struct ListLimits {
   int threads;
 };
 
-/// An upper bound of the squared distance from `to` to its k-th neighbour, from that of a point nearby.
-float boundFromNearby(const Eigen::Vector3f& from, float squared_distance, const Eigen::Vector3f& to)
-{
-  const float distance = (std::sqrt(squared_distance) + (to - from).norm()) * (1 + 1e-5f);
-  return distance * distance;
-}
-
 NeighborLists evenLists(Index n, Index k)
 {
   NeighborLists lists;
@@ -40,25 +34,6 @@ NeighborLists evenLists(Index n, Index k)
     lists.begin[i] = i * k;
   lists.index.resize(static_cast<std::size_t>(n * k));
   return lists;
-}
-
-/// The distance of the k-th neighbour of one point, and a little more, tells how far around its group to look.
-/// @param bound squared distance to the k-th neighbour of the point before the group; of its last one afterwards
-void nearestOfGroup(const PointTree& tree, NearGroup& group, float& bound, Keys& keys, NeighborLists& lists)
-{
-  const Index middle = (group.begin() + group.end()) / 2;
-  const int k = static_cast<int>(lists.count(middle));
-  if (group.begin() > 0)
-    bound = boundFromNearby(tree.point(group.begin() - 1), bound, tree.point(middle));
-  tree.nearestKeys(tree.point(middle), k, keys, bound);
-  const auto farthest = std::max_element(keys.begin(), keys.end());
-  group.gather(1.25f * std::sqrt(farthest == keys.end() ? 0.f : PointTree::squaredDistance(*farthest)), most_leaves);
-  bound = std::numeric_limits<float>::infinity();
-  for (Index i = group.begin(); i < group.end(); ++i) {
-    if (i > group.begin())
-      bound = boundFromNearby(tree.point(i - 1), bound, tree.point(i));
-    bound = group.nearest(i, k, bound, lists.index.data() + lists.begin[i]);
-  }
 }
 
 /// Lists found range by range (lists_of_range.index, and counts in lists_of_range.begin) joined to one.
@@ -176,11 +151,13 @@ NeighborLists nearestLists(const PointTree& tree, int k, int threads)
   const std::vector<Index> groups = tree.subtrees(group_leaves);
   parallelRanges(static_cast<Index>(groups.size()) - 1, threads, [&](Index begin, Index end) {
     NearGroup group(tree);
-    Keys keys;
-    float bound = std::numeric_limits<float>::infinity();
     for (Index g = begin; g < end; ++g) {
       group.enter(groups[g], groups[g + 1]);
-      nearestOfGroup(tree, group, bound, keys, lists);
+      group.gather(reach_margin * group.expectedReach(static_cast<int>(each)), most_leaves);
+      for (Index i = group.begin(); i < group.end(); ++i) {
+        group.nearest(i, static_cast<int>(each));
+        group.ordered(lists.index.data() + lists.begin[i]);
+      }
     }
   });
   return lists;

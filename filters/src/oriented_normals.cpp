@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "edge_fit.h"
-#include "near_groups.h"
+#include "first_fit.h"
 #include "view_direction.h"
 #include <algorithm>
 #include <cmath>
@@ -11,17 +11,13 @@
 #include <numeric>
 namespace fresco {
 namespace {
-constexpr int fewest = 6;                  // neighbours within a radius; below, the nearest are taken
-constexpr int most = 256;                  // neighbours within a radius; beyond, evenly chosen
-constexpr Index group_leaves = 8;          // searched for at once
-constexpr std::size_t most_leaves = 65536; // around them; beyond, each point is searched for alone
-constexpr Index spread = 2;        // times the neighbours of a point are kept in dense parts to choose them from
-constexpr float least_width = 6.f; // radius of a neighbourhood / deviation of the points from the surface
-
+constexpr int fewest = 6; // neighbours within a radius; below, the nearest are taken
+constexpr int most = 256; // neighbours within a radius; beyond, evenly chosen
 void validate(const PointSet& set, const NormalOptions& options)
 {
   validatePointSet(set);
-  require(options.k >= 3, "normals: k ", options.k, " is below 3");
+  require(options.k >= 3 && options.k <= Neighborhoods::most_neighbors, "normals: k ", options.k, " is not in 3..",
+          Neighborhoods::most_neighbors);
   require(options.radius >= 0 && std::isfinite(options.radius), "normals: radius ", options.radius,
           " is negative or not finite");
   require(options.image_width == 0 || (options.image_width > 0 && set.size() % options.image_width == 0),
@@ -40,92 +36,38 @@ NeighborLists listsWithin(const PointTree& tree, const NormalOptions& options)
   return radiusLists(tree, radii, most, options.threads);
 }
 
-/// Deviation of the points from their surfaces: the median of every 16th plane fit to `lists`.
-float surfaceNoise(const PointTree& tree, const NeighborLists& lists, int threads)
+/// Lists of an image, in the order of its pixels.
+void findInImage(const PointSet& set, const NormalOptions& options, Neighborhoods& all)
 {
-  std::vector<float> deviations(static_cast<std::size_t>((tree.size() + 15) / 16));
-  parallelFor(static_cast<Index>(deviations.size()), threads, [&](Index s) {
-    Moments moments;
-    for (const int* j = lists.first(16 * s); j != lists.last(16 * s); ++j)
-      moments.add(tree.point(*j) - tree.point(16 * s));
-    const auto count = static_cast<float>(lists.count(16 * s));
-    deviations[s] = std::sqrt(fitPlane(moments).variance * count / std::max(1.f, count - 3));
-  });
-  const auto middle = deviations.begin() + static_cast<std::ptrdiff_t>(deviations.size() / 2);
-  std::nth_element(deviations.begin(), middle, deviations.end());
-  return deviations.empty() ? 0.f : *middle;
+  all.image_columns.resize(static_cast<std::size_t>(set.size()));
+  std::iota(all.image_columns.begin(), all.image_columns.end(), 0);
+  all.image_coordinates.resize(static_cast<std::size_t>((set.size() + 7) / 8 * 24));
+  for (Index i = 0; i < set.size(); ++i)
+    for (Index axis = 0; axis < 3; ++axis)
+      all.image_coordinates[static_cast<std::size_t>(i / 8 * 24 + 8 * axis + i % 8)] = set.points(axis, i);
+  encodeLists(imageLists(set.points, options.image_width, options.k, options.threads), options.threads, all);
 }
 
-/// Writes as many points as list i has, spread evenly, from as far as `radius`.
-void widenList(const PointTree& tree, float radius, NearGroup& group, NeighborLists& lists, Index i)
-{
-  thread_local std::vector<PointTree::Key> keys;
-  int* list = lists.index.data() + lists.begin[i];
-  const auto count = static_cast<std::size_t>(lists.count(i));
-  const std::size_t found = group.within(i, radius);
-  const bool enough = found >= count;
-  if (!enough)
-    tree.withinKeys(tree.point(i), radius, keys, false);
-  const double step = static_cast<double>(enough ? found : keys.size()) / static_cast<double>(count);
-  for (std::size_t j = 0; step >= 1 && j < count; ++j) {
-    const auto at = static_cast<std::size_t>((static_cast<double>(j) + 0.5) * step);
-    list[j] = enough ? group.positions()[at] : PointTree::position(keys[at]);
-  }
-}
-
-/// Neighbourhoods that noise makes as thick as wide have no normal: where the scan is so dense, the same number of
-/// neighbours is taken, spread evenly, from as far as `radius`.
-void widenLists(const PointTree& tree, float radius, NeighborLists& lists, int threads)
-{
-  const auto narrow = [&](Index i) { return (tree.point(*(lists.last(i) - 1)) - tree.point(i)).norm() < radius; };
-  const std::vector<Index> groups = tree.subtrees(group_leaves);
-  parallelRanges(static_cast<Index>(groups.size()) - 1, threads, [&](Index begin, Index end) {
-    NearGroup group(tree);
-    for (Index g = begin; g < end; ++g) {
-      group.enter(groups[g], groups[g + 1]);
-      std::vector<Index> members;
-      for (Index i = group.begin(); i < group.end(); ++i)
-        if (narrow(i))
-          members.push_back(i);
-      if (members.empty())
-        continue;
-      group.gather(radius, most_leaves);
-      const auto wanted = static_cast<std::size_t>(spread * lists.count(members.front()));
-      const std::size_t found = group.within(members[members.size() / 2], radius);
-      if (found >= 2 * wanted)
-        group.thin(found / wanted);
-      for (const Index i : members)
-        widenList(tree, radius, group, lists, i);
-    }
-  });
-}
-
-NeighborLists listsByCount(const PointTree& tree, const NormalOptions& options)
-{
-  NeighborLists lists = nearestLists(tree, options.k, options.threads);
-  if (tree.size() > options.k)
-    widenLists(tree, least_width * surfaceNoise(tree, lists, options.threads), lists, options.threads);
-  return lists;
-}
-
-Neighborhoods findNeighborhoods(const PointSet& set, const NormalOptions& options)
+Fits findAndFit(const PointSet& set, const NormalOptions& options, Neighborhoods& all)
 {
   if (options.image_width > 1 && options.radius == 0) {
-    std::vector<int> columns(static_cast<std::size_t>(set.size()));
-    std::iota(columns.begin(), columns.end(), 0);
-    return {set.points, std::move(columns), imageLists(set.points, options.image_width, options.k, options.threads)};
+    findInImage(set, options, all);
+    return fitLists(all, options.threads);
   }
-  const PointTree tree(set.points, options.threads);
-  return {tree.points(), tree.columns(), options.radius > 0 ? listsWithin(tree, options) : listsByCount(tree, options)};
+  all.tree = std::make_unique<PointTree>(set.points, options.threads);
+  if (options.radius == 0)
+    return fitNearest(all, options.k, options.threads);
+  encodeLists(listsWithin(*all.tree, options), options.threads, all);
+  return fitLists(all, options.threads);
 }
 
 /// Unit normal that `fit` and the direction `view` leave, oriented to `view`; NaN if they leave none.
-Eigen::Vector3f normalOf(const PlaneFit& fit, const Eigen::Vector3f& view)
+Eigen::Vector3f normalOf(const Plane& fit, const Eigen::Vector3f& view)
 {
   Eigen::Vector3f normal = fit.normal;
-  if (fit.shape == PlaneFit::line)
+  if (fit.shape() == Plane::line)
     normal = view - fit.normal.dot(view) * fit.normal;
-  else if (fit.shape == PlaneFit::point)
+  else if (fit.shape() == Plane::point)
     normal = view;
   const float length = normal.norm();
   if (!(length > 0) || !std::isfinite(length))
@@ -133,48 +75,62 @@ Eigen::Vector3f normalOf(const PlaneFit& fit, const Eigen::Vector3f& view)
   return (normal.dot(view) < 0 ? -1 : 1) / length * normal;
 }
 
-/// Points per area of each neighbourhood, any common factor.
-Eigen::VectorXf densities(const Neighborhoods& all, int threads)
+/// 0..1: few neighbours, or farther ones than the neighbours themselves have, count little.
+/// @param densities points per area of each neighbourhood, any common factor
+float confidenceOf(const GroupLists& lists, const std::vector<float>& densities, Index i)
 {
-  Eigen::VectorXf result(all.lists.size());
-  parallelFor(result.size(), threads, [&](Index i) {
-    float reach = 0;
-    for (const int* j = all.lists.first(i); j != all.lists.last(i); ++j)
-      reach = std::max(reach, (all.points.col(*j) - all.points.col(i)).squaredNorm());
-    result[i] = reach > 0 ? static_cast<float>(all.lists.count(i)) / reach : 0.f;
+  const auto count = static_cast<float>(lists.count(i));
+  float around = 0;
+  for (std::size_t j = 0; j < lists.count(i); ++j)
+    around += densities[static_cast<std::size_t>(lists.position(lists.list(i)[j]))] / count;
+  const float company = std::clamp((count - 2) / (fewest - 2), 0.f, 1.f);
+  return around > 0 ? company * std::min(1.f, densities[static_cast<std::size_t>(i)] / around) : 0.f;
+}
+
+/// By position. @param reaches squared, become densities
+std::vector<float> confidences(const Neighborhoods& all, std::vector<float>& reaches, int threads)
+{
+  std::vector<float> result(reaches.size());
+  const auto forGroups = [&](const auto& use) {
+    parallelFor(static_cast<Index>(all.groups.size()), threads, [&](Index g) {
+      const GroupLists& lists = all.groups[static_cast<std::size_t>(g)];
+      for (Index i = lists.begin; i < lists.end; ++i)
+        use(lists, i);
+    });
+  };
+  forGroups([&](const GroupLists& lists, Index i) {
+    float& reach = reaches[static_cast<std::size_t>(i)];
+    reach = reach > 0 ? static_cast<float>(lists.count(i)) / reach : 0.f;
   });
+  forGroups(
+      [&](const GroupLists& lists, Index i) { result[static_cast<std::size_t>(i)] = confidenceOf(lists, reaches, i); });
   return result;
 }
 
-/// 0..1: few neighbours, or farther ones than the neighbours themselves have, count little; so does a grazing view.
-float confidenceOf(const Neighborhoods& all, const Eigen::VectorXf& density, Index i)
+NormalField toField(const PointSet& set, Neighborhoods& all, Fits& fits, int threads)
 {
-  const auto count = static_cast<float>(all.lists.count(i));
-  float around = 0;
-  for (const int* j = all.lists.first(i); j != all.lists.last(i); ++j)
-    around += density[*j] / count;
-  const float company = std::clamp((count - 2) / (fewest - 2), 0.f, 1.f);
-  return around > 0 ? company * std::min(1.f, density[i] / around) : 0.f;
-}
-
-NormalField toField(const PointSet& set, const Neighborhoods& all, const std::vector<PlaneFit>& fits, int threads)
-{
+  const std::vector<float> shares = confidences(all, fits.reaches, threads);
+  std::vector<char> empty(shares.size());
+  for (const GroupLists& lists : all.groups)
+    for (Index i = lists.begin; i < lists.end; ++i)
+      empty[static_cast<std::size_t>(i)] = lists.count(i) == 0;
+  all.groups = {}; // frees memory
   NormalField field;
   field.normals = Points::Constant(3, set.size(), NAN);
   field.curvatures = Eigen::VectorXf::Constant(set.size(), NAN);
   field.confidences = Eigen::VectorXf::Zero(set.size());
-  const Eigen::VectorXf density = densities(all, threads);
-  parallelFor(all.lists.size(), threads, [&](Index i) {
-    const Index column = all.columns[i];
-    if (all.lists.count(i) == 0)
+  parallelFor(static_cast<Index>(fits.planes.size()), threads, [&](Index i) {
+    const Index column = all.column(i);
+    if (empty[static_cast<std::size_t>(i)])
       return;
-    const Eigen::Vector3f view = viewDirection(set, column), normal = normalOf(fits[i], view);
+    const Plane& fit = fits.planes[static_cast<std::size_t>(i)];
+    const Eigen::Vector3f view = viewDirection(set, column, all.point(i)), normal = normalOf(fit, view);
     field.normals.col(column) = normal;
-    field.curvatures[column] = fits[i].curvature;
-    if (fits[i].shape == PlaneFit::plane) {
+    field.curvatures[column] = std::max(0.f, fit.curvature);
+    if (fit.shape() == Plane::plane) {
       const float length = view.norm();
       const float incidence = length > 0 ? std::abs(normal.dot(view)) / length : 1.f;
-      field.confidences[column] = confidenceOf(all, density, i) * incidence;
+      field.confidences[column] = shares[static_cast<std::size_t>(i)] * incidence;
     }
   });
   return field;
@@ -185,11 +141,11 @@ NormalField estimateNormals(const PointSet& set, const NormalOptions& options, c
 {
   validate(set, options);
   report(progress, "find neighbours", 0.0);
-  const Neighborhoods all = findNeighborhoods(set, options);
+  Neighborhoods all;
+  Fits fits = findAndFit(set, options, all);
   report(progress, "fit planes", 0.6);
-  std::vector<PlaneFit> fits = fitLists(all, options.threads);
   if (options.edges)
-    refitAtEdges(set, all, fits, options.threads);
+    refitAtEdges(set, all, fits.planes, options.threads);
   report(progress, "orient normals", 0.9);
   NormalField field = toField(set, all, fits, options.threads);
   if (set.viewpoints.cols() == 0)

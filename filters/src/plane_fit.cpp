@@ -2,6 +2,7 @@
 #include "plane_fit.h"
 #include <algorithm>
 #include <cmath>
+#include <limits>
 namespace fresco {
 namespace {
 /// Eigenvalues of a symmetric matrix, ascending; Smith 1961, "Eigenvalues of a symmetric 3 x 3 matrix".
@@ -30,26 +31,28 @@ Eigen::Vector3d eigenvector(const Eigen::Matrix3d& A, double value)
 }
 } // namespace
 
-PlaneFit fitPlane(const Moments& m)
+Plane fitPlane(const Moments& m, const Eigen::Vector3f& origin)
 {
-  PlaneFit fit;
+  Plane fit;
+  fit.variance = std::numeric_limits<float>::infinity();
+  fit.center = origin;
   if (!(m.weight > 0))
     return fit;
-  const Eigen::Vector3d mean = m.first.cast<double>() / m.weight;
-  fit.center = mean.cast<float>();
+  const Eigen::Vector3d mean = Eigen::Vector3f(m.sums[0], m.sums[1], m.sums[2]).cast<double>() / m.weight;
   Eigen::Matrix3d A;
-  A << m.xx, m.xy, m.xz, m.xy, m.yy, m.yz, m.xz, m.yz, m.zz;
+  A << m.sums[3], m.sums[4], m.sums[5], m.sums[4], m.sums[6], m.sums[7], m.sums[5], m.sums[7], m.sums[8];
   A = A / m.weight - mean * mean.transpose();
   const double trace = A.trace();
   if (!(trace > 0) || !std::isfinite(trace))
     return fit;
+  fit.center += mean.cast<float>();
   A /= trace; // away from underflow
   const Eigen::Vector3d values = eigenvalues(A);
-  const double rounding = 1e-6; // of sums in single precision
-  fit.shape = values[1] > rounding ? PlaneFit::plane : PlaneFit::line;
-  fit.normal = eigenvector(A, values[fit.shape == PlaneFit::plane ? 0 : 2]).cast<float>();
-  fit.curvature = static_cast<float>(std::max(0.0, values[0]));
-  fit.variance = fit.curvature * static_cast<float>(trace);
+  const bool plane = values[1] > rounding_share;
+  fit.normal = eigenvector(A, values[plane ? 0 : 2]).cast<float>();
+  fit.curvature = plane ? static_cast<float>(std::max(0.0, values[0])) : -1.f;
+  if (plane)
+    fit.variance = static_cast<float>(std::max(values[0], rounding_share) * trace);
   return fit;
 }
 } // namespace fresco

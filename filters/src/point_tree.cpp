@@ -1,25 +1,46 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "tree_items.h"
 #include <algorithm>
 #include <cmath>
 #include <fresco/common/parallel.h>
 #include <fresco/common/require.h>
 #include <fresco/filters/core/neighbors.h>
 namespace fresco {
-struct PointTree::Item {
-  float x[3];
-  int column;
-};
-
 /// Leaves begin .. end - 1, to be cut in two by nodes_[node].
 struct PointTree::Part {
   Index node, begin, end;
   Index middle() const { return begin + (end - begin + 1) / 2; }
 };
 
+/// The box around points. The fourth of each number is that of no axis.
+struct PointTree::Box {
+  Eigen::Array4f low, high;
+  Box(const TreeItem* begin, const TreeItem* end)
+  {
+    using Item = Eigen::Map<const Eigen::Array4f, Eigen::Aligned16>;
+    low = high = Item(begin->x);
+    for (const TreeItem* item = begin; item != end; ++item) {
+      low = low.min(Item(item->x));
+      high = high.max(Item(item->x));
+    }
+  }
+  int longest() const
+  {
+    int axis = 0;
+    (high - low).head<3>().maxCoeff(&axis);
+    return axis;
+  }
+};
+
+struct PointTree::OpenPart {
+  Part part;
+  Box box;
+};
+
 PointTree::PointTree(const Points& points, int threads)
 {
   require(points.cols() < std::numeric_limits<int>::max(), "neighbour search: ", points.cols(), " points are too many");
-  std::vector<Item> items;
+  std::vector<TreeItem> items;
   items.reserve(static_cast<std::size_t>(points.cols()));
   for (Index i = 0; i < points.cols(); ++i)
     if (points.col(i).allFinite())
@@ -37,13 +58,13 @@ PointTree::PointTree(const Points& points, int threads)
 }
 
 /// Cuts level by level in parallel until there are parts enough, then each part to the end.
-void PointTree::build(std::vector<Item>& items, int threads)
+void PointTree::build(std::vector<TreeItem>& items, int threads)
 {
-  std::vector<Part> parts;
+  std::vector<OpenPart> parts;
   if (leaves_ > 1)
-    parts.push_back({0, 0, leaves_});
+    parts.push_back({{0, 0, leaves_}, Box(items.data(), items.data() + items.size())});
   for (int level = 0; level < 7 && !parts.empty(); ++level) {
-    std::vector<std::vector<Part>> halves(parts.size());
+    std::vector<std::vector<OpenPart>> halves(parts.size());
     parallelFor(
         static_cast<Index>(parts.size()), threads, [&](Index p) { split(items, parts[p], halves[p]); }, 1);
     parts.clear();
@@ -53,9 +74,9 @@ void PointTree::build(std::vector<Item>& items, int threads)
   parallelFor(
       static_cast<Index>(parts.size()), threads,
       [&](Index p) {
-        std::vector<Part> open = {parts[p]};
+        std::vector<OpenPart> open = {parts[p]};
         while (!open.empty()) {
-          const Part part = open.back();
+          const OpenPart part = open.back();
           open.pop_back();
           split(items, part, open);
         }
@@ -63,29 +84,20 @@ void PointTree::build(std::vector<Item>& items, int threads)
       1);
 }
 
-void PointTree::split(std::vector<Item>& items, const Part& part, std::vector<Part>& parts)
+void PointTree::split(std::vector<TreeItem>& items, const OpenPart& open, std::vector<OpenPart>& parts)
 {
-  const auto begin = items.begin() + part.begin * leaf_size, middle = items.begin() + part.middle() * leaf_size;
-  const auto end = items.begin() + std::min<Index>(part.end * leaf_size, static_cast<Index>(items.size()));
-  float low[3], high[3];
-  for (int axis = 0; axis < 3; ++axis)
-    low[axis] = high[axis] = begin->x[axis];
-  for (auto item = begin; item != end; ++item)
-    for (int axis = 0; axis < 3; ++axis) {
-      low[axis] = std::min(low[axis], item->x[axis]);
-      high[axis] = std::max(high[axis], item->x[axis]);
-    }
-  int axis = 0;
-  for (int other = 1; other < 3; ++other)
-    if (high[other] - low[other] > high[axis] - low[axis])
-      axis = other;
-  const auto less = [axis](const Item& a, const Item& b) { return a.x[axis] < b.x[axis]; };
-  std::nth_element(begin, middle, end, less);
-  nodes_[part.node] = {std::max_element(begin, middle, less)->x[axis], middle->x[axis], axis};
+  const Part& part = open.part;
+  TreeItem* const begin = items.data() + part.begin * leaf_size;
+  TreeItem* const middle = items.data() + part.middle() * leaf_size;
+  TreeItem* const end = items.data() + std::min<Index>(part.end * leaf_size, static_cast<Index>(items.size()));
+  const int axis = open.box.longest();
+  selectMiddle(begin, middle, end, axis);
+  const Box left(begin, middle), right(middle, end);
+  nodes_[part.node] = {left.high[axis], right.low[axis], axis};
   if (part.middle() - part.begin > 1)
-    parts.push_back({part.node + 1, part.begin, part.middle()});
+    parts.push_back({{part.node + 1, part.begin, part.middle()}, left});
   if (part.end - part.middle() > 1)
-    parts.push_back({part.node + part.middle() - part.begin, part.middle(), part.end});
+    parts.push_back({{part.node + part.middle() - part.begin, part.middle(), part.end}, right});
 }
 
 Points PointTree::points() const

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "../../filters/src/compact_lists.h"
-#include "../../filters/src/near_kernels.h"
 #include "clouds.h"
 #include <algorithm>
 #include <fresco/filters/core/local_sampling.h>
@@ -201,38 +200,6 @@ TEST(PointTree, CompactListsHoldTheSame)
         }
         EXPECT_EQ(i, tree.size());
       }
-  }
-}
-
-TEST(NearKernels, TheFastOnesGiveTheSameBits)
-{
-  const NearKernels *fast = avx2NearKernels(), &slow = portableNearKernels();
-  if (!fast)
-    GTEST_SKIP() << "no AVX2";
-  const PointTree tree(unevenPoints(1001, 6));
-  std::vector<int> leaves(static_cast<std::size_t>(tree.leafCount()));
-  std::iota(leaves.begin(), leaves.end(), 0);
-  const std::size_t room = 8 * leaves.size() + 8;
-  std::vector<float> squared(room), same_squared(room);
-  std::vector<int> positions(room), same_positions(room), ranks(room), same_ranks(room);
-  for (const float bound : {0.f, 1e-4f, 0.01f, 0.3f, 100.f, std::numeric_limits<float>::infinity()}) {
-    const Eigen::Vector3f query = tree.point(500);
-    const auto run = [&](const NearKernels& kernels, std::vector<float>& d, std::vector<int>& p, std::vector<int>& r) {
-      const std::size_t count =
-          kernels.closer(tree.leafCoordinates(), leaves.data(), leaves.size(), query.data(), bound, d.data(), p.data());
-      kernels.rank(d.data(), count, r.data());
-      d.resize(count), p.resize(count), r.resize(count);
-      return count;
-    };
-    const std::size_t count = run(*fast, squared, positions, ranks);
-    EXPECT_EQ(count, run(slow, same_squared, same_positions, same_ranks));
-    EXPECT_EQ(squared, same_squared);
-    EXPECT_EQ(positions, same_positions);
-    EXPECT_EQ(ranks, same_ranks);
-    for (std::size_t i = 0; i < count; i += 17)
-      EXPECT_EQ(ranks[i], std::count_if(squared.begin(), squared.end(), [&](float d) { return d < squared[i]; }));
-    squared.resize(room), same_squared.resize(room), positions.resize(room), same_positions.resize(room);
-    ranks.resize(room), same_ranks.resize(room);
   }
 }
 

@@ -6,6 +6,7 @@
 #include <limits>
 #include <vector>
 namespace fresco {
+struct TreeItem;
 struct Neighbor {
   int index;              ///< column of the point, -1 = none
   float squared_distance; ///< length^2
@@ -82,10 +83,11 @@ private:
     float low, high; ///< the left half ends at `low`, the right half begins at `high`
     int axis;
   };
-  struct Item;
   struct Part;
-  void build(std::vector<Item>& items, int threads);
-  void split(std::vector<Item>& items, const Part& part, std::vector<Part>& parts);
+  struct Box;
+  struct OpenPart;
+  void build(std::vector<TreeItem>& items, int threads);
+  void split(std::vector<TreeItem>& items, const OpenPart& open, std::vector<OpenPart>& parts);
   template <typename Collector>
   void search(const Eigen::Vector3f& query, Collector& collector) const;
 

@@ -4,8 +4,8 @@
 #include <fresco/common/progress.h>
 namespace fresco {
 struct NormalOptions {
-  int k = 16; ///< neighbours of the plane fit, the point included, >= 3; where `radius` is 0: the nearest, or, where
-              ///< they lie closer together than the noise allows, as many from farther off
+  int k = 16; ///< neighbours of the plane fit, the point included, 3..1000; where `radius` is 0: the nearest, or, where
+              ///< they lie closer together than the noise allows, at least as many from farther off
   float radius = 0;      ///< length, >= 0; > 0: neighbours within it, but at least the 6 nearest
   bool edges = true;     ///< fit beside an edge to the side that the point lies on
   Index image_width = 0; ///< > 0: the points are an image, row by row, and `k` neighbours come from around the pixel
