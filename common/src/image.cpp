@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "png_writer.h"
 #include "texture_io_image.h"
 #include <fresco/common/file.h>
 #include <fresco/common/image.h>
@@ -40,12 +41,16 @@ cv::Mat decode(const std::string& path, int flags)
   return image;
 }
 
-cv::Mat toOpenCv(const Image& image)
+void validate(const Image& image)
 {
   require(image.width > 0 && image.height > 0 && (image.channels == 1 || image.channels == 3 || image.channels == 4) &&
               image.data.size() == static_cast<std::size_t>(image.width) * image.height * image.channels,
           "image: ", image.width, "x", image.height, " with ", image.channels, " channels and ", image.data.size(),
           " bytes");
+}
+
+cv::Mat toOpenCv(const Image& image)
+{
   const cv::Mat view(image.height, image.width, CV_8UC(image.channels), const_cast<std::uint8_t*>(image.data.data()));
   if (image.channels == 1)
     return view;
@@ -81,10 +86,11 @@ std::vector<std::uint8_t> encodeImage(const Image& image, const std::string& ext
   require(quality >= 0 && quality <= 100, "image: quality ", quality, " is not in 0..100");
   require(extension == ".png" || extension == ".jpg" || extension == ".jpeg", "image: '", extension,
           "' is not .png, .jpg or .jpeg");
+  validate(image);
+  if (extension == ".png")
+    return detail::encodePng(image);
   std::vector<std::uint8_t> bytes;
-  const std::vector<int> settings = extension == ".png" ? std::vector<int>{cv::IMWRITE_PNG_COMPRESSION, 4}
-                                                        : std::vector<int>{cv::IMWRITE_JPEG_QUALITY, quality};
-  cv::imencode(extension, toOpenCv(image), bytes, settings);
+  cv::imencode(extension, toOpenCv(image), bytes, {cv::IMWRITE_JPEG_QUALITY, quality});
   return bytes;
 }
 

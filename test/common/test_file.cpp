@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <fresco/common/file.h>
 #include <fresco/common/image.h>
+#include <fresco/common/parallel.h>
 #include <fresco/common/poses.h>
 #include <fresco/common/progress.h>
 #include <fresco/common/unfinished_files.h>
@@ -152,6 +153,27 @@ TEST(Images, PngRoundTripIsExact)
     for (int c = 0; c < 3; ++c)
       EXPECT_EQ(back.pixel(36, 20)[c], image.pixel(36, 20)[channels == 1 ? 0 : c]);
   }
+}
+
+TEST(Images, LargePngIsExactAndDoesNotDependOnThreads)
+{
+  Image image(700, 1900, 3); // several bands; smooth, rough and constant parts
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x)
+      for (int c = 0; c < 3; ++c)
+        image.pixel(x, y)[c] = static_cast<std::uint8_t>(y < 600    ? x / 3 + y / 2 + c
+                                                         : y < 1200 ? (x * 7919 + y * 104729 + c * 31) >> 3
+                                                                    : 128);
+  const std::string folder = test::scratchFolder();
+  setDefaultThreads(1);
+  const std::vector<std::uint8_t> one = encodeImage(image, ".png");
+  setDefaultThreads(4);
+  const std::vector<std::uint8_t> four = encodeImage(image, ".png");
+  setDefaultThreads(0);
+  EXPECT_EQ(one, four);
+  EXPECT_LT(one.size(), image.data.size() * 3 / 4);
+  put(folder + "/a.png", std::string(one.begin(), one.end()));
+  EXPECT_EQ(readImage(folder + "/a.png").data, image.data);
 }
 
 TEST(Images, CutAnywhereIsAnError)

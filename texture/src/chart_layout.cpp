@@ -31,27 +31,25 @@ struct Extent {
   Eigen::Vector2d size() const { return high - low; }
 };
 
-Extent extentOf(const PatchMesh& patches, const Chart& chart, const std::vector<int>& first)
+Extent extentOf(const std::vector<Eigen::Vector2d>& points, const Eigen::Matrix2d& T)
 {
   Extent box{Eigen::Vector2d::Constant(1e300), Eigen::Vector2d::Constant(-1e300)};
-  for (const int face : chart.faces)
-    for (int i = first[face]; i < first[face + 1]; ++i)
-      for (int k = 0; k < 3; ++k) {
-        const Eigen::Vector2d p = chart.T_texel * patches.vertices.col(patches.faces(k, i)).cast<double>();
-        box.low = box.low.cwiseMin(p);
-        box.high = box.high.cwiseMax(p);
-      }
+  for (const Eigen::Vector2d& point : points) {
+    const Eigen::Vector2d p = T * point;
+    box.low = box.low.cwiseMin(p);
+    box.high = box.high.cwiseMax(p);
+  }
   return box;
 }
 
-/// Frame of the plane across `axis`, turned by `angle`. Its second row points down as the rows of an image do, so that
-/// the texture is not mirrored.
-Eigen::Matrix<double, 2, 3> frameAcross(const Eigen::Vector3f& axis, double angle)
+/// Frame of the plane across `axis`. Its second row points down as the rows of an image do, so that the texture is not
+/// mirrored.
+Eigen::Matrix<double, 2, 3> frameAcross(const Eigen::Vector3f& axis)
 {
-  const Eigen::Vector3d n = axis.cast<double>(), a = n.unitOrthogonal(), b = a.cross(n);
+  const Eigen::Vector3d n = axis.cast<double>(), a = n.unitOrthogonal();
   Eigen::Matrix<double, 2, 3> T;
-  T.row(0) = std::cos(angle) * a + std::sin(angle) * b;
-  T.row(1) = std::cos(angle) * b - std::sin(angle) * a;
+  T.row(0) = a;
+  T.row(1) = a.cross(n);
   return T;
 }
 
@@ -88,46 +86,68 @@ private:
                                       options_.most_texels / 1e6, " are made: choose larger texels"));
   }
 
-  std::vector<Chart> cutToSize(std::vector<Chart> charts)
+  std::vector<Chart> cutToSize(std::vector<Chart> charts) const
   {
-    std::vector<Chart> done;
-    while (!charts.empty()) {
-      Chart chart = std::move(charts.back());
-      charts.pop_back();
-      const Extent box = place(chart);
-      if (std::max(chart.width, chart.height) > options_.largest && chart.faces.size() > 1) {
-        split(chart, box, charts);
+    std::vector<std::vector<Chart>> parts(charts.size());
+    parallelFor(
+        static_cast<Index>(charts.size()), options_.threads,
+        [&](Index c) { cutToSize(std::move(charts[c]), parts[c]); }, 1);
+    std::vector<Chart> out;
+    for (std::vector<Chart>& list : parts)
+      std::move(list.begin(), list.end(), std::back_inserter(out));
+    return out;
+  }
+
+  /// Appends the chart, or the parts that are small enough.
+  void cutToSize(Chart chart, std::vector<Chart>& out) const
+  {
+    std::vector<Chart> open;
+    open.push_back(std::move(chart));
+    while (!open.empty()) {
+      Chart next = std::move(open.back());
+      open.pop_back();
+      const Extent box = place(next);
+      if (std::max(next.width, next.height) > options_.largest && next.faces.size() > 1) {
+        split(next, box, open);
         continue;
       }
-      if (std::max(chart.width, chart.height) > options_.largest)
-        shrink(chart, box);
-      done.push_back(std::move(chart));
+      if (std::max(next.width, next.height) > options_.largest)
+        shrink(next, box);
+      out.push_back(std::move(next));
     }
-    std::reverse(done.begin(), done.end());
-    return done;
   }
 
   /// The smallest rectangle among those turned by steps of 3 degrees.
   Extent place(Chart& chart) const
   {
     const double density = areaQuantile(graph_, chart.faces, density_, density_share);
+    const Eigen::Matrix<double, 2, 3> frame = density * frameAcross(chart.axis);
+    const std::vector<Eigen::Vector2d> points = cornersIn(frame, chart);
     constexpr int steps = 30;
     double least = 1e300;
     Extent box{};
-    Eigen::Matrix<double, 2, 3> best = Eigen::Matrix<double, 2, 3>::Zero();
     for (int i = 0; i < steps; ++i) {
-      chart.T_texel = density * frameAcross(chart.axis, i * 1.5707963267948966 / steps);
-      const Extent turned = extentOf(patches_, chart, first_);
+      const Eigen::Matrix2d turn = Eigen::Rotation2Dd(-i * 1.5707963267948966 / steps).toRotationMatrix();
+      const Extent turned = extentOf(points, turn);
       const double area = (turned.size().array() + 2.0 * options_.border).prod();
       if (area < least * (1 - 1e-9)) {
         least = area;
         box = turned;
-        best = chart.T_texel;
+        chart.T_texel = turn * frame;
       }
     }
-    chart.T_texel = best;
     fit(chart, box);
     return box;
+  }
+
+  std::vector<Eigen::Vector2d> cornersIn(const Eigen::Matrix<double, 2, 3>& frame, const Chart& chart) const
+  {
+    std::vector<Eigen::Vector2d> out;
+    for (const int face : chart.faces)
+      for (int i = first_[face]; i < first_[face + 1]; ++i)
+        for (int k = 0; k < 3; ++k)
+          out.emplace_back(frame * patches_.vertices.col(patches_.faces(k, i)).cast<double>());
+    return out;
   }
 
   void fit(Chart& chart, const Extent& box) const

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "chart_raster.h"
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -19,17 +20,24 @@ Box boxOf(const Eigen::Matrix<double, 2, 3>& c, const Chart& chart)
           std::min(chart.height - 1, static_cast<int>(std::floor(c.row(1).maxCoeff() - 0.5)))};
 }
 
-/// Distance of `p` from the nearest side in texels, positive inside. Corners run clockwise in a frame whose y points
-/// down as they run counter-clockwise seen from outside.
-double depthInside(const Eigen::Matrix<double, 2, 3>& c, const Eigen::Vector2d& p)
-{
-  double depth = 1e30;
-  for (int k = 0; k < 3; ++k) {
-    const Eigen::Vector2d edge = c.col((k + 1) % 3) - c.col(k), to = p - c.col(k);
-    depth = std::min(depth, (edge.y() * to.x() - edge.x() * to.y()) / std::max(edge.norm(), 1e-12));
+/// Distances of texel centres from a patch's sides, positive inside: linear functions of the place. Corners run
+/// clockwise in a frame whose y points down as they run counter-clockwise seen from outside.
+class SideDistances {
+public:
+  explicit SideDistances(const Eigen::Matrix<double, 2, 3>& c)
+  {
+    for (int k = 0; k < 3; ++k) {
+      const Eigen::Vector2d edge =
+          (c.col((k + 1) % 3) - c.col(k)) / std::max((c.col((k + 1) % 3) - c.col(k)).norm(), 1e-12);
+      sides_.row(k) << edge.y(), -edge.x(), edge.x() * c(1, k) - edge.y() * c(0, k);
+    }
   }
-  return depth;
-}
+
+  double least(const Eigen::Vector2d& p) const { return (sides_ * p.homogeneous()).minCoeff(); }
+
+private:
+  Eigen::Matrix3d sides_;
+};
 
 /// visit(texel index, depth inside) for each texel whose centre the patch covers
 template <typename Visit>
@@ -37,9 +45,10 @@ void forTexels(const PatchMesh& patches, const Chart& chart, int patch, const Vi
 {
   const Eigen::Matrix<double, 2, 3> c = patchTexels(patches, chart, patch);
   const Box box = boxOf(c, chart);
+  const SideDistances distances(c);
   for (int y = box.y0; y <= box.y1; ++y)
     for (int x = box.x0; x <= box.x1; ++x)
-      if (const double depth = depthInside(c, {x + 0.5, y + 0.5}); depth >= -inside_margin)
+      if (const double depth = distances.least({x + 0.5, y + 0.5}); depth >= -inside_margin)
         visit(static_cast<std::size_t>(y) * chart.width + x, depth);
 }
 
@@ -54,16 +63,18 @@ public:
   bool draw(int face)
   {
     bool free = true;
+    covered_.clear();
     for (int i = first_[face]; i < first_[face + 1] && free; ++i)
       forTexels(patches_, chart_, i, [&](std::size_t at, double depth) {
         free = free && !(claimed_[at] && depth > inside_margin && patches_.parent[owner_[at]] != face);
+        covered_.push_back({at, i, depth > inside_margin});
       });
-    for (int i = first_[face]; i < first_[face + 1] && free; ++i)
-      forTexels(patches_, chart_, i, [&](std::size_t at, double depth) {
-        if (owner_[at] < 0 || depth > inside_margin)
-          owner_[at] = i;
-        claimed_[at] = claimed_[at] || depth > inside_margin;
-      });
+    for (std::size_t k = 0; k < covered_.size() && free; ++k) {
+      const auto& [at, patch, firmly] = covered_[k];
+      if (owner_[at] < 0 || firmly)
+        owner_[at] = patch;
+      claimed_[at] = claimed_[at] || firmly;
+    }
     return free;
   }
 
@@ -82,10 +93,17 @@ public:
   std::vector<int> takeOwners() { return std::move(owner_); }
 
 private:
+  struct Covered {
+    std::size_t at; ///< texel
+    int patch;
+    bool firmly; ///< not only by its edge
+  };
+
   const PatchMesh& patches_;
   const std::vector<int>& first_;
   const Chart& chart_;
-  std::vector<char> claimed_; ///< whether the owner's inside, not only its edge, covers the texel's centre
+  std::vector<Covered> covered_; ///< by the face in work
+  std::vector<char> claimed_;    ///< whether the owner's inside, not only its edge, covers the texel's centre
   std::vector<int> owner_;
 };
 

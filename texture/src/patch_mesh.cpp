@@ -22,18 +22,19 @@ struct Patches {
   std::vector<int> parent;
 };
 
-Midpoints cutEdges(Patches& patches, float longest_edge)
+/// Middles of the edges for which want(patch, corner at which the edge begins) holds.
+template <typename Want>
+Midpoints cutEdges(Patches& patches, const Want& want)
 {
   Midpoints middle;
-  for (const Eigen::Vector3i& f : patches.faces)
+  for (std::size_t i = 0; i < patches.faces.size(); ++i)
     for (int k = 0; k < 3; ++k) {
-      const int a = f[k], b = f[(k + 1) % 3];
-      const Eigen::Vector3f p = patches.vertices[a], q = patches.vertices[b];
-      if (!((p - q).norm() > longest_edge))
+      const int a = patches.faces[i][k], b = patches.faces[i][(k + 1) % 3];
+      if (!want(i, k))
         continue;
       if (!middle.emplace(edgeKey(a, b), static_cast<int>(patches.vertices.size())).second)
         continue;
-      patches.vertices.push_back(0.5f * (p + q));
+      patches.vertices.push_back(0.5f * (patches.vertices[a] + patches.vertices[b]));
       if (!patches.colors.empty())
         patches.colors.push_back(0.5f * (patches.colors[a] + patches.colors[b]));
     }
@@ -63,12 +64,9 @@ void appendParts(const Eigen::Vector3i& f, const Eigen::Vector3i& m, std::vector
   }
 }
 
-/// @return whether anything was cut
-bool cutOnce(Patches& patches, float longest_edge)
+/// Cuts every patch at the middles that its edges have.
+void cutAt(const Midpoints& middle, Patches& patches)
 {
-  const Midpoints middle = cutEdges(patches, longest_edge);
-  if (middle.empty())
-    return false;
   std::vector<Eigen::Vector3i> faces;
   std::vector<int> parent;
   for (std::size_t i = 0; i < patches.faces.size(); ++i) {
@@ -82,7 +80,18 @@ bool cutOnce(Patches& patches, float longest_edge)
   }
   patches.faces = std::move(faces);
   patches.parent = std::move(parent);
-  return true;
+}
+
+/// @return whether anything was cut
+bool cutLongEdges(Patches& patches, float longest_edge)
+{
+  const Midpoints middle = cutEdges(patches, [&](std::size_t i, int k) {
+    const Eigen::Vector3i& f = patches.faces[i];
+    return (patches.vertices[f[k]] - patches.vertices[f[(k + 1) % 3]]).norm() > longest_edge;
+  });
+  if (!middle.empty())
+    cutAt(middle, patches);
+  return !middle.empty();
 }
 
 Patches copyOf(const TriangleMesh& mesh)
@@ -99,14 +108,21 @@ Patches copyOf(const TriangleMesh& mesh)
   }
   return patches;
 }
-} // namespace
-
-PatchMesh cutFaces(const TriangleMesh& mesh, float longest_edge, int threads)
+Patches copyOf(const PatchMesh& mesh)
 {
-  constexpr int most_rounds = 16; // each halves the longest edge
-  Patches patches = copyOf(mesh);
-  for (int round = 0; round < most_rounds && cutOnce(patches, longest_edge); ++round)
-    ;
+  Patches patches;
+  for (Index v = 0; v < mesh.vertices.cols(); ++v)
+    patches.vertices.emplace_back(mesh.vertices.col(v));
+  for (Index v = 0; v < mesh.colors.cols(); ++v)
+    patches.colors.emplace_back(mesh.colors.col(v));
+  for (Index i = 0; i < mesh.size(); ++i)
+    patches.faces.emplace_back(mesh.faces.col(i));
+  patches.parent.assign(mesh.parent.data(), mesh.parent.data() + mesh.size());
+  return patches;
+}
+
+PatchMesh finish(const Patches& patches, int threads)
+{
   PatchMesh out;
   const Index n = static_cast<Index>(patches.faces.size());
   const Index corners = static_cast<Index>(patches.vertices.size());
@@ -127,6 +143,26 @@ PatchMesh cutFaces(const TriangleMesh& mesh, float longest_edge, int threads)
     out.normals.col(i) = (length > 0 ? Eigen::Vector3d(cross / length) : Eigen::Vector3d::Zero()).cast<float>();
   });
   return out;
+}
+} // namespace
+
+PatchMesh cutFaces(const TriangleMesh& mesh, float longest_edge, int threads)
+{
+  constexpr int most_rounds = 16; // each halves the longest edge
+  Patches patches = copyOf(mesh);
+  for (int round = 0; round < most_rounds && cutLongEdges(patches, longest_edge); ++round)
+    ;
+  return finish(patches, threads);
+}
+
+PatchMesh cutPatches(const PatchMesh& patches, const std::vector<char>& marked, int threads)
+{
+  Patches parts = copyOf(patches);
+  const Midpoints middle = cutEdges(parts, [&](std::size_t i, int) { return marked[i] != 0; });
+  if (middle.empty())
+    return patches;
+  cutAt(middle, parts);
+  return finish(parts, threads);
 }
 
 Eigen::Matrix3Xi faceNeighbors(const Faces& faces)

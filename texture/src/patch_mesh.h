@@ -19,6 +19,10 @@ struct PatchMesh {
 /// Cuts every edge longer than `longest_edge` at its middle until none is left; the cuts of two neighbours meet.
 PatchMesh cutFaces(const TriangleMesh& mesh, float longest_edge, int threads);
 
+/// Cuts the marked patches into four, and their neighbours so that the cuts meet.
+/// @param marked P
+PatchMesh cutPatches(const PatchMesh& patches, const std::vector<char>& marked, int threads);
+
 /// 3xF, face across the edge from corner k to corner k+1; -1 at boundaries and where more than two faces meet.
 Eigen::Matrix3Xi faceNeighbors(const Faces& faces);
 } // namespace fresco

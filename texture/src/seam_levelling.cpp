@@ -4,6 +4,7 @@
 #include <Eigen/SparseCore>
 #include <algorithm>
 #include <cmath>
+#include <fresco/common/parallel.h>
 namespace fresco {
 namespace {
 constexpr float slowness = 0.3f;  // weight of a change along an edge against a step between views
@@ -20,16 +21,16 @@ Eigen::Vector3f colorOf(const Candidate& c, const Points& gains)
 
 class Levelling {
 public:
-  Levelling(const PatchMesh& patches, const VertexPatches& around, const VertexViews& shares,
-            const Candidates& candidates, const Points& gains)
-      : patches_(patches), around_(around), shares_(shares), candidates_(candidates), gains_(gains)
+  Levelling(const PatchMesh& patches, const SharedVertices& vertices, const LevellingColors& colors)
+      : patches_(patches), around_(vertices.around), shares_(vertices.shares), candidates_(colors.candidates),
+        gains_(colors.gains)
   {
     out_.begin.assign(1, 0);
-    for (const auto& list : shares)
+    for (const auto& list : shares_)
       out_.begin.push_back(out_.begin.back() + static_cast<int>(list.size()));
   }
 
-  SeamOffsets run()
+  SeamOffsets run(int threads)
   {
     const Index n = out_.begin.back();
     right_ = Eigen::MatrixXf::Zero(n, 3);
@@ -38,13 +39,18 @@ public:
       addSteps(v);
     addSlowness();
     const Sparse A = matrix();
-    Eigen::ConjugateGradient<Sparse, Eigen::Lower> solver;
-    solver.setMaxIterations(300);
-    solver.setTolerance(1e-3); // of a grey level, about
-    solver.compute(A);
-    out_.offsets.resize(3, n);
-    for (int c = 0; c < 3 && n > 0; ++c)
-      out_.offsets.row(c) = solver.solve(right_.col(c)).transpose();
+    Eigen::MatrixXf channels(n, 3); // columns, so that threads do not write side by side
+    parallelFor(
+        n > 0 ? 3 : 0, threads,
+        [&](Index c) {
+          Eigen::ConjugateGradient<Sparse, Eigen::Lower> solver;
+          solver.setMaxIterations(300);
+          solver.setTolerance(1e-3); // of a grey level, about
+          solver.compute(A);
+          channels.col(c) = solver.solve(right_.col(c));
+        },
+        1);
+    out_.offsets = channels.transpose();
     return std::move(out_);
   }
 
@@ -125,9 +131,9 @@ private:
 };
 } // namespace
 
-SeamOffsets levelSeams(const PatchMesh& patches, const VertexPatches& around, const VertexViews& shares,
-                       const Candidates& candidates, const Points& gains)
+SeamOffsets levelSeams(const PatchMesh& patches, const SharedVertices& vertices, const LevellingColors& colors,
+                       int threads)
 {
-  return Levelling(patches, around, shares, candidates, gains).run();
+  return Levelling(patches, vertices, colors).run(threads);
 }
 } // namespace fresco

@@ -7,6 +7,7 @@
 #include "exemplar_inpainting.h"
 #include "exif.h"
 #include "exposure.h"
+#include "hidden_parts.h"
 #include "photo_consistency.h"
 #include "resolution.h"
 #include "texture_atlas.h"
@@ -87,6 +88,14 @@ float longestEdge(const TriangleMesh& mesh, const std::vector<Projector>& views)
     return static_cast<float>(std::max<double>(least, 0.05 * diagonalOf(mesh)));
   std::nth_element(sizes.begin(), sizes.begin() + sizes.size() / 2, sizes.end());
   return std::max(least, patch_pixels * sizes[sizes.size() / 2]);
+}
+
+PatchMesh makePatches(const TriangleMesh& mesh, const RayScene& rays, const ViewList& views,
+                      const TextureOptions& options)
+{
+  PatchMesh patches = cutFaces(mesh, longestEdge(mesh, views.projectors), options.threads);
+  // vague outlines are not worth following closely
+  return views.doubt < 1 ? cutHiddenParts(std::move(patches), rays, views, options) : patches;
 }
 
 std::vector<Projector> projectorsOf(const TriangleMesh& mesh, const std::vector<PlacedCamera>& cameras)
@@ -228,9 +237,9 @@ TextureResult reconstructTexture(const TriangleMesh& mesh, const std::vector<Tex
   placeCameras(*rays, views, photos, options, subProgress(progress, 0.05, 0.25), result);
   watch.lap("camera refinement");
   const std::vector<Projector> projectors = projectorsOf(mesh, result.cameras);
-  const PatchMesh patches = cutFaces(mesh, longestEdge(mesh, projectors), options.threads);
-  const Candidates candidates = findCandidates(patches, *rays, {projectors, photos, paintable(views), doubtOf(result)},
-                                               options, subProgress(progress, 0.25, 0.4));
+  const ViewList list{projectors, photos, paintable(views), doubtOf(result)};
+  const PatchMesh patches = makePatches(mesh, *rays, list, options);
+  const Candidates candidates = findCandidates(patches, *rays, list, options, subProgress(progress, 0.25, 0.4));
   rays.reset();
   watch.lap("visibility");
   const Index count = static_cast<Index>(views.size());

@@ -29,7 +29,7 @@ public:
         shares_(shareVertices(patches, around_, view, roundsFor(patches, options.strip)))
   {
     if (options.level)
-      offsets_ = levelSeams(patches, around_, shares_, candidates, gains);
+      offsets_ = levelSeams(patches, {around_, shares_}, {candidates, gains}, options.threads);
   }
 
   Blend run() const

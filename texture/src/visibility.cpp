@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "visibility.h"
+#include "patch_sight.h"
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -8,8 +9,6 @@
 namespace fresco {
 namespace {
 constexpr Index most_cells = 1 << 20; // of a depth map: enough for outlines, and a 12 megapixel view takes a second
-constexpr float least_cosine = 0.1f;  // 84 degrees: beyond, a pixel smears over ten times its size
-constexpr float image_border = 1.f;   // pixels: interpolation needs a neighbour
 constexpr float outline_doubt = 5; // octaves, near the outline of what stands before: taken where nothing else shows it
 constexpr float rim_doubt = 2;     // octaves, at its own outline, where pixels mix with what lies behind
 constexpr float beside_doubt = 1;  // octaves, where a pixel next to it shows something a little nearer
@@ -22,75 +21,6 @@ struct Seen {
   std::uint8_t doubt;
   float resolution;
 };
-
-/// A patch in the cells of a depth map.
-struct Footprint {
-  Eigen::Matrix<float, 2, 3> corners; ///< cells
-  Eigen::Vector3f inverse_depth;      ///< a x + b y + c over the cells
-  float nearest, farthest;            ///< depth of the corners
-};
-
-Footprint footprintOf(const Eigen::Matrix3f& pixels, float step)
-{
-  Footprint out;
-  out.corners = pixels.topRows<2>() / step;
-  const Eigen::Vector3f inverse = pixels.row(2).cwiseInverse();
-  const Eigen::Vector2f u = out.corners.col(1) - out.corners.col(0), v = out.corners.col(2) - out.corners.col(0);
-  const float det = u.x() * v.y() - u.y() * v.x(), du = inverse[1] - inverse[0], dv = inverse[2] - inverse[0];
-  const bool flat = std::abs(det) < 1e-6f;
-  const float a = flat ? 0 : (du * v.y() - dv * u.y()) / det, b = flat ? 0 : (dv * u.x() - du * v.x()) / det;
-  out.inverse_depth = {a, b, inverse[0] - a * out.corners(0, 0) - b * out.corners(1, 0)};
-  out.nearest = pixels.row(2).minCoeff();
-  out.farthest = pixels.row(2).maxCoeff();
-  return out;
-}
-
-/// Cells from a place to the triangle's nearest side, positive inside; some number below -1 where it lies further out.
-float depthInside(const Footprint& patch, const Eigen::Vector2f& p)
-{
-  const auto& c = patch.corners;
-  const Eigen::Vector2f u = c.col(1) - c.col(0), v = c.col(2) - c.col(0);
-  const float turn = u.x() * v.y() - u.y() * v.x() > 0 ? 1.f : -1.f;
-  float depth = std::numeric_limits<float>::infinity();
-  for (int k = 0; k < 3 && depth >= -1; ++k) {
-    const Eigen::Vector2f edge = c.col((k + 1) % 3) - c.col(k), to = p - c.col(k);
-    depth = std::min(depth, turn * (edge.x() * to.y() - edge.y() * to.x()) / std::max(edge.norm(), 1e-6f));
-  }
-  return depth;
-}
-
-enum class Sight { free, beside, hidden };
-
-/// hidden: some ray through a cell whose centre the patch covers ends before it; beside: one through a cell next to it.
-/// @param tolerance mesh units
-Sight sightOf(const Footprint& patch, const DepthMap& map, float tolerance)
-{
-  const int x0 = std::max(0, static_cast<int>(patch.corners.row(0).minCoeff() - 0.5f)),
-            x1 = std::min(map.width - 1, static_cast<int>(patch.corners.row(0).maxCoeff() + 0.5f)),
-            y0 = std::max(0, static_cast<int>(patch.corners.row(1).minCoeff() - 0.5f)),
-            y1 = std::min(map.height - 1, static_cast<int>(patch.corners.row(1).maxCoeff() + 0.5f));
-  const Eigen::Vector2i middle = patch.corners.rowwise().mean().array().floor().cast<int>().matrix();
-  const float slope = std::abs(patch.inverse_depth[0]) + std::abs(patch.inverse_depth[1]);
-  Sight sight = Sight::free;
-  for (int y = y0; y <= y1; ++y)
-    for (int x = x0; x <= x1; ++x) {
-      const float hit = map.at(x, y);
-      if (!(hit < patch.farthest - tolerance))
-        continue;
-      const Eigen::Vector2f p(x + 0.5f, y + 0.5f);
-      const float inside = depthInside(patch, p);
-      if (inside < -1)
-        continue;
-      const float inverse = patch.inverse_depth.dot(p.homogeneous()), z = inverse > 0 ? 1 / inverse : patch.farthest;
-      const float depth = std::clamp(z, patch.nearest, patch.farthest);
-      if (hit >= depth - tolerance - depth * depth * slope)
-        continue;
-      if (inside >= 0 || Eigen::Vector2i(x, y) == middle)
-        return Sight::hidden;
-      sight = Sight::beside;
-    }
-  return sight;
-}
 
 /// @param step length by which depth jumps at an outline
 bool isNearOutline(const Footprint& patch, const DepthMap& nearest, float radius, float step)
@@ -118,43 +48,11 @@ bool isAtRim(const Footprint& patch, const DepthMap& farthest, float radius, flo
   return false;
 }
 
-/// Median distance of the surface within the images, from what stands before it or not; mesh units.
-float typicalDepth(const PatchMesh& patches, const std::vector<Projector>& views)
-{
-  constexpr Index samples = 2000;
-  const Index stride = std::max<Index>(1, patches.vertices.cols() / samples);
-  std::vector<float> depths;
-  for (const Projector& view : views)
-    for (Index v = 0; v < patches.vertices.cols(); v += stride) {
-      const Eigen::Vector3f p = view(patches.vertices.col(v));
-      if (p.z() > 0 && p.x() >= 0 && p.y() >= 0 && p.x() <= view.camera().width && p.y() <= view.camera().height)
-        depths.push_back(p.z());
-    }
-  if (depths.empty())
-    return 0;
-  std::nth_element(depths.begin(), depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2), depths.end());
-  return depths[depths.size() / 2];
-}
-
 /// Octaves, 0 inside the image, rising to 1 at its border: there lenses are worst and a better view is likely.
 float borderDoubt(const CameraModel& camera, const Eigen::Vector2f& pixel)
 {
   const float away = std::min({pixel.x(), pixel.y(), camera.width - pixel.x(), camera.height - pixel.y()});
   return 1 - std::clamp(away / (0.05f * std::min(camera.width, camera.height)), 0.f, 1.f);
-}
-
-struct SightLimits {
-  float tolerance; ///< of depth, mesh units
-  float margin;    ///< pixels
-  float doubt;     ///< factor on the octaves
-};
-
-/// The tolerance is the same length in all views, so that near views are not doubted more than far ones.
-SightLimits limitsFor(const PatchMesh& patches, const ViewList& views, const TextureOptions& options)
-{
-  const double tolerance = views.doubt * options.depth_tolerance * typicalDepth(patches, views.projectors);
-  return {static_cast<float>(tolerance), static_cast<float>(views.doubt * options.margin),
-          static_cast<float>(views.doubt)};
 }
 
 class ViewTest {
@@ -163,13 +61,8 @@ public:
       : patches_(patches), view_(view), limits_(limits), outline_(outline_step * limits.tolerance),
         pixels_(3, patches.vertices.cols())
   {
-    const float low = image_border, right = view.camera().width - image_border,
-                bottom = view.camera().height - image_border;
-    for (Index v = 0; v < pixels_.cols(); ++v) {
-      const Eigen::Vector3f p = view(patches.vertices.col(v));
-      const bool inside = p.z() > 0 && p.x() >= low && p.y() >= low && p.x() <= right && p.y() <= bottom;
-      pixels_.col(v) = inside ? p : Eigen::Vector3f::Zero();
-    }
+    for (Index v = 0; v < pixels_.cols(); ++v)
+      pixels_.col(v) = pixelWithin(view, patches.vertices.col(v));
   }
 
   std::vector<Seen> run(const RayScene& scene, const Image& photo) const
@@ -216,10 +109,7 @@ private:
     for (int k = 0; k < 3; ++k)
       if (!(pixels_(2, patches_.faces(k, i)) > 0))
         return 0;
-    Eigen::Vector3f middle = Eigen::Vector3f::Zero();
-    for (int k = 0; k < 3; ++k)
-      middle += patches_.vertices.col(patches_.faces(k, i)) / 3;
-    return patches_.normals.col(i).dot((view_.center() - middle).normalized());
+    return cosineTowards(patches_, i, view_);
   }
 
   /// From the middle and halfway to the corners.
