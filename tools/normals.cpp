@@ -110,6 +110,8 @@ PointSet loadPoints(const CloudFile& file, const std::string& name, const Args& 
     set.viewpoints = (options.viewpoint - set.origin).cast<float>();
   else if (options.propagate)
     set.viewpoints.resize(3, 0);
+  if (set.viewpoints.cols() == 1 && !set.viewpoints.allFinite())
+    throw std::runtime_error(name + ": its viewpoint is not finite, give -viewpoint X Y Z or -propagate");
   for (Index i = 0; i < set.size(); ++i)
     if (set.points.col(i).allFinite())
       return set;

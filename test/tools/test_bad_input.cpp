@@ -210,6 +210,19 @@ TEST(Tools, PointsThatAreNotFinite)
   EXPECT_EQ(get(folder + "/out/poses.txt").substr(0, 5), "none\n"); // a scan that cannot be placed is said so
 }
 
+TEST(Tools, ViewpointThatIsNotFinite)
+{
+  const std::string folder = soundFolder();
+  std::string cloud = get(folder + "/cloud.pcd");
+  const std::size_t line = cloud.find("VIEWPOINT"), end = cloud.find('\n', line);
+  cloud.replace(line, end - line, "VIEWPOINT 0 nan 0 1 0 0 0");
+  put(folder + "/unseen.pcd", cloud);
+  expectRefused(folder, "normals unseen.pcd out.pcd", "unseen.pcd");
+  expectRefused(folder, "filter unseen.pcd out.pcd -veil 10", "unseen.pcd");
+  for (const std::string elsewhere : {" -viewpoint 0 0 9", " -propagate"})
+    EXPECT_EQ(run(folder, "normals unseen.pcd out.pcd -quiet" + elsewhere).status, 0) << elsewhere;
+}
+
 TEST(Tools, CloudWithoutNormalsCannotBeReconstructed)
 {
   const std::string folder = soundFolder();
