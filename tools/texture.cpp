@@ -88,8 +88,12 @@ void printFigures(const TextureResult& result, std::size_t views, bool quiet)
                 result.model.atlases.front().height, 100 * result.used, result.texel);
   inform(quiet, line);
   if (result.disagreement_before > 0) {
-    std::snprintf(line, sizeof line, "photographs disagree by %.2f pixels, %.2f with the cameras as given",
-                  result.disagreement_after, result.disagreement_before);
+    if (result.refined)
+      std::snprintf(line, sizeof line, "photographs disagree by %.2f pixels, %.2f with the cameras as given",
+                    result.disagreement_after, result.disagreement_before);
+    else
+      std::snprintf(line, sizeof line, "photographs disagree by %.2f pixels; the cameras are left as given",
+                    result.disagreement_before);
     inform(quiet, line);
   }
   for (const auto& [phase, seconds] : result.seconds) {

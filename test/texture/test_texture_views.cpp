@@ -95,6 +95,8 @@ TEST(TextureViews, CamerasAreRefined)
   EXPECT_LT(colorError(with.model, detailed).mean, 0.6 * colorError(without.model, detailed).mean);
   EXPECT_EQ(without.cameras[0].camera.fx, 420 * 1.03);
   EXPECT_EQ(without.disagreement_before, 0);
+  EXPECT_TRUE(with.refined);
+  EXPECT_FALSE(without.refined);
 }
 
 TEST(TextureViews, RightCamerasAreLeftAlone)
@@ -103,6 +105,8 @@ TEST(TextureViews, RightCamerasAreLeftAlone)
   const auto views = photographsAround(mesh, detailed, 3.2, camera(320, 320, 420));
   const TextureResult result = reconstructTexture(mesh, views);
   EXPECT_LT(result.disagreement_before, 0.5);
+  EXPECT_EQ(result.disagreement_after, result.disagreement_before);
+  EXPECT_FALSE(result.refined);
   for (std::size_t v = 0; v < views.size(); ++v)
     EXPECT_EQ(result.cameras[v].T_camera_world.matrix(), views[v].T_camera_world.matrix());
 }

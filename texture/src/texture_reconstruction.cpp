@@ -126,6 +126,7 @@ void placeCameras(const RayScene& scene, const std::vector<TextureView>& views, 
   if (!options.refine || views.size() < 2 || views.size() > most_views)
     return;
   const RefinedCameras refined = refineCameras(result.model.mesh, scene, views, photos, options.threads, progress);
+  result.refined = refined.changed;
   result.disagreement_before = refined.before;
   result.disagreement_after = refined.changed ? refined.after : refined.before;
   for (std::size_t v = 0; v < views.size() && refined.changed; ++v)

@@ -48,6 +48,7 @@ nlohmann::ordered_json makeTexture(const ModelInput& input, const ModelFiles& fi
   return {{"photographs", views.size()},
           {"photographs_used", result.views_used},
           {"coverage", result.coverage},
+          {"cameras", result.refined ? "refined" : "left as given"},
           {"disagreement_before_pixels", result.disagreement_before},
           {"disagreement_after_pixels", result.disagreement_after},
           {"charts", result.charts},

@@ -62,9 +62,11 @@ struct TextureResult {
   double seam_length = 0;            ///< mesh units, along which two views meet
   std::vector<PlacedCamera> cameras; ///< of each view, as used: refined where that made the photographs agree better
   Points gains; ///< 3xV, factors on RGB that bring the photographs together; their mean logarithm is 0
-  double disagreement_before = 0;    ///< pixels, median, between photographs on the mesh; 0 where it was not measured
-  double disagreement_after = 0;     ///< with `cameras`
-  std::vector<std::string> warnings; ///< what was left out or ignored, a sentence each
+  double disagreement_before = 0; ///< pixels, median, between photographs on the mesh; 0 where it was not measured
+  double disagreement_after = 0;  ///< with `cameras`; the same where these were left as given
+  bool refined = false; ///< whether `cameras` differ from what was given: not where photographs agree within half a
+                        ///< pixel already, nor where no correction makes them agree clearly better
+  std::vector<std::string> warnings;                   ///< what was left out or ignored, a sentence each
   std::vector<std::pair<std::string, double>> seconds; ///< time of each phase
 };
 
