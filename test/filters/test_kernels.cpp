@@ -126,7 +126,8 @@ EightMoments someMoments(unsigned seed, std::vector<Points>& sets)
   for (unsigned s = 0; s < 8; ++s) {
     Points set = test::randomPoints(s == 7 ? 0 : 16 + s, seed + s);
     if (s < 3)
-      set = Eigen::AngleAxisf(1.3f * static_cast<float>(s + seed), Eigen::Vector3f(1, 2, -1).normalized()) *
+      set = Eigen::AngleAxisf(1.3f * static_cast<float>(s + seed), Eigen::Vector3f(1, 2, -1).normalized())
+                .toRotationMatrix() *
             Points(Eigen::Vector3f(1, 0.6f, 0.02f * static_cast<float>(s)).asDiagonal() * set);
     if (s == 5)
       set.bottomRows(2).setZero();
