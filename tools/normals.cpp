@@ -63,33 +63,41 @@ void validate(const Args& args, const ToolOptions& options)
     throw UsageError("-sigma_n: " + std::to_string(options.smoothing.sigma_n) + " is not in 0..180 degrees");
 }
 
-/// Place of field `name`; the field is added, as float, to all points if it is not there.
-pcl::PCLPointField needField(pcl::PCLPointCloud2& cloud, const std::string& name)
+const pcl::PCLPointField* findField(const pcl::PCLPointCloud2& cloud, const std::string& name)
 {
   for (const auto& field : cloud.fields)
     if (field.name == name)
-      return field;
-  pcl::PCLPointField field;
-  field.name = name;
-  field.offset = cloud.point_step;
-  field.datatype = pcl::PCLPointField::FLOAT32;
-  field.count = 1;
-  const std::size_t n = static_cast<std::size_t>(cloud.width) * cloud.height, step = cloud.point_step;
-  std::vector<std::uint8_t> data(n * (step + sizeof(float)));
-  for (std::size_t i = 0; i < n; ++i)
-    std::memcpy(data.data() + i * (step + sizeof(float)), cloud.data.data() + i * step, step);
-  cloud.data.swap(data);
-  cloud.point_step += sizeof(float);
-  cloud.row_step = cloud.point_step * cloud.width;
-  cloud.fields.push_back(field);
-  return field;
+      return &field;
+  return nullptr;
 }
 
-/// Writes one value per point into field `name`.
+/// Adds the fields that are not there, as float, to all points.
+void addFields(pcl::PCLPointCloud2& cloud, const std::vector<std::string>& names)
+{
+  const std::size_t n = static_cast<std::size_t>(cloud.width) * cloud.height, before = cloud.point_step;
+  for (const std::string& name : names) {
+    if (findField(cloud, name))
+      continue;
+    pcl::PCLPointField field;
+    field.name = name;
+    field.offset = cloud.point_step;
+    field.datatype = pcl::PCLPointField::FLOAT32;
+    field.count = 1;
+    cloud.point_step += sizeof(float);
+    cloud.fields.push_back(field);
+  }
+  std::vector<std::uint8_t> data(n * cloud.point_step);
+  for (std::size_t i = 0; i < n; ++i)
+    std::memcpy(data.data() + i * cloud.point_step, cloud.data.data() + i * before, before);
+  cloud.data.swap(data);
+  cloud.row_step = cloud.point_step * cloud.width;
+}
+
+/// Writes one value per point into field `name`, which is there.
 template <typename Values>
 void writeField(pcl::PCLPointCloud2& cloud, const std::string& name, const Values& values)
 {
-  const pcl::PCLPointField field = needField(cloud, name);
+  const pcl::PCLPointField field = *findField(cloud, name);
   if (field.datatype != pcl::PCLPointField::FLOAT32 && field.datatype != pcl::PCLPointField::FLOAT64)
     throw std::runtime_error("field " + name + " is neither float nor double");
   for (Index i = 0; i < values.size(); ++i) {
@@ -120,10 +128,13 @@ PointSet loadPoints(const CloudFile& file, const std::string& name, const Args& 
 
 void writeResult(CloudFile& file, const PointSet& set, const NormalField& field, const ToolOptions& options)
 {
-  const Points normals = options.flip ? Points(-field.normals) : field.normals;
-  writeField(file.cloud, "normal_x", normals.row(0));
-  writeField(file.cloud, "normal_y", normals.row(1));
-  writeField(file.cloud, "normal_z", normals.row(2));
+  std::vector<std::string> names = {"normal_x", "normal_y", "normal_z", "curvature"};
+  if (options.confidence)
+    names.push_back("confidence");
+  addFields(file.cloud, names);
+  const float sign = options.flip ? -1.f : 1.f;
+  for (int axis = 0; axis < 3; ++axis)
+    writeField(file.cloud, names[static_cast<std::size_t>(axis)], sign * field.normals.row(axis));
   writeField(file.cloud, "curvature", field.curvatures);
   if (options.confidence)
     writeField(file.cloud, "confidence", field.confidences);
@@ -155,14 +166,18 @@ int main(int argc, char** argv)
     options.normals.edges = !options.plain;
     if (file.cloud.height > 1 && !options.no_grid)
       options.normals.image_width = file.cloud.width;
-    NormalField field = estimateNormals(set, options.normals, subProgress(progress, 0.0, 0.6));
-    BilateralResult smooth =
-        smoothNormals(set.points, field.normals, options.smoothing, subProgress(progress, 0.6, 1.0));
-    field.normals.swap(smooth.normals);
-    set.points.swap(smooth.points);
-    writeResult(file, set, field, options);
+    {
+      NormalField field = estimateNormals(set, options.normals, subProgress(progress, 0.0, 0.6));
+      BilateralResult smooth =
+          smoothNormals(set.points, field.normals, options.smoothing, subProgress(progress, 0.6, 1.0));
+      field.normals.swap(smooth.normals);
+      set.points.swap(smooth.points);
+      writeResult(file, set, field, options);
+    }
+    const std::string result = std::to_string(set.size()) + " points, normals " +
+                               (set.viewpoints.cols() > 0 ? "towards the viewpoint" : "in agreement with each other");
+    set = {}; // frees memory
     writeOutputs([&] { writeCloud(files[1], file); });
-    inform(common.quiet, std::to_string(set.size()) + " points, normals " +
-                             (set.viewpoints.cols() > 0 ? "towards the viewpoint" : "in agreement with each other"));
+    inform(common.quiet, result);
   });
 }

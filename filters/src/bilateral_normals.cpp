@@ -7,18 +7,27 @@
 #include <fresco/common/require.h>
 #include <fresco/filters/core/bilateral_normals.h>
 #include <fresco/filters/core/local_sampling.h>
+#include <memory>
 namespace fresco {
 namespace {
 constexpr int most = 256; // neighbours summed
 
 /// The points that count, in the order of a tree, with what does not change from round to round.
 struct Field {
-  std::vector<int> columns; ///< of the input
-  Points points;
-  Eigen::VectorXf areas;    ///< a_j, any common factor
-  Eigen::VectorXf scales_d; ///< 1 / (2 s_d^2), by point
-  float scale_n = 0;        ///< 1 / (2 s_n^2)
+  std::unique_ptr<PointTree> tree; ///< until the points move
+  Points moved;                    ///< then
+  Eigen::VectorXf areas;           ///< a_j, any common factor
+  Eigen::VectorXf scales_d;        ///< 1 / (2 s_d^2), by point, or one for all
+  float scale_n = 0;               ///< 1 / (2 s_n^2)
   std::vector<CompactLists> lists;
+
+  Index size() const { return tree->size(); }
+  Eigen::Vector3f point(Index i) const
+  {
+    if (moved.cols() > 0)
+      return moved.col(i);
+    return tree->point(i);
+  }
 };
 
 void validate(const Points& points, const Points& normals, const BilateralOptions& options)
@@ -37,23 +46,32 @@ void validate(const Points& points, const Points& normals, const BilateralOption
 
 bool usable(const Eigen::Vector3f& normal) { return normal.allFinite() && normal.squaredNorm() > 0; }
 
+std::unique_ptr<PointTree> usableTree(const Points& points, const Points& normals, int threads)
+{
+  Points counted;
+  for (Index i = 0; i < points.cols(); ++i)
+    if (!usable(normals.col(i))) {
+      if (counted.cols() == 0)
+        counted = points;
+      counted.col(i).setConstant(NAN); // which the tree leaves out
+    }
+  return std::make_unique<PointTree>(counted.cols() > 0 ? counted : points, threads);
+}
+
 Field makeField(const Points& points, const Points& normals, const BilateralOptions& options)
 {
-  Points counted = points;
-  for (Index i = 0; i < points.cols(); ++i)
-    if (!usable(normals.col(i)))
-      counted.col(i).setConstant(NAN); // which the tree leaves out
-  const PointTree tree(counted, options.threads);
   Field field;
-  field.columns = tree.columns();
-  field.points = tree.points();
-  field.areas = sampleAreas(tree, 8, options.threads);
-  const Eigen::VectorXf sigmas = options.sigma_d > 0 ? Eigen::VectorXf::Constant(tree.size(), options.sigma_d)
-                                                     : Eigen::VectorXf(options.spacings * field.areas.cwiseSqrt());
-  field.scales_d = 0.5f * sigmas.array().square().inverse();
+  field.tree = usableTree(points, normals, options.threads);
+  field.areas = sampleAreas(*field.tree, 8, options.threads);
+  Eigen::VectorXf radii(1);
+  if (options.sigma_d > 0)
+    radii[0] = 2 * options.sigma_d;
+  else
+    radii = 2 * options.spacings * field.areas.cwiseSqrt();
+  field.lists = compactRadiusLists(*field.tree, radii, most, options.threads);
+  field.scales_d = 2 * radii.array().square().inverse();
   const float s_n = 1 - std::cos(options.sigma_n * 0.017453293f);
   field.scale_n = 0.5f / (s_n * s_n);
-  field.lists = compactRadiusLists(tree, 2 * sigmas, most, options.threads);
   return field;
 }
 
@@ -67,13 +85,13 @@ void weigh(const Field& field, const Points& normals, Neighborhood& around)
 {
   const Index i = around.point, count = static_cast<Index>(around.list.size());
   const int* list = around.list.data();
-  const Eigen::Vector3f point = field.points.col(i), normal = normals.col(i);
+  const Eigen::Vector3f point = field.point(i), normal = normals.col(i);
+  const float scale_d = field.scales_d[field.scales_d.size() == 1 ? 0 : i];
   Eigen::ArrayXf& weights = around.weights;
   weights.resize(count);
   for (Index j = 0; j < count; ++j) {
     const float difference = 1 - normal.dot(normals.col(list[j]));
-    weights[j] = -(field.points.col(list[j]) - point).squaredNorm() * field.scales_d[i] -
-                 difference * difference * field.scale_n;
+    weights[j] = -(field.point(list[j]) - point).squaredNorm() * scale_d - difference * difference * field.scale_n;
   }
   exponential(weights.data(), count);
   for (Index j = 0; j < count; ++j)
@@ -117,10 +135,10 @@ Points moveOnce(const Field& field, const Points& normals, int threads)
   Points moved(3, normals.cols());
   forNeighborhoods(field, normals, threads, [&](const Neighborhood& around) {
     const int* list = around.list.data();
-    const Eigen::Vector3f point = field.points.col(around.point);
+    const Eigen::Vector3f point = field.point(around.point);
     float step = 0;
     for (Index j = 0; j < around.weights.size(); ++j)
-      step += around.weights[j] * normals.col(list[j]).dot(field.points.col(list[j]) - point);
+      step += around.weights[j] * normals.col(list[j]).dot(field.point(list[j]) - point);
     const float total = around.weights.sum();
     moved.col(around.point) = total > 0 ? Eigen::Vector3f(point + step / total * normals.col(around.point)) : point;
   });
@@ -132,26 +150,28 @@ BilateralResult smoothNormals(const Points& points, const Points& normals, const
                               const Progress& progress)
 {
   validate(points, normals, options);
-  BilateralResult result{points, normals};
   if (options.rounds == 0 && options.move_rounds == 0)
-    return result;
+    return {points, normals};
   report(progress, "find neighbours", 0.0);
   Field field = makeField(points, normals, options);
-  Points smooth(3, field.points.cols());
+  Points smooth(3, field.size());
   for (Index i = 0; i < smooth.cols(); ++i)
-    smooth.col(i) = normals.col(field.columns[i]).normalized();
+    smooth.col(i) = normals.col(field.tree->columns()[i]).normalized();
   const int rounds = options.rounds + options.move_rounds;
   for (int round = 0; round < rounds; ++round) {
     report(progress, round < options.rounds ? "smooth normals" : "move points", 0.4 + 0.6 * round / rounds);
     if (round < options.rounds)
       smooth = smoothOnce(field, smooth, options.threads);
     else
-      field.points = moveOnce(field, smooth, options.threads);
+      field.moved = moveOnce(field, smooth, options.threads);
   }
+  field.lists = {}; // frees memory
+  BilateralResult result{points, normals};
   for (Index i = 0; i < smooth.cols(); ++i) {
-    result.normals.col(field.columns[i]) = smooth.col(i);
-    if (options.move_rounds > 0)
-      result.points.col(field.columns[i]) = field.points.col(i);
+    const Index column = field.tree->columns()[i];
+    result.normals.col(column) = smooth.col(i);
+    if (field.moved.cols() > 0)
+      result.points.col(column) = field.moved.col(i);
   }
   return result;
 }

@@ -43,7 +43,7 @@ public:
       : tree_(tree), k_(k), width_(width), fits_(fits), group_(tree), evenly_(static_cast<std::size_t>(k)),
         batch_([this](Index i, const Plane& plane) { fits_.planes[static_cast<std::size_t>(i)] = plane; })
   {}
-  GroupLists fit(Index first_leaf, Index end_leaf);
+  GroupLists fit(Index first_leaf, Index end_leaf, std::uint16_t* codes);
 
 private:
   bool fitKept(Index i);
@@ -105,7 +105,8 @@ void GroupFitter::fitNearest(Index i)
   take(i, static_cast<float>(k_), sums);
 }
 
-GroupLists GroupFitter::fit(Index first_leaf, Index end_leaf)
+/// @param codes of the first point of the tree
+GroupLists GroupFitter::fit(Index first_leaf, Index end_leaf, std::uint16_t* codes)
 {
   group_.enter(first_leaf, end_leaf);
   encoder_.begin(group_.begin(), group_.end());
@@ -117,7 +118,7 @@ GroupLists GroupFitter::fit(Index first_leaf, Index end_leaf)
     if (!dense || !fitKept(i))
       fitNearest(i);
   batch_.finish();
-  return encoder_.finish(group_.leaves());
+  return encoder_.finish(group_.leaves(), codes + group_.begin() * k_);
 }
 } // namespace
 
@@ -131,10 +132,11 @@ Fits fitNearest(Neighborhoods& all, int k, int threads)
   const float width = tree.size() > k ? least_width * surfaceNoise(tree, k, threads) : 0.f;
   const std::vector<Index> first = tree.subtrees(Neighborhoods::groupLeaves(k));
   all.groups.resize(first.size() - 1);
+  all.codes.resize(static_cast<std::size_t>(tree.size() * each));
   parallelRanges(static_cast<Index>(all.groups.size()), threads, [&](Index begin, Index end) {
     GroupFitter fitter(tree, each, width, fits);
     for (Index g = begin; g < end; ++g)
-      all.groups[static_cast<std::size_t>(g)] = fitter.fit(first[g], first[g + 1]);
+      all.groups[static_cast<std::size_t>(g)] = fitter.fit(first[g], first[g + 1], all.codes.data());
   });
   all.numberGroups();
   return fits;

@@ -26,7 +26,7 @@ void GroupEncoder::add(const int* codes, std::size_t count)
   lists_.starts.push_back(static_cast<int>(codes_.size()));
 }
 
-GroupLists GroupEncoder::finish(const std::vector<int>& table)
+GroupLists GroupEncoder::finish(const std::vector<int>& table, std::uint16_t* codes)
 {
   constexpr int unused = -1, used = -2;
   const Index first = lists_.begin / 8, last = (lists_.end + 7) / 8;
@@ -45,8 +45,8 @@ GroupLists GroupEncoder::finish(const std::vector<int>& table)
     }
   }
   lists_.leaves.shrink_to_fit();
-  lists_.codes.resize(codes_.size());
-  std::transform(codes_.begin(), codes_.end(), lists_.codes.begin(), [&](int code) {
+  lists_.codes = codes;
+  std::transform(codes_.begin(), codes_.end(), codes, [&](int code) {
     return static_cast<std::uint16_t>(8 * places_[static_cast<std::size_t>(code / 8)] + code % 8);
   });
   const auto& starts = lists_.starts;
@@ -65,6 +65,7 @@ void encodeLists(const NeighborLists& lists, int threads, Neighborhoods& all)
   for (Index i = 0; i < lists.size(); ++i)
     longest = std::max(longest, lists.count(i));
   const Index group_size = 8 * Neighborhoods::groupLeaves(longest);
+  all.codes.resize(lists.index.size());
   all.groups.resize(static_cast<std::size_t>((lists.size() + group_size - 1) / group_size));
   parallelFor(static_cast<Index>(all.groups.size()), threads, [&](Index g) {
     const Index begin = g * group_size, end = std::min(lists.size(), begin + group_size);
@@ -83,7 +84,8 @@ void encodeLists(const NeighborLists& lists, int threads, Neighborhoods& all)
       }
       encoder.add(codes.data(), codes.size());
     }
-    all.groups[static_cast<std::size_t>(g)] = encoder.finish(table);
+    all.groups[static_cast<std::size_t>(g)] =
+        encoder.finish(table, all.codes.data() + (lists.begin[begin] - lists.begin[0]));
   });
   all.numberGroups();
 }

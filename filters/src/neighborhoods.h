@@ -9,17 +9,17 @@
 namespace fresco {
 /// Neighbours of consecutive points in two bytes each: numbers within a table of leaves.
 struct GroupLists {
-  Index begin = 0, end = 0;         ///< positions; whole leaves but for the last
-  std::vector<int> leaves;          ///< sets of 8 consecutive positions: of the points, in order, and their neighbours
-  std::vector<std::uint16_t> codes; ///< per neighbour: 8 * place in `leaves` + place in the leaf
-  std::vector<int> starts;          ///< of the lists in `codes`, and the end; empty where all lists are as long
-  int length = 0;                   ///< of every list, then
+  Index begin = 0, end = 0; ///< positions; whole leaves but for the last
+  std::vector<int> leaves;  ///< sets of 8 consecutive positions: of the points, in order, and their neighbours
+  const std::uint16_t* codes = nullptr; ///< per neighbour: 8 * place in `leaves` + place in the leaf
+  std::vector<int> starts;              ///< of the lists in `codes`, and the end; empty where all lists are as long
+  int length = 0;                       ///< of every list, then
 
   std::size_t start(Index at) const
   {
     return static_cast<std::size_t>(starts.empty() ? at * length : starts[static_cast<std::size_t>(at)]);
   }
-  const std::uint16_t* list(Index i) const { return codes.data() + start(i - begin); }
+  const std::uint16_t* list(Index i) const { return codes + start(i - begin); }
   std::size_t count(Index i) const { return start(i - begin + 1) - start(i - begin); }
   std::uint16_t codeOf(Index i) const { return static_cast<std::uint16_t>(i - begin); } ///< of a point of the group
   Index position(std::uint16_t code) const { return 8 * static_cast<Index>(leaves[code / 8u]) + code % 8u; }
@@ -35,7 +35,8 @@ struct Neighborhoods {
   std::unique_ptr<PointTree> tree;      ///< null for images
   std::vector<float> image_coordinates; ///< of images, as PointTree::leafCoordinates()
   std::vector<int> image_columns;
-  std::vector<GroupLists> groups; ///< all points, in order
+  std::vector<std::uint16_t> codes; ///< of all groups: one block, which is given back as such
+  std::vector<GroupLists> groups;   ///< all points, in order
   std::vector<int> group_of_leaf;
 
   Index size() const { return groups.empty() ? 0 : groups.back().end; }
@@ -60,8 +61,8 @@ public:
   /// Adds the list of the next point.
   /// @param codes 8 * place in a table of leaves + place in the leaf
   void add(const int* codes, std::size_t count);
-  /// @param table of the codes @return with the leaves in use alone
-  GroupLists finish(const std::vector<int>& table);
+  /// @param table of the codes @param codes where they are to be kept @return with the leaves in use alone
+  GroupLists finish(const std::vector<int>& table, std::uint16_t* codes);
 
 private:
   GroupLists lists_;

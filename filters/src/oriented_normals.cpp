@@ -115,6 +115,8 @@ NormalField toField(const PointSet& set, Neighborhoods& all, Fits& fits, int thr
     for (Index i = lists.begin; i < lists.end; ++i)
       empty[static_cast<std::size_t>(i)] = lists.count(i) == 0;
   all.groups = {}; // frees memory
+  all.codes = {};
+  fits.reaches = {};
   NormalField field;
   field.normals = Points::Constant(3, set.size(), NAN);
   field.curvatures = Eigen::VectorXf::Constant(set.size(), NAN);
