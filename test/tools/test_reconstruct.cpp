@@ -74,7 +74,8 @@ TEST_F(ReconstructTool, ConfidenceIsTakenFromTheFile)
   options.confidence = true;
   const TriangleMesh trusting = expected(options);
   EXPECT_EQ(mesh("-depth 6 -confidence").vertices, trusting.vertices);
-  EXPECT_NE(trusting.vertices, expected(atDepth(6)).vertices);
+  const TriangleMesh usual = expected(atDepth(6));
+  EXPECT_FALSE(trusting.vertexCount() == usual.vertexCount() && trusting.vertices == usual.vertices);
 }
 
 TEST_F(ReconstructTool, EstimatePrintsMegabytesAndWritesNothing)
