@@ -86,6 +86,8 @@ void addFields(pcl::PCLPointCloud2& cloud, const std::vector<std::string>& names
     cloud.point_step += sizeof(float);
     cloud.fields.push_back(field);
   }
+  if (cloud.point_step == before)
+    return;
   std::vector<std::uint8_t> data(n * cloud.point_step);
   for (std::size_t i = 0; i < n; ++i)
     std::memcpy(data.data() + i * cloud.point_step, cloud.data.data() + i * before, before);

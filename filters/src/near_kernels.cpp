@@ -7,6 +7,15 @@ namespace fresco {
 namespace {
 constexpr float infinity = std::numeric_limits<float>::infinity();
 
+/// From the query to the eight points of a leaf.
+inline void squaredDistances(const float* leaf, const float* query, float* distances)
+{
+  for (int i = 0; i < 8; ++i) {
+    const float dx = leaf[i] - query[0], dy = leaf[8 + i] - query[1], dz = leaf[16 + i] - query[2];
+    distances[i] = dx * dx + dy * dy + dz * dz;
+  }
+}
+
 std::size_t closer(const float* coordinates, const int* leaves, std::size_t leaf_count, const float* query, float bound,
                    float* squared, int* position)
 {
@@ -14,10 +23,7 @@ std::size_t closer(const float* coordinates, const int* leaves, std::size_t leaf
   for (std::size_t l = 0; l < leaf_count; ++l) {
     const float* leaf = coordinates + static_cast<std::size_t>(leaves[l]) * 24;
     float distances[8];
-    for (int i = 0; i < 8; ++i) {
-      const float dx = leaf[i] - query[0], dy = leaf[8 + i] - query[1], dz = leaf[16 + i] - query[2];
-      distances[i] = dx * dx + dy * dy + dz * dz;
-    }
+    squaredDistances(leaf, query, distances);
     for (int i = 0; i < 8; ++i) {
       squared[found] = distances[i];
       position[found] = leaves[l] * 8 + i;
@@ -34,10 +40,7 @@ std::size_t offsets(const float* coordinates, const int* leaves, std::size_t lea
   for (std::size_t l = 0; l < leaf_count; ++l) {
     const float* leaf = coordinates + static_cast<std::size_t>(leaves[l]) * 24;
     float distances[8];
-    for (int i = 0; i < 8; ++i) {
-      const float dx = leaf[i] - query[0], dy = leaf[8 + i] - query[1], dz = leaf[16 + i] - query[2];
-      distances[i] = dx * dx + dy * dy + dz * dz;
-    }
+    squaredDistances(leaf, query, distances);
     for (int i = 0; i < 8; ++i) {
       points.squared[found] = distances[i];
       points.x[found] = leaf[i] - query[0];
