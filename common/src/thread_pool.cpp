@@ -16,16 +16,13 @@ constexpr std::chrono::microseconds patience{50};
 
 /// Until `done` says so or patience ends.
 template <typename Done>
-bool waitBriefly(const Done& done)
+void waitBriefly(const Done& done)
 {
-  for (const auto end = Clock::now() + patience; !done();) {
-    if (Clock::now() > end)
-      return false;
+  for (const auto end = Clock::now() + patience; !done() && Clock::now() <= end;) {
 #if defined(__x86_64__) || defined(__i386__)
     __builtin_ia32_pause();
 #endif
   }
-  return true;
 }
 } // namespace
 

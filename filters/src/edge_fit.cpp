@@ -128,7 +128,8 @@ int GroupPass::choose(const GroupLists& lists, Index i) const
   const Eigen::Vector3f here = all_.point(i);
   const BestPlane found =
       planeKernels().best(near_.data()->normal.data(), lists.list(i), lists.count(i), own.normal.data(), here.data());
-  const bool crease = found.closest<half_same_side, rays = set_.viewpoints.cols()> 0;
+  const bool crease = found.closest < half_same_side;
+  const bool rays = set_.viewpoints.cols() > 0;
   const float ratio = rays && crease ? flatter : clearly_flatter;
   const int best = found.score * ratio < own.variance ? lists.list(i)[found.which] : self;
   const Eigen::Vector3f view = viewDirection(set_, all_.column(i), here);

@@ -58,7 +58,6 @@ private:
   bool thinned_ = false;
   GroupEncoder encoder_;
   std::vector<int> evenly_;
-  std::function<void(Index, const Plane&)> store_;
   PlaneBatch<std::function<void(Index, const Plane&)>> batch_;
 };
 
