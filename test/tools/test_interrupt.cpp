@@ -149,7 +149,7 @@ TEST_F(Interrupt, Normals)
 
 TEST_F(Interrupt, Filter)
 {
-  expectStops({"filter", {folder_ + "/points.ply", "out.ply", "-outliers", "60", "3", "-quiet"}}, SIGHUP);
+  expectStops({"filter", {folder_ + "/points.ply", "out.ply", "-outliers", "600", "3", "-quiet"}}, SIGHUP);
 }
 
 TEST_F(Interrupt, Register)
