@@ -60,7 +60,7 @@ private:
   {
     const BrickLevel& level = tree_.levels[static_cast<std::size_t>(d)];
     Fields& fields = fields_[static_cast<std::size_t>(d)];
-    const std::vector<std::uint32_t> begin = sampleRanges(level, samples_.codes, tree_.depth, threads);
+    const Array<std::uint32_t> begin = sampleRanges(level, samples_.codes, tree_.depth, threads);
     for (std::size_t c = 0; c < channel_count; ++c) {
       fields[c] = NodeField(level.size(), threads);
       if (d < tree_.depth - 1) {
@@ -122,7 +122,7 @@ private:
 
   const Octree& tree_;
   const Samples& samples_;
-  std::vector<std::uint32_t> begin_;
+  Array<std::uint32_t> begin_;
   std::vector<Fields> fields_; ///< by depth, coarser than the finest
 };
 } // namespace

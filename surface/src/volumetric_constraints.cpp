@@ -35,7 +35,7 @@ template <typename Weights>
 void splatLevel(const BrickLevel& level, const Samples& samples, NodeField& field, int threads)
 {
   const int finest = samples.cube.depth;
-  const std::vector<std::uint32_t> begin = sampleRanges(level, samples.codes, finest, threads);
+  const Array<std::uint32_t> begin = sampleRanges(level, samples.codes, finest, threads);
   const float scale = std::ldexp(1.f, level.depth - finest);
   splatBricks<Weights::reach>(level, begin, field, threads, [&](SplatBlock<Weights::reach>& block, int b) {
     const Eigen::Vector3f origin = level.origin(b);

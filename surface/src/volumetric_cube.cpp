@@ -25,7 +25,7 @@ bool isUsable(const PointSet& set, const Weights& weights, Index i)
 }
 
 /// Box of the points without the `drop` lowest and highest of each axis.
-Box innerBox(const PointSet& set, const std::vector<std::uint32_t>& points)
+Box innerBox(const PointSet& set, const Array<std::uint32_t>& points)
 {
   const std::size_t stride = (points.size() + quantile_points - 1) / quantile_points;
   std::vector<float> values;
@@ -46,7 +46,7 @@ Box innerBox(const PointSet& set, const std::vector<std::uint32_t>& points)
   return Box(lower, upper);
 }
 
-Box boxOf(const PointSet& set, const std::vector<std::uint32_t>& points, int threads)
+Box boxOf(const PointSet& set, const Array<std::uint32_t>& points, int threads)
 {
   const auto map = [&](Index begin, Index end) {
     Box box;
@@ -59,7 +59,7 @@ Box boxOf(const PointSet& set, const std::vector<std::uint32_t>& points, int thr
 }
 
 /// @return box of the points that are left
-Box dropOutliers(const PointSet& set, std::vector<std::uint32_t>& points, int threads)
+Box dropOutliers(const PointSet& set, Array<std::uint32_t>& points, int threads)
 {
   const Box inner = innerBox(set, points), box = boxOf(set, points, threads);
   const double margin = outlier_distance * inner.sizes().maxCoeff();

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include "volumetric_samples.h"
-#include <vector>
 namespace fresco::volumetric {
 /// Weight of a point, 1 on average.
 struct Weights {
@@ -12,7 +11,7 @@ struct Weights {
 };
 
 struct Usable {
-  std::vector<std::uint32_t> points;
+  Array<std::uint32_t> points;
   Weights weights;
   Cube cube;
 };

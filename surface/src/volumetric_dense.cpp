@@ -50,6 +50,37 @@ std::array<Index, 8> cornerNodes(const DenseGrid& grid, const Eigen::Vector3i& c
   return nodes;
 }
 
+/// Numbers of a vector that one thread takes at a time.
+constexpr Index segment = 4096;
+
+/// visit(first, count) for the segments of a vector.
+template <typename Visit>
+void forEachSegment(Index size, int threads, const Visit& visit)
+{
+  parallelRanges(
+      size, threads, [&](Index begin, Index end) { visit(begin, end - begin); }, segment);
+}
+
+template <typename Value, typename Function>
+Value sumOfSegments(Index size, int threads, Value zero, const Function& function)
+{
+  return parallelReduce(
+      size, threads, zero, [&](Index begin, Index end) { return function(begin, end - begin); },
+      [](Value a, const Value& b) { return a += b; }, segment);
+}
+
+/// Products of the residual with its preconditioned self and with itself.
+struct Residual {
+  double rho = 0, squared = 0;
+
+  Residual& operator+=(const Residual& other)
+  {
+    rho += other.rho;
+    squared += other.squared;
+    return *this;
+  }
+};
+
 template <typename Visit>
 void forEachCell(int cells, const Visit& visit)
 {
@@ -119,7 +150,7 @@ void DenseSystem::addSample(const CoarseSample& sample, double scale, double poi
 /// Slices of cells in two colours: those of one colour share no node.
 void DenseSystem::multiply(const Eigen::VectorXd& x, Eigen::VectorXd& y, int threads) const
 {
-  y = regularization * x;
+  forEachSegment(x.size(), threads, [&](Index i, Index n) { y.segment(i, n) = regularization * x.segment(i, n); });
   for (Index color = 0; color < 2; ++color)
     parallelFor(shape_.cells / 2, shape_.cells < 16 ? 1 : threads,
                 [&](Index pair) { multiplySlice(static_cast<int>(2 * pair + color), x, y); });
@@ -145,21 +176,27 @@ void DenseSystem::multiplySlice(int z, const Eigen::VectorXd& x, Eigen::VectorXd
 
 void DenseSystem::solve(const Eigen::VectorXd& b, double tolerance, int threads, DenseGrid& x) const
 {
-  Eigen::VectorXd product(shape_.count());
+  const Index count = shape_.count();
+  Eigen::VectorXd product(count);
   multiply(x.values, product, threads);
-  Eigen::VectorXd r = b - product;
-  Eigen::VectorXd z = r.cwiseQuotient(diagonal_), p = z;
-  double rho = r.dot(z);
-  const double target = tolerance * b.norm();
-  for (int i = 0; i < most_iterations && r.norm() > target && rho > 0; ++i) {
+  Eigen::VectorXd r = b - product, p = r.cwiseQuotient(diagonal_);
+  Residual now{r.dot(p), r.squaredNorm()};
+  const double target = tolerance * tolerance * b.squaredNorm();
+  for (int i = 0; i < most_iterations && now.squared > target && now.rho > 0; ++i) {
     multiply(p, product, threads);
-    const double step = rho / p.dot(product);
-    x.values += step * p;
-    r -= step * product;
-    z = r.cwiseQuotient(diagonal_);
-    const double next = r.dot(z);
-    p = z + (next / rho) * p;
-    rho = next;
+    const double curvature = sumOfSegments(
+        count, threads, 0.0, [&](Index at, Index n) { return p.segment(at, n).dot(product.segment(at, n)); });
+    const double step = now.rho / curvature;
+    const Residual next = sumOfSegments(count, threads, Residual{}, [&](Index at, Index n) {
+      x.values.segment(at, n) += step * p.segment(at, n);
+      r.segment(at, n) -= step * product.segment(at, n);
+      product.segment(at, n) = r.segment(at, n).cwiseQuotient(diagonal_.segment(at, n));
+      return Residual{r.segment(at, n).dot(product.segment(at, n)), r.segment(at, n).squaredNorm()};
+    });
+    forEachSegment(count, threads, [&](Index at, Index n) {
+      p.segment(at, n) = product.segment(at, n) + (next.rho / now.rho) * p.segment(at, n);
+    });
+    now = next;
   }
 }
 } // namespace fresco::volumetric

@@ -15,7 +15,7 @@ constexpr float negligible_weight = 0.02f;
 
 void splatWeights(const BrickLevel& level, const SampleLevel& samples, int finest, NodeField& field, int threads)
 {
-  const std::vector<std::uint32_t> begin = sampleRanges(level, samples.codes, samples.depth, threads);
+  const Array<std::uint32_t> begin = sampleRanges(level, samples.codes, samples.depth, threads);
   const float scale = std::ldexp(1.f, level.depth - finest);
   splatBricks(level, begin, field, threads, [&](SplatBlock<1>& block, int b) {
     const std::array<int, 3> corner = level.corner(b);
@@ -39,8 +39,8 @@ Density::Density(const Octree& tree, const Samples& samples, int threads) : tree
 {
   fields_.resize(tree.levels.size());
   SampleLevel level = finestLevel(samples, threads);
-  for (const CoarseSample& s : level.samples)
-    total_weight_ += s.area;
+  total_weight_ = parallelSum(static_cast<Index>(level.samples.size()), threads, 0.f,
+                              [&](Index i) { return level.samples[static_cast<std::size_t>(i)].area; });
   for (int d = std::max(2, tree.depth - 1); d >= 2; --d) {
     const BrickLevel& bricks = tree.levels[static_cast<std::size_t>(d)];
     NodeField& field = fields_[static_cast<std::size_t>(d)];
@@ -99,7 +99,7 @@ Density::Estimate Density::at(int depth, Index brick, const Eigen::Vector3f& pos
 void estimateDensity(const Octree& tree, const Density& density, float samples_per_node, Samples& samples, int threads)
 {
   const BrickLevel& finest = tree.levels.back();
-  const std::vector<std::uint32_t> begin = sampleRanges(finest, samples.codes, tree.depth, threads);
+  const Array<std::uint32_t> begin = sampleRanges(finest, samples.codes, tree.depth, threads);
   const float shift = 0.5f * std::log2(samples_per_node);
   parallelFor(finest.size(), threads, [&](Index b) {
     for (std::uint32_t i = begin[static_cast<std::size_t>(b)]; i < begin[static_cast<std::size_t>(b) + 1]; ++i) {

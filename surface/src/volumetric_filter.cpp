@@ -31,7 +31,7 @@ float strengthOf(const BrickSums& sums)
 WaveFilter::WaveFilter(const BrickLevel& level, const SampleLevel& samples, int finest, int threads)
     : level_(level), threads_(threads), strengths_(level.codes.size())
 {
-  const std::vector<std::uint32_t> begin = sampleRanges(level, samples.codes, samples.depth, threads);
+  const Array<std::uint32_t> begin = sampleRanges(level, samples.codes, samples.depth, threads);
   const float scale = std::ldexp(1.f, level.depth - finest);
   std::vector<BrickSums> sums(level.codes.size());
   parallelFor(level.size(), threads, [&](Index b) {

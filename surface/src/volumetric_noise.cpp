@@ -17,7 +17,7 @@ constexpr float median_of_difference = 0.6745f * 1.41421356f;
 
 /// Standard deviation across the surface, in finest cells, over samples
 /// begin..end - 1.
-float noiseOfRun(const std::vector<Sample>& samples, Index begin, Index end)
+float noiseOfRun(const Array<Sample>& samples, Index begin, Index end)
 {
   std::vector<float> offsets;
   for (Index i = begin; i < end; ++i)

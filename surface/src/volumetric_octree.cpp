@@ -28,7 +28,7 @@ Masks touchMasks()
   return masks;
 }
 
-std::vector<Occupied> occupiedBricks(const std::vector<std::uint64_t>& cell_codes)
+std::vector<Occupied> occupiedBricks(const Array<std::uint64_t>& cell_codes)
 {
   std::vector<Occupied> bricks;
   for (const std::uint64_t code : cell_codes) {
@@ -164,7 +164,7 @@ Octree linkBricks(std::vector<std::vector<std::uint64_t>> codes, int full_depth,
   return tree;
 }
 
-Octree buildOctree(const std::vector<std::uint64_t>& cell_codes, int depth, int full_depth, int threads)
+Octree buildOctree(const Array<std::uint64_t>& cell_codes, int depth, int full_depth, int threads)
 {
   std::vector<std::vector<std::uint64_t>> codes(static_cast<std::size_t>(depth) + 1);
   std::vector<Occupied> occupied = occupiedBricks(cell_codes);
@@ -175,7 +175,7 @@ Octree buildOctree(const std::vector<std::uint64_t>& cell_codes, int depth, int 
   return linkBricks(std::move(codes), full_depth, threads);
 }
 
-std::vector<Index> countBricks(const std::vector<std::uint64_t>& cell_codes, int depth, int full_depth)
+std::vector<Index> countBricks(const Array<std::uint64_t>& cell_codes, int depth, int full_depth)
 {
   std::vector<Index> counts(static_cast<std::size_t>(depth) + 1, 0);
   std::vector<Occupied> occupied = occupiedBricks(cell_codes);

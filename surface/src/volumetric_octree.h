@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+#include "volumetric_array.h"
 #include <Eigen/Core>
 #include <array>
 #include <cstddef>
@@ -54,14 +55,14 @@ struct Octree {
 
 /// @param cell_codes sorted Morton codes of the finest cells that hold samples
 /// @param full_depth all bricks exist down to this depth, 2..depth
-Octree buildOctree(const std::vector<std::uint64_t>& cell_codes, int depth, int full_depth, int threads);
+Octree buildOctree(const Array<std::uint64_t>& cell_codes, int depth, int full_depth, int threads);
 
 /// @param codes by depth, from 2 on, sorted; the parent of each brick must be
 /// there
 Octree linkBricks(std::vector<std::vector<std::uint64_t>> codes, int full_depth, int threads);
 
 /// Bricks per depth that buildOctree() would make.
-std::vector<Index> countBricks(const std::vector<std::uint64_t>& cell_codes, int depth, int full_depth);
+std::vector<Index> countBricks(const Array<std::uint64_t>& cell_codes, int depth, int full_depth);
 
 /// One float per node and brick of a level; the upper faces are copies of the
 /// neighbours' values where there is one.

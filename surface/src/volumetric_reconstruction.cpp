@@ -88,7 +88,7 @@ Solution solve(const Octree& tree, Constraints& constraints, const std::vector<S
 float levelSetValue(const Octree& tree, const NodeField& chi, const Samples& samples, int threads)
 {
   const BrickLevel& level = tree.levels.back();
-  const std::vector<std::uint32_t> begin = sampleRanges(level, samples.codes, tree.depth, threads);
+  const Array<std::uint32_t> begin = sampleRanges(level, samples.codes, tree.depth, threads);
   const Eigen::Array2d sums = parallelSum(level.size(), threads, Eigen::Array2d(0, 0), [&](Index b) {
     Eigen::Array2d sum(0, 0);
     const Eigen::Vector3f origin = level.origin(b);

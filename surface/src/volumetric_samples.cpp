@@ -27,7 +27,7 @@ Eigen::Vector3f toCells(const PointSet& set, Index i, const Cube& cube)
 /// lowest bits of the code are left out and made up for by sorting the few points that then look alike.
 class SortedPoints {
 public:
-  SortedPoints(const PointSet& set, const std::vector<std::uint32_t>& usable, const Cube& cube, int threads)
+  SortedPoints(const PointSet& set, const Array<std::uint32_t>& usable, const Cube& cube, int threads)
       : set_(set), cube_(cube)
   {
     while (static_cast<std::uint64_t>(set.size()) >> index_bits_ != 0)
@@ -69,7 +69,7 @@ private:
   const PointSet& set_;
   const Cube& cube_;
   int index_bits_ = 1, dropped_bits_ = 0;
-  std::vector<std::uint64_t> keys_;
+  Array<std::uint64_t> keys_;
 };
 
 struct Sums {
@@ -116,7 +116,7 @@ Samples gatherSamples(const PointSet& set, const VolumetricOptions& options)
   const SortedPoints points(set, usable.points, result.cube, options.threads);
   usable.points = {};
   const auto codeAt = [&](Index k) { return points.code(static_cast<std::size_t>(k)); };
-  const std::vector<std::uint32_t> runs = runBegins(static_cast<Index>(points.size()), options.threads, codeAt);
+  const Array<std::uint32_t> runs = runBegins(static_cast<Index>(points.size()), options.threads, codeAt);
   const std::size_t n = runs.size() - 1;
   result.codes.resize(n);
   result.samples.resize(n);
@@ -131,6 +131,7 @@ Samples gatherSamples(const PointSet& set, const VolumetricOptions& options)
     const double length = sums.normal.norm();
     sample.normal = (sums.normal / std::max(length, 1e-12)).cast<float>();
     sample.area = static_cast<float>(sums.weight);
+    sample.depth = sample.noise = 0.f;
     if (!result.attributes.empty())
       result.attributes[i] = (sums.attributes / sums.weight).cast<float>();
   });
@@ -141,11 +142,13 @@ SampleLevel finestLevel(const Samples& samples, int threads)
 {
   SampleLevel level;
   level.depth = samples.cube.depth;
-  level.codes = samples.codes;
+  level.codes.resize(samples.codes.size());
   level.samples.resize(samples.samples.size());
   parallelFor(static_cast<Index>(samples.samples.size()), threads, [&](Index i) {
-    const Sample& s = samples.samples[static_cast<std::size_t>(i)];
-    level.samples[static_cast<std::size_t>(i)] = {s.position, s.area, s.noise, s.depth};
+    const auto at = static_cast<std::size_t>(i);
+    const Sample& s = samples.samples[at];
+    level.codes[at] = samples.codes[at];
+    level.samples[at] = {s.position, s.area, s.noise, s.depth};
   });
   return level;
 }
@@ -153,7 +156,7 @@ SampleLevel finestLevel(const Samples& samples, int threads)
 SampleLevel coarsen(const SampleLevel& fine, int threads)
 {
   const auto parentOf = [&](Index i) { return fine.codes[static_cast<std::size_t>(i)] >> 3; };
-  const std::vector<std::uint32_t> runs = runBegins(static_cast<Index>(fine.codes.size()), threads, parentOf);
+  const Array<std::uint32_t> runs = runBegins(static_cast<Index>(fine.codes.size()), threads, parentOf);
   SampleLevel coarse;
   coarse.depth = fine.depth - 1;
   coarse.codes.resize(runs.size() - 1);
@@ -176,11 +179,10 @@ SampleLevel coarsen(const SampleLevel& fine, int threads)
   return coarse;
 }
 
-std::vector<std::uint32_t> sampleRanges(const BrickLevel& level, const std::vector<std::uint64_t>& codes, int depth,
-                                        int threads)
+Array<std::uint32_t> sampleRanges(const BrickLevel& level, const Array<std::uint64_t>& codes, int depth, int threads)
 {
   const int shift = 3 * (depth - level.depth + 2);
-  std::vector<std::uint32_t> begin(level.codes.size() + 1);
+  Array<std::uint32_t> begin(level.codes.size() + 1);
   parallelRanges(level.size(), threads, [&](Index first, Index last) {
     const auto isBefore = [&](std::uint64_t code, std::uint64_t brick) { return code >> shift < brick; };
     auto at = std::lower_bound(codes.begin(), codes.end(), level.codes[static_cast<std::size_t>(first)], isBefore);

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+#include "volumetric_array.h"
 #include "volumetric_octree.h"
 #include <Eigen/Geometry>
 #include <fresco/common/point_set.h>
 #include <fresco/surface/core/volumetric_reconstruction.h>
-#include <vector>
 namespace fresco::volumetric {
 /// The cube that the octree divides.
 struct Cube {
@@ -18,11 +18,11 @@ struct Cube {
 /// Mean of the points within one finest cell.
 struct Sample {
   Eigen::Vector3f position; ///< in cells of the finest depth, from the cube's corner
-  float area = 0;           ///< surface that it stands for, in faces of a finest cell;
+  float area;               ///< surface that it stands for, in faces of a finest cell;
                             ///< its weight (1 = one point) until known
   Eigen::Vector3f normal;   ///< unit
-  float depth = 0;          ///< octree depth that the data sustain here
-  float noise = 0;          ///< standard deviation of the position across the surface,
+  float depth;              ///< octree depth that the data sustain here
+  float noise;              ///< standard deviation of the position across the surface,
                             ///< in finest cells
 };
 
@@ -31,10 +31,10 @@ using Attributes = Eigen::Vector4f;
 
 struct Samples {
   Cube cube;
-  std::vector<std::uint64_t> codes;   ///< Morton codes of the finest cells, strictly rising
-  std::vector<Sample> samples;        ///< by code
-  std::vector<Attributes> attributes; ///< by code; empty if the points have
-                                      ///< neither colour nor intensity
+  Array<std::uint64_t> codes;   ///< Morton codes of the finest cells, strictly rising
+  Array<Sample> samples;        ///< by code
+  Array<Attributes> attributes; ///< by code; empty if the points have
+                                ///< neither colour nor intensity
   Index used_points = 0, left_out_points = 0;
 };
 
@@ -46,16 +46,16 @@ Samples gatherSamples(const PointSet& points, const VolumetricOptions& options);
 /// Samples joined within the cells of a coarser depth.
 struct CoarseSample {
   Eigen::Vector3f position; ///< in cells of the finest depth
-  float area = 0;
-  float noise = 0; ///< as Sample::noise
-  float depth = 0; ///< as Sample::depth
+  float area;
+  float noise; ///< as Sample::noise
+  float depth; ///< as Sample::depth
 };
 
 /// Samples of one octree level and the range [begin[b], begin[b + 1]) that lies
 /// in brick b of a level.
 struct SampleLevel {
-  std::vector<std::uint64_t> codes; ///< of cells of `depth`
-  std::vector<CoarseSample> samples;
+  Array<std::uint64_t> codes; ///< of cells of `depth`
+  Array<CoarseSample> samples;
   int depth = 0;
 };
 
@@ -64,6 +64,5 @@ SampleLevel coarsen(const SampleLevel& fine, int threads);
 
 /// First sample of each brick of `level` among sorted codes of depth `depth` >=
 /// the level's, and their count at the end.
-std::vector<std::uint32_t> sampleRanges(const BrickLevel& level, const std::vector<std::uint64_t>& codes, int depth,
-                                        int threads);
+Array<std::uint32_t> sampleRanges(const BrickLevel& level, const Array<std::uint64_t>& codes, int depth, int threads);
 } // namespace fresco::volumetric

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+#include "volumetric_array.h"
 #include <cstdint>
 #include <fresco/common/parallel.h>
-#include <vector>
 namespace fresco::volumetric {
 /// The numbers i of 0..n-1 with holds(i), rising.
 /// @param append_end n follows them, as the end of the last run
 template <typename Predicate>
-std::vector<std::uint32_t> selectIndices(Index n, int threads, const Predicate& holds, bool append_end = false)
+Array<std::uint32_t> selectIndices(Index n, int threads, const Predicate& holds, bool append_end = false)
 {
   constexpr Index chunk = 1 << 14;
   std::vector<std::size_t> place(static_cast<std::size_t>((n + chunk - 1) / chunk) + 1, 0);
@@ -27,7 +27,7 @@ std::vector<std::uint32_t> selectIndices(Index n, int threads, const Predicate& 
     p = total;
     total += count;
   }
-  std::vector<std::uint32_t> indices(total + (append_end ? 1 : 0));
+  Array<std::uint32_t> indices(total + (append_end ? 1 : 0));
   parallelRanges(
       n, threads,
       [&](Index begin, Index end) {
@@ -44,7 +44,7 @@ std::vector<std::uint32_t> selectIndices(Index n, int threads, const Predicate& 
 
 /// First element of each run of equal keys among 0..n-1, and n.
 template <typename Key>
-std::vector<std::uint32_t> runBegins(Index n, int threads, const Key& key)
+Array<std::uint32_t> runBegins(Index n, int threads, const Key& key)
 {
   return selectIndices(
       n, threads, [&](Index i) { return i == 0 || key(i) != key(i - 1); }, true);

@@ -48,8 +48,8 @@ private:
   };
 
   const BrickLevel& level_;
-  std::vector<std::uint32_t> begin_;
-  std::vector<Constraint> samples_;
+  Array<std::uint32_t> begin_;
+  Array<Constraint> samples_;
   float laplacian_rows_[27][64];
   int threads_;
 };

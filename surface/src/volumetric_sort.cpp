@@ -23,7 +23,7 @@ void placeChunks(std::vector<Counts>& counts)
     }
 }
 
-void sortDigit(const std::vector<std::uint64_t>& from, std::vector<std::uint64_t>& to, int shift, int threads)
+void sortDigit(const Array<std::uint64_t>& from, Array<std::uint64_t>& to, int shift, int threads)
 {
   const auto n = static_cast<Index>(from.size());
   const Index chunk = std::max<Index>(1 << 14, (n + 31) / 32);
@@ -52,9 +52,9 @@ void sortDigit(const std::vector<std::uint64_t>& from, std::vector<std::uint64_t
 }
 } // namespace
 
-void sortBits(std::vector<std::uint64_t>& items, int first_bit, int bits, int threads)
+void sortBits(Array<std::uint64_t>& items, int first_bit, int bits, int threads)
 {
-  std::vector<std::uint64_t> other(items.size());
+  Array<std::uint64_t> other(items.size());
   for (int shift = first_bit; shift < first_bit + bits; shift += digit_bits) {
     sortDigit(items, other, shift, threads);
     items.swap(other);

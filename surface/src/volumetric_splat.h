@@ -126,7 +126,7 @@ private:
 /// @param begin see sampleRanges()
 /// @tparam reach nodes beyond a brick that its samples reach
 template <int reach = 1, typename Splat>
-void splatBricks(const BrickLevel& level, const std::vector<std::uint32_t>& begin, NodeField& field, int threads,
+void splatBricks(const BrickLevel& level, const Array<std::uint32_t>& begin, NodeField& field, int threads,
                  const Splat& splat)
 {
   for (const std::vector<BrickRun>& runs : level.colors)

@@ -77,14 +77,14 @@ TEST(VolumetricLaws, SelectedIndicesDoNotDependOnThreads)
 {
   const auto odd = [](Index i) { return i % 7 == 3 || i % 1000 == 0; };
   for (const Index n : {0, 1, 16384, 50000}) {
-    std::vector<std::uint32_t> expected;
+    Array<std::uint32_t> expected;
     for (Index i = 0; i < n; ++i)
       if (odd(i))
         expected.push_back(static_cast<std::uint32_t>(i));
     EXPECT_EQ(selectIndices(n, 1, odd), expected);
     EXPECT_EQ(selectIndices(n, 3, odd), expected);
   }
-  EXPECT_EQ(runBegins(7, 2, [](Index i) { return i / 3; }), (std::vector<std::uint32_t>{0, 3, 6, 7}));
+  EXPECT_EQ(runBegins(7, 2, [](Index i) { return i / 3; }), (Array<std::uint32_t>{0, 3, 6, 7}));
 }
 
 TEST(VolumetricLaws, FarOutliersNeitherWasteTheOctreeNorSpoilTheMesh)

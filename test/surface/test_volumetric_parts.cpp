@@ -24,10 +24,10 @@ TEST(VolumetricParts, MortonCodesRoundTrip)
 TEST(VolumetricParts, RadixSortIsStable)
 {
   std::mt19937_64 random(2);
-  std::vector<std::uint64_t> items(100000);
+  Array<std::uint64_t> items(100000);
   for (std::uint64_t i = 0; i < items.size(); ++i)
     items[i] = (random() & 0x3fffff) << 20 | i;
-  std::vector<std::uint64_t> expected = items;
+  Array<std::uint64_t> expected = items;
   std::stable_sort(expected.begin(), expected.end(),
                    [](std::uint64_t a, std::uint64_t b) { return a >> 20 < b >> 20; });
   sortBits(items, 20, 22, 3);
