@@ -9,11 +9,11 @@
 #include "volumetric_solver.h"
 #include "volumetric_specks.h"
 #include "volumetric_transfer.h"
-#include "volumetric_trim.h"
 #include <algorithm>
 #include <cmath>
 #include <fresco/common/parallel.h>
 #include <fresco/common/require.h>
+#include <fresco/surface/core/mesh_trimming.h>
 #include <fresco/surface/core/volumetric_reconstruction.h>
 namespace fresco {
 namespace {
@@ -193,7 +193,7 @@ VolumetricResult reconstruct(Samples&& samples, const Source& source, const Volu
   if (trim > 0) {
     result.trim_depth = trim;
     const double trim_cell = samples.cube.side / std::exp2(result.trim_depth);
-    result.mesh = trimMesh(result.mesh, "support", trim, trim_patch * trim_cell * trim_cell);
+    result.mesh = trimMesh(result.mesh, support, trim, trim_patch * trim_cell * trim_cell);
   }
   report(progress, "done", 1.0);
   return result;

@@ -2,6 +2,7 @@
 #include "model/free_space.h"
 #include <cmath>
 #include <gtest/gtest.h>
+#include <set>
 namespace {
 using namespace fresco;
 
@@ -110,9 +111,29 @@ TEST(FreeSpace, SpecksStayAndPartsGo)
       removed[static_cast<std::size_t>(21 * y + x)] = 1;
   removed[10 * 21 + 15] = 0; // an island
   const TriangleMesh half = withoutVertices(mesh, removed);
-  EXPECT_EQ(half.faceCount(), 2 * 20 * 10);
-  EXPECT_EQ(half.vertices.row(0).maxCoeff(), 10.f);
+  EXPECT_GT(half.vertices.row(0).maxCoeff(), 10.f);
+  EXPECT_LT(half.vertices.row(0).maxCoeff(), 12.f); // at the corners; 10.5 elsewhere
   EXPECT_EQ(half.fields.at("support"), half.vertices.row(0).transpose());
   EXPECT_THROW(withoutVertices(mesh, {}), std::invalid_argument);
+}
+
+TEST(FreeSpace, BordersHaveNoTeeth)
+{
+  const TriangleMesh mesh = grid();
+  std::vector<char> removed(21 * 21, 0);
+  for (int y = 0; y < 21; ++y)
+    for (int x = 10 + y / 2 % 2; x < 21; ++x)
+      removed[static_cast<std::size_t>(21 * y + x)] = 1;
+  const TriangleMesh half = withoutVertices(mesh, removed);
+  std::set<std::pair<int, int>> directed;
+  for (Index f = 0; f < half.faceCount(); ++f)
+    for (int k = 0; k < 3; ++k)
+      directed.insert({half.faces(k, f), half.faces((k + 1) % 3, f)});
+  double length = 0;
+  for (const auto& [a, b] : directed)
+    if (half.vertices(0, a) > 8 && half.vertices(0, b) > 8 && half.vertices(1, a) > 2 && half.vertices(1, a) < 18 &&
+        directed.count({b, a}) == 0)
+      length += (half.vertices.col(a) - half.vertices.col(b)).norm();
+  EXPECT_LT(length, 16 * 1.15); // along the faces' own edges it is 24
 }
 } // namespace

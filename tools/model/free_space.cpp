@@ -5,6 +5,7 @@
 #include <fresco/common/parallel.h>
 #include <fresco/common/require.h>
 #include <fresco/filters/core/neighbors.h>
+#include <fresco/surface/core/mesh_trimming.h>
 namespace fresco {
 namespace {
 constexpr int beams_around = 8;
@@ -141,14 +142,7 @@ TriangleMesh withoutVertices(const TriangleMesh& mesh, std::vector<char> removed
     for (std::size_t v = 0; v < removed.size(); ++v)
       removed[v] = votes[v] != 0 ? votes[v] > 0 : removed[v];
   }
-  TriangleMesh kept = mesh;
-  Index count = 0;
-  for (Index f = 0; f < mesh.faceCount(); ++f) {
-    const auto gone = [&](int k) { return removed[static_cast<std::size_t>(mesh.faces(k, f))] != 0; };
-    if (!gone(0) && !gone(1) && !gone(2))
-      kept.faces.col(count++) = mesh.faces.col(f);
-  }
-  kept.faces.conservativeResize(3, count);
-  return removeUnreferencedVertices(kept);
+  const auto marks = Eigen::Map<const Eigen::Matrix<char, Eigen::Dynamic, 1>>(removed.data(), mesh.vertexCount());
+  return trimMesh(mesh, 1.f - marks.cast<float>().array(), 0.5f, 0.0);
 }
 } // namespace fresco

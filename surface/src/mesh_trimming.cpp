@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "volumetric_trim.h"
 #include "volumetric_sets.h"
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <fresco/common/require.h>
+#include <fresco/surface/core/mesh_trimming.h>
 #include <unordered_map>
 #include <vector>
-namespace fresco::volumetric {
+namespace fresco {
 namespace {
 /// Cuts keep this distance from the ends of an edge (edge length 1).
 constexpr float end_margin = 1e-3f;
 
 constexpr int smoothing_rounds = 4;
-/// Distance from the level line, in octree depths, of values that changed
-/// sides.
+/// Distance from the level line of values that changed sides.
 constexpr float flipped_margin = 0.1f;
 
 /// Mean of each vertex's value and those of its neighbours.
@@ -40,7 +40,7 @@ double faceArea(const TriangleMesh& mesh, Index f)
 void flipPatches(const TriangleMesh& mesh, float least, double patch_area, Eigen::VectorXf& values)
 {
   const auto above = [&](int v) { return values[v] >= least; };
-  DisjointSets patches(mesh.vertexCount());
+  volumetric::DisjointSets patches(mesh.vertexCount());
   for (Index f = 0; f < mesh.faceCount(); ++f)
     for (int k = 0; k < 3; ++k)
       if (const int a = mesh.faces(k, f), b = mesh.faces((k + 1) % 3, f); above(a) == above(b))
@@ -117,9 +117,10 @@ Matrix extended(const Matrix& values, const std::vector<Cut>& cuts)
 }
 } // namespace
 
-TriangleMesh trimMesh(const TriangleMesh& mesh, const std::string& field, float least, double patch_area)
+TriangleMesh trimMesh(const TriangleMesh& mesh, Eigen::VectorXf values, float least, double patch_area)
 {
-  Eigen::VectorXf values = mesh.fields.at(field);
+  require(values.size() == mesh.vertexCount(), "trimming: ", values.size(), " values for ", mesh.vertexCount(),
+          " vertices");
   for (int i = 0; i < smoothing_rounds; ++i)
     values = smoothed(mesh, values);
   flipPatches(mesh, least, patch_area, values);
@@ -136,4 +137,4 @@ TriangleMesh trimMesh(const TriangleMesh& mesh, const std::string& field, float 
   cut.faces = Eigen::Map<const Faces>(trimmer.faces_.data(), 3, static_cast<Index>(trimmer.faces_.size()) / 3);
   return removeUnreferencedVertices(cut);
 }
-} // namespace fresco::volumetric
+} // namespace fresco
