@@ -48,12 +48,13 @@ Corners cornersOf(const TexturedMesh& model, Index face)
 /// Texels that a place is inside of the nearest side of the face, negative outside.
 double depthOf(const Corners& corners, const Eigen::Vector2d& place)
 {
+  const double turn = corners.twice_area > 0 ? 1 : -1;
   double least = 1e9;
   for (int k = 0; k < 3; ++k) {
     const Eigen::Vector2d side = corners.at.col((k + 1) % 3) - corners.at.col(k), to = place - corners.at.col(k);
-    least = std::min(least, (side.x() * to.y() - side.y() * to.x()) / std::max(side.norm(), 1e-9));
+    least = std::min(least, turn * (side.x() * to.y() - side.y() * to.x()) / std::max(side.norm(), 1e-9));
   }
-  return corners.twice_area > 0 ? least : -least;
+  return least;
 }
 
 std::array<Eigen::Vector3f, 3> triangleOf(const TriangleMesh& mesh, Index face)

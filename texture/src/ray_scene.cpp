@@ -61,7 +61,7 @@ DepthMap selectWithin(const DepthMap& map, int radius, const Select& select)
 } // namespace
 
 struct RayScene::Embree {
-  RTCDevice device = rtcNewDevice(nullptr);
+  RTCDevice device = rtcNewDevice(FRESCO_EMBREE_SETTINGS);
   RTCScene scene = device ? rtcNewScene(device) : nullptr;
   Embree()
   {

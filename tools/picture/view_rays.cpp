@@ -6,7 +6,7 @@
 #include <stdexcept>
 namespace fresco {
 struct ViewRays::Data {
-  RTCDevice device = rtcNewDevice(nullptr);
+  RTCDevice device = rtcNewDevice(FRESCO_EMBREE_SETTINGS);
   RTCScene scene = nullptr;
   ~Data()
   {

@@ -17,7 +17,7 @@ struct VirtualRays::Handles {
 
 VirtualRays::VirtualRays(const TriangleMesh& mesh) : handles_(std::make_unique<Handles>())
 {
-  handles_->device = rtcNewDevice(nullptr);
+  handles_->device = rtcNewDevice(FRESCO_EMBREE_SETTINGS);
   if (!handles_->device)
     throw std::runtime_error("ray casting: Embree gives no device");
   handles_->scene = rtcNewScene(handles_->device);
