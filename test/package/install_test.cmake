@@ -1,5 +1,5 @@
 # Installs the build tree, builds examples/ against the installed package alone and runs them.
-#   cmake -D BINARY_DIR=... -D SOURCE_DIR=... -D SCRATCH=... -D SOVERSION=0.1 -P install_test.cmake
+#   cmake -D BINARY_DIR=... -D SOURCE_DIR=... -D SCRATCH=... -D SOVERSION=0.1 [-D SANITIZE=...] -P install_test.cmake
 function(run)
   execute_process(COMMAND ${ARGN} RESULT_VARIABLE status)
   if(NOT status EQUAL 0)
@@ -16,10 +16,14 @@ endfunction()
 
 set(prefix "${SCRATCH}/prefix")
 set(build "${SCRATCH}/build")
+set(flags "-DCMAKE_CXX_COMPILER_LAUNCHER=${LAUNCHER}")
+if(SANITIZE) # the runtime that the libraries want must be the program's
+  list(APPEND flags "-DCMAKE_EXE_LINKER_FLAGS=-fsanitize=${SANITIZE}")
+endif()
 file(REMOVE_RECURSE "${SCRATCH}")
 run("${CMAKE_COMMAND}" --install "${BINARY_DIR}" --prefix "${prefix}")
 run("${CMAKE_COMMAND}" -S "${SOURCE_DIR}/examples" -B "${build}" -G Ninja -DCMAKE_BUILD_TYPE=Release
-    "-DCMAKE_PREFIX_PATH=${prefix}" "-DCMAKE_CXX_COMPILER_LAUNCHER=${LAUNCHER}")
+    "-DCMAKE_PREFIX_PATH=${prefix}" ${flags})
 file(STRINGS "${build}/CMakeCache.txt" found REGEX "^fresco_DIR:")
 if(NOT found MATCHES "${prefix}")
   message(FATAL_ERROR "the package was not found in the installed tree but elsewhere: ${found}")
@@ -50,7 +54,7 @@ file(WRITE "${snippets}/CMakeLists.txt" "cmake_minimum_required(VERSION 3.20)\np
      "find_package(fresco REQUIRED COMPONENTS surface filters)\nadd_executable(migration migration.cpp)\n"
      "target_link_libraries(migration PRIVATE fresco::surface fresco::filters)\n")
 run("${CMAKE_COMMAND}" -S "${snippets}" -B "${snippets}/build" -G Ninja "-DCMAKE_PREFIX_PATH=${prefix}"
-    "-DCMAKE_CXX_COMPILER_LAUNCHER=${LAUNCHER}")
+    ${flags})
 run("${CMAKE_COMMAND}" --build "${snippets}/build")
 
 # What a package holds besides.
