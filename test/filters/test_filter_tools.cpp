@@ -10,7 +10,6 @@
 #include <fresco/filters/core/oriented_normals.h>
 #include <fresco/filters/core/veil_points.h>
 #include <fstream>
-#include <pcl/common/io.h>
 #include <sys/wait.h>
 namespace fresco {
 namespace {
@@ -114,7 +113,9 @@ std::string bytesOf(const CloudFile& file, const std::string& name, std::size_t 
   for (const auto& field : file.cloud.fields)
     if (field.name == name)
       return {reinterpret_cast<const char*>(file.cloud.data.data()) + i * file.cloud.point_step + field.offset,
-              pcl::getFieldSize(field.datatype) * field.count};
+              name == "label"    ? 2u
+              : name == "spread" ? 24u
+                                 : 4u};
   return "none";
 }
 
