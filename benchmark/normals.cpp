@@ -23,7 +23,7 @@ namespace {
 struct MeasureOptions {
   std::string scene = "conference_room";
   int stations = 2, points = 1000000, k = 16;
-  bool oracle = false;
+  bool oracle = false, merged = false;
   float edge = 0.02f;    ///< metres to a crease: "beside an edge"
   float plane = 0.1f;    ///< metres without any bend around: "on planes"
   float bend = 1.f;      ///< degrees between faces of one plane at most
@@ -35,6 +35,9 @@ struct Sample {
   Points points, truth;    ///< sensor frame
   Points exact;            ///< where the beams meet the faces, without noise
   std::vector<char> place; ///< 0 = beside an edge, 1 = on a plane, 2 = elsewhere: bent surfaces, near edges
+  Points viewpoints = Vector3f::Zero(); ///< 3x1 or 3xN
+
+  Vector3f ray(Index i) const { return points.col(i) - viewpoints.col(viewpoints.cols() == 1 ? 0 : i); }
 };
 
 Vector3f faceNormal(const TriangleMesh& mesh, Index face)
@@ -86,7 +89,11 @@ Sample takeSample(const LitScene& lit, const Creases& creases, const Vector3f& s
   pose.topRightCorner<3, 1>() = station.cast<double>() + lit.scene.mesh.origin;
   const LaserScan scan = scanScene(lit, pose, laser, 0);
   const Index n = scan.points.size();
-  Sample sample{scan.points.points, Points(3, n), Points(3, n), std::vector<char>(static_cast<std::size_t>(n))};
+  Sample sample;
+  sample.points = scan.points.points;
+  sample.truth.resize(3, n);
+  sample.exact.resize(3, n);
+  sample.place.resize(static_cast<std::size_t>(n));
   for (Index i = 0; i < n; ++i) {
     const Vector3f normal = faceNormal(lit.scene.mesh, scan.faces[static_cast<std::size_t>(i)]);
     sample.truth.col(i) = scan.mixed[static_cast<std::size_t>(i)] ? Vector3f::Constant(NAN) : normal;
@@ -99,6 +106,28 @@ Sample takeSample(const LitScene& lit, const Creases& creases, const Vector3f& s
                                                                                                      : 2;
   }
   return sample;
+}
+
+/// All scans as one, in the frame of the room.
+Sample merge(const std::vector<Sample>& scans, const Points& stations)
+{
+  Index n = 0, at = 0;
+  for (const Sample& scan : scans)
+    n += scan.points.cols();
+  Sample all;
+  for (Points* values : {&all.points, &all.truth, &all.exact, &all.viewpoints})
+    values->resize(3, n);
+  for (std::size_t s = 0; s < scans.size(); ++s) {
+    const Index count = scans[s].points.cols();
+    const Vector3f station = stations.col(static_cast<Index>(s));
+    all.points.middleCols(at, count) = scans[s].points.colwise() + station;
+    all.exact.middleCols(at, count) = scans[s].exact.colwise() + station;
+    all.truth.middleCols(at, count) = scans[s].truth;
+    all.viewpoints.middleCols(at, count).colwise() = station;
+    all.place.insert(all.place.end(), scans[s].place.begin(), scans[s].place.end());
+    at += count;
+  }
+  return all;
 }
 
 struct Errors {
@@ -137,8 +166,10 @@ Points timed(Errors& errors, const Work& work)
   return result;
 }
 
-Points pclNormals(const Points& points, int k, int threads)
+/// Each turned to the station that saw it.
+Points pclNormals(const Sample& sample, int k, int threads)
 {
+  const Points& points = sample.points;
   auto cloud = pcl::make_shared<pcl::PointCloud<pcl::PointXYZ>>();
   for (Index i = 0; i < points.cols(); ++i)
     cloud->push_back({points(0, i), points(1, i), points(2, i)});
@@ -149,8 +180,10 @@ Points pclNormals(const Points& points, int k, int threads)
   pcl::PointCloud<pcl::Normal> output;
   estimation.compute(output);
   Points normals(3, points.cols());
-  for (Index i = 0; i < points.cols(); ++i)
-    normals.col(i) = output[static_cast<std::size_t>(i)].getNormalVector3fMap();
+  for (Index i = 0; i < points.cols(); ++i) {
+    const Vector3f normal = output[static_cast<std::size_t>(i)].getNormalVector3fMap();
+    normals.col(i) = normal.dot(sample.ray(i)) > 0 ? Vector3f(-normal) : normal;
+  }
   return normals;
 }
 
@@ -162,7 +195,7 @@ Points oracleNormals(const Sample& sample, const PointTree& tree, int k, int thr
   Points normals = Points::Constant(3, sample.points.cols(), NAN);
   parallelFor(lists.size(), threads, [&](Index i) {
     const int column = tree.columns()[static_cast<std::size_t>(i)];
-    const Vector3f truth = sample.truth.col(column), here = sample.points.col(column);
+    const Vector3f truth = sample.truth.col(column), here = sample.points.col(column), ray = sample.ray(column);
     Eigen::Matrix3f A = Eigen::Matrix3f::Zero();
     Vector3f sum = Vector3f::Zero();
     int count = 0;
@@ -178,8 +211,8 @@ Points oracleNormals(const Sample& sample, const PointTree& tree, int k, int thr
     }
     const auto n = static_cast<float>(std::max(1, count));
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f> eigen(A / n - sum / n * (sum / n).transpose());
-    const Vector3f normal = count < 3 ? Vector3f(-here.normalized()) : Vector3f(eigen.eigenvectors().col(0));
-    normals.col(column) = normal.dot(here) > 0 ? Vector3f(-normal) : normal;
+    const Vector3f normal = count < 3 ? Vector3f(-ray.normalized()) : Vector3f(eigen.eigenvectors().col(0));
+    normals.col(column) = normal.dot(ray) > 0 ? Vector3f(-normal) : normal;
   });
   return normals;
 }
@@ -201,13 +234,13 @@ void compareAtNoise(const std::vector<Sample>& samples, int k, int threads)
   Errors pcl_errors, ours, smooth[3];
   const int rounds[3] = {1, 3, 5};
   for (const Sample& sample : samples) {
-    pcl_errors.add(sample, timed(pcl_errors, [&] { return pclNormals(sample.points, k, threads); }));
+    pcl_errors.add(sample, timed(pcl_errors, [&] { return pclNormals(sample, k, threads); }));
     NormalOptions options;
     options.k = k;
     options.threads = threads;
     PointSet set;
     set.points = sample.points;
-    set.viewpoints = Vector3f::Zero();
+    set.viewpoints = sample.viewpoints;
     const Points normals = timed(ours, [&] { return estimateNormals(set, options).normals; });
     ours.add(sample, normals);
     for (int r = 0; r < 3; ++r) {
@@ -234,6 +267,7 @@ int main(int argc, char** argv)
               "Angles between estimated and true normals of generated laser scans, beside edges and elsewhere.");
     args.option("scene", options.scene, "conference_room, apartment or a mesh file");
     args.flag("oracle", options.oracle, "also plane fits to those of k neighbours that truly lie on one surface");
+    args.flag("merged", options.merged, "all stations in one cloud; else each station for itself");
     args.option("stations", options.stations, "laser stations");
     args.option("points", options.points, "laser points per station, about");
     args.option("k", options.k, "neighbours");
@@ -257,6 +291,8 @@ int main(int argc, char** argv)
       std::vector<Sample> samples;
       for (Index s = 0; s < stations.cols(); ++s)
         samples.push_back(takeSample({scene, rays, light}, creases, stations.col(s), laser, options));
+      if (options.merged)
+        samples = {merge(samples, stations)};
       std::printf("noise %g m, %d points per station\n", noise, options.points);
       std::printf("| k = %-28d | beside edges, > 20 | on planes, > 20 | elsewhere, > 20 | s | CPU s |\n"
                   "|---|---|---|---|---|---|\n",

@@ -1,9 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "support/tool.h"
+#include <algorithm>
+#include <array>
 #include <cstring>
 #include <fresco/common/cloud_file.h>
 #include <fresco/filters/core/bilateral_normals.h>
 #include <fresco/filters/core/oriented_normals.h>
+#include <limits>
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
+#include <pcl/common/io.h>
 using namespace fresco;
 
 namespace {
@@ -71,29 +78,107 @@ const pcl::PCLPointField* findField(const pcl::PCLPointCloud2& cloud, const std:
   return nullptr;
 }
 
-/// Adds the fields that are not there, as float, to all points.
-void addFields(pcl::PCLPointCloud2& cloud, const std::vector<std::string>& names)
+std::size_t sizeOf(const pcl::PCLPointField& field)
 {
-  const std::size_t n = static_cast<std::size_t>(cloud.width) * cloud.height, before = cloud.point_step;
-  for (const std::string& name : names) {
-    if (findField(cloud, name))
-      continue;
-    pcl::PCLPointField field;
-    field.name = name;
-    field.offset = cloud.point_step;
-    field.datatype = pcl::PCLPointField::FLOAT32;
-    field.count = 1;
-    cloud.point_step += sizeof(float);
-    cloud.fields.push_back(field);
+  return pcl::getFieldSize(field.datatype) * std::max<std::size_t>(1, field.count);
+}
+
+constexpr std::uint32_t nowhere = std::numeric_limits<std::uint32_t>::max();
+
+/// Gives all points these fields, one behind the other. Their offsets say where they are now; `nowhere`: zero at first.
+void arrange(pcl::PCLPointCloud2& cloud, std::vector<pcl::PCLPointField> fields)
+{
+  struct Piece {
+    std::size_t from, to, size;
+  };
+  std::vector<Piece> pieces;
+  std::size_t step = 0;
+  for (auto& field : fields) {
+    const std::size_t size = sizeOf(field), from = field.offset;
+    const bool follows = !pieces.empty() && pieces.back().from + pieces.back().size == from &&
+                         pieces.back().to + pieces.back().size == step;
+    if (field.offset != nowhere && follows)
+      pieces.back().size += size;
+    else if (field.offset != nowhere)
+      pieces.push_back({from, step, size});
+    field.offset = static_cast<std::uint32_t>(step);
+    step += size;
   }
-  if (cloud.point_step == before)
-    return;
-  std::vector<std::uint8_t> data(n * cloud.point_step);
+  const std::size_t n = static_cast<std::size_t>(cloud.width) * cloud.height, before = cloud.point_step;
+  std::vector<std::uint8_t> data(n * step);
   for (std::size_t i = 0; i < n; ++i)
-    std::memcpy(data.data() + i * cloud.point_step, cloud.data.data() + i * before, before);
+    for (const Piece& piece : pieces)
+      std::memcpy(data.data() + i * step + piece.to, cloud.data.data() + i * before + piece.from, piece.size);
   cloud.data.swap(data);
+  cloud.fields.swap(fields);
+  cloud.point_step = static_cast<std::uint32_t>(step);
   cloud.row_step = cloud.point_step * cloud.width;
 }
+
+/// Whether fields of the cloud hold these numbers, to the bit.
+bool holds(const pcl::PCLPointCloud2& cloud, const std::array<std::string, 3>& names, const Points& values)
+{
+  if (values.cols() != static_cast<Index>(cloud.width) * static_cast<Index>(cloud.height))
+    return false;
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    const auto* field = findField(cloud, names[static_cast<std::size_t>(axis)]);
+    if (!field || field->datatype != pcl::PCLPointField::FLOAT32 || sizeOf(*field) != sizeof(float))
+      return false;
+    for (Index i = 0; i < values.cols(); ++i)
+      if (std::memcmp(cloud.data.data() + static_cast<std::size_t>(i) * cloud.point_step + field->offset,
+                      &values(axis, i), sizeof(float)) != 0)
+        return false;
+  }
+  return true;
+}
+
+const std::array<std::string, 3> coordinate_names = {"x", "y", "z"}, viewpoint_names = {"vp_x", "vp_y", "vp_z"};
+
+/// A cloud without the coordinates and viewpoints that a set of its points holds as well: less memory on the way.
+class BareCloud {
+public:
+  BareCloud(pcl::PCLPointCloud2& cloud, const PointSet& set) : cloud_(cloud), fields_(cloud.fields)
+  {
+    coordinates_ = set.origin.isZero(0) && holds(cloud, coordinate_names, set.points);
+    viewpoints_ = holds(cloud, viewpoint_names, set.viewpoints);
+    std::vector<pcl::PCLPointField> kept;
+    for (const auto& field : fields_)
+      if (!isLent(field.name))
+        kept.push_back(field);
+    arrange(cloud, kept);
+  }
+  /// Puts them back to their places, and adds those of the `names` that are not there, as float.
+  pcl::PCLPointCloud2& complete(const std::vector<std::string>& names)
+  {
+    auto kept = cloud_.fields.begin();
+    for (auto& field : fields_)
+      field.offset = isLent(field.name) ? nowhere : kept++->offset;
+    for (const std::string& name : names) {
+      const auto same = [&](const pcl::PCLPointField& field) { return field.name == name; };
+      if (std::any_of(fields_.begin(), fields_.end(), same))
+        continue;
+      fields_.emplace_back();
+      fields_.back().name = name;
+      fields_.back().offset = nowhere;
+      fields_.back().datatype = pcl::PCLPointField::FLOAT32;
+      fields_.back().count = 1;
+    }
+    arrange(cloud_, fields_);
+    return cloud_;
+  }
+  bool withoutCoordinates() const { return coordinates_; }
+  bool withoutViewpoints() const { return viewpoints_; }
+
+private:
+  bool isLent(const std::string& name) const
+  {
+    const auto among = [&](const auto& names) { return std::find(names.begin(), names.end(), name) != names.end(); };
+    return (coordinates_ && among(coordinate_names)) || (viewpoints_ && among(viewpoint_names));
+  }
+  pcl::PCLPointCloud2& cloud_;
+  std::vector<pcl::PCLPointField> fields_;        ///< of the whole cloud
+  bool coordinates_ = false, viewpoints_ = false; ///< whether they are left out
+};
 
 /// Writes one value per point into field `name`, which is there.
 template <typename Values>
@@ -128,23 +213,42 @@ PointSet loadPoints(const CloudFile& file, const std::string& name, const Args& 
   throw std::runtime_error(name + ": no finite points");
 }
 
-void writeResult(CloudFile& file, const PointSet& set, const NormalField& field, const ToolOptions& options)
+/// What the tool needs of the points.
+PointSet withoutAttributes(PointSet set)
+{
+  PointSet bare;
+  bare.points.swap(set.points);
+  bare.viewpoints.swap(set.viewpoints);
+  bare.origin = set.origin;
+  return bare;
+}
+
+/// What was freed in small pieces goes back to the system, for what follows is large.
+void returnFreedMemory()
+{
+#ifdef __GLIBC__
+  malloc_trim(0);
+#endif
+}
+
+void writeResult(BareCloud& bare, const PointSet& set, const NormalField& field, const ToolOptions& options)
 {
   std::vector<std::string> names = {"normal_x", "normal_y", "normal_z", "curvature"};
   if (options.confidence)
     names.push_back("confidence");
-  addFields(file.cloud, names);
+  pcl::PCLPointCloud2& cloud = bare.complete(names);
   const float sign = options.flip ? -1.f : 1.f;
-  for (int axis = 0; axis < 3; ++axis)
-    writeField(file.cloud, names[static_cast<std::size_t>(axis)], sign * field.normals.row(axis));
-  writeField(file.cloud, "curvature", field.curvatures);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const auto row = static_cast<Index>(axis);
+    writeField(cloud, names[axis], sign * field.normals.row(row));
+    if (bare.withoutCoordinates() || options.smoothing.move_rounds > 0)
+      writeField(cloud, coordinate_names[axis], set.points.row(row).cast<double>().array() + set.origin[row]);
+    if (bare.withoutViewpoints())
+      writeField(cloud, viewpoint_names[axis], set.viewpoints.row(row));
+  }
+  writeField(cloud, "curvature", field.curvatures);
   if (options.confidence)
-    writeField(file.cloud, "confidence", field.confidences);
-  if (options.smoothing.move_rounds > 0)
-    for (int axis = 0; axis < 3; ++axis) {
-      const Eigen::ArrayXd world = set.points.row(axis).transpose().cast<double>().array() + set.origin[axis];
-      writeField(file.cloud, std::string(1, "xyz"[axis]), world);
-    }
+    writeField(cloud, "confidence", field.confidences);
 }
 } // namespace
 
@@ -163,18 +267,23 @@ int main(int argc, char** argv)
     validate(args, options);
     const Progress progress = printProgress(common.quiet);
     CloudFile file = readCloud(files[0]);
-    PointSet set = loadPoints(file, files[0], args, options);
+    PointSet set = withoutAttributes(loadPoints(file, files[0], args, options));
+    BareCloud bare(file.cloud, set);
     options.normals.threads = options.smoothing.threads = common.threads;
     options.normals.edges = !options.plain;
     if (file.cloud.height > 1 && !options.no_grid)
       options.normals.image_width = file.cloud.width;
     {
       NormalField field = estimateNormals(set, options.normals, subProgress(progress, 0.0, 0.6));
+      if (!options.confidence)
+        field.confidences.resize(0);
+      returnFreedMemory();
       BilateralResult smooth =
           smoothNormals(set.points, field.normals, options.smoothing, subProgress(progress, 0.6, 1.0));
+      returnFreedMemory();
       field.normals.swap(smooth.normals);
       set.points.swap(smooth.points);
-      writeResult(file, set, field, options);
+      writeResult(bare, set, field, options);
     }
     const std::string result = std::to_string(set.size()) + " points, normals " +
                                (set.viewpoints.cols() > 0 ? "towards the viewpoint" : "in agreement with each other");

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include <fresco/filters/core/neighbors.h>
+#include <memory>
 #include <optional>
 #include <vector>
 namespace fresco {
@@ -9,8 +10,9 @@ struct BeamScan {
   std::vector<Index> columns; ///< of the input
   Points directions;          ///< unit
   Eigen::VectorXf ranges;
-  NeighborLists lists; ///< nearest beams by angle, the beam itself included
-  float noise = 0;     ///< deviation of the ranges, length
+  NeighborLists lists;             ///< nearest beams by angle, the beam itself included
+  std::unique_ptr<PointTree> tree; ///< of all directions, where lists leave out some between
+  float noise = 0;                 ///< deviation of the ranges, length
 };
 
 /// The neighbouring beams of one beam, nearest first, where those of a plane lie on a plane again: in the plane

@@ -8,6 +8,7 @@
 #include <fresco/filters/core/bilateral_normals.h>
 #include <fresco/filters/core/local_sampling.h>
 #include <memory>
+#include <utility>
 namespace fresco {
 namespace {
 constexpr int most = 256; // neighbours summed
@@ -165,13 +166,14 @@ BilateralResult smoothNormals(const Points& points, const Points& normals, const
     else
       field.moved = moveOnce(field, smooth, options.threads);
   }
-  field.lists = {}; // frees memory
+  const std::vector<int> columns = field.tree->columns();
+  const Points moved = std::move(field.moved);
+  field = {}; // frees memory
   BilateralResult result{points, normals};
   for (Index i = 0; i < smooth.cols(); ++i) {
-    const Index column = field.tree->columns()[i];
-    result.normals.col(column) = smooth.col(i);
-    if (field.moved.cols() > 0)
-      result.points.col(column) = field.moved.col(i);
+    result.normals.col(columns[i]) = smooth.col(i);
+    if (moved.cols() > 0)
+      result.points.col(columns[i]) = moved.col(i);
   }
   return result;
 }

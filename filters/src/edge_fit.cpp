@@ -18,9 +18,10 @@ constexpr float half_same_side = 0.966f; // planes that differ from a third by n
 constexpr float grazing = 0.1f;          // cosine between ray and normal; below, the ray tells nothing
 constexpr int passes = 3, passes_without_rays = 2;
 
-struct Update {
-  Index point;
-  Plane plane;
+/// Points with planes of their own, in two arrays for the sake of memory.
+struct Updates {
+  std::vector<int> points;
+  std::vector<Plane> planes;
 };
 
 /// One pass over the points of a group.
@@ -30,7 +31,7 @@ public:
       : set_(set), all_(all), planes_(planes)
   {}
   /// @param changed by position, whole leaves: planes that are new; no others can make a difference
-  std::vector<Update> run(const GroupLists& lists, const std::vector<char>& changed);
+  Updates run(const GroupLists& lists, const std::vector<char>& changed);
 
 private:
   bool load(const GroupLists& lists, const std::vector<char>& changed);
@@ -171,12 +172,15 @@ Moments GroupPass::nearMoments(Index i, Index start)
   return moments;
 }
 
-std::vector<Update> GroupPass::run(const GroupLists& lists, const std::vector<char>& changed)
+Updates GroupPass::run(const GroupLists& lists, const std::vector<char>& changed)
 {
-  std::vector<Update> updates;
+  Updates updates;
   if (!load(lists, changed))
     return updates;
-  PlaneBatch batch([&](Index i, const Plane& plane) { updates.push_back({i, plane}); });
+  PlaneBatch batch([&](Index i, const Plane& plane) {
+    updates.points.push_back(static_cast<int>(i));
+    updates.planes.push_back(plane);
+  });
   std::vector<int> starts;
   for (Index i = lists.begin; i < lists.end; ++i) {
     const int best = anyChanged(lists, i) ? choose(lists, i) : lists.codeOf(i);
@@ -186,10 +190,11 @@ std::vector<Update> GroupPass::run(const GroupLists& lists, const std::vector<ch
     batch.add(i, all_.point(i), nearMoments(i, lists.position(static_cast<std::uint16_t>(best))));
   }
   batch.finish();
-  for (std::size_t u = 0; u < updates.size(); ++u)
-    if (updates[u].plane.shape() != Plane::plane)
-      updates[u].plane = near_[static_cast<std::size_t>(starts[u])];
-  updates.shrink_to_fit();
+  for (std::size_t u = 0; u < starts.size(); ++u)
+    if (updates.planes[u].shape() != Plane::plane)
+      updates.planes[u] = near_[static_cast<std::size_t>(starts[u])];
+  updates.points.shrink_to_fit();
+  updates.planes.shrink_to_fit();
   return updates;
 }
 } // namespace
@@ -200,17 +205,18 @@ void refitAtEdges(const PointSet& set, const Neighborhoods& all, std::vector<Pla
   const auto groups = static_cast<Index>(all.groups.size());
   const int count = set.viewpoints.cols() > 0 ? passes : passes_without_rays;
   for (int pass = 0; pass < count; ++pass) {
-    std::vector<std::vector<Update>> updates(all.groups.size());
+    std::vector<Updates> updates(all.groups.size());
     parallelRanges(groups, threads, [&](Index begin, Index end) {
       GroupPass work(set, all, planes);
       for (Index g = begin; g < end; ++g)
         updates[static_cast<std::size_t>(g)] = work.run(all.groups[static_cast<std::size_t>(g)], changed);
     });
     std::fill(changed.begin(), changed.end(), 0);
-    for (const auto& group : updates)
-      for (const Update& update : group) {
-        planes[static_cast<std::size_t>(update.point)] = update.plane;
-        changed[static_cast<std::size_t>(update.point)] = 1;
+    for (const Updates& group : updates)
+      for (std::size_t u = 0; u < group.points.size(); ++u) {
+        const auto point = static_cast<std::size_t>(group.points[u]);
+        planes[point] = group.planes[u];
+        changed[point] = 1;
       }
   }
 }

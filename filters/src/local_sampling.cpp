@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "near_groups.h"
 #include <algorithm>
 #include <cmath>
 #include <fresco/common/parallel.h>
@@ -16,24 +17,36 @@ float smallestPositive(const Eigen::VectorXf& values)
       smallest = std::min(smallest, value);
   return std::isfinite(smallest) ? smallest : 1.f;
 }
+
+Eigen::VectorXf withoutZeros(const Eigen::VectorXf& areas)
+{
+  const float least = smallestPositive(areas) / 1000;
+  return areas.cwiseMax(least);
+}
+
+/// @param near positions by distance, the point itself included
+float areaOf(const PointTree& tree, Index i, const int* near, Index count)
+{
+  const Index others = count - 1;
+  const float squared = others > 0 ? (tree.point(near[count - 1]) - tree.point(i)).squaredNorm() : 0.f;
+  return others > 0 && std::isfinite(squared) ? pi * squared / static_cast<float>(others) : 0.f;
+}
 } // namespace
 
 Eigen::VectorXf sampleAreas(const PointTree& tree, int k, int threads)
 {
   require(k >= 1, "sample areas: k ", k, " is below 1");
-  return sampleAreas(tree, nearestLists(tree, k + 1, threads), threads);
+  Eigen::VectorXf areas(tree.size());
+  forNearest(tree, k + 1, threads,
+             [&](Index i, const int* found, Index count) { areas[i] = areaOf(tree, i, found, count); });
+  return withoutZeros(areas);
 }
 
 Eigen::VectorXf sampleAreas(const PointTree& tree, const NeighborLists& lists, int threads)
 {
   require(lists.size() == tree.size(), "sample areas: ", lists.size(), " lists of ", tree.size(), " points");
   Eigen::VectorXf areas(tree.size());
-  parallelFor(tree.size(), threads, [&](Index i) {
-    const Index others = lists.count(i) - 1;
-    const float squared = others > 0 ? (tree.point(*(lists.last(i) - 1)) - tree.point(i)).squaredNorm() : 0.f;
-    areas[i] = others > 0 && std::isfinite(squared) ? pi * squared / static_cast<float>(others) : 0.f;
-  });
-  const float least = smallestPositive(areas) / 1000;
-  return areas.cwiseMax(least);
+  parallelFor(tree.size(), threads, [&](Index i) { areas[i] = areaOf(tree, i, lists.first(i), lists.count(i)); });
+  return withoutZeros(areas);
 }
 } // namespace fresco

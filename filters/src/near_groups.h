@@ -2,6 +2,7 @@
 #pragma once
 #include "near_kernels.h"
 #include <fresco/filters/core/neighbors.h>
+#include <functional>
 namespace fresco {
 /// Neighbour search for the points of a subtree at once: the leaves around all of them are found in one descent, those
 /// around each leaf among them, and each point is compared with the points in those, eight at a time.
@@ -78,4 +79,7 @@ private:
   std::vector<int> thin_leaves_, thin_codes_;
   std::vector<PointTree::Key> keys_;
 };
+
+/// use(i, positions, count) for every point: as nearestLists(), without keeping the lists. In parallel.
+void forNearest(const PointTree& tree, int k, int threads, const std::function<void(Index, const int*, Index)>& use);
 } // namespace fresco

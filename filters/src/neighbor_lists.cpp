@@ -6,6 +6,7 @@
 #include <fresco/common/parallel.h>
 #include <fresco/common/require.h>
 #include <fresco/filters/core/neighbors.h>
+#include <functional>
 #include <iterator>
 #include <limits>
 #include <utility>
@@ -109,7 +110,7 @@ void findWithin(const PointTree& tree, NearGroup& group, const Ball& ball, std::
   std::transform(keys.begin(), keys.end(), found.begin(), PointTree::position);
 }
 
-/// Lists of all points within a radius in the form of `Range`: ranges of points in their order.
+/// Lists of all points within a radius in the form of `Range`: ranges of points in their order, without spare memory.
 /// @param add add(range, i, found): point i of a range
 template <typename Range, typename Add>
 std::vector<Range> searchRadii(const PointTree& tree, const Eigen::VectorXf& radii, const ListLimits& limits,
@@ -124,7 +125,7 @@ std::vector<Range> searchRadii(const PointTree& tree, const Eigen::VectorXf& rad
   const auto count = static_cast<Index>(groups.size()) - 1;
   std::vector<Range> ranges(static_cast<std::size_t>((count + chunk - 1) / chunk));
   const auto search = [&](Index begin, Index end) {
-    Range& range = ranges[static_cast<std::size_t>(begin / chunk)];
+    Range range;
     NearGroup group(tree);
     std::vector<int> found;
     for (Index g = begin; g < end; ++g) {
@@ -137,28 +138,39 @@ std::vector<Range> searchRadii(const PointTree& tree, const Eigen::VectorXf& rad
         add(range, i, found);
       }
     }
+    ranges[static_cast<std::size_t>(begin / chunk)] = std::as_const(range); // a copy has no spare memory
   };
   parallelRanges(count, limits.threads, search, chunk);
   return ranges;
 }
 } // namespace
 
-NeighborLists nearestLists(const PointTree& tree, int k, int threads)
+void forNearest(const PointTree& tree, int k, int threads, const std::function<void(Index, const int*, Index)>& use)
 {
   require(k > 0, "neighbour search: k ", k, " is below 1");
   const Index each = std::min<Index>(k, tree.size());
-  NeighborLists lists = evenLists(tree.size(), each);
   const std::vector<Index> groups = tree.subtrees(group_leaves);
   parallelRanges(static_cast<Index>(groups.size()) - 1, threads, [&](Index begin, Index end) {
     NearGroup group(tree);
+    std::vector<int> found(static_cast<std::size_t>(each));
     for (Index g = begin; g < end; ++g) {
       group.enter(groups[g], groups[g + 1]);
       group.gather(reach_margin * group.expectedReach(static_cast<int>(each)), most_leaves);
       for (Index i = group.begin(); i < group.end(); ++i) {
         group.nearest(i, static_cast<int>(each));
-        group.ordered(lists.index.data() + lists.begin[i]);
+        group.ordered(found.data());
+        use(i, found.data(), each);
       }
     }
+  });
+}
+
+NeighborLists nearestLists(const PointTree& tree, int k, int threads)
+{
+  const Index each = std::min<Index>(k, tree.size());
+  NeighborLists lists = evenLists(tree.size(), each);
+  forNearest(tree, k, threads, [&](Index i, const int* found, Index count) {
+    std::copy_n(found, count, lists.index.data() + lists.begin[i]);
   });
   return lists;
 }
@@ -180,10 +192,7 @@ std::vector<CompactLists> compactRadiusLists(const PointTree& tree, const Eigen:
     range.end = i + 1;
     range.add(found);
   };
-  std::vector<CompactLists> ranges = searchRadii<CompactLists>(tree, radii, {most, threads}, add);
-  for (CompactLists& range : ranges)
-    range.bytes.shrink_to_fit();
-  return ranges;
+  return searchRadii<CompactLists>(tree, radii, {most, threads}, add);
 }
 
 NeighborLists imageLists(const Points& points, Index width, int k, int threads)

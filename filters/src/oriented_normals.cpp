@@ -87,8 +87,8 @@ float confidenceOf(const GroupLists& lists, const std::vector<float>& densities,
   return around > 0 ? company * std::min(1.f, densities[static_cast<std::size_t>(i)] / around) : 0.f;
 }
 
-/// By position. @param reaches squared, become densities
-std::vector<float> confidences(const Neighborhoods& all, std::vector<float>& reaches, int threads)
+/// Puts confidences in place of the reaches.
+void toConfidences(const Neighborhoods& all, std::vector<float>& reaches, int threads)
 {
   std::vector<float> result(reaches.size());
   const auto forGroups = [&](const auto& use) {
@@ -104,19 +104,19 @@ std::vector<float> confidences(const Neighborhoods& all, std::vector<float>& rea
   });
   forGroups(
       [&](const GroupLists& lists, Index i) { result[static_cast<std::size_t>(i)] = confidenceOf(lists, reaches, i); });
-  return result;
+  reaches.swap(result);
 }
 
-NormalField toField(const PointSet& set, Neighborhoods& all, Fits& fits, int threads)
+/// @param fits with confidences instead of reaches
+NormalField toField(const PointSet& set, Neighborhoods& all, const Fits& fits, int threads)
 {
-  const std::vector<float> shares = confidences(all, fits.reaches, threads);
+  const std::vector<float>& shares = fits.reaches;
   std::vector<char> empty(shares.size());
   for (const GroupLists& lists : all.groups)
     for (Index i = lists.begin; i < lists.end; ++i)
       empty[static_cast<std::size_t>(i)] = lists.count(i) == 0;
-  all.groups = {}; // frees memory
-  all.codes = {};
-  fits.reaches = {};
+  all.groups = std::vector<GroupLists>(); // frees memory, as = {} does not
+  all.codes = std::vector<std::uint16_t>();
   NormalField field;
   field.normals = Points::Constant(3, set.size(), NAN);
   field.curvatures = Eigen::VectorXf::Constant(set.size(), NAN);
@@ -145,6 +145,7 @@ NormalField estimateNormals(const PointSet& set, const NormalOptions& options, c
   report(progress, "find neighbours", 0.0);
   Neighborhoods all;
   Fits fits = findAndFit(set, options, all);
+  toConfidences(all, fits.reaches, options.threads);
   report(progress, "fit planes", 0.6);
   if (options.edges)
     refitAtEdges(set, all, fits.planes, options.threads);

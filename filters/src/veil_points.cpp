@@ -12,6 +12,53 @@ namespace fresco {
 namespace {
 constexpr Index fewest = 12;    // points of a viewpoint that can be judged
 constexpr float deviations = 4; // that noise does not reach
+/// Radians between beams that see jumps apart: about the width of a laser beam at common ranges.
+constexpr float least_spacing = 0.003f;
+constexpr Index spacing_samples = 1024;
+
+/// Median distance between neighbouring beams, radians.
+float beamSpacing(const PointTree& directions)
+{
+  constexpr int around = 8;
+  std::vector<float> squared;
+  std::vector<Neighbor> found;
+  const Index count = std::min(spacing_samples, directions.size());
+  for (Index s = 0; s < count; ++s) {
+    directions.nearest(directions.point(s * directions.size() / count), around + 1, found);
+    squared.push_back(found.back().squared_distance);
+  }
+  const auto middle = squared.begin() + count / 2;
+  std::nth_element(squared.begin(), middle, squared.end());
+  return count > 0 ? std::sqrt(*middle * 3.1416f / around) : 0.f;
+}
+
+/// As nearestLists() of every m-th beam, without those closer than half of least_spacing; the beam itself comes first.
+NeighborLists thinnedLists(const PointTree& directions, Index m, const VeilOptions& options)
+{
+  Points some(3, (directions.size() + m - 1) / m);
+  for (Index i = 0; i < some.cols(); ++i)
+    some.col(i) = directions.point(m * i);
+  const PointTree tree(some, options.threads);
+  const auto each = static_cast<Index>(options.k) + 1;
+  NeighborLists lists;
+  lists.begin.resize(static_cast<std::size_t>(directions.size()) + 1);
+  for (Index i = 0; i <= directions.size(); ++i)
+    lists.begin[i] = i * each;
+  lists.index.resize(static_cast<std::size_t>(directions.size() * each));
+  parallelRanges(directions.size(), options.threads, [&](Index begin, Index end) {
+    std::vector<Neighbor> found;
+    for (Index i = begin; i < end; ++i) {
+      int* list = lists.index.data() + lists.begin[i];
+      std::fill_n(list, each, static_cast<int>(i));
+      Index count = 1;
+      tree.nearest(directions.point(i), 2 * options.k, found);
+      for (const Neighbor& beam : found)
+        if (count < each && beam.squared_distance > 0.25f * least_spacing * least_spacing)
+          list[count++] = static_cast<int>(m * beam.index);
+    }
+  });
+  return lists;
+}
 
 BeamScan makeScan(const Points& points, const Eigen::Vector3f& viewpoint, const std::vector<Index>& columns,
                   const VeilOptions& options)
@@ -22,12 +69,17 @@ BeamScan makeScan(const Points& points, const Eigen::Vector3f& viewpoint, const 
     const Eigen::Vector3f beam = points.col(columns[i]) - viewpoint;
     directions.col(i) = beam / beam.norm(); // NaN at the viewpoint: left out by the tree
   });
-  const PointTree tree(directions, options.threads);
-  BeamScan scan{{}, tree.points(), Eigen::VectorXf(tree.size()), nearestLists(tree, options.k + 1, options.threads), 0};
-  for (Index i = 0; i < tree.size(); ++i) {
-    scan.columns.push_back(columns[tree.columns()[i]]);
+  auto tree = std::make_unique<PointTree>(directions, options.threads);
+  const float times = least_spacing / beamSpacing(*tree);
+  const Index m = times * times < static_cast<float>(tree->size()) ? static_cast<Index>(times * times) : 1;
+  BeamScan scan{{}, tree->points(), Eigen::VectorXf(tree->size()), {}, nullptr, 0};
+  scan.lists = m > 1 ? thinnedLists(*tree, m, options) : nearestLists(*tree, options.k + 1, options.threads);
+  for (Index i = 0; i < tree->size(); ++i) {
+    scan.columns.push_back(columns[tree->columns()[i]]);
     scan.ranges[i] = (points.col(scan.columns.back()) - viewpoint).norm();
   }
+  if (m > 1)
+    scan.tree = std::move(tree);
   return scan;
 }
 
@@ -101,6 +153,22 @@ bool isVeil(const BeamWindow& window, float noise, float slope)
   return alone || (sides.in_front >= 2 && sides.behind >= 2);
 }
 
+/// Whether a surface could join the point with most of the beams next to it: of a thin thing that windows of a dense
+/// scan pass over.
+bool joinsNext(const BeamScan& scan, Index i, float slope)
+{
+  constexpr int around = 8;
+  thread_local std::vector<PointTree::Key> found;
+  scan.tree->nearestKeys(scan.directions.col(i), around + 1, found);
+  int joined = -1; // without the point itself
+  for (const PointTree::Key beam : found) {
+    const float range = scan.ranges[PointTree::position(beam)], ahead = std::abs(range - scan.ranges[i]);
+    const float sideways = std::sqrt(PointTree::squaredDistance(beam)) * std::min(range, scan.ranges[i]);
+    joined += ahead <= std::max(sideways * slope, deviations * scan.noise);
+  }
+  return 2 * joined > around;
+}
+
 void judge(BeamScan scan, const VeilOptions& options, std::vector<char>& veil)
 {
   if (static_cast<Index>(scan.columns.size()) <= fewest)
@@ -111,7 +179,7 @@ void judge(BeamScan scan, const VeilOptions& options, std::vector<char>& veil)
     BeamWindow window;
     for (Index i = begin; i < end; ++i) {
       fillWindow(scan, i, window);
-      veil[scan.columns[i]] = isVeil(window, scan.noise, slope);
+      veil[scan.columns[i]] = isVeil(window, scan.noise, slope) && !(scan.tree && joinsNext(scan, i, slope));
     }
   });
 }

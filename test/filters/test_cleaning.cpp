@@ -89,6 +89,37 @@ TEST(VeilPoints, TheVeilGoesAndLegsAndEdgesStay)
   EXPECT_EQ(lost_legs, 0);
 }
 
+TEST(VeilPoints, BeamsThatOverlapDoNotHideTheVeil)
+{
+  std::mt19937 generator(1);
+  std::normal_distribution<float> noise(0, 0.002f);
+  for (const float step : {0.003f, 0.001f}) {
+    std::vector<Eigen::Vector3f> points;
+    std::vector<int> kinds; // 0 = a wall and a board in front of it, 1 = between them, 2 = a rod
+    for (float azimuth = -0.1f; azimuth < 0.1f; azimuth += step)
+      for (float elevation = -0.1f; elevation < 0.1f; elevation += step) {
+        // beams are 4 mrad wide: where they meet the slanted border of the board, ranges mix
+        const float on_board = std::clamp(0.5f + (azimuth + 0.35f * elevation) / 0.004f, 0.f, 1.f);
+        const bool rod = std::abs(azimuth + 0.07f) < 0.0031f;
+        const Eigen::Vector3f beam(1, std::tan(azimuth), std::tan(elevation));
+        points.emplace_back(beam * ((rod ? 3.7f : 4 - 0.25f * on_board) + noise(generator)));
+        kinds.push_back(rod ? 2 : on_board > 0.1f && on_board < 0.9f ? 1 : 0);
+      }
+    Points cloud(3, static_cast<Index>(points.size()));
+    for (std::size_t i = 0; i < points.size(); ++i)
+      cloud.col(static_cast<Index>(i)) = points[i];
+    Index kept[3] = {0, 0, 0}, all[3] = {0, 0, 0};
+    for (const int kind : kinds)
+      ++all[kind];
+    for (const Index i : withoutVeil(cloud, Eigen::Vector3f::Zero()))
+      ++kept[kinds[static_cast<std::size_t>(i)]];
+    EXPECT_GT(all[1], 50);
+    EXPECT_LT(static_cast<double>(kept[1]), 0.4 * static_cast<double>(all[1])) << step;
+    EXPECT_LT(all[0] - kept[0], all[0] / 500) << step;
+    EXPECT_EQ(kept[2], all[2]) << step;
+  }
+}
+
 TEST(VeilPoints, GrazingSurfacesStay)
 {
   Points floor = 4 * test::flatSquare(40000, 5).points;

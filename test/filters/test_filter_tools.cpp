@@ -6,6 +6,7 @@
 #include <fresco/common/cloud_file.h>
 #include <fresco/common/file.h>
 #include <fresco/common/point_io.h>
+#include <fresco/common/require.h>
 #include <fresco/filters/core/oriented_normals.h>
 #include <fresco/filters/core/veil_points.h>
 #include <fstream>
@@ -104,6 +105,42 @@ TEST_F(FilterTools, FilterKeepsOrganizedClouds)
   EXPECT_EQ(kept.cloud.height, 2u);
   EXPECT_EQ(kept.cloud.width, file.cloud.width);
   EXPECT_FALSE(kept.cloud.is_dense);
+}
+
+/// Named field of point `i`, as bytes.
+std::string bytesOf(const CloudFile& file, const std::string& name, std::size_t i)
+{
+  for (const auto& field : file.cloud.fields)
+    if (field.name == name)
+      return {reinterpret_cast<const char*>(file.cloud.data.data()) + i * file.cloud.point_step + field.offset,
+              name == "label"    ? 2u
+              : name == "spread" ? 24u
+                                 : 4u};
+  return "none";
+}
+
+TEST_F(FilterTools, NormalsKeepFieldsInAnyOrder)
+{
+  const auto* types = "4 2 4 8 4 4 4 4";
+  for (const char* const fields : {"vp_x label y spread x z vp_z vp_y", "x label y spread vp_y z vp_z vp_x"})
+    for (const char* const type : {"F U F F F F F F", "F I F F F F F F"}) {
+      std::string file = "VERSION .7\nFIELDS " + std::string(fields) + "\nSIZE " + types + "\nTYPE " + type +
+                         "\nCOUNT 1 1 1 3 1 1 1 1\nWIDTH 12\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS 12\n"
+                         "DATA ascii\n";
+      for (int i = 0; i < 12; ++i)
+        file +=
+            concat(0.1 * i, " ", 7 * i, " ", i % 3, " ", i, " ", -i, " 0.3 ", i / 3, " ", i * i, " 5 ", 7 - i, "\n");
+      const std::string in = text("odd.pcd", file);
+      ASSERT_EQ(run("normals", in + " " + path("kept.pcd") + " -bilateral 1"), 0) << errors();
+      const CloudFile before = readCloud(in), after = readCloud(path("kept.pcd"));
+      auto names = fieldNames(before);
+      for (std::size_t i = 0; i < 12; ++i)
+        for (const std::string& name : names)
+          EXPECT_EQ(bytesOf(after, name, i), bytesOf(before, name, i)) << name << " of " << i;
+      for (const char* const added : {"normal_x", "normal_y", "normal_z", "curvature"})
+        names.emplace_back(added);
+      EXPECT_EQ(fieldNames(after), names);
+    }
 }
 
 TEST_F(FilterTools, NormalsAreThoseOfTheCoreAndOtherFieldsStay)
