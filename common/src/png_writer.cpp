@@ -144,7 +144,7 @@ std::vector<std::uint8_t> encodePng(const Image& image, int threads)
     if (b + 1 == bands.size())
       appendNumber(check, bands[b].packed);
     appendChunk("IDAT", bands[b].packed, out);
-    bands[b].packed = {};
+    Bytes().swap(bands[b].packed); // frees memory
   }
   appendChunk("IEND", {}, out);
   return out;

@@ -271,7 +271,7 @@ private:
             node.child[slot] += offset;
         nodes_.push_back(node);
       }
-      subtrees[t] = {};
+      std::vector<TreeNode>().swap(subtrees[t]); // frees memory
     }
   }
 

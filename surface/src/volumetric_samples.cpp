@@ -114,7 +114,7 @@ Samples gatherSamples(const PointSet& set, const VolumetricOptions& options)
   result.used_points = static_cast<Index>(usable.points.size());
   result.left_out_points = set.size() - result.used_points;
   const SortedPoints points(set, usable.points, result.cube, options.threads);
-  usable.points = {};
+  Array<std::uint32_t>().swap(usable.points); // frees memory, which "= {}" does not
   const auto codeAt = [&](Index k) { return points.code(static_cast<std::size_t>(k)); };
   const Array<std::uint32_t> runs = runBegins(static_cast<Index>(points.size()), options.threads, codeAt);
   const std::size_t n = runs.size() - 1;

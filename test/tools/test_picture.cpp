@@ -256,6 +256,9 @@ long residentPages()
 
 TEST(Picture, ManyPicturesDoNotPileUpMemory)
 {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  GTEST_SKIP() << "the sanitizer keeps memory that has been freed";
+#endif
   const TriangleMesh ball = sphere(1.f, 5);
   const TexturedMesh square = texturedSquare(Image(512, 512, 3, 90));
   const auto draw = [&](int count) {

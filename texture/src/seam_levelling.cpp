@@ -62,7 +62,7 @@ private:
       entries_.emplace_back(static_cast<int>(i), static_cast<int>(i), diagonal_[i]);
     Sparse A(diagonal_.size(), diagonal_.size());
     A.setFromTriplets(entries_.begin(), entries_.end());
-    entries_ = {};
+    std::vector<Triplet>().swap(entries_); // frees memory
     return A;
   }
 
