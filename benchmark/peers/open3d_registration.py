@@ -2,9 +2,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Pairwise registration by Open3D, for the table beside bench_registration.
 
-open3d_registration.py pairs|local TRUTH.txt VOXEL SCAN.pcd SCAN.pcd... [OVERLAPS.txt]
+open3d_registration.py pairs|pairs-one-way|local TRUTH.txt VOXEL SCAN.pcd SCAN.pcd... [OVERLAPS.txt]
 pairs: FPFH + RANSAC + point-to-plane ICP of every pair; overlap at the true pose by points within 1.5 voxels, or as in
        OVERLAPS.txt, which bench_registration writes. A pair is held certain if its overlap is above 30 % as found.
+       Features must choose each other; with pairs-one-way they need not.
 local: point-to-plane ICP of the first two, from 0.3 m and 15 degrees off and from 5 cm and 3 degrees off.
 """
 import sys
@@ -28,9 +29,9 @@ def prepare(cloud, voxel):
     return thinned, registration.compute_fpfh_feature(thinned, o3d.geometry.KDTreeSearchParamHybrid(5 * voxel, 100))
 
 
-def align(source, target, voxel):
+def align(source, target, voxel, mutual):
     ransac = registration.registration_ransac_based_on_feature_matching(
-        source[0], target[0], source[1], target[1], True, 1.5 * voxel,
+        source[0], target[0], source[1], target[1], mutual, 1.5 * voxel,
         registration.TransformationEstimationPointToPoint(False), 3,
         [registration.CorrespondenceCheckerBasedOnEdgeLength(0.9),
          registration.CorrespondenceCheckerBasedOnDistance(1.5 * voxel)],
@@ -50,7 +51,8 @@ def given_overlaps(path):
     return {(int(a), int(b)): share for a, b, share in np.loadtxt(path)} if path else {}
 
 
-def pairs(clouds, truth, voxel, overlaps):
+def pairs(clouds, truth, voxel, overlaps, mutual):
+    o3d.utility.random.seed(1)
     start = time.process_time()
     prepared = [prepare(cloud, voxel) for cloud in clouds]
     print("preparation %.3f s a scan" % ((time.process_time() - start) / len(clouds)))
@@ -59,7 +61,7 @@ def pairs(clouds, truth, voxel, overlaps):
         for b in range(a + 1, len(clouds)):
             true = np.linalg.inv(truth[a]) @ truth[b]
             start = time.process_time()
-            found = align(prepared[b], prepared[a], voxel)
+            found = align(prepared[b], prepared[a], voxel, mutual)
             spent += time.process_time() - start
             tried += 1
             distance, angle = error(found, true, np.asarray(clouds[b].points).mean(0))
@@ -111,15 +113,15 @@ def local(clouds, truth, voxel):
 
 
 def main():
-    if len(sys.argv) < 6 or sys.argv[1] not in ("pairs", "local"):
+    if len(sys.argv) < 6 or sys.argv[1] not in ("pairs", "pairs-one-way", "local"):
         sys.exit(__doc__)
     overlap_file = sys.argv.pop() if sys.argv[-1].endswith(".txt") else ""
     truth = np.loadtxt(sys.argv[2]).reshape(-1, 4, 4)
     clouds = [o3d.io.read_point_cloud(path).remove_non_finite_points() for path in sys.argv[4:]]
-    if sys.argv[1] == "pairs":
-        pairs(clouds, truth, float(sys.argv[3]), given_overlaps(overlap_file))
-    else:
+    if sys.argv[1] == "local":
         local(clouds, truth, float(sys.argv[3]))
+    else:
+        pairs(clouds, truth, float(sys.argv[3]), given_overlaps(overlap_file), sys.argv[1] == "pairs")
 
 
 if __name__ == "__main__":
