@@ -11,7 +11,6 @@ namespace {
 /// Cuts keep this distance from the ends of an edge (edge length 1).
 constexpr float end_margin = 1e-3f;
 
-constexpr int smoothing_rounds = 4;
 /// Distance from the level line of values that changed sides.
 constexpr float flipped_margin = 0.1f;
 
@@ -117,11 +116,11 @@ Matrix extended(const Matrix& values, const std::vector<Cut>& cuts)
 }
 } // namespace
 
-TriangleMesh trimMesh(const TriangleMesh& mesh, Eigen::VectorXf values, float least, double patch_area)
+TriangleMesh trimMesh(const TriangleMesh& mesh, Eigen::VectorXf values, float least, double patch_area, int rounds)
 {
   require(values.size() == mesh.vertexCount(), "trimming: ", values.size(), " values for ", mesh.vertexCount(),
           " vertices");
-  for (int i = 0; i < smoothing_rounds; ++i)
+  for (int i = 0; i < rounds; ++i)
     values = smoothed(mesh, values);
   flipPatches(mesh, least, patch_area, values);
   Trimmer trimmer(values, least);

@@ -9,6 +9,10 @@
 namespace fresco {
 namespace {
 constexpr int beams_around = 8;
+/// Of a border: enough to take its teeth, too few to close narrow gaps.
+constexpr int smoothing_rounds = 2;
+/// Share of a vertex's surroundings from which its surface stays: next to what goes nothing is certain.
+constexpr float least_kept = 0.75f;
 constexpr double depth_noise = 0.02; ///< of depth cameras and their poses, share of the depth
 
 struct Range {
@@ -143,6 +147,6 @@ TriangleMesh withoutVertices(const TriangleMesh& mesh, std::vector<char> removed
       removed[v] = votes[v] != 0 ? votes[v] > 0 : removed[v];
   }
   const auto marks = Eigen::Map<const Eigen::Matrix<char, Eigen::Dynamic, 1>>(removed.data(), mesh.vertexCount());
-  return trimMesh(mesh, 1.f - marks.cast<float>().array(), 0.5f, 0.0);
+  return trimMesh(mesh, 1.f - marks.cast<float>().array(), least_kept, 0.0, smoothing_rounds);
 }
 } // namespace fresco

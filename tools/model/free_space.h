@@ -38,7 +38,7 @@ private:
 
 /// `mesh` without the surface around vertices that are `removed`, after three rounds in which each vertex joins the
 /// majority of its neighbours and itself, so that neither specks stay nor holes come up. Faces are cut along a smooth
-/// line half way between vertices that stay and others.
+/// line between vertices that stay and others.
 /// @param removed V
 TriangleMesh withoutVertices(const TriangleMesh& mesh, std::vector<char> removed);
 } // namespace fresco

@@ -45,10 +45,10 @@ FreeSpace askAllViews(const Points& places, const ModelInput& input, const Model
   return space;
 }
 
-/// Without the surface in places that the sensors saw through and that no point is near to. Poses of depth cameras are
+/// 1 for the vertices in places that the sensors saw through and that no point is near to. Poses of depth cameras are
 /// not exact: there, one frame in thirty must have seen through.
-TriangleMesh carved(const TriangleMesh& mesh, const PointSet& points, const ModelInput& input, const ModelFiles& files,
-                    const ModelOptions& options)
+std::vector<char> inFreeSpace(const TriangleMesh& mesh, const PointSet& points, const ModelInput& input,
+                              const ModelFiles& files, const ModelOptions& options)
 {
   std::vector<char> removed = farFromPoints(mesh, points, options);
   std::vector<Index> asked;
@@ -60,7 +60,7 @@ TriangleMesh carved(const TriangleMesh& mesh, const PointSet& points, const Mode
   const std::vector<char> empty = askAllViews(places, input, files, options).empty(least);
   for (std::size_t i = 0; i < asked.size(); ++i)
     removed[static_cast<std::size_t>(asked[i])] = empty[i];
-  return withoutVertices(mesh, std::move(removed));
+  return removed;
 }
 } // namespace
 
@@ -74,10 +74,12 @@ nlohmann::ordered_json makeSurface(const ModelInput& input, const ModelFiles& fi
   volumetric.threads = options.threads;
   volumetric.trim_levels = static_cast<float>(options.trim);
   VolumetricResult result = reconstructVolumetric(std::move(points), volumetric, subProgress(progress, 0.0, 0.7));
-  const Index before = result.mesh.vertexCount();
+  Index carved = 0;
   if (options.trim > 0) {
     report(progress, "free space", 0.7);
-    result.mesh = carved(result.mesh, readPoints(files.points), input, files, options);
+    std::vector<char> removed = inFreeSpace(result.mesh, readPoints(files.points), input, files, options);
+    carved = std::count(removed.begin(), removed.end(), 1);
+    result.mesh = withoutVertices(result.mesh, std::move(removed));
   }
   if (result.mesh.faceCount() == 0)
     throw std::runtime_error(files.points + ": no surface could be made of the points");
@@ -88,7 +90,7 @@ nlohmann::ordered_json makeSurface(const ModelInput& input, const ModelFiles& fi
           {"octree_depth", result.depth},
           {"cell", result.cell_size},
           {"trim_depth", result.trim_depth},
-          {"vertices_in_free_space", before - result.mesh.vertexCount()},
+          {"vertices_in_free_space", carved},
           {"components", topology.components},
           {"boundary_edges", topology.boundary_edges},
           {"non_manifold_edges", topology.nonmanifold_edges},

@@ -6,6 +6,7 @@ namespace fresco {
 /// Gaps smaller than `patch_area` are kept closed, islands smaller than it go. Vertex attributes follow.
 /// @param values     V, finite
 /// @param patch_area unit of the vertices squared, >= 0
+/// @param rounds     in which each value becomes the mean of its own and those around, >= 0
 /// @throws std::invalid_argument if there is not one value per vertex
-TriangleMesh trimMesh(const TriangleMesh& mesh, Eigen::VectorXf values, float least, double patch_area);
+TriangleMesh trimMesh(const TriangleMesh& mesh, Eigen::VectorXf values, float least, double patch_area, int rounds = 4);
 } // namespace fresco
