@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "scanned_room.h"
 #include "support/tool.h"
-#include "virtual/dataset.h"
-#include "virtual/places.h"
 #include <Eigen/Eigenvalues>
 #include <array>
 #include <chrono>
@@ -274,25 +273,18 @@ int main(int argc, char** argv)
     args.option("edge", options.edge, "metres to a crease that count as beside an edge");
     common.declare(args);
     args.parse(argc, argv, 0);
-    const Scene scene = loadScene(options.scene, 0.1f);
-    const VirtualRays rays(scene.mesh);
-    LightingOptions lighting;
-    lighting.spacing = 0.5f; // colours are not used
-    lighting.gather_packets = 1;
-    const Lightmap light = bakeLight(scene, rays, lighting);
-    const ScenePlaces places = sampleSurface(scene, 4000, 1);
-    const Points stations = chooseStations({scene, rays, places, 1, common.threads}, options.stations);
-    const Creases creases{PointTree(creasePlaces(scene.mesh, options.crease, options.spread), common.threads),
-                          PointTree(creasePlaces(scene.mesh, options.bend, options.plane / 5), common.threads)};
+    const ScannedRoom room(options.scene, options.stations, common.threads);
+    const Creases creases{PointTree(creasePlaces(room.scene.mesh, options.crease, options.spread), common.threads),
+                          PointTree(creasePlaces(room.scene.mesh, options.bend, options.plane / 5), common.threads)};
     for (const float noise : {0.002f, 0.005f}) {
       LaserOptions laser;
       laser.points = options.points;
       laser.noise = noise;
       std::vector<Sample> samples;
-      for (Index s = 0; s < stations.cols(); ++s)
-        samples.push_back(takeSample({scene, rays, light}, creases, stations.col(s), laser, options));
+      for (Index s = 0; s < room.stations.cols(); ++s)
+        samples.push_back(takeSample(room.lit(), creases, room.stations.col(s), laser, options));
       if (options.merged)
-        samples = {merge(samples, stations)};
+        samples = {merge(samples, room.stations)};
       std::printf("noise %g m, %d points per station\n", noise, options.points);
       std::printf("| k = %-28d | beside edges, > 20 | on planes, > 20 | elsewhere, > 20 | s | CPU s |\n"
                   "|---|---|---|---|---|---|\n",

@@ -4,7 +4,6 @@
 #include "support/tool.h"
 #include "virtual/dataset.h"
 #include "virtual/lighting.h"
-#include <cstdio>
 #include <fresco/common/colmap.h>
 #include <fresco/common/mesh_io.h>
 #include <fresco/common/parallel.h>
@@ -102,54 +101,73 @@ std::vector<float> finestFootprints(const LitScene& lit, const BoundOptions& opt
   return finest;
 }
 
-/// Paints the texels of a face; where several faces want one, that gets it which has it deepest inside.
-/// @param depths of the texels' owners so far
-void paintFace(const LitScene& lit, const Corners& corners, Index face, float footprint, Image& atlas,
-               std::vector<float>& depths)
-{
-  const Eigen::Vector2d u = corners.at.col(1) - corners.at.col(0), w = corners.at.col(2) - corners.at.col(0);
-  const Eigen::Vector2d low = corners.at.rowwise().minCoeff(), high = corners.at.rowwise().maxCoeff();
-  for (int y = std::max(0, static_cast<int>(low.y() - border)); y < std::min<double>(atlas.height, high.y() + border);
-       ++y)
-    for (int x = std::max(0, static_cast<int>(low.x() - border)); x < std::min<double>(atlas.width, high.x() + border);
-         ++x) {
-      const Eigen::Vector2d place(x + 0.5, y + 0.5), to = place - corners.at.col(0);
-      const double depth = depthOf(corners, place);
-      float& owner =
-          depths[static_cast<std::size_t>(y) * static_cast<std::size_t>(atlas.width) + static_cast<std::size_t>(x)];
-      if (depth < -border || owner >= 0 || depth <= owner)
-        continue;
-      owner = static_cast<float>(depth);
-      const VirtualHit hit{static_cast<int>(face), 0.f,
-                           static_cast<float>((to.x() * w.y() - to.y() * w.x()) / corners.twice_area),
-                           static_cast<float>((u.x() * to.y() - u.y() * to.x()) / corners.twice_area)};
-      const Eigen::Vector3f color = 255.f * surfaceColor(lit, hit, footprint);
-      for (int k = 0; k < 3; ++k)
-        atlas.pixel(x, y)[k] = static_cast<std::uint8_t>(std::clamp(color[k] + 0.5f, 0.f, 255.f));
-    }
-}
-
-void paint(const LitScene& lit, const std::vector<float>& finest, double texels, TexturedMesh& model)
-{
-  std::vector<std::vector<float>> depths;
-  for (const Image& atlas : model.atlases)
-    depths.emplace_back(static_cast<std::size_t>(atlas.width) * static_cast<std::size_t>(atlas.height), -1e9f);
-  for (Index face = 0; face < lit.scene.mesh.faceCount(); ++face) {
-    const Corners corners = cornersOf(model, face);
-    if (std::abs(corners.twice_area) < 1e-9)
-      continue;
-    const auto [a, b, c] = triangleOf(lit.scene.mesh, face);
-    const double texel = std::sqrt((b - a).cross(c - a).norm() / std::abs(corners.twice_area));
-    const float footprint = std::max(static_cast<float>(texels * texel), finest[static_cast<std::size_t>(face)]);
-    const auto atlas = static_cast<std::size_t>(model.face_atlas[face]);
-    paintFace(lit, corners, face, footprint, model.atlases[atlas], depths[atlas]);
+/// Paints faces with their true colours. Where several want a texel, that one gets it which has it deepest inside.
+class Painter {
+public:
+  Painter(const LitScene& lit, TexturedMesh& model) : lit_(lit), model_(model)
+  {
+    for (const Image& atlas : model.atlases)
+      owners_.emplace_back(static_cast<std::size_t>(atlas.width) * static_cast<std::size_t>(atlas.height), -1e9f);
   }
-}
 
-void requireSameFaces(const TriangleMesh& model, const TriangleMesh& truth)
+  /// @param texels, finest what is painted is no finer than so many texels, nor than so many metres
+  void paint(Index face, double texels, float finest)
+  {
+    const Corners corners = cornersOf(model_, face);
+    if (std::abs(corners.twice_area) < 1e-9)
+      return;
+    const auto [a, b, c] = triangleOf(lit_.scene.mesh, face);
+    const double texel = std::sqrt((b - a).cross(c - a).norm() / std::abs(corners.twice_area));
+    const float footprint = std::max(static_cast<float>(texels * texel), finest);
+    const auto which = static_cast<std::size_t>(model_.face_atlas[face]);
+    Image& atlas = model_.atlases[which];
+    const Eigen::Array2d size(atlas.width, atlas.height);
+    const Eigen::Array2i low = (corners.at.rowwise().minCoeff().array() - border).max(0.0).cast<int>(),
+                         end = (corners.at.rowwise().maxCoeff().array() + border).min(size).ceil().cast<int>();
+    for (int y = low.y(); y < end.y(); ++y)
+      for (int x = low.x(); x < end.x(); ++x)
+        if (claim(owners_[which][static_cast<std::size_t>(y) * static_cast<std::size_t>(atlas.width) +
+                                 static_cast<std::size_t>(x)],
+                  depthOf(corners, {x + 0.5, y + 0.5})))
+          setColor(surfaceColor(lit_, hitAt(corners, face, {x + 0.5, y + 0.5}), footprint), atlas.pixel(x, y));
+  }
+
+private:
+  /// @param owner depth of the texel in the face that has it so far
+  static bool claim(float& owner, double depth)
+  {
+    if (depth < -border || owner >= 0 || depth <= owner)
+      return false;
+    owner = static_cast<float>(depth);
+    return true;
+  }
+
+  static VirtualHit hitAt(const Corners& corners, Index face, const Eigen::Vector2d& place)
+  {
+    const Eigen::Vector2d u = corners.at.col(1) - corners.at.col(0), w = corners.at.col(2) - corners.at.col(0),
+                          to = place - corners.at.col(0);
+    return {static_cast<int>(face), 0.f, static_cast<float>((to.x() * w.y() - to.y() * w.x()) / corners.twice_area),
+            static_cast<float>((u.x() * to.y() - u.y() * to.x()) / corners.twice_area)};
+  }
+
+  static void setColor(const Eigen::Vector3f& color, std::uint8_t* pixel)
+  {
+    for (int k = 0; k < 3; ++k)
+      pixel[k] = static_cast<std::uint8_t>(std::clamp(255.f * color[k] + 0.5f, 0.f, 255.f));
+  }
+
+  const LitScene& lit_;
+  TexturedMesh& model_;
+  std::vector<std::vector<float>> owners_; ///< by atlas and texel
+};
+
+/// @throws std::invalid_argument unless `textured` shows the faces of the room, all of them with texture
+void requireSameFaces(const TexturedMesh& textured, const TriangleMesh& truth)
 {
+  const TriangleMesh& model = textured.mesh;
   require(model.faceCount() == truth.faceCount(), "the model has ", model.faceCount(), " faces, the room ",
           truth.faceCount());
+  require(model.faceCount() == 0 || textured.face_atlas.minCoeff() >= 0, "a face of the model has no texture");
   const Eigen::Vector3f shift = (truth.origin - model.origin).cast<float>();
   for (Index f = 0; f < truth.faceCount(); ++f)
     for (int k = 0; k < 3; ++k) {
@@ -175,8 +193,11 @@ void run(int argc, char** argv)
   const Lightmap light = bakeLight(scene, rays, {});
   const LitScene lit{scene, rays, light};
   TexturedMesh model = readTexturedMesh(files[1]);
-  requireSameFaces(model.mesh, scene.mesh);
-  paint(lit, finestFootprints(lit, options), options.texels, model);
+  requireSameFaces(model, scene.mesh);
+  const std::vector<float> finest = finestFootprints(lit, options);
+  Painter painter(lit, model);
+  for (Index face = 0; face < scene.mesh.faceCount(); ++face)
+    painter.paint(face, options.texels, finest[static_cast<std::size_t>(face)]);
   writeTexturedMesh(files[2], model);
 }
 } // namespace

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "scanned_room.h"
 #include "support/tool.h"
-#include "virtual/dataset.h"
 #include "virtual/labels.h"
-#include "virtual/places.h"
 #include <cstdio>
 #include <fresco/filters/core/neighbors.h>
 #include <fresco/filters/core/veil_points.h>
@@ -86,22 +85,15 @@ int main(int argc, char** argv)
     args.option("divergence", laser.divergence, "growth of the radius, radians");
     common.declare(args);
     args.parse(argc, argv, 0);
-    const Scene scene = loadScene(name, 0.1f);
-    const VirtualRays rays(scene.mesh);
-    LightingOptions lighting;
-    lighting.spacing = 0.5f; // colours are not used
-    lighting.gather_packets = 1;
-    const Lightmap light = bakeLight(scene, rays, lighting);
-    const ScenePlaces places = sampleSurface(scene, 4000, 1);
-    const Points at = chooseStations({scene, rays, places, 1, common.threads}, stations);
-    const TriangleTree surfaces(scene.mesh, common.threads);
+    const ScannedRoom room(name, stations, common.threads);
+    const TriangleTree surfaces(room.scene.mesh, common.threads);
     Counts counts;
-    for (Index s = 0; s < at.cols(); ++s) {
-      const Eigen::Vector3d station = at.col(s).cast<double>() + scene.mesh.origin;
+    for (Index s = 0; s < room.stations.cols(); ++s) {
+      const Eigen::Vector3d station = room.stations.col(s).cast<double>() + room.scene.mesh.origin;
       const Eigen::Matrix4d pose = randomPose(station, laser.seed, static_cast<int>(s));
       Eigen::Matrix4d T_truth_scan = pose;
-      T_truth_scan.topRightCorner<3, 1>() -= scene.mesh.origin;
-      count(scanScene({scene, rays, light}, pose, laser, static_cast<int>(s)), surfaces, T_truth_scan, counts);
+      T_truth_scan.topRightCorner<3, 1>() -= room.scene.mesh.origin;
+      count(scanScene(room.lit(), pose, laser, static_cast<int>(s)), surfaces, T_truth_scan, counts);
     }
     std::printf("| points | veil | recall | off by 4 deviations - 1 cm | - 2 cm | - 4 cm | more | > 1 spacing | > 2 "
                 "spacings | precision |\n|---|---|---|---|---|---|---|---|---|---|\n");

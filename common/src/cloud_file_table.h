@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include "point_io_table.h"
-#include <pcl/PCLPointCloud2.h>
+namespace pcl {
+struct PCLPointCloud2;
+}
 namespace fresco::detail {
 /// @throws std::invalid_argument if the type is none of PCL's
 Scalar scalarOfField(std::uint8_t datatype);

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdlib>
 #include <fresco/common/parallel.h>
+#include <fresco/common/release.h>
 #include <stdexcept>
 #include <zlib.h>
 namespace fresco::detail {
@@ -144,7 +145,7 @@ std::vector<std::uint8_t> encodePng(const Image& image, int threads)
     if (b + 1 == bands.size())
       appendNumber(check, bands[b].packed);
     appendChunk("IDAT", bands[b].packed, out);
-    Bytes().swap(bands[b].packed); // frees memory
+    releaseMemory(bands[b].packed);
   }
   appendChunk("IEND", {}, out);
   return out;

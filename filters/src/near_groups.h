@@ -80,6 +80,10 @@ private:
   std::vector<PointTree::Key> keys_;
 };
 
+/// n lists of k neighbours each, which are still to be filled in.
+NeighborLists evenLists(Index n, Index k);
+
 /// use(i, positions, count) for every point: as nearestLists(), without keeping the lists. In parallel.
+/// @param k >= 1
 void forNearest(const PointTree& tree, int k, int threads, const std::function<void(Index, const int*, Index)>& use);
 } // namespace fresco

@@ -27,16 +27,6 @@ struct ListLimits {
   int threads;
 };
 
-NeighborLists evenLists(Index n, Index k)
-{
-  NeighborLists lists;
-  lists.begin.resize(static_cast<std::size_t>(n) + 1);
-  for (Index i = 0; i <= n; ++i)
-    lists.begin[i] = i * k;
-  lists.index.resize(static_cast<std::size_t>(n * k));
-  return lists;
-}
-
 /// Lists found range by range (lists_of_range.index, and counts in lists_of_range.begin) joined to one.
 NeighborLists joinLists(std::vector<NeighborLists> ranges, int threads)
 {
@@ -145,9 +135,18 @@ std::vector<Range> searchRadii(const PointTree& tree, const Eigen::VectorXf& rad
 }
 } // namespace
 
+NeighborLists evenLists(Index n, Index k)
+{
+  NeighborLists lists;
+  lists.begin.resize(static_cast<std::size_t>(n) + 1);
+  for (Index i = 0; i <= n; ++i)
+    lists.begin[i] = i * k;
+  lists.index.resize(static_cast<std::size_t>(n * k));
+  return lists;
+}
+
 void forNearest(const PointTree& tree, int k, int threads, const std::function<void(Index, const int*, Index)>& use)
 {
-  require(k > 0, "neighbour search: k ", k, " is below 1");
   const Index each = std::min<Index>(k, tree.size());
   const std::vector<Index> groups = tree.subtrees(group_leaves);
   parallelRanges(static_cast<Index>(groups.size()) - 1, threads, [&](Index begin, Index end) {
@@ -167,6 +166,7 @@ void forNearest(const PointTree& tree, int k, int threads, const std::function<v
 
 NeighborLists nearestLists(const PointTree& tree, int k, int threads)
 {
+  require(k > 0, "neighbour search: k ", k, " is below 1");
   const Index each = std::min<Index>(k, tree.size());
   NeighborLists lists = evenLists(tree.size(), each);
   forNearest(tree, k, threads, [&](Index i, const int* found, Index count) {

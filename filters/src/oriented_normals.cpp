@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fresco/common/parallel.h>
+#include <fresco/common/release.h>
 #include <fresco/common/require.h>
 #include <fresco/filters/core/normal_orientation.h>
 #include <fresco/filters/core/oriented_normals.h>
@@ -115,8 +116,8 @@ NormalField toField(const PointSet& set, Neighborhoods& all, const Fits& fits, i
   for (const GroupLists& lists : all.groups)
     for (Index i = lists.begin; i < lists.end; ++i)
       empty[static_cast<std::size_t>(i)] = lists.count(i) == 0;
-  all.groups = std::vector<GroupLists>(); // frees memory, as = {} does not
-  all.codes = std::vector<std::uint16_t>();
+  releaseMemory(all.groups);
+  releaseMemory(all.codes);
   NormalField field;
   field.normals = Points::Constant(3, set.size(), NAN);
   field.curvatures = Eigen::VectorXf::Constant(set.size(), NAN);

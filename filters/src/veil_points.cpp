@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "beam_window.h"
+#include "near_groups.h"
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
@@ -40,11 +41,7 @@ NeighborLists thinnedLists(const PointTree& directions, Index m, const VeilOptio
     some.col(i) = directions.point(m * i);
   const PointTree tree(some, options.threads);
   const auto each = static_cast<Index>(options.k) + 1;
-  NeighborLists lists;
-  lists.begin.resize(static_cast<std::size_t>(directions.size()) + 1);
-  for (Index i = 0; i <= directions.size(); ++i)
-    lists.begin[i] = i * each;
-  lists.index.resize(static_cast<std::size_t>(directions.size() * each));
+  NeighborLists lists = evenLists(directions.size(), each);
   parallelRanges(directions.size(), options.threads, [&](Index begin, Index end) {
     std::vector<Neighbor> found;
     for (Index i = begin; i < end; ++i) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <fresco/common/parallel.h>
+#include <fresco/common/release.h>
 #include <limits>
 #include <utility>
 namespace fresco {
@@ -271,7 +272,7 @@ private:
             node.child[slot] += offset;
         nodes_.push_back(node);
       }
-      std::vector<TreeNode>().swap(subtrees[t]); // frees memory
+      releaseMemory(subtrees[t]);
     }
   }
 

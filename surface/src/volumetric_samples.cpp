@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fresco/common/parallel.h>
+#include <fresco/common/release.h>
 #include <fresco/common/require.h>
 namespace fresco::volumetric {
 namespace {
@@ -114,7 +115,7 @@ Samples gatherSamples(const PointSet& set, const VolumetricOptions& options)
   result.used_points = static_cast<Index>(usable.points.size());
   result.left_out_points = set.size() - result.used_points;
   const SortedPoints points(set, usable.points, result.cube, options.threads);
-  Array<std::uint32_t>().swap(usable.points); // frees memory, which "= {}" does not
+  releaseMemory(usable.points);
   const auto codeAt = [&](Index k) { return points.code(static_cast<std::size_t>(k)); };
   const Array<std::uint32_t> runs = runBegins(static_cast<Index>(points.size()), options.threads, codeAt);
   const std::size_t n = runs.size() - 1;

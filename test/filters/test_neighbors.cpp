@@ -83,6 +83,7 @@ TEST(PointTree, EmptySetsAndOddQueries)
   EXPECT_THROW(tree.nearest(Eigen::Vector3f::Zero(), 0, found), std::invalid_argument);
   EXPECT_THROW(tree.within(Eigen::Vector3f::Zero(), nan, found), std::invalid_argument);
   EXPECT_THROW(nearestLists(tree, 0), std::invalid_argument);
+  EXPECT_THROW(nearestLists(tree, -1), std::invalid_argument);
   EXPECT_THROW(radiusLists(tree, Eigen::VectorXf::Ones(5), 10), std::invalid_argument);
   EXPECT_THROW(radiusLists(tree, -Eigen::VectorXf::Ones(1), 10), std::invalid_argument);
 }

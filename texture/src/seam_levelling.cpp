@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fresco/common/parallel.h>
+#include <fresco/common/release.h>
 namespace fresco {
 namespace {
 constexpr float slowness = 0.3f;  // weight of a change along an edge against a step between views
@@ -62,7 +63,7 @@ private:
       entries_.emplace_back(static_cast<int>(i), static_cast<int>(i), diagonal_[i]);
     Sparse A(diagonal_.size(), diagonal_.size());
     A.setFromTriplets(entries_.begin(), entries_.end());
-    std::vector<Triplet>().swap(entries_); // frees memory
+    releaseMemory(entries_);
     return A;
   }
 

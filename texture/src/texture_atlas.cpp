@@ -5,8 +5,8 @@
 #include "resolution.h"
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <fresco/common/require.h>
+#include <iomanip>
 namespace fresco {
 namespace {
 constexpr int largest_atlas = 8192;   // every graphics card takes it
@@ -70,9 +70,8 @@ std::vector<Chart> makeAtlas(const PatchMesh& patches, const Eigen::VectorXf& re
   Eigen::VectorXf density = wantedDensities(patches, result.model.mesh.faceCount(), resolution, options.texel);
   if (const double coarser = coarsening(graph, density); options.texel == 0 && coarser > 1) {
     density /= static_cast<float>(coarser);
-    char times[32];
-    std::snprintf(times, sizeof times, "%.2f", coarser);
-    result.warnings.push_back(concat("texels are ", times,
+    result.warnings.push_back(concat("texels are ", std::fixed, std::setprecision(2), coarser, std::defaultfloat,
+                                     std::setprecision(6),
                                      " times as large as the photographs give, so that there are ", most_texels / 1e6,
                                      " million: a smaller -texel makes more"));
   }

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include "virtual/dataset.h"
+#include "virtual/places.h"
+namespace fresco {
+/// A scene that is scanned and not photographed: light is coarse.
+struct ScannedRoom {
+  /// @param name as loadScene()
+  ScannedRoom(const std::string& name, int station_count, int threads)
+      : scene(loadScene(name, 0.1f)), rays(scene.mesh), light(bakeLight(scene, rays, coarse()))
+  {
+    const ScenePlaces places = sampleSurface(scene, 4000, 1);
+    stations = chooseStations({scene, rays, places, 1, threads}, station_count);
+  }
+  LitScene lit() const { return {scene, rays, light}; }
+
+  Scene scene;
+  VirtualRays rays;
+  Lightmap light;
+  Points stations; ///< 3xN, in the frame of the scene's vertices
+
+private:
+  static LightingOptions coarse()
+  {
+    LightingOptions lighting;
+    lighting.spacing = 0.5f;
+    lighting.gather_packets = 1;
+    return lighting;
+  }
+};
+} // namespace fresco
