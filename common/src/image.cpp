@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "image_codecs.h"
 #include "png_writer.h"
 #include "texture_io_image.h"
 #include <fresco/common/file.h>
@@ -30,6 +31,7 @@ cv::Mat decode(const std::string& path, int flags)
   if (!isWhole(bytes))
     fail(path, "the image is truncated or damaged");
   const cv::Mat raw(1, static_cast<int>(bytes.size()), CV_8U, const_cast<char*>(bytes.data()));
+  detail::prepareImageCodecs();
   cv::Mat image;
   try {
     image = cv::imdecode(raw, flags);
@@ -89,6 +91,7 @@ std::vector<std::uint8_t> encodeImage(const Image& image, const std::string& ext
   validate(image);
   if (extension == ".png")
     return detail::encodePng(image);
+  detail::prepareImageCodecs();
   std::vector<std::uint8_t> bytes;
   cv::imencode(extension, toOpenCv(image), bytes, {cv::IMWRITE_JPEG_QUALITY, quality});
   return bytes;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "texture_io_image.h"
+#include "image_codecs.h"
 #include <cstdint>
 #include <cstring>
 #include <limits>
@@ -42,6 +43,7 @@ Image decodeImage(const unsigned char* bytes, std::size_t size)
   const bool is_jpeg = startsWith(bytes, size, "\xff\xd8");
   if (size <= static_cast<std::size_t>(std::numeric_limits<int>::max()) && (is_jpeg || isIntactPng(bytes, size)))
     try {
+      prepareImageCodecs();
       const cv::Mat raw(1, static_cast<int>(size), CV_8U, const_cast<unsigned char*>(bytes));
       bgr = cv::imdecode(raw, cv::IMREAD_COLOR | cv::IMREAD_IGNORE_ORIENTATION);
     } catch (const cv::Exception&) { // reported below

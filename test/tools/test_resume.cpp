@@ -255,7 +255,7 @@ TEST_F(Faults, NotEnoughMemory)
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
   GTEST_SKIP() << "a sanitizer needs more address space than any limit leaves";
 #endif
-  for (const rlim_t megabytes : {300, 400, 550}) {
+  for (const rlim_t megabytes : {300, 304, 310, 400, 550}) {
     SCOPED_TRACE(std::to_string(megabytes) + " MB");
     const std::string out = folder_ + "/memory_" + std::to_string(megabytes);
     const Outcome outcome = ModelRun(input_, out, false, {0, megabytes << 20}).wait();
