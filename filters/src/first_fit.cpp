@@ -10,6 +10,14 @@ constexpr Index noise_samples = 2048;
 constexpr float least_width = 6.f;   // radius of a neighbourhood / deviation of the points from the surface
 constexpr float reach_margin = 1.5f; // how far to look for neighbours / distance expected
 constexpr int spread = 3;            // times the neighbours of a point are kept in dense parts
+// Sums of the lesser two variances of a neighbourhood over the squared deviation:
+constexpr float least_breadth = 3.f;  // below, it is a line
+constexpr float row_breadth = 6.f;    // below, it is a line if it has no thickness, as a row of beams
+constexpr float clear_breadth = 12.f; // that of the wider one that takes its place
+constexpr float thinnest = 0.1f;      // least variance / squared deviation, of what has a thickness
+constexpr float thickest = 2.25f;     // of a plane that takes the place of a line
+constexpr float others = 4.5f;        // of a thin thing and what is around it
+constexpr int doublings = 4;          // of the radius around a line
 
 /// Deviation of the points from their surfaces: the median of planes through the k nearest.
 float surfaceNoise(const PointTree& tree, int k, int threads)
@@ -36,11 +44,32 @@ float surfaceNoise(const PointTree& tree, int k, int threads)
   return count > 0 ? *middle : 0.f;
 }
 
+/// About the sum of the lesser two variances of points, and the least of them.
+std::pair<float, float> lesserVariances(const Moments& moments)
+{
+  const float share = 1 / moments.weight, *s = moments.sums;
+  const float x = s[0] * share, y = s[1] * share, z = s[2] * share;
+  const float xx = s[3] * share - x * x, xy = s[4] * share - x * y, xz = s[5] * share - x * z;
+  const float yy = s[6] * share - y * y, yz = s[7] * share - y * z, zz = s[8] * share - z * z;
+  const float yyzz = yy * zz - yz * yz, products = xx * yy - xy * xy + (xx * zz - xz * xz) + yyzz;
+  const float determinant = xx * yyzz - xy * (xy * zz - yz * xz) + xz * (xy * yz - yy * xz);
+  return {products / (xx + yy + zz), determinant / products};
+}
+
+/// Whether noise tells the direction across the points.
+/// @param variance of the points, across their surfaces
+bool isLine(const Moments& moments, float variance)
+{
+  const auto [both, least] = lesserVariances(moments);
+  return both < least_breadth * variance || (both < row_breadth * variance && least < thinnest * variance);
+}
+
 /// Search and fit for one group after another.
 class GroupFitter {
 public:
   GroupFitter(const PointTree& tree, int k, float width, Fits& fits)
-      : tree_(tree), k_(k), width_(width), fits_(fits), group_(tree), evenly_(static_cast<std::size_t>(k)),
+      : tree_(tree), k_(k), width_(width), variance_(width * width / (least_width * least_width)), fits_(fits),
+        group_(tree), wide_(tree), evenly_(static_cast<std::size_t>(k)),
         batch_([this](Index i, const Plane& plane) { fits_.planes[static_cast<std::size_t>(i)] = plane; })
   {}
   GroupLists fit(Index first_leaf, Index end_leaf, std::uint16_t* codes);
@@ -49,12 +78,16 @@ private:
   bool fitKept(Index i);
   void fitNearest(Index i);
   void take(Index i, float weight, const float* sums);
+  void widenLines(Index first_leaf, Index end_leaf);
+  bool settled(Index i, float radius);
 
   const PointTree& tree_;
   int k_;
-  float width_; ///< at least, of a neighbourhood
+  float width_;    ///< at least, of a neighbourhood
+  float variance_; ///< of the points, across their surfaces
   Fits& fits_;
-  NearGroup group_;
+  NearGroup group_, wide_;
+  std::vector<Index> lines_; ///< points whose neighbours lie on a line but for the noise
   bool thinned_ = false;
   GroupEncoder encoder_;
   std::vector<int> evenly_;
@@ -67,7 +100,48 @@ void GroupFitter::take(Index i, float weight, const float* sums)
   moments.weight = weight;
   std::copy_n(sums, 9, moments.sums);
   fits_.reaches[static_cast<std::size_t>(i)] = sums[9];
+  if (isLine(moments, variance_))
+    lines_.push_back(i);
   batch_.add(i, tree_.point(i), moments);
+}
+
+/// Goes over to points spread evenly over `radius` if they have a plane.
+/// @return false if wider ones may have it
+bool GroupFitter::settled(Index i, float radius)
+{
+  const std::size_t found = wide_.keptWithin(i, radius), k = evenly_.size();
+  float sums[10];
+  const int* codes = wide_.sum(sums);
+  Moments moments;
+  moments.weight = static_cast<float>(found);
+  std::copy_n(sums, 9, moments.sums);
+  if (found < k || lesserVariances(moments).first < clear_breadth * variance_)
+    return false;
+  const Plane plane = fitPlane(moments, tree_.point(i));
+  if (plane.variance > thickest * variance_)
+    return plane.variance > others * variance_;
+  const double step = static_cast<double>(found) / static_cast<double>(k);
+  for (std::size_t j = 0; j < k; ++j)
+    evenly_[j] = group_.codeOf(wide_.position(codes[static_cast<std::size_t>((static_cast<double>(j) + 0.5) * step)]));
+  encoder_.replace(i, evenly_.data(), k);
+  fits_.planes[static_cast<std::size_t>(i)] = plane;
+  fits_.reaches[static_cast<std::size_t>(i)] = sums[9];
+  return true;
+}
+
+void GroupFitter::widenLines(Index first_leaf, Index end_leaf)
+{
+  float radius = width_;
+  for (const Index i : lines_)
+    radius = std::max(radius, std::sqrt(fits_.reaches[static_cast<std::size_t>(i)]));
+  for (int doubling = 0; doubling < doublings && !lines_.empty(); ++doubling) {
+    radius *= 2;
+    wide_.enter(first_leaf, end_leaf);
+    wide_.gather(radius, most_leaves);
+    wide_.thin(radius, spread * k_);
+    lines_.erase(std::remove_if(lines_.begin(), lines_.end(), [&](Index i) { return settled(i, radius); }),
+                 lines_.end());
+  }
 }
 
 /// With the points kept, if there are enough. Of them, k evenly chosen ones are the list.
@@ -113,10 +187,13 @@ GroupLists GroupFitter::fit(Index first_leaf, Index end_leaf, std::uint16_t* cod
   group_.gather(std::max(width_, reach_margin * expected), most_leaves);
   const bool dense = expected < width_;
   thinned_ = false;
+  lines_.clear();
   for (Index i = group_.begin(); i < group_.end(); ++i)
     if (!dense || !fitKept(i))
       fitNearest(i);
   batch_.finish();
+  if (width_ > 0 && !lines_.empty())
+    widenLines(first_leaf, end_leaf);
   return encoder_.finish(group_.leaves(), codes + group_.begin() * k_);
 }
 } // namespace

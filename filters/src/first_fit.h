@@ -9,7 +9,8 @@ struct Fits {
 
 /// The `k` nearest of each point of all.tree with the least squares planes through them. Neighbourhoods that noise
 /// makes as thick as wide have no normal: where the scan is so dense, the plane is fitted to points spread evenly over
-/// a wider disc, `k` of which are the list.
+/// a wider disc, `k` of which are the list. So it is where the nearest lie on a line but for the noise, those of one
+/// row of beams, if a wider disc has a plane.
 /// @param k 1..Neighborhoods::most_neighbors
 Fits fitNearest(Neighborhoods& all, int k, int threads);
 

@@ -29,6 +29,9 @@ public:
   } ///< ascending, then those of farther neighbours found since
   int position(int code) const { return 8 * leaves_[static_cast<std::size_t>(code) / 8] + code % 8; }
 
+  /// Of any point of the tree; leaves() grows if its leaf is new.
+  int codeOf(int position);
+
   /// Finds the `k` nearest of point i, itself included (equally far ones by position), for what follows.
   /// @param k <= tree.size()
   void nearest(Index i, int k);
@@ -54,7 +57,6 @@ private:
   bool choose(Index i, int k, float bound);
   void chooseFromTree(Index i, int k);
   void chooseByKeys(Index i);
-  int codeOf(int position);
   NearPoints points() { return {squared_.data(), x_.data(), y_.data(), z_.data(), position_.data()}; }
 
   const PointTree& tree_;

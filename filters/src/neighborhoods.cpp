@@ -26,6 +26,11 @@ void GroupEncoder::add(const int* codes, std::size_t count)
   lists_.starts.push_back(static_cast<int>(codes_.size()));
 }
 
+void GroupEncoder::replace(Index i, const int* codes, std::size_t count)
+{
+  std::copy_n(codes, count, codes_.begin() + lists_.starts[static_cast<std::size_t>(i - lists_.begin)]);
+}
+
 GroupLists GroupEncoder::finish(const std::vector<int>& table, std::uint16_t* codes)
 {
   constexpr int unused = -1, used = -2;

@@ -61,6 +61,8 @@ public:
   /// Adds the list of the next point.
   /// @param codes 8 * place in a table of leaves + place in the leaf
   void add(const int* codes, std::size_t count);
+  /// Puts another list of the same length in place of that of point i.
+  void replace(Index i, const int* codes, std::size_t count);
   /// @param table of the codes @param codes where they are to be kept @return with the leaves in use alone
   GroupLists finish(const std::vector<int>& table, std::uint16_t* codes);
 

@@ -146,6 +146,50 @@ TEST(OrientedNormals, DenseNoisyScansGetNormalsOfTheSurface)
   EXPECT_LT(test::meanAngle(estimateNormals(seenFrom(noisy, {0, 0, 5})).normals, flat.normals), 15);
 }
 
+/// A ceiling seen from a scanner that turns about the vertical: close to the axis the sixteen nearest beams are of one
+/// row, and with their noise span a plane upright on the surface.
+TEST(OrientedNormals, RowsOfBeamsHaveThePlaneOfTheirSurface)
+{
+  constexpr float step = 0.008f, height = 2;
+  constexpr int rows = 60, columns = 785;
+  for (const float noise : {0.0005f, 0.002f, 0.005f}) {
+    std::mt19937 generator(5);
+    std::normal_distribution<float> along_beam(0, noise);
+    Points points(3, rows * columns);
+    for (Index i = 0; i < points.cols(); ++i) {
+      const float away = step * (static_cast<float>(i / columns) + 0.5f),
+                  azimuth = step * static_cast<float>(i % columns);
+      const Eigen::Vector3f beam(std::tan(away) * std::cos(azimuth), std::tan(away) * std::sin(azimuth), 1);
+      points.col(i) = height * beam + along_beam(generator) * beam.normalized();
+    }
+    for (const bool edges : {false, true}) {
+      NormalOptions options;
+      options.edges = edges;
+      const Points normals = estimateNormals(seenFrom(points, {0, 0, 0}), options).normals;
+      Index off = 0;
+      for (Index i = 0; i < points.cols(); ++i)
+        off += test::angleBetween(normals.col(i), -Eigen::Vector3f::UnitZ()) > 45;
+      EXPECT_LE(off, edges ? points.cols() / 10000 : 0) << noise;
+    }
+  }
+}
+
+/// A rod of a single row of beams has no plane of its own; that of the wall behind it is none of its.
+TEST(OrientedNormals, RodsDoNotTakeTheWallBehind)
+{
+  constexpr int side = 100, length = 300;
+  const Eigen::Vector3f along = Eigen::Vector3f(0, 1, 0.5f).normalized();
+  Points points(3, side * side + length);
+  for (Index i = 0; i < side * side; ++i)
+    points.col(i) << 0.01f * static_cast<float>(i % side - side / 2), 0.01f * static_cast<float>(i / side - side / 2),
+        0;
+  for (Index i = 0; i < length; ++i)
+    points.col(side * side + i) = Eigen::Vector3f(0, -0.4f, 0.05f) + 0.002f * static_cast<float>(i) * along;
+  const Points normals = estimateNormals(seenFrom(test::withNoise(points, 0.002f, 6), {0, 0, 3})).normals;
+  for (Index i = side * side; i < points.cols(); ++i)
+    EXPECT_LT(std::abs(normals.col(i).dot(along)), 0.4f) << i - side * side;
+}
+
 TEST(OrientedNormals, WithoutViewpointClosedObjectsPointOutward)
 {
   for (const float noise : {0.f, 0.01f}) {
