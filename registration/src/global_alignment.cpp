@@ -248,6 +248,7 @@ GlobalAlignment GlobalAligner::run(const Progress& progress)
     report(progress, "align pairs", 0.3 + 0.7 * round / most_rounds);
     alignPairs(ranked ? takeRound(pairs, scans_.size()) : pairs);
     correctViewpoints();
+    shareGlimpses(scans_, result_.pairs);
     result_.graph = buildScanGraph(scans_, result_.pairs, known_, graphOptions());
     if (!ranked || pairs.empty() || result_.graph.clusters.size() <= 1)
       break;

@@ -122,9 +122,11 @@ public:
   {
     for (std::size_t k = 0, count = std::min(twinned_most, modes.size()); k < count; ++k) {
       for (const SelfMotion& motion : pair_.a.twins)
-        consider(modes, k, {motion.T * modes[k].T_a_b, motion.certain});
+        if (!motion.glimpsed)
+          consider(modes, k, {motion.T * modes[k].T_a_b, motion.certain});
       for (const SelfMotion& motion : pair_.b.twins)
-        consider(modes, k, {modes[k].T_a_b * motion.T, motion.certain});
+        if (!motion.glimpsed)
+          consider(modes, k, {modes[k].T_a_b * motion.T, motion.certain});
     }
     sortModes(modes);
   }

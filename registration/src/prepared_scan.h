@@ -24,6 +24,7 @@ struct SelfMotion {
   Eigen::Isometry3d T = Eigen::Isometry3d::Identity(); ///< in the scan's working frame
   bool certain = false;  ///< nothing that the scan saw speaks against it; else it is worth a try
   double likeness = 0.0; ///< overlap of the scan with itself, if the motion would pass as a pair's; else 0
+  bool glimpsed = false; ///< whether little of the second place was seen, as through two doors
 };
 using SelfMotions = std::vector<SelfMotion, Eigen::aligned_allocator<SelfMotion>>;
 

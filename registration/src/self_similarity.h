@@ -7,4 +7,8 @@ namespace fresco {
 /// alternative S T, and only measurement can tell which is right. None without free space or of
 /// a narrow view.
 SelfMotions findSelfMotions(const PreparedScan& scan, const ScanFeatures& features);
+
+/// A second place that one scan glimpsed, as through two doors, counts for all scans of the first: each scan receives
+/// the glimpsed motions of those it overlaps largely.
+void shareGlimpses(std::vector<PreparedScan>& scans, const std::vector<PairAlignment>& pairs);
 } // namespace fresco

@@ -84,6 +84,34 @@ TEST(LookAlikes, EqualRoomsSeenFromBetweenAreNotMerged)
   }
 }
 
+// Without one, a scan of either room sees through both doors that a second room is equal.
+TEST(LookAlikes, EqualRoomsThatSeeEachOtherAreNotMerged)
+{
+  for (const test::Paint paint : {test::Paint::none, test::Paint::different}) {
+    const LookAlikeScene place = test::facingRooms({true, false, false, paint});
+    const Outcome outcome = registered(place);
+    EXPECT_EQ(outcome.held.wrong, 0) << place.name;
+    EXPECT_EQ(outcome.held.right, paint == test::Paint::different ? 2 : 0) << place.name;
+  }
+}
+
+TEST(SelfSimilarity, EqualRoomsBehindDoorsAreGlimpsed)
+{
+  Eigen::Isometry3d half_turn(Eigen::Translation3d(10, 4, 0) * Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitZ()));
+  for (const bool equal : {true, false}) {
+    const test::ScannedScene scene = test::facingRooms({equal, false, false, test::Paint::none}).scene;
+    int glimpsed = 0;
+    for (std::size_t i = 0; i < scene.scans.size(); ++i)
+      for (const SelfMotion& motion : selfMotions(scene.scans[i]))
+        if (motion.glimpsed) {
+          ++glimpsed;
+          const Eigen::Isometry3d moved = scene.truth[i] * motion.T * scene.truth[i].inverse();
+          EXPECT_LT(poseDistance(moved, half_turn, 2.0), 0.5);
+        }
+    EXPECT_EQ(glimpsed > 0, equal);
+  }
+}
+
 // The counterparts that only seem to look alike are joined.
 TEST(LookAlikes, WhatDiffersIsJoined)
 {
