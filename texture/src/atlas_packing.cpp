@@ -218,28 +218,44 @@ int smallestSquare(Packer& packer, int least, double blocks)
   packer.pack(best_width, 0);
   return best;
 }
+
+/// Side of the smallest squares, as few as possible, that `packer` fills; blocks.
+int smallestSquares(Packer& packer, int least, int largest)
+{
+  constexpr int tries = 5;
+  packer.pack(largest, largest);
+  const int count = packer.atlases();
+  int low = least, high = largest; // high is enough
+  for (int i = 0; i < tries && high - low > high / 64; ++i) {
+    const int middle = (low + high) / 2;
+    packer.pack(middle, middle);
+    (packer.atlases() <= count ? high : low) = middle;
+  }
+  packer.pack(high, high);
+  return high;
+}
 } // namespace
 
 Packing packCharts(std::vector<Chart>& charts, int side, int largest)
 {
-  constexpr double blocks_per_side = 640;
+  constexpr double most_blocks = 1024; // along a side
   const double owned = ownedTexels(charts);
   const double guess = side > 0 ? side : std::min<double>(largest, std::sqrt(owned / 0.8));
   int block = 1;
-  while (guess / block > blocks_per_side * 1.42)
+  while (guess / block > most_blocks)
     block *= 2;
   Packer packer(charts, block);
   Packing out;
   int widest = 1;
   for (const Chart& chart : charts)
-    widest = std::max(widest, (chart.width + block - 1) / block);
+    widest = std::max({widest, (chart.width + block - 1) / block, (chart.height + block - 1) / block});
   out.side = side;
-  if (side == 0)
+  if (side > 0)
+    packer.pack(side / block, side / block);
+  else if (owned <= static_cast<double>(largest) * largest)
     out.side = block * smallestSquare(packer, widest, owned / block / block);
-  if (side > 0 || out.side > largest) {
-    out.side = side > 0 ? side : largest;
-    packer.pack(out.side / block, out.side / block);
-  }
+  if (side == 0 && (out.side == 0 || out.side > largest))
+    out.side = block * smallestSquares(packer, widest, largest / block);
   out.atlases = std::max(1, packer.atlases());
   out.used = owned / (static_cast<double>(out.side) * out.side * out.atlases);
   return out;

@@ -148,6 +148,32 @@ void paintSeen(const PaintScene& scene, const PaintSources& sources, std::vector
   }
 }
 
+void paintTexels(const PaintScene& scene, const PaintSources& sources,
+                 const std::vector<std::vector<PatchTexel>>& by_view, std::vector<Image>& atlases)
+{
+  for (std::size_t v = 0; v < by_view.size(); ++v) {
+    const std::vector<PatchTexel>& texels = by_view[v];
+    if (texels.empty())
+      continue;
+    std::vector<std::size_t> runs; // first texel of each patch
+    for (std::size_t k = 0; k < texels.size(); ++k)
+      if (k == 0 || texels[k].patch != texels[k - 1].patch)
+        runs.push_back(k);
+    runs.push_back(texels.size());
+    const std::shared_ptr<const Image> photo = sources.photos.get(static_cast<Index>(v));
+    const Eigen::Vector3f gain = sources.gains.col(static_cast<Index>(v));
+    parallelFor(static_cast<Index>(runs.size()) - 1, scene.threads, [&](Index r) {
+      PatchFrame frame(scene, texels[runs[r]].patch);
+      if (!frame.map.look(sources.views[v]))
+        return;
+      const PatchSampler sampler(scene, frame.map, *photo, texels[runs[r]].patch);
+      for (std::size_t k = runs[r]; k < runs[r + 1]; ++k)
+        store(gain.cwiseProduct(sampler(frame.place(texels[k].x, texels[k].y))),
+              atlases[frame.chart.atlas].pixel(frame.chart.x + texels[k].x, frame.chart.y + texels[k].y));
+    });
+  }
+}
+
 Points patchColors(const PaintScene& scene, const std::vector<Image>& atlases)
 {
   Points colors = Points::Constant(3, scene.patches.size(), -1.f);

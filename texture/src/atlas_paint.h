@@ -21,6 +21,11 @@ struct PaintScene {
   bool isSeen(Index patch) const { return view[patch] >= 0 && slots[patch] >= 0; }
 };
 
+/// A texel of a patch, in its chart.
+struct PatchTexel {
+  int patch, x, y;
+};
+
 /// P, see PaintScene::slots.
 std::vector<int> texelSlots(const std::vector<Chart>& charts, Index patches);
 
@@ -37,6 +42,11 @@ struct PaintSources {
 
 /// Fills the texels of the seen patches from their photographs.
 void paintSeen(const PaintScene& scene, const PaintSources& sources, std::vector<Image>& atlases);
+
+/// Fills these texels anew, each from one view alone.
+/// @param by_view those of a patch one after the other
+void paintTexels(const PaintScene& scene, const PaintSources& sources,
+                 const std::vector<std::vector<PatchTexel>>& by_view, std::vector<Image>& atlases);
 
 /// 3xP, mean colour of each seen patch's own texels; (-1,-1,-1) for unseen ones.
 Points patchColors(const PaintScene& scene, const std::vector<Image>& atlases);

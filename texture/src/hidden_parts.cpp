@@ -5,9 +5,9 @@
 #include <fresco/common/parallel.h>
 namespace fresco {
 namespace {
-constexpr int rounds = 2;                  // each halves the sides
-constexpr Index most_cells = 1 << 18;      // of a view: they decide where to cut, not what is seen
-constexpr Index cells_of_all = 32'000'000; // 128 MB
+constexpr int rounds = 3;                  // each halves the sides
+constexpr Index most_cells = 1 << 20;      // of a view: they decide where to cut, not what is seen
+constexpr Index cells_of_all = 64'000'000; // 128 MB
 
 std::vector<DepthMap> coarseMaps(const RayScene& scene, const ViewList& views, int threads)
 {

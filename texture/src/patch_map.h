@@ -23,6 +23,9 @@ public:
                 lens_(1, 2)};
   }
 
+  /// Of the surface, along the camera's axis.
+  float inverseDepth(float x, float y) const { return 1 / (camera_(2, 0) * x + camera_(2, 1) * y + camera_(2, 2)); }
+
   /// Weights of the patch's corners at a place; they sum to 1, negative ones outside.
   Eigen::Vector3f weights(float x, float y) const { return weights_ * Eigen::Vector3f(x, y, 1.f); }
   /// Pixels per texel at a place: columns are the steps of one texel to the right and down.

@@ -8,6 +8,7 @@
 #include "exif.h"
 #include "exposure.h"
 #include "hidden_parts.h"
+#include "outline_texels.h"
 #include "photo_consistency.h"
 #include "resolution.h"
 #include "texture_atlas.h"
@@ -221,6 +222,27 @@ void fillFigures(const PatchMesh& patches, const Eigen::VectorXi& view, TextureR
   result.face_view = viewsOfFaces(patches, view, result.model.mesh.faceCount());
 }
 
+struct OutlineKnowledge {
+  const Candidates& candidates;
+  const std::vector<float>& odd;
+  const std::vector<OutlineMask>& masks; ///< of the views, or none
+};
+
+/// @param view of scene; patches that no photograph shows clean become unseen
+void paintPhotographs(const PaintScene& scene, const PaintSources& sources, const OutlineKnowledge& outlines,
+                      Eigen::VectorXi& view, TextureResult& result)
+{
+  OutlineTexels beside;
+  if (!outlines.masks.empty())
+    beside =
+        findOutlineTexels(scene, {sources.views, outlines.candidates, outlines.odd, sources.blend, outlines.masks});
+  for (const int patch : beside.hidden)
+    view[patch] = -1;
+  fillFigures(scene.patches, view, result);
+  paintSeen(scene, sources, result.model.atlases);
+  paintTexels(scene, sources, beside.by_view, result.model.atlases);
+  fillUnknown(scene, beside.unknown, result.model.atlases, result.masks);
+}
 } // namespace
 
 TextureResult reconstructTexture(const TriangleMesh& mesh, const std::vector<TextureView>& views,
@@ -241,6 +263,8 @@ TextureResult reconstructTexture(const TriangleMesh& mesh, const std::vector<Tex
   const ViewList list{projectors, photos, paintable(views), doubtOf(result)};
   const PatchMesh patches = makePatches(mesh, *rays, list, options);
   const Candidates candidates = findCandidates(patches, *rays, list, options, subProgress(progress, 0.25, 0.4));
+  const std::vector<OutlineMask> outlines =
+      list.doubt < 1 ? outlineMasks(patches, *rays, list, options) : std::vector<OutlineMask>();
   rays.reset();
   watch.lap("visibility");
   const Index count = static_cast<Index>(views.size());
@@ -249,9 +273,8 @@ TextureResult reconstructTexture(const TriangleMesh& mesh, const std::vector<Tex
   report(progress, "view selection", 0.4);
   const std::vector<float> odd = options.consistency ? oddityCosts(patches, candidates, result.gains, options.threads)
                                                      : std::vector<float>(candidates.list.size(), 0.f);
-  const Eigen::VectorXi view =
+  Eigen::VectorXi view =
       selectViews(patches, {candidates, odd}, options.smoothness * diagonalOf(mesh), options.threads);
-  fillFigures(patches, view, result);
   watch.lap("view selection");
   report(progress, "charts", 0.6);
   const Eigen::VectorXf resolution = patchResolutions(patches, projectors, view);
@@ -265,7 +288,8 @@ TextureResult reconstructTexture(const TriangleMesh& mesh, const std::vector<Tex
   const Eigen::VectorXi face_chart = chartsOfFaces(charts, mesh.faceCount());
   const std::vector<int> slots = texelSlots(charts, patches.size());
   const PaintScene scene{patches, charts, face_chart, view, slots, options.threads};
-  paintSeen(scene, {projectors, result.gains, blend, photos}, result.model.atlases);
+  const PaintSources sources{projectors, result.gains, blend, photos};
+  paintPhotographs(scene, sources, {candidates, odd, outlines}, view, result);
   watch.lap("painting");
   if (agrees(result, options))
     backProject(scene, {projectors, result.gains, photos, candidates, odd}, options.rounds, result.model.atlases);
