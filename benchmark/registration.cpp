@@ -34,9 +34,14 @@ Class& classOf(std::vector<Class>& classes, double overlap)
 
 std::vector<fresco::PreparedScan> prepareAll(const RegistrationInput& input)
 {
+  double size = 0.0, narrowness = 0.0;
+  for (const fresco::PointSet& scan : input.scans) {
+    size = std::max(size, fresco::scanSize(scan));
+    narrowness += fresco::narrowness(scan) / static_cast<double>(input.scans.size());
+  }
   std::vector<fresco::PreparedScan> scans;
   for (const fresco::PointSet& scan : input.scans)
-    scans.push_back(fresco::prepareScan(scan, input.voxel, 0));
+    scans.push_back(fresco::prepareScan(scan, {input.voxel, size, narrowness}, 0));
   return scans;
 }
 

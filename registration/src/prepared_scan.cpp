@@ -14,8 +14,11 @@ constexpr int neighbor_count = 16;         // of a normal
 constexpr float widest_neighborhood = 6.f; // voxels
 constexpr float line_limit = 0.02f;        // second / largest eigenvalue: below, the neighbours lie on a line
 constexpr double coherence_limit = 0.7;    // of the free space: below, the viewpoint is not believed
-constexpr double range_spread = 2.0;  // median range / median distance from the centroid: above, the points lie far off
-constexpr float grid_limit = 1 << 20; // cells from the centre; points further out are left out
+constexpr double range_spread = 2.0; // median range / median distance from the centroid: above, the points lie far off
+constexpr double coarsest_share = 8.0 / voxels_per_size; // of a scan's size
+constexpr double narrow_view = 0.6;                      // a cone of 78 degrees to each side; panoramas have 0 to 0.4
+constexpr double least_ratio = 1.25;                     // of one level's cells to those of the next finer one
+constexpr float grid_limit = 1 << 20;                    // cells from the centre; points further out are left out
 
 struct RawScan {
   Points points, viewpoints, colors; // no columns of colours where the scan has none
@@ -238,7 +241,26 @@ void distrustViewpoint(PreparedScan& scan)
         level.normals.col(i) *= -1.f;
 }
 
-PreparedScan prepareScan(const PointSet& scan, float voxel, int threads)
+double narrowness(const PointSet& scan)
+{
+  const RawScan raw = finitePoints(scan, workingCenter(scan));
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (Index i = 0; i < raw.points.cols(); ++i)
+    sum += (raw.points.col(i) - raw.viewpoints.col(i)).cast<double>().stableNormalized();
+  return raw.points.cols() > 0 ? sum.norm() / static_cast<double>(raw.points.cols()) : 0.0;
+}
+
+Thinning::Thinning(double voxel, double size, double narrowness)
+{
+  const double fitting = std::clamp(std::cbrt(coarsest_share * size / voxel), least_ratio, 2.0);
+  const double ratio = narrowness > narrow_view ? fitting : 2.0;
+  for (float& edge : voxels) {
+    edge = static_cast<float>(voxel);
+    voxel *= ratio;
+  }
+}
+
+PreparedScan prepareScan(const PointSet& scan, const Thinning& thinning, int threads)
 {
   PreparedScan prepared;
   prepared.center = workingCenter(scan);
@@ -248,10 +270,10 @@ PreparedScan prepareScan(const PointSet& scan, float voxel, int threads)
     prepared.problem = concat("only ", raw.points.cols(), " finite points");
     return prepared;
   }
-  prepared.free_space = FreeSpace(raw.points, raw.viewpoints, 3.f * voxel);
+  prepared.free_space = FreeSpace(raw.points, raw.viewpoints, 3.f * thinning.voxels[0]);
   prepared.oriented = prepared.free_space.coherence() > coherence_limit;
-  for (int k = 0; k < level_count; ++k) {
-    prepared.levels.push_back(buildLevel(raw, voxel * static_cast<float>(1 << k), threads));
+  for (const float voxel : thinning.voxels) {
+    prepared.levels.push_back(buildLevel(raw, voxel, threads));
     raw = {prepared.levels.back().points, prepared.levels.back().viewpoints, prepared.levels.back().colors};
   }
   std::reverse(prepared.levels.begin(), prepared.levels.end());

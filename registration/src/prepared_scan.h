@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include "free_space.h"
+#include <array>
 #include <fresco/common/point_set.h>
 #include <fresco/filters/core/neighbors.h>
 #include <memory>
@@ -34,12 +35,12 @@ struct PreparedScan {
   Eigen::Vector3d center = Eigen::Vector3d::Zero(); ///< scan = center + working
   double size = 0.0;                                ///< median distance of its points from where they were seen, length
   bool oriented = false;                            ///< normals point to the free side; else their sign means nothing
-  std::vector<ScanLevel> levels;                    ///< coarse to fine, each half the voxel of the one before
+  std::vector<ScanLevel> levels;                    ///< coarse to fine
   FreeSpace free_space;                             ///< empty unless oriented
   SelfMotions twins;                                ///< found by findSelfMotions()
 };
 
-constexpr int level_count = 4;            ///< resolutions: voxel, 2, 4 and 8 voxels
+constexpr int level_count = 4;            ///< resolutions
 constexpr double voxels_per_size = 100.0; ///< finest thinning: a room of 3 m radius in 3 cm cells
 
 /// Level on which two scans are compared: fine enough for furniture, coarser than the errors of a measured pose.
@@ -49,12 +50,25 @@ constexpr int check_level = level_count - 2;
 /// none.
 double scanSize(const PointSet& scan);
 
+/// How far the scan looks one way: length of the mean direction in which its points were seen, 0 all around .. 1.
+double narrowness(const PointSet& scan);
+
 /// The smallest voxel, `least` or more, that a scan of this density fills; length.
 double fittingVoxel(const PointSet& scan, double least);
 
 /// For a scan whose viewpoint turned out wrong: no free space, normals towards the middle of the scan.
 void distrustViewpoint(PreparedScan& scan);
 
-/// @param voxel finest thinning, length
-PreparedScan prepareScan(const PointSet& scan, float voxel, int threads);
+/// Edges of the cells of all levels; the same for all scans that are to be compared.
+struct Thinning {
+  /// Each level has cells of twice the edge. Of scans that look one way all but the finest are not made coarser than in
+  /// dense scans, if there are only few points: there would not be enough of them in what little such a scan sees.
+  /// @param voxel finest, length
+  /// @param size  of the scans, length
+  /// @param narrowness of the scans
+  Thinning(double voxel, double size, double narrowness);
+  std::array<float, level_count> voxels; ///< fine to coarse
+};
+
+PreparedScan prepareScan(const PointSet& scan, const Thinning& thinning, int threads);
 } // namespace fresco

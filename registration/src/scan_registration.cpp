@@ -51,6 +51,7 @@ double commonSize(const std::vector<double>& sizes, const ScanRegistrationOption
 // What is known of the scans before they are thinned.
 struct Survey {
   std::vector<double> sizes, voxels; // that suit each scan
+  double narrowness = 0.0;           // mean over the scans
 };
 
 Survey surveyScans(const ScanSource& scans)
@@ -60,6 +61,7 @@ Survey surveyScans(const ScanSource& scans)
     const PointSet scan = scans.read(i);
     validatePointSet(scan);
     survey.sizes.push_back(scanSize(scan));
+    survey.narrowness += narrowness(scan) / static_cast<double>(scans.count);
     const double size = survey.sizes.back();
     survey.voxels.push_back(size > 0.0 ? fittingVoxel(scan, size / voxels_per_size) : 0.0);
   }
@@ -80,13 +82,13 @@ Eigen::Isometry3d workingToScan(const PreparedScan& scan)
   return Eigen::Isometry3d(Eigen::Translation3d(scan.center));
 }
 
-std::vector<PreparedScan> prepareAll(const ScanSource& scans, const ScanRegistrationOptions& options,
+std::vector<PreparedScan> prepareAll(const ScanSource& scans, const Thinning& thinning, int threads,
                                      const Progress& progress)
 {
   std::vector<PreparedScan> prepared;
   for (Index i = 0; i < scans.count; ++i) {
     report(progress, "prepare", static_cast<double>(i) / static_cast<double>(scans.count));
-    prepared.push_back(prepareScan(scans.read(i), options.voxel, options.threads));
+    prepared.push_back(prepareScan(scans.read(i), thinning, threads));
   }
   return prepared;
 }
@@ -163,7 +165,8 @@ ScanRegistrationResult registerScans(const ScanSource& scans, const std::vector<
     options.voxel = size > 0.0 ? chooseVoxel(survey, size) : 1.f;
   if (!(options.max_distance > 0.f))
     options.max_distance = distance_voxels * options.voxel;
-  std::vector<PreparedScan> prepared = prepareAll(scans, options, subProgress(progress, 0.0, 0.3));
+  const Thinning thinning(options.voxel, size, survey.narrowness);
+  std::vector<PreparedScan> prepared = prepareAll(scans, thinning, options.threads, subProgress(progress, 0.0, 0.3));
 
   const std::vector<ScanCluster> clusters = findClusters(prepared, start, options, subProgress(progress, 0.3, 0.6));
   std::vector<Placement> placements;

@@ -27,7 +27,7 @@ Outcome registered(const LookAlikeScene& place)
 
 SelfMotions selfMotions(const PointSet& set)
 {
-  const PreparedScan scan = prepareScan(set, registrationVoxel(set), 0);
+  const PreparedScan scan = prepareScan(set, {registrationVoxel(set), scanSize(set), narrowness(set)}, 0);
   return findSelfMotions(scan, describeScan(scan, {}));
 }
 
@@ -124,4 +124,28 @@ TEST(LookAlikes, WhatDiffersIsJoined)
   }
 }
 } // namespace
+TEST(Thinning, SparseScansOfNarrowViewKeepFineLevels)
+{
+  const auto fan = [](float degrees) { // points all around, or in a fan of some degrees
+    PointSet scan;
+    scan.points.resize(3, 720);
+    for (Index i = 0; i < scan.points.cols(); ++i) {
+      const float angle = degrees * static_cast<float>(M_PI) / 180.f * (static_cast<float>(i) / 720.f - 0.5f);
+      scan.points.col(i) << 3 * std::cos(angle), 3 * std::sin(angle), static_cast<float>(i % 7) - 3;
+    }
+    return scan;
+  };
+  const double wide = narrowness(fan(360)), narrow = narrowness(fan(60));
+  EXPECT_LT(wide, 0.1);
+  EXPECT_GT(narrow, 0.7);
+  constexpr double size = 3, dense = size / voxels_per_size, sparse = 2 * dense;
+  for (const double view : {wide, narrow})
+    for (int k = 0; k < level_count; ++k)
+      EXPECT_NEAR(Thinning(dense, size, view).voxels[k], dense * (1 << k), 1e-6);
+  for (int k = 0; k < level_count; ++k)
+    EXPECT_NEAR(Thinning(sparse, size, wide).voxels[k], sparse * (1 << k), 1e-6);
+  const auto kept = Thinning(sparse, size, narrow).voxels;
+  EXPECT_FLOAT_EQ(kept.front(), static_cast<float>(sparse));
+  EXPECT_NEAR(kept.back(), Thinning(dense, size, narrow).voxels.back(), 1e-6);
+}
 } // namespace fresco
