@@ -18,7 +18,7 @@ void printPairs(const fresco::test::LookAlikeScene& place)
   for (const fresco::PointSet& scan : place.scene.scans)
     voxel = std::max(voxel, fresco::registrationVoxel(scan));
   for (const fresco::PointSet& scan : place.scene.scans) {
-    scans.push_back(fresco::prepareScan(scan, {voxel, voxel * fresco::voxels_per_size, 0.0}, 0));
+    scans.push_back(fresco::prepareScan(scan, fresco::Thinning(voxel), 0));
     features.push_back(fresco::describeScan(scans.back(), {}));
     scans.back().twins = fresco::findSelfMotions(scans.back(), features.back());
   }

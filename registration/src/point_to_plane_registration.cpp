@@ -51,7 +51,7 @@ std::shared_ptr<const PreparedScan> prepareForRegistration(const PointSet& scan,
   validatePointSet(scan);
   require(voxel > 0.f && std::isfinite(voxel), "point-to-plane registration: voxel ", voxel, " is not positive");
   // coarse cells also of narrow views: no features are needed, but a wide reach
-  auto prepared = std::make_shared<PreparedScan>(prepareScan(scan, {voxel, scanSize(scan), 0.0}, threads));
+  auto prepared = std::make_shared<PreparedScan>(prepareScan(scan, Thinning(voxel), threads));
   require(prepared->problem.empty(), "point-to-plane registration: ", prepared->problem);
   return prepared;
 }

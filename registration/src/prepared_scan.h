@@ -61,9 +61,11 @@ void distrustViewpoint(PreparedScan& scan);
 
 /// Edges of the cells of all levels; the same for all scans that are to be compared.
 struct Thinning {
-  /// Each level has cells of twice the edge. Of scans that look one way all but the finest are not made coarser than in
-  /// dense scans, if there are only few points: there would not be enough of them in what little such a scan sees.
+  /// Each level has cells of twice the edge.
   /// @param voxel finest, length
+  explicit Thinning(double voxel) : Thinning(voxel, 0.0, 0.0) {}
+  /// The same, but of scans that look one way all but the finest are not made coarser than in
+  /// dense scans, if there are only few points: there would not be enough of them in what little such a scan sees.
   /// @param size  of the scans, length
   /// @param narrowness of the scans
   Thinning(double voxel, double size, double narrowness);

@@ -62,6 +62,7 @@ std::vector<Correspondence> matchToSelf(const ScanFeatures& features, const Self
     matches.push_back(ranked[k].match);
   return matches;
 }
+
 std::vector<Index> allOf(const ScanFeatures& features)
 {
   std::vector<Index> all(static_cast<std::size_t>(features.points.cols()));

@@ -6,7 +6,6 @@
 namespace fresco {
 namespace {
 constexpr int rounds = 3;                  // each halves the sides
-constexpr Index most_cells = 1 << 20;      // of a view: they decide where to cut, not what is seen
 constexpr Index cells_of_all = 64'000'000; // 128 MB
 
 std::vector<DepthMap> coarseMaps(const RayScene& scene, const ViewList& views, int threads)

@@ -7,7 +7,6 @@
 namespace fresco {
 namespace {
 constexpr float reach_pixels = 2.f;
-constexpr Index most_cells = 1 << 20; // of a view, as where visibility is decided
 
 /// Inverse depth along a row or column of cells; over a plane it is linear.
 struct Line {

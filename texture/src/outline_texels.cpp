@@ -56,11 +56,12 @@ public:
 
 private:
   /// visit(number of the texel, its centre) for each texel that the view shows mixed
+  /// @return false if a corner is not in front of the camera
   template <typename Visit>
-  void forMixed(int view, const Visit& visit)
+  bool forMixed(int view, const Visit& visit)
   {
     if (!frame_.map.look(sources_.views[view]))
-      return;
+      return false;
     std::size_t k = 0;
     frame_.forTexels([&](const Eigen::Vector2f& center, int, int) {
       if (sources_.masks[view].holds(frame_.map.pixel(center.x(), center.y()),
@@ -68,6 +69,7 @@ private:
         visit(k, center);
       ++k;
     });
+    return true;
   }
 
   void chooseOthers(std::vector<int>& choice)
@@ -79,9 +81,8 @@ private:
     std::stable_sort(ranked.begin(), ranked.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
     for (const auto& [quality, view] : ranked) {
       std::vector<char> mixed(choice.size(), 0);
-      if (!frame_.map.look(sources_.views[view]))
+      if (!forMixed(view, [&](std::size_t k, const Eigen::Vector2f&) { mixed[k] = 1; }))
         continue;
-      forMixed(view, [&](std::size_t k, const Eigen::Vector2f&) { mixed[k] = 1; });
       for (std::size_t k = 0; k < choice.size(); ++k)
         if (choice[k] == none && !mixed[k])
           choice[k] = view;

@@ -5,6 +5,8 @@ namespace fresco {
 constexpr float least_cosine = 0.1f; // 84 degrees: beyond, a pixel smears over ten times its size
 constexpr float image_border = 1.f;  // pixels: interpolation needs a neighbour
 
+constexpr Index most_cells = 1 << 20; // of a depth map: enough for outlines, and a 12 megapixel view takes a second
+
 struct SightLimits {
   float tolerance; ///< of depth, mesh units
   float margin;    ///< pixels

@@ -222,20 +222,13 @@ void fillFigures(const PatchMesh& patches, const Eigen::VectorXi& view, TextureR
   result.face_view = viewsOfFaces(patches, view, result.model.mesh.faceCount());
 }
 
-struct OutlineKnowledge {
-  const Candidates& candidates;
-  const std::vector<float>& odd;
-  const std::vector<OutlineMask>& masks; ///< of the views, or none
-};
-
 /// @param view of scene; patches that no photograph shows clean become unseen
-void paintPhotographs(const PaintScene& scene, const PaintSources& sources, const OutlineKnowledge& outlines,
+void paintPhotographs(const PaintScene& scene, const PaintSources& sources, const OutlineSources& outlines,
                       Eigen::VectorXi& view, TextureResult& result)
 {
   OutlineTexels beside;
   if (!outlines.masks.empty())
-    beside =
-        findOutlineTexels(scene, {sources.views, outlines.candidates, outlines.odd, sources.blend, outlines.masks});
+    beside = findOutlineTexels(scene, outlines);
   for (const int patch : beside.hidden)
     view[patch] = -1;
   fillFigures(scene.patches, view, result);
@@ -289,7 +282,7 @@ TextureResult reconstructTexture(const TriangleMesh& mesh, const std::vector<Tex
   const std::vector<int> slots = texelSlots(charts, patches.size());
   const PaintScene scene{patches, charts, face_chart, view, slots, options.threads};
   const PaintSources sources{projectors, result.gains, blend, photos};
-  paintPhotographs(scene, sources, {candidates, odd, outlines}, view, result);
+  paintPhotographs(scene, sources, {projectors, candidates, odd, blend, outlines}, view, result);
   watch.lap("painting");
   if (agrees(result, options))
     backProject(scene, {projectors, result.gains, photos, candidates, odd}, options.rounds, result.model.atlases);

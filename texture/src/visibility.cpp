@@ -8,7 +8,6 @@
 #include <limits>
 namespace fresco {
 namespace {
-constexpr Index most_cells = 1 << 20; // of a depth map: enough for outlines, and a 12 megapixel view takes a second
 constexpr float outline_doubt = 5; // octaves, near the outline of what stands before: taken where nothing else shows it
 constexpr float rim_doubt = 2;     // octaves, at its own outline, where pixels mix with what lies behind
 constexpr float beside_doubt = 1;  // octaves, where a pixel next to it shows something a little nearer
