@@ -137,17 +137,20 @@ Sides sidesOf(const BeamWindow& window, float noise)
 }
 
 /// A point that stands alone between what is in front and a surface behind, or between two surfaces that several sides
-/// agree on.
+/// agree on: more of them if it has a neighbour nearby (of the veil too, or one that happens to lie as far), or if a
+/// surface could join it with up to half of the beams around.
 bool isVeil(const BeamWindow& window, float noise, float slope)
 {
   if (window.beams.size() < 8)
     return false;
   const Surroundings around = surroundingsOf(window, noise, slope);
-  if (!around.front || !around.behind || around.joined > 0.5f || around.gap < 1.8f)
+  const bool few_joined = around.joined <= 0.34f, far = around.gap >= 1.8f;
+  if (!around.front || !around.behind || around.joined > 0.5f || around.gap < 1.1f || !(few_joined || far))
     return false;
   const Sides sides = sidesOf(window, noise);
-  const bool alone = !sides.meets && sides.behind >= 1 && !around.paired && around.joined <= 0.34f && around.gap > 2.5f;
-  return alone || (sides.in_front >= 2 && sides.behind >= 2);
+  const bool alone = !sides.meets && sides.behind >= 1 && !around.paired && few_joined && around.gap > 2.5f;
+  const bool clear = few_joined && far;
+  return alone || (sides.in_front >= (clear ? 2 : 4) && sides.behind >= (clear ? 2 : 3));
 }
 
 /// Whether a surface could join the point with most of the beams next to it: of a thin thing that windows of a dense

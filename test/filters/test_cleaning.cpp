@@ -120,6 +120,37 @@ TEST(VeilPoints, BeamsThatOverlapDoNotHideTheVeil)
   }
 }
 
+// Where a border crosses the rows of a scan at a small angle, the share of the board grows from beam to beam: the veil
+// is a ramp whose points have neighbours at 1.4 times the distance of the beams.
+TEST(VeilPoints, RampsAlongObliqueBordersGo)
+{
+  std::mt19937 generator(1);
+  std::normal_distribution<float> noise(0, 0.002f);
+  constexpr float step = 0.004f;
+  constexpr int steps = 19; // of 16 mm in depth, from the board to the wall
+  std::vector<Eigen::Vector3f> points;
+  std::vector<bool> ramp;
+  for (int row = -30; row < 30; ++row)
+    for (int column = -30; column < 30; ++column) {
+      const int up = ((row % steps) + steps) % steps;
+      const bool mixed = column == 0 && up > 1 && up < steps - 1;
+      const float range = mixed ? 3.7f + 4 * step * static_cast<float>(up) : column < 0 ? 3.7f : 4.f;
+      const Eigen::Vector3f beam(1, step * static_cast<float>(column), step * static_cast<float>(row));
+      points.emplace_back(beam.normalized() * (range + noise(generator)));
+      ramp.push_back(mixed && up >= 4 && up <= 15);
+    }
+  Points cloud(3, static_cast<Index>(points.size()));
+  for (std::size_t i = 0; i < points.size(); ++i)
+    cloud.col(static_cast<Index>(i)) = points[i];
+  const Index all = std::count(ramp.begin(), ramp.end(), true);
+  Index kept = 0, others = 0;
+  for (const Index i : withoutVeil(cloud, Eigen::Vector3f::Zero()))
+    ++(ramp[static_cast<std::size_t>(i)] ? kept : others);
+  EXPECT_GT(all, 30);
+  EXPECT_LT(kept, all / 2);
+  EXPECT_GT(others, cloud.cols() - all - 20);
+}
+
 TEST(VeilPoints, GrazingSurfacesStay)
 {
   Points floor = 4 * test::flatSquare(40000, 5).points;
