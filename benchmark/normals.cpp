@@ -118,7 +118,7 @@ void compareAtNoise(const std::vector<NormalSample>& samples, int k, int threads
       BilateralOptions smoothing;
       smoothing.rounds = rounds[r];
       smoothing.threads = threads;
-      smooth[r].add(sample, timed(smooth[r], [&] { return smoothNormals(set.points, normals, smoothing).normals; }));
+      smooth[r].add(sample, timed(smooth[r], [&] { return smoothNormals(set, normals, smoothing).normals; }));
     }
   }
   pcl_errors.print("pcl::NormalEstimationOMP");

@@ -42,7 +42,8 @@ void ToolOptions::declare(Args& args)
               "for -bilateral: deviation of the distance, metres; 0 = from the local sampling");
   args.option("sigma_n", smoothing.sigma_n, "for -bilateral: deviation of the angle between normals, degrees, 0..180");
   args.option("move", smoothing.move_rounds, "then move points along their normals, this many rounds");
-  args.flag("plain", plain, "plain plane fits: do not keep to one side of an edge");
+  args.flag("plain", plain,
+            "plain plane fits: do not keep to one side of an edge, nor look for another one in -bilateral");
   args.flag("no_grid", no_grid, "organised clouds: search neighbours in space, not around the pixel");
   args.flag("confidence", confidence,
             "also write the field confidence, 0..1: falls with incidence and missing neighbours");
@@ -270,7 +271,7 @@ int main(int argc, char** argv)
     PointSet set = withoutAttributes(loadPoints(file, files[0], args, options));
     BareCloud bare(file.cloud, set);
     options.normals.threads = options.smoothing.threads = common.threads;
-    options.normals.edges = !options.plain;
+    options.normals.edges = options.smoothing.edges = !options.plain;
     if (file.cloud.height > 1 && !options.no_grid)
       options.normals.image_width = file.cloud.width;
     {
@@ -278,8 +279,7 @@ int main(int argc, char** argv)
       if (!options.confidence)
         field.confidences.resize(0);
       returnFreedMemory();
-      BilateralResult smooth =
-          smoothNormals(set.points, field.normals, options.smoothing, subProgress(progress, 0.6, 1.0));
+      BilateralResult smooth = smoothNormals(set, field.normals, options.smoothing, subProgress(progress, 0.6, 1.0));
       returnFreedMemory();
       field.normals.swap(smooth.normals);
       set.points.swap(smooth.points);

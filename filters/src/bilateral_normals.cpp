@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "compact_lists.h"
 #include "exponential.h"
+#include "surface_choice.h"
 #include <Eigen/Geometry>
 #include <cmath>
 #include <fresco/common/parallel.h>
@@ -145,10 +146,8 @@ Points moveOnce(const Field& field, const Points& normals, int threads)
   });
   return moved;
 }
-} // namespace
-
-BilateralResult smoothNormals(const Points& points, const Points& normals, const BilateralOptions& options,
-                              const Progress& progress)
+BilateralResult smooth(const Points& points, const Points& viewpoints, const Points& normals,
+                       const BilateralOptions& options, const Progress& progress)
 {
   validate(points, normals, options);
   if (options.rounds == 0 && options.move_rounds == 0)
@@ -165,6 +164,8 @@ BilateralResult smoothNormals(const Points& points, const Points& normals, const
       smooth = smoothOnce(field, smooth, options.threads);
     else
       field.moved = moveOnce(field, smooth, options.threads);
+    if (round == 0 && options.rounds > 0 && options.edges && viewpoints.cols() > 0)
+      smooth = chooseSurfaces({*field.tree, field.lists, field.areas, viewpoints}, smooth, options.threads);
   }
   const std::vector<int> columns = field.tree->columns();
   const Points moved = std::move(field.moved);
@@ -176,5 +177,19 @@ BilateralResult smoothNormals(const Points& points, const Points& normals, const
       result.points.col(columns[i]) = moved.col(i);
   }
   return result;
+}
+} // namespace
+
+BilateralResult smoothNormals(const Points& points, const Points& normals, const BilateralOptions& options,
+                              const Progress& progress)
+{
+  return smooth(points, Points(3, 0), normals, options, progress);
+}
+
+BilateralResult smoothNormals(const PointSet& set, const Points& normals, const BilateralOptions& options,
+                              const Progress& progress)
+{
+  validatePointSet(set);
+  return smooth(set.points, set.viewpoints, normals, options, progress);
 }
 } // namespace fresco

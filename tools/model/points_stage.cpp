@@ -22,7 +22,7 @@ PointSet smoothed(const PointSet& set, const ModelOptions& options, const Progre
   smoothing.rounds = options.bilateral;
   smoothing.threads = options.threads;
   PointSet result = set;
-  result.normals = smoothNormals(set.points, set.normals, smoothing, progress).normals;
+  result.normals = smoothNormals(set, set.normals, smoothing, progress).normals;
   std::vector<Index> kept;
   for (Index i = 0; i < result.size(); ++i)
     if (result.points.col(i).allFinite() && result.normals.col(i).allFinite())

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include <fresco/filters/core/bilateral_normals.h>
+#include <optional>
 #include <pcl/filters/filter.h>
 namespace fresco {
 /// PCL face of smoothNormals(); setters: see BilateralOptions. Honours setIndices(): the output then has those points
@@ -30,6 +31,10 @@ public:
   float getSigmaN() const { return options_.sigma_n; }
   void setMoveRounds(int rounds) { options_.move_rounds = rounds; } ///< 0 = points stay where they are
   int getMoveRounds() const { return options_.move_rounds; }
+  /// Where the cloud was seen from, and its normals point to: normals beside creases are then compared with those
+  /// around.
+  void setViewPoint(float x, float y, float z) { viewpoint_ = Eigen::Vector3f(x, y, z); }
+  void setViewPointUnknown() { viewpoint_.reset(); }                   ///< the default: the bilateral filter alone
   void setNumberOfThreads(int threads) { options_.threads = threads; } ///< 0 = all cores
   int getNumberOfThreads() const { return options_.threads; }
 
@@ -38,6 +43,7 @@ protected:
 
 private:
   BilateralOptions options_;
+  std::optional<Eigen::Vector3f> viewpoint_;
 };
 } // namespace fresco
 #include <fresco/filters/impl/bilateral_normal_filter.hpp>

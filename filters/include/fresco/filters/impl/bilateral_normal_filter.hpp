@@ -7,8 +7,12 @@ namespace fresco {
 template <typename PointNT>
 void BilateralNormalFilter<PointNT>::applyFilter(PointCloud& output)
 {
-  const PointSet set = toPointSet(*this->input_, *this->indices_);
-  const BilateralResult result = smoothNormals(set.points, set.normals, options_);
+  PointSet set = toPointSet(*this->input_, *this->indices_);
+  if (viewpoint_)
+    set.viewpoints = *viewpoint_;
+  else
+    set.viewpoints.resize(3, 0);
+  const BilateralResult result = smoothNormals(set, set.normals, options_);
   if (this->fake_indices_)
     output = *this->input_;
   else

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include "compact_lists.h"
+#include <fresco/common/types.h>
+namespace fresco {
+/// A field of normals that is being smoothed, with the neighbourhoods of its points.
+struct SightedField {
+  const PointTree& tree;
+  const std::vector<CompactLists>& lists; ///< of all positions, in order
+  const Eigen::VectorXf& areas;           ///< that points stand for, by position, any common factor
+  const Points& viewpoints;               ///< 3x1, or 3xN by column
+};
+
+/// Beside a crease a neighbourhood often holds too few points of a surface to tell its direction, but a few directions
+/// are all there are around: those of the larger surfaces, of what is parallel to them, and of what faces the other
+/// way. Where the neighbours of a point have different normals, of all these directions and its own that is taken whose
+/// plane through the point holds most of the neighbours for its thickness; its own unless another is clearly another.
+/// Thickness is the noise along the beams, measured where all neighbours agree, times the cosine to the beam.
+/// Points whose normals do not face their viewpoint, or which have none, keep their normals.
+/// @param normals 3 x size of the tree, unit, by position
+/// @return such normals
+Points chooseSurfaces(const SightedField& field, const Points& normals, int threads);
+} // namespace fresco
