@@ -14,8 +14,9 @@ struct SightedField {
 /// Beside a crease a neighbourhood often holds too few points of a surface to tell its direction, but a few directions
 /// are all there are around: those of the larger surfaces, of what is parallel to them, and of what faces the other
 /// way. Where the neighbours of a point have different normals, of all these directions and its own that is taken whose
-/// plane through the point holds most of the neighbours for its thickness; its own unless another is clearly another.
-/// Thickness is the noise along the beams, measured where all neighbours agree, times the cosine to the beam.
+/// plane through the point holds most of the neighbours for its thickness, if they are of more than one row of beams.
+/// Thickness is the noise along the beams, measured where all neighbours agree, times the cosine to the beam. The own
+/// normal stays unless another direction is more than 20 degrees off.
 /// Points whose normals do not face their viewpoint, or which have none, keep their normals.
 /// @param normals 3 x size of the tree, unit, by position
 /// @return such normals
