@@ -16,6 +16,8 @@ constexpr std::size_t nearest = 8;     // neighbours that count apart, the point
 // Thickness of a plane, deviations of the noise: points are held, are looked at to place it, lie behind it.
 constexpr float held = 1.f, around_it = 2.f, behind_it = 3.f;
 constexpr int placings = 3;
+constexpr float least_noise =
+    0.05f; // spacings of beams: surfaces between beams are not flatter, however exact these are
 
 // A direction's worth, in logarithms (see docs/filters.md).
 constexpr float per_nearest = 1.f, per_neighbor = 1.5f, per_thickness = -1.25f, per_behind = -0.3f;
@@ -191,9 +193,10 @@ Eigen::Vector3f SurfaceChoice::choose(Index i, const Offsets& near) const
   const DirectionGrid::Surroundings& around = grid_.at(field_.tree.point(i));
   if (!(around.noise > 0))
     return own;
+  const float noise = std::max(around.noise, least_noise * near.spacing);
   const auto worthOf = [&](const Eigen::Vector3f& direction) {
     const float cosine = -direction.dot(ray);
-    return worth(direction, cosine * around.noise, near) + per_thickness * std::log(cosine);
+    return worth(direction, cosine * noise, near) + per_thickness * std::log(cosine);
   };
   float own_worth = worthOf(own), most = own_worth;
   Eigen::Vector3f best = own;
