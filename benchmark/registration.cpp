@@ -32,16 +32,22 @@ Class& classOf(std::vector<Class>& classes, double overlap)
   return *std::find_if(classes.begin(), classes.end(), [&](const Class& c) { return overlap >= c.least; });
 }
 
-std::vector<fresco::PreparedScan> prepareAll(const RegistrationInput& input, bool for_features)
+/// As registerScans() thins.
+fresco::Thinning thinningForFeatures(const RegistrationInput& input)
 {
   double size = 0.0, narrowness = 0.0;
   for (const fresco::PointSet& scan : input.scans) {
     size = std::max(size, fresco::scanSize(scan));
     narrowness += fresco::narrowness(scan) / static_cast<double>(input.scans.size());
   }
+  return {input.voxel, size, narrowness};
+}
+
+std::vector<fresco::PreparedScan> prepareAll(const RegistrationInput& input, const fresco::Thinning& thinning)
+{
   std::vector<fresco::PreparedScan> scans;
   for (const fresco::PointSet& scan : input.scans)
-    scans.push_back(fresco::prepareScan(scan, {input.voxel, size, for_features ? narrowness : 0.0}, 0));
+    scans.push_back(fresco::prepareScan(scan, thinning, 0));
   return scans;
 }
 
@@ -66,7 +72,7 @@ void countPair(const fresco::PairAlignment& pair, const PoseError& error, Class&
 void measurePairs(const RegistrationInput& input, const std::string& overlap_file)
 {
   const double start = processorSeconds();
-  std::vector<fresco::PreparedScan> scans = prepareAll(input, true);
+  std::vector<fresco::PreparedScan> scans = prepareAll(input, thinningForFeatures(input));
   std::vector<fresco::ScanFeatures> features;
   for (fresco::PreparedScan& scan : scans) {
     features.push_back(fresco::describeScan(scan, {}));
@@ -105,7 +111,7 @@ void measureMap(const RegistrationInput& input)
   const double start = processorSeconds();
   const auto result = fresco::registerScans(input.scans);
   const double spent = processorSeconds() - start;
-  const std::vector<fresco::PreparedScan> scans = prepareAll(input, true);
+  const std::vector<fresco::PreparedScan> scans = prepareAll(input, thinningForFeatures(input));
   std::vector<Class> classes = overlapClasses();
   for (std::size_t a = 0; a < scans.size(); ++a)
     for (std::size_t b = a + 1; b < scans.size(); ++b) {
@@ -129,7 +135,7 @@ void measureMap(const RegistrationInput& input)
 /// @param tolerance of success, metres and degrees
 void measureConvergence(const RegistrationInput& input, const PoseError& tolerance)
 {
-  const std::vector<fresco::PreparedScan> scans = prepareAll(input, false);
+  const std::vector<fresco::PreparedScan> scans = prepareAll(input, fresco::Thinning(input.voxel));
   int tried = 0, good = 0;
   double worst = 0.0;
   fresco::benchmark::Disturbances disturbances(0.3, 15.0);

@@ -133,7 +133,7 @@ int GroupPass::choose(const GroupLists& lists, Index i) const
   const bool rays = set_.viewpoints.cols() > 0;
   const float ratio = rays && crease ? flatter : clearly_flatter;
   const int best = found.score * ratio < own.variance ? lists.list(i)[found.which] : self;
-  const Eigen::Vector3f view = viewDirection(set_, all_.column(i), here);
+  const Eigen::Vector3f view = viewDirection(set_.viewpoints, all_.column(i), here);
   if (!crease || !(view.squaredNorm() > 0))
     return best;
   const Plane& first = near_[static_cast<std::size_t>(best)];

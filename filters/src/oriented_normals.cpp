@@ -127,7 +127,7 @@ NormalField toField(const PointSet& set, Neighborhoods& all, const Fits& fits, i
     if (empty[static_cast<std::size_t>(i)])
       return;
     const Plane& fit = fits.planes[static_cast<std::size_t>(i)];
-    const Eigen::Vector3f view = viewDirection(set, column, all.point(i)), normal = normalOf(fit, view);
+    const Eigen::Vector3f view = viewDirection(set.viewpoints, column, all.point(i)), normal = normalOf(fit, view);
     field.normals.col(column) = normal;
     field.curvatures[column] = std::max(0.f, fit.curvature);
     if (fit.shape() == Plane::plane) {

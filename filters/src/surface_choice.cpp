@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "surface_choice.h"
 #include "direction_grid.h"
+#include "view_direction.h"
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -95,7 +96,7 @@ private:
   void markCreases(int threads);
   float noiseAt(Index i, const std::vector<int>& list) const;
   Eigen::Vector3f beam(Index i) const;
-  Eigen::Vector3f choose(Index i, const Offsets& near) const;
+  Eigen::Vector3f choose(Index i, const Eigen::Vector3f& ray, const Offsets& near) const;
   float worth(const Eigen::Vector3f& direction, float thickness, const Offsets& near) const;
 
   const SightedField& field_;
@@ -119,9 +120,8 @@ float SurfaceChoice::typicalArea(const Eigen::VectorXf& areas)
 /// From the viewer to the point, unit; zero where unknown.
 Eigen::Vector3f SurfaceChoice::beam(Index i) const
 {
-  const Index column = field_.viewpoints.cols() == 1 ? 0 : field_.tree.columns()[static_cast<std::size_t>(i)];
-  const Eigen::Vector3f way = field_.tree.point(i) - field_.viewpoints.col(column);
-  return way.allFinite() && way.squaredNorm() > 0 ? Eigen::Vector3f(way.normalized()) : Eigen::Vector3f::Zero();
+  return -viewDirection(field_.viewpoints, field_.tree.columns()[static_cast<std::size_t>(i)], field_.tree.point(i))
+              .normalized();
 }
 
 /// Deviation of the neighbours across the plane of a point, along its beam; 0 where the beam grazes.
@@ -187,9 +187,10 @@ float SurfaceChoice::worth(const Eigen::Vector3f& direction, float thickness, co
          per_behind * std::log(behind + 0.5f) + per_spread * std::log(spread + least_spread);
 }
 
-Eigen::Vector3f SurfaceChoice::choose(Index i, const Offsets& near) const
+/// @param ray the beam of the point
+Eigen::Vector3f SurfaceChoice::choose(Index i, const Eigen::Vector3f& ray, const Offsets& near) const
 {
-  const Eigen::Vector3f own = normals_.col(i), ray = beam(i);
+  const Eigen::Vector3f own = normals_.col(i);
   const DirectionGrid::Surroundings& around = grid_.at(field_.tree.point(i));
   if (!(around.noise > 0))
     return own;
@@ -226,10 +227,13 @@ Points SurfaceChoice::run(int threads)
     Offsets near;
     for (Index i = lists.begin; i < lists.end; ++i) {
       reader.next(list);
-      if (!at_crease_[static_cast<std::size_t>(i)] || -normals_.col(i).dot(beam(i)) < grazing)
+      if (!at_crease_[static_cast<std::size_t>(i)])
         continue;
-      near.set(field_.tree, i, list, beam(i));
-      chosen.col(i) = choose(i, near);
+      const Eigen::Vector3f ray = beam(i);
+      if (-normals_.col(i).dot(ray) < grazing)
+        continue;
+      near.set(field_.tree, i, list, ray);
+      chosen.col(i) = choose(i, ray, near);
     }
   });
   return chosen;

@@ -53,11 +53,14 @@ Scan scanOfRack(float noise, unsigned seed)
     for (float elevation = -0.4f; elevation < 0.35f; elevation += 0.004f) {
       const Vector3f beam = Vector3f(1, std::tan(azimuth), std::tan(elevation)).normalized();
       Hit nearest;
+      bool on_board = false;
       for (std::size_t b = 0; b < boxes.size(); ++b)
         if (const Hit hit = meet(boxes[b], beam); hit.range < nearest.range) {
-          if (nearest = hit; b > 1 && hit.normal.x() < -0.5f)
-            scan.narrow.push_back(static_cast<Index>(points.size()));
+          nearest = hit;
+          on_board = b > 1;
         }
+      if (on_board && nearest.normal.x() < -0.5f)
+        scan.narrow.push_back(static_cast<Index>(points.size()));
       points.emplace_back((nearest.range + normal(generator)) * beam);
       normals.push_back(nearest.normal);
     }
