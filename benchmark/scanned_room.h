@@ -6,8 +6,9 @@ namespace fresco {
 /// A scene that is scanned and not photographed: light is coarse.
 struct ScannedRoom {
   /// @param name as loadScene()
-  ScannedRoom(const std::string& name, int station_count, int threads)
-      : scene(loadScene(name, 0.1f)), rays(scene.mesh), light(bakeLight(scene, rays, coarse()))
+  /// @param closed a mesh is a closed room in metres, its floor at z = 0
+  ScannedRoom(const std::string& name, int station_count, int threads, bool closed = false)
+      : scene(load(name, closed)), rays(scene.mesh), light(bakeLight(scene, rays, coarse()))
   {
     const ScenePlaces places = sampleSurface(scene, 4000, 1);
     stations = chooseStations({scene, rays, places, 1, threads}, station_count);
@@ -20,6 +21,12 @@ struct ScannedRoom {
   Points stations; ///< 3xN, in the frame of the scene's vertices
 
 private:
+  static Scene load(const std::string& name, bool closed)
+  {
+    Scene scene = loadScene(name, 0.1f);
+    scene.furnished |= closed;
+    return scene;
+  }
   static LightingOptions coarse()
   {
     LightingOptions lighting;

@@ -3,6 +3,7 @@
 #include "exponential.h"
 #include "surface_choice.h"
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <fresco/common/parallel.h>
 #include <fresco/common/require.h>
@@ -12,7 +13,8 @@
 #include <utility>
 namespace fresco {
 namespace {
-constexpr int most = 256; // neighbours summed
+constexpr int most = 256;      // neighbours summed
+constexpr int comparisons = 2; // after the first rounds; a third changes hardly anything
 
 /// The points that count, in the order of a tree, with what does not change from round to round.
 struct Field {
@@ -164,7 +166,7 @@ BilateralResult smooth(const Points& points, const Points& viewpoints, const Poi
       smooth = smoothOnce(field, smooth, options.threads);
     else
       field.moved = moveOnce(field, smooth, options.threads);
-    if (round == 0 && options.rounds > 0 && options.edges && viewpoints.cols() > 0)
+    if (round < std::min(options.rounds, comparisons) && options.edges && viewpoints.cols() > 0)
       smooth = chooseSurfaces({*field.tree, field.lists, field.areas, viewpoints}, smooth, options.threads);
   }
   const std::vector<int> columns = field.tree->columns();

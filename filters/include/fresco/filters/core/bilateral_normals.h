@@ -9,7 +9,7 @@ struct BilateralOptions {
   float spacings = 2;  ///< > 0, with sigma_d = 0
   float sigma_n = 15;  ///< degrees, 0 < sigma_n <= 180: normals that differ by it weigh exp(-1/2)
   int move_rounds = 0; ///< >= 0: how often points then move along their normal to the planes of their neighbours
-  bool edges = true;   ///< after the first round, where viewpoints are known: points beside creases change sides
+  bool edges = true;   ///< after the first two rounds, where viewpoints are known: points beside creases change sides
   int threads = 0;     ///< 0 = all cores; the result does not depend on it
 };
 
@@ -33,10 +33,9 @@ struct BilateralResult {
 BilateralResult smoothNormals(const Points& points, const Points& normals, const BilateralOptions& options = {},
                               const Progress& progress = {});
 
-/// As above with set.points. If set.viewpoints are known, after the first round normals beside creases are compared
-/// with the directions that are frequent around: that is taken whose plane through the point holds most neighbours for
-/// the thickness that the noise along the beams gives it (docs/filters.md). Normals that do not face their viewpoint
-/// stay.
+/// As above with set.points. If set.viewpoints are known, after each of the first two rounds normals beside creases are
+/// compared with the directions that are frequent around, by how the neighbours lie about their planes for the noise
+/// along the beams; a trained network weighs that (docs/filters.md). Normals that do not face their viewpoint stay.
 /// @param normals 3xN, facing the viewpoints; those of the set are not used
 /// @throws std::invalid_argument also if the set's attributes do not fit
 BilateralResult smoothNormals(const PointSet& set, const Points& normals, const BilateralOptions& options = {},

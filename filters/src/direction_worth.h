@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include "direction_figures.h"
+namespace fresco {
+/// How well directions fit a point, beside the normal it has: a network of two layers that benchmark/normals_learned.py
+/// trains with scans of generated rooms. Worths of one point can be compared.
+class DirectionWorth {
+public:
+  static constexpr int first_size = 16;
+  /// @param own figures of the normal that the point has
+  explicit DirectionWorth(const DirectionFigures::Figures& own);
+  float of(const DirectionFigures::Figures& figures) const;
+
+private:
+  Eigen::Array<float, first_size, 1> from_own_; ///< of the first layer
+};
+} // namespace fresco
