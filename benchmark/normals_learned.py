@@ -174,7 +174,7 @@ def main():
     parser.add_argument("--write", metavar="direction_weights.h", help="where the network goes")
     parser.add_argument("--sizes", nargs=2, type=int, default=[16, 16], help="of the layers (default: 16 16)")
     parser.add_argument("--most", type=int, default=60000, help="points of each file (default: %(default)s)")
-    parser.add_argument("--epochs", type=int, default=20, help="default: %(default)s")
+    parser.add_argument("--epochs", type=int, default=14, help="default: %(default)s")
     parser.add_argument("--elsewhere", type=float, default=0.3, help="default: %(default)s")
     parser.add_argument("--decay", type=float, default=1e-4, help="of weights a step, part of the rate (default: %(default)s)")
     parser.add_argument("--seed", type=int, default=1, help="default: %(default)s")

@@ -172,7 +172,7 @@ private:
         const int indices[3] = {triangle.vertices[k], triangle.texcoords[k], triangle.normals[k]};
         for (int kind = 0; kind < 3; ++kind)
           if (indices[kind] >= counts[kind] || (kind == 0 && indices[kind] < 0))
-            throw std::runtime_error(concat("a face names element ", indices[kind] + 1, ", there are ", counts[kind]));
+            throw std::runtime_error(concat("a face names element ", Index{indices[kind]} + 1, ", there are ", counts[kind]));
       }
   }
 
