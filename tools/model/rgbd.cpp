@@ -75,7 +75,8 @@ bool fitPlane(const DepthField& field, int x, int y, Plane& plane)
 {
   const float z = field.at(x, y);
   const float radius = static_cast<float>(field.options.radius) * z + 0.01f;
-  const int reach = std::max(2, static_cast<int>(radius * field.camera.fx / z));
+  const double widest = std::max(field.image.width, field.image.height);
+  const int reach = std::max(2, static_cast<int>(std::min(radius * field.camera.fx / z, widest)));
   const int step = std::max(1, reach / 4);
   Eigen::Vector3f sum = Eigen::Vector3f::Zero();
   Eigen::Matrix3f squares = Eigen::Matrix3f::Zero();
