@@ -2,9 +2,11 @@
 #include "image_codecs.h"
 #include "png_writer.h"
 #include "texture_io_image.h"
+#include <algorithm>
 #include <fresco/common/file.h>
 #include <fresco/common/image.h>
 #include <fresco/common/require.h>
+#include <iterator>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 namespace fresco {
@@ -25,9 +27,21 @@ bool isWhole(const std::string& bytes)
   return true;
 }
 
+/// OpenCV also passes on to libraries that end the program over a damaged file (DICOM, GDAL's formats).
+bool isCommonFormat(const std::string& bytes)
+{
+  using namespace std::string_literals;
+  const bool is_webp = bytes.compare(0, 4, "RIFF") == 0 && bytes.size() > 12 && bytes.compare(8, 4, "WEBP") == 0;
+  const std::string marks[] = {"\x89PNG", "\xff\xd8", "II*\0"s, "MM\0*"s, "BM"};
+  return is_webp || std::any_of(std::begin(marks), std::end(marks),
+                                [&](const std::string& mark) { return bytes.compare(0, mark.size(), mark) == 0; });
+}
+
 cv::Mat decode(const std::string& path, int flags)
 {
   const std::string bytes = readFile(path);
+  if (!isCommonFormat(bytes))
+    fail(path, "no PNG, JPEG, TIFF, BMP or WebP image");
   if (!isWhole(bytes))
     fail(path, "the image is truncated or damaged");
   const cv::Mat raw(1, static_cast<int>(bytes.size()), CV_8U, const_cast<char*>(bytes.data()));

@@ -29,7 +29,7 @@ struct Image16 {
   std::vector<std::uint16_t> data;
 };
 
-/// JPEG, PNG and what else OpenCV reads; 16 bit and alpha are reduced to 8-bit RGB; EXIF orientation is not applied.
+/// PNG, JPEG, TIFF, BMP or WebP; 16 bit and alpha are reduced to 8-bit RGB; EXIF orientation is not applied.
 /// @throws std::runtime_error naming the file if it is missing, empty, truncated or no image
 Image readImage(const std::string& path);
 
