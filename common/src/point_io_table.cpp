@@ -108,7 +108,7 @@ void packColors(PointTable& table)
 {
   const Column* alpha = table.find("alpha");
   const auto color = findTriple(table, color_names);
-  if (!color || packedColor(table) ||
+  if (!color || table.find("rgb") || table.find("rgba") ||
       !std::all_of(color->begin(), color->end(), [](const Column& c) { return isByte(&c); }))
     return;
   const bool has_alpha = isByte(alpha);
@@ -134,9 +134,14 @@ void packColors(PointTable& table)
 void unpackColors(PointTable& table)
 {
   const Column* color = packedColor(table);
-  if (!color || findTriple(table, color_names))
+  if (!color)
     return;
   const bool has_alpha = color->name == "rgba";
+  for (const char* name : {"red", "green", "blue"})
+    if (table.find(name))
+      return;
+  if (has_alpha && table.find("alpha"))
+    return;
   PointTable bytes = withoutColumns(table);
   for (const Column& column : table.columns) {
     if (&column != color) {
