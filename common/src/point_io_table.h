@@ -136,10 +136,11 @@ inline constexpr const char* color_names[3] = {"red", "green", "blue"};
 /// Column rgb or rgba of four bytes, nullptr if there is none.
 const Column* packedColor(const PointTable& table);
 
-/// Joins byte columns red green blue (and alpha) into PCL's packed rgb (rgba), as PCL's own readers do.
+/// Joins byte columns red green blue (and alpha) into PCL's packed rgb (rgba), as PCL's own readers do, unless a column
+/// has that name already.
 void packColors(PointTable& table);
 
-/// Replaces packed rgb (rgba) by byte columns red green blue (and alpha).
+/// Replaces packed rgb (rgba) by byte columns red green blue (and alpha), unless a column has such a name already.
 void unpackColors(PointTable& table);
 
 /// Bounds of finite coordinates and what rounding them to float loses.
