@@ -166,8 +166,9 @@ TEST_F(Interrupt, Compare)
 
 TEST_F(Interrupt, Texture)
 {
-  expectStops(
-      {"texture", {folder_ + "/ball.ply", folder_ + "/room/cameras", folder_ + "/room/images", "out.obj", "-quiet"}});
+  expectStops({"texture",
+               {folder_ + "/ball.ply", folder_ + "/room/cameras", folder_ + "/room/images", "out.obj", "-texel",
+                "0.001", "-quiet"}});
 }
 
 TEST_F(Interrupt, Scan) // what it has finished stays, poses.txt comes last
