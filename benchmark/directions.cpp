@@ -4,7 +4,6 @@
 #include "surface_choice.h"
 #include <fresco/common/file.h>
 #include <fresco/filters/core/bilateral_normals.h>
-#include <fresco/filters/core/local_sampling.h>
 #include <fresco/filters/core/oriented_normals.h>
 /// What smoothNormals() chooses from beside creases, with the truth: the input of normals_learned.py.
 using namespace fresco;
@@ -28,21 +27,11 @@ std::vector<Row> rowsOf(const NormalSample& sample, int threads)
   smoothing.rounds = 1;
   smoothing.edges = false;
   const Points smooth = smoothNormals(set.points, estimateNormals(set, estimation).normals, smoothing).normals;
-  Points known = set.points;
-  for (Index i = 0; i < known.cols(); ++i)
-    if (!smooth.col(i).allFinite())
-      known.col(i).setConstant(NAN);
-  const PointTree tree(known, threads);
-  const Eigen::VectorXf areas = sampleAreas(tree, 8, threads);
-  const std::vector<CompactLists> lists =
-      compactRadiusLists(tree, 2 * smoothing.spacings * areas.cwiseSqrt(), 256, threads);
-  Points normals(3, tree.size());
-  for (Index i = 0; i < normals.cols(); ++i)
-    normals.col(i) = smooth.col(tree.columns()[static_cast<std::size_t>(i)]);
+  const SmoothingField field = makeSmoothingField(set.points, smooth, smoothing);
   std::vector<Row> rows;
-  compareDirections({tree, lists, areas, set.viewpoints}, normals, 1,
+  compareDirections(field, set.viewpoints, field.normals, 1,
                     [&](Index i, const std::vector<DirectionOffer>& offers, DirectionFigures& figures) {
-                      const int column = tree.columns()[static_cast<std::size_t>(i)];
+                      const int column = field.tree->columns()[static_cast<std::size_t>(i)];
                       if (!sample.truth.col(column).allFinite())
                         return;
                       for (const DirectionOffer& offer : offers) {
@@ -86,13 +75,8 @@ int main(int argc, char** argv)
       throw UsageError("no -o OUT");
     const ScannedRoom room(options.scene, options.stations, common.threads, closed);
     const Creases creases(room.scene.mesh, options, common.threads);
-    std::vector<NormalSample> samples;
-    for (Index s = 0; s < room.stations.cols(); ++s)
-      samples.push_back(takeSample(room, creases, room.stations.col(s), laser));
-    if (options.merged)
-      samples = {merge(samples, room.stations)};
     OutputFile file(output);
-    for (const NormalSample& sample : samples) {
+    for (const NormalSample& sample : takeSamples(room, creases, laser, options.merged)) {
       const std::vector<Row> rows = rowsOf(sample, common.threads);
       file.write(rows.data(), rows.size() * sizeof(Row));
     }

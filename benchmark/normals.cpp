@@ -152,11 +152,7 @@ int main(int argc, char** argv)
       LaserOptions laser;
       laser.points = options.points;
       laser.noise = noise;
-      std::vector<NormalSample> samples;
-      for (Index s = 0; s < room.stations.cols(); ++s)
-        samples.push_back(takeSample(room, creases, room.stations.col(s), laser));
-      if (options.merged)
-        samples = {merge(samples, room.stations)};
+      const std::vector<NormalSample> samples = takeSamples(room, creases, laser, options.merged);
       std::printf("noise %g m, %d points per station\n", noise, options.points);
       std::printf("| k = %-28d | beside edges, > 20 | on planes, > 20 | elsewhere, > 20 | s | CPU s |\n"
                   "|---|---|---|---|---|---|\n",

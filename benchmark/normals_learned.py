@@ -6,10 +6,10 @@
     fresco_benchmark_directions -o c2 -scene conference_room -noise 0.002 -stations 1    never learned from
     normals_learned.py --train a* --test c* --write filters/src/direction_weights.h
 
-Two layers of rectifiers over the figures of a direction and those of the point's own normal give its worth; that of the greatest worth is chosen. What
-falls during the training is the mean angle to the true normal, up to 60 degrees, when directions are chosen with
-probabilities that are the softmax of their worths. Points elsewhere than within 2 cm of an edge count less
-(--elsewhere). The same files give the same network on the same machine."""
+Two layers of rectifiers over the figures of a direction and those of the point's own normal give its worth; that of the
+greatest worth is chosen. What falls during the training is the mean angle to the true normal, up to 60 degrees, when
+directions are chosen with probabilities that are the softmax of their worths. Points elsewhere than within 2 cm of an
+edge count less (--elsewhere). The same files give the same network on the same machine."""
 import argparse
 import sys
 
@@ -176,7 +176,8 @@ def main():
     parser.add_argument("--most", type=int, default=60000, help="points of each file (default: %(default)s)")
     parser.add_argument("--epochs", type=int, default=14, help="default: %(default)s")
     parser.add_argument("--elsewhere", type=float, default=0.3, help="default: %(default)s")
-    parser.add_argument("--decay", type=float, default=1e-4, help="of weights a step, part of the rate (default: %(default)s)")
+    parser.add_argument("--decay", type=float, default=1e-4,
+                        help="of weights a step, part of the rate (default: %(default)s)")
     parser.add_argument("--seed", type=int, default=1, help="default: %(default)s")
     options = parser.parse_args()
     random = np.random.default_rng(options.seed)

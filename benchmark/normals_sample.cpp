@@ -42,13 +42,6 @@ Points creasePlaces(const TriangleMesh& mesh, float degrees, float spread)
     all.col(static_cast<Index>(i)) = places[i];
   return all;
 }
-} // namespace
-
-Creases::Creases(const TriangleMesh& mesh, const NormalMeasure& measure, int threads)
-    : sharp(creasePlaces(mesh, measure.crease, measure.spread), threads),
-      bends(creasePlaces(mesh, measure.bend, measure.plane / 5), threads), edge(measure.edge), plane(measure.plane)
-{}
-
 NormalSample takeSample(const ScannedRoom& room, const Creases& creases, const Vector3f& station,
                         const LaserOptions& laser)
 {
@@ -98,5 +91,22 @@ NormalSample merge(const std::vector<NormalSample>& scans, const Points& station
     at += count;
   }
   return all;
+}
+} // namespace
+
+Creases::Creases(const TriangleMesh& mesh, const NormalMeasure& measure, int threads)
+    : sharp(creasePlaces(mesh, measure.crease, measure.spread), threads),
+      bends(creasePlaces(mesh, measure.bend, measure.plane / 5), threads), edge(measure.edge), plane(measure.plane)
+{}
+
+std::vector<NormalSample> takeSamples(const ScannedRoom& room, const Creases& creases, const LaserOptions& laser,
+                                      bool merged)
+{
+  std::vector<NormalSample> samples;
+  for (Index s = 0; s < room.stations.cols(); ++s)
+    samples.push_back(takeSample(room, creases, room.stations.col(s), laser));
+  if (merged)
+    return {merge(samples, room.stations)};
+  return samples;
 }
 } // namespace fresco

@@ -31,11 +31,8 @@ struct Creases {
   float edge, plane; ///< as in NormalMeasure
 };
 
-/// The points of a scan; no true normal where the beam met several surfaces.
-/// @param station in the frame of the room
-NormalSample takeSample(const ScannedRoom& room, const Creases& creases, const Eigen::Vector3f& station,
-                        const LaserOptions& laser);
-
-/// All scans as one, in the frame of the room.
-NormalSample merge(const std::vector<NormalSample>& scans, const Points& stations);
+/// The points of the scans from all stations; no true normal where a beam met several surfaces.
+/// @param merged all scans as one, in the frame of the room
+std::vector<NormalSample> takeSamples(const ScannedRoom& room, const Creases& creases, const LaserOptions& laser,
+                                      bool merged);
 } // namespace fresco

@@ -19,10 +19,9 @@ namespace {
 /// Decoders fill in what a cut file lacks; its end tells whether it is whole.
 bool isWhole(const std::string& bytes)
 {
-  const auto starts = [&](const std::string& mark) { return bytes.compare(0, mark.size(), mark) == 0; };
-  if (starts("\x89PNG"))
+  if (detail::startsWith(bytes, "\x89PNG"))
     return detail::isIntactPng(reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size());
-  if (starts("\xff\xd8"))
+  if (detail::startsWith(bytes, "\xff\xd8"))
     return bytes.rfind("\xff\xd9") != std::string::npos && bytes.rfind("\xff\xd9") > bytes.size() / 2;
   return true;
 }
@@ -30,11 +29,11 @@ bool isWhole(const std::string& bytes)
 /// OpenCV also passes on to libraries that end the program over a damaged file (DICOM, GDAL's formats).
 bool isCommonFormat(const std::string& bytes)
 {
-  using namespace std::string_literals;
-  const bool is_webp = bytes.compare(0, 4, "RIFF") == 0 && bytes.size() > 12 && bytes.compare(8, 4, "WEBP") == 0;
-  const std::string marks[] = {"\x89PNG", "\xff\xd8", "II*\0"s, "MM\0*"s, "BM"};
+  using namespace std::string_view_literals;
+  const bool is_webp = detail::startsWith(bytes, "RIFF") && bytes.size() > 12 && bytes.compare(8, 4, "WEBP") == 0;
+  const std::string_view marks[] = {"\x89PNG", "\xff\xd8", "II*\0"sv, "MM\0*"sv, "BM"};
   return is_webp || std::any_of(std::begin(marks), std::end(marks),
-                                [&](const std::string& mark) { return bytes.compare(0, mark.size(), mark) == 0; });
+                                [&](std::string_view mark) { return detail::startsWith(bytes, mark); });
 }
 
 cv::Mat decode(const std::string& path, int flags)

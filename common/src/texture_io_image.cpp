@@ -15,15 +15,15 @@ std::uint32_t bigEndian(const unsigned char* at)
   return std::uint32_t{at[0]} << 24 | std::uint32_t{at[1]} << 16 | std::uint32_t{at[2]} << 8 | at[3];
 }
 
-bool startsWith(const unsigned char* bytes, std::size_t size, const char* mark)
+std::string_view view(const unsigned char* bytes, std::size_t size)
 {
-  return size > std::strlen(mark) && std::memcmp(bytes, mark, std::strlen(mark)) == 0;
+  return {reinterpret_cast<const char*>(bytes), size};
 }
 } // namespace
 
 bool isIntactPng(const unsigned char* bytes, std::size_t size)
 {
-  if (!startsWith(bytes, size, "\x89PNG\r\n\x1a\n"))
+  if (!startsWith(view(bytes, size), "\x89PNG\r\n\x1a\n"))
     return false;
   // Chunk: length of the data, type, data, check sum of type and data.
   for (std::size_t at = 8; at + 12 <= size;) {
@@ -40,7 +40,7 @@ bool isIntactPng(const unsigned char* bytes, std::size_t size)
 Image decodeImage(const unsigned char* bytes, std::size_t size)
 {
   cv::Mat bgr;
-  const bool is_jpeg = startsWith(bytes, size, "\xff\xd8");
+  const bool is_jpeg = startsWith(view(bytes, size), "\xff\xd8");
   if (size <= static_cast<std::size_t>(std::numeric_limits<int>::max()) && (is_jpeg || isIntactPng(bytes, size)))
     try {
       prepareImageCodecs();

@@ -2,7 +2,10 @@
 #pragma once
 #include <cstddef>
 #include <fresco/common/image.h>
+#include <string_view>
 namespace fresco::detail {
+inline bool startsWith(std::string_view bytes, std::string_view mark) { return bytes.substr(0, mark.size()) == mark; }
+
 /// Whether all chunks of a PNG are there and their check sums hold; libpng prints on stderr where they do not.
 bool isIntactPng(const unsigned char* bytes, std::size_t size);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "compact_lists.h"
 #include "exponential.h"
+#include "smoothing_field.h"
 #include "surface_choice.h"
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -8,24 +8,17 @@
 #include <fresco/common/parallel.h>
 #include <fresco/common/require.h>
 #include <fresco/filters/core/bilateral_normals.h>
-#include <fresco/filters/core/local_sampling.h>
-#include <memory>
 #include <utility>
 namespace fresco {
 namespace {
-constexpr int most = 256;      // neighbours summed
 constexpr int comparisons = 2; // after the first rounds; a third changes hardly anything
 
-/// The points that count, in the order of a tree, with what does not change from round to round.
-struct Field {
-  std::unique_ptr<PointTree> tree; ///< until the points move
-  Points moved;                    ///< then
-  Eigen::VectorXf areas;           ///< a_j, any common factor
-  Eigen::VectorXf scales_d;        ///< 1 / (2 s_d^2), by point, or one for all
-  float scale_n = 0;               ///< 1 / (2 s_n^2)
-  std::vector<CompactLists> lists;
+/// With what changes from round to round.
+struct Field : SmoothingField {
+  Points moved;             ///< points that were moved, else none
+  Eigen::VectorXf scales_d; ///< 1 / (2 s_d^2), by point, or one for all
+  float scale_n = 0;        ///< 1 / (2 s_n^2)
 
-  Index size() const { return tree->size(); }
   Eigen::Vector3f point(Index i) const
   {
     if (moved.cols() > 0)
@@ -48,32 +41,10 @@ void validate(const Points& points, const Points& normals, const BilateralOption
           " degrees is not in 0..180");
 }
 
-bool usable(const Eigen::Vector3f& normal) { return normal.allFinite() && normal.squaredNorm() > 0; }
-
-std::unique_ptr<PointTree> usableTree(const Points& points, const Points& normals, int threads)
-{
-  Points counted;
-  for (Index i = 0; i < points.cols(); ++i)
-    if (!usable(normals.col(i))) {
-      if (counted.cols() == 0)
-        counted = points;
-      counted.col(i).setConstant(NAN); // which the tree leaves out
-    }
-  return std::make_unique<PointTree>(counted.cols() > 0 ? counted : points, threads);
-}
-
 Field makeField(const Points& points, const Points& normals, const BilateralOptions& options)
 {
-  Field field;
-  field.tree = usableTree(points, normals, options.threads);
-  field.areas = sampleAreas(*field.tree, 8, options.threads);
-  Eigen::VectorXf radii(1);
-  if (options.sigma_d > 0)
-    radii[0] = 2 * options.sigma_d;
-  else
-    radii = 2 * options.spacings * field.areas.cwiseSqrt();
-  field.lists = compactRadiusLists(*field.tree, radii, most, options.threads);
-  field.scales_d = 2 * radii.array().square().inverse();
+  Field field{makeSmoothingField(points, normals, options), {}, {}, 0};
+  field.scales_d = 2 * field.radii.array().square().inverse();
   const float s_n = 1 - std::cos(options.sigma_n * 0.017453293f);
   field.scale_n = 0.5f / (s_n * s_n);
   return field;
@@ -156,9 +127,7 @@ BilateralResult smooth(const Points& points, const Points& viewpoints, const Poi
     return {points, normals};
   report(progress, "find neighbours", 0.0);
   Field field = makeField(points, normals, options);
-  Points smooth(3, field.size());
-  for (Index i = 0; i < smooth.cols(); ++i)
-    smooth.col(i) = normals.col(field.tree->columns()[i]).normalized();
+  Points smooth = std::move(field.normals);
   const int rounds = options.rounds + options.move_rounds;
   for (int round = 0; round < rounds; ++round) {
     report(progress, round < options.rounds ? "smooth normals" : "move points", 0.4 + 0.6 * round / rounds);
@@ -167,7 +136,7 @@ BilateralResult smooth(const Points& points, const Points& viewpoints, const Poi
     else
       field.moved = moveOnce(field, smooth, options.threads);
     if (round < std::min(options.rounds, comparisons) && options.edges && viewpoints.cols() > 0)
-      smooth = chooseSurfaces({*field.tree, field.lists, field.areas, viewpoints}, smooth, options.threads);
+      smooth = chooseSurfaces(field, viewpoints, smooth, options.threads);
   }
   const std::vector<int> columns = field.tree->columns();
   const Points moved = std::move(field.moved);

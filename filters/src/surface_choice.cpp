@@ -17,8 +17,9 @@ constexpr std::size_t fewest = 8;      // neighbours that tell the noise
 
 class SurfaceChoice {
 public:
-  SurfaceChoice(const SightedField& field, const Points& normals, int threads)
-      : field_(field), normals_(normals), grid_(cell_spacings * std::sqrt(typicalArea(field.areas)))
+  SurfaceChoice(const SmoothingField& field, const Points& viewpoints, const Points& normals, int threads)
+      : field_(field), viewpoints_(viewpoints), normals_(normals),
+        grid_(cell_spacings * std::sqrt(typicalArea(field.areas)))
   {
     markCreases(threads);
     grid_.finish(threads);
@@ -31,10 +32,12 @@ private:
   void markCreases(int threads);
   float noiseAt(Index i, const std::vector<int>& list) const;
   Eigen::Vector3f beam(Index i) const;
-  std::vector<FacedNeighbor> neighbors(Index i, const std::vector<int>& list) const;
-  std::vector<DirectionOffer> offers(Index i, const Eigen::Vector3f& ray) const;
+  void setNeighbors(Index i, const std::vector<int>& list, std::vector<FacedNeighbor>& near) const;
+  void setOffers(Index i, const Eigen::Vector3f& ray, const DirectionGrid::Surroundings& around,
+                 std::vector<DirectionOffer>& all) const;
 
-  const SightedField& field_;
+  const SmoothingField& field_;
+  const Points& viewpoints_;
   const Points& normals_;
   DirectionGrid grid_;
   std::vector<char> at_crease_; ///< by position
@@ -55,7 +58,7 @@ float SurfaceChoice::typicalArea(const Eigen::VectorXf& areas)
 /// From the viewer to the point, unit; zero where unknown.
 Eigen::Vector3f SurfaceChoice::beam(Index i) const
 {
-  return -viewDirection(field_.viewpoints, field_.tree.columns()[static_cast<std::size_t>(i)], field_.tree.point(i))
+  return -viewDirection(viewpoints_, field_.tree->columns()[static_cast<std::size_t>(i)], field_.tree->point(i))
               .normalized();
 }
 
@@ -68,7 +71,7 @@ float SurfaceChoice::noiseAt(Index i, const std::vector<int>& list) const
     return 0;
   double sum = 0, squares = 0;
   for (const int j : list) {
-    const double off = normal.dot(field_.tree.point(j) - field_.tree.point(i));
+    const double off = normal.dot(field_.tree->point(j) - field_.tree->point(i));
     sum += off;
     squares += off * off;
   }
@@ -96,29 +99,28 @@ void SurfaceChoice::markCreases(int threads)
   for (Index i = 0; i < normals_.cols(); ++i) {
     const auto at = static_cast<std::size_t>(i);
     const float weight = field_.areas[i] * (at_crease_[at] ? part_at_crease : 1.f);
-    grid_.add({field_.tree.point(i), normals_.col(i), weight, noises[at]});
+    grid_.add({field_.tree->point(i), normals_.col(i), weight, noises[at]});
   }
 }
 
-std::vector<FacedNeighbor> SurfaceChoice::neighbors(Index i, const std::vector<int>& list) const
+void SurfaceChoice::setNeighbors(Index i, const std::vector<int>& list, std::vector<FacedNeighbor>& near) const
 {
-  std::vector<FacedNeighbor> near;
-  near.reserve(list.size());
+  near.clear();
   for (const int j : list)
     if (j != i)
-      near.push_back(
-          {field_.tree.point(j) - field_.tree.point(i), normals_.col(j), at_crease_[static_cast<std::size_t>(j)] != 0});
-  return near;
+      near.push_back({field_.tree->point(j) - field_.tree->point(i), normals_.col(j),
+                      at_crease_[static_cast<std::size_t>(j)] != 0});
 }
 
 /// The own normal first; none where it does not face the viewer or the noise is unknown.
-std::vector<DirectionOffer> SurfaceChoice::offers(Index i, const Eigen::Vector3f& ray) const
+void SurfaceChoice::setOffers(Index i, const Eigen::Vector3f& ray, const DirectionGrid::Surroundings& around,
+                              std::vector<DirectionOffer>& all) const
 {
   const Eigen::Vector3f own = normals_.col(i);
-  const DirectionGrid::Surroundings& around = grid_.at(field_.tree.point(i));
+  all.clear();
   if (!(around.noise > 0) || -own.dot(ray) < grazing)
-    return {};
-  std::vector<DirectionOffer> all = {{own, 0, 1}};
+    return;
+  all.push_back({own, 0, 1});
   for (std::size_t k = 0; k < around.directions.size(); ++k) {
     const Eigen::Vector3f& direction = around.directions[k];
     const float to_own = direction.dot(own);
@@ -127,7 +129,6 @@ std::vector<DirectionOffer> SurfaceChoice::offers(Index i, const Eigen::Vector3f
     else if (-direction.dot(ray) >= grazing)
       all.push_back({direction, around.shares[k], to_own});
   }
-  return all;
 }
 
 void SurfaceChoice::compare(int threads, const UseOffers& use) const
@@ -136,31 +137,36 @@ void SurfaceChoice::compare(int threads, const UseOffers& use) const
     const CompactLists& lists = field_.lists[static_cast<std::size_t>(range)];
     CompactReader reader(lists);
     std::vector<int> list;
+    std::vector<DirectionOffer> offered;
+    std::vector<FacedNeighbor> near;
     DirectionFigures figures;
     for (Index i = lists.begin; i < lists.end; ++i) {
       reader.next(list);
       if (!at_crease_[static_cast<std::size_t>(i)])
         continue;
       const Eigen::Vector3f ray = beam(i);
-      const std::vector<DirectionOffer> offered = offers(i, ray);
+      const DirectionGrid::Surroundings& around = grid_.at(field_.tree->point(i));
+      setOffers(i, ray, around, offered);
       if (offered.size() < 2)
         continue;
-      figures.set(neighbors(i, list), ray, grid_.at(field_.tree.point(i)).noise);
+      setNeighbors(i, list, near);
+      figures.set(near, ray, around.noise);
       use(i, offered, figures);
     }
   });
 }
 } // namespace
 
-void compareDirections(const SightedField& field, const Points& normals, int threads, const UseOffers& use)
+void compareDirections(const SmoothingField& field, const Points& viewpoints, const Points& normals, int threads,
+                       const UseOffers& use)
 {
-  SurfaceChoice(field, normals, threads).compare(threads, use);
+  SurfaceChoice(field, viewpoints, normals, threads).compare(threads, use);
 }
 
-Points chooseSurfaces(const SightedField& field, const Points& normals, int threads)
+Points chooseSurfaces(const SmoothingField& field, const Points& viewpoints, const Points& normals, int threads)
 {
   Points chosen = normals;
-  compareDirections(field, normals, threads,
+  compareDirections(field, viewpoints, normals, threads,
                     [&](Index i, const std::vector<DirectionOffer>& offered, DirectionFigures& figures) {
                       const DirectionFigures::Figures own = figures.of(offered.front());
                       const DirectionWorth worth(own);
