@@ -14,8 +14,7 @@ using Eigen::Vector3f;
 
 namespace {
 constexpr double pi = 3.14159265358979, lowest = -pi / 3, highest = pi / 2; // elevations
-constexpr int ring = 6;                                                     // rays around the middle of a beam
-constexpr double ring_radius = 0.7;    // of the beam's radius: half of the light lies inside
+constexpr int hexagon = 6;             // rays of the first ring around the middle of a beam; the next have 12, 18 ...
 constexpr float same_surface = 0.004f; // metres off the plane that the middle of the beam meets
 
 void validate(const LaserOptions& o)
@@ -24,6 +23,7 @@ void validate(const LaserOptions& o)
   require(o.noise >= 0.f && o.noise <= 1.f, "laser: noise ", o.noise, " m is not in 0..1");
   require(o.beam_radius >= 0.f && o.beam_radius < 1.f && o.divergence >= 0.f && o.divergence < 0.1f, "laser: bad beam");
   require(o.pulse >= 0.f && o.max_range >= 0.f, "laser: pulse or range is negative");
+  require(o.rings >= 1 && o.rings <= 16, "laser: ", o.rings, " rings are not in 1..16");
 }
 
 /// The beams of a scan: rows of equal elevation.
@@ -51,6 +51,23 @@ Vector3f faceNormal(const TriangleMesh& mesh, int face)
   return (Vector3f(mesh.vertices.col(v[1])) - a).cross(Vector3f(mesh.vertices.col(v[2])) - a).normalized();
 }
 
+/// A ray beside the middle of a beam.
+struct RimRay {
+  float part, cosine, sine; ///< radii from the middle, bearing
+};
+
+/// Evenly over the disc of the beam: with one ring half of the light lies inside.
+std::vector<RimRay> rimOf(int rings)
+{
+  std::vector<RimRay> rays;
+  for (int ring = 1; ring <= rings; ++ring)
+    for (int k = 0; k < hexagon * ring; ++k) {
+      const float angle = 2.f * static_cast<float>(pi) * static_cast<float>(k) / static_cast<float>(hexagon * ring);
+      rays.push_back({static_cast<float>(1.05 * ring / (rings + 0.5)), std::cos(angle), std::sin(angle)});
+    }
+  return rays;
+}
+
 /// One beam and what came back.
 struct Return {
   float range = -1.f; ///< metres, negative: nothing
@@ -68,7 +85,8 @@ public:
         number_(static_cast<std::uint64_t>(number)), brightness_(brightness()), unit_(sceneUnit(lit.scene)),
         max_range_(options.max_range > 0.f ? options.max_range
                    : lit.scene.furnished   ? 30.f
-                                           : 1e30f)
+                                           : 1e30f),
+        rim_(rimOf(options.rings))
   {}
 
   /// Share of beams that meet a surface, from a coarse sweep.
@@ -120,6 +138,11 @@ private:
     return glass * answer * smoothStep(0.02f, 0.08f, cosine);
   }
 
+  bool isApart(const VirtualHit& a, const VirtualHit& b) const
+  {
+    return std::fabs(a.distance - b.distance) > options_.pulse;
+  }
+
   float strength(const VirtualHit& hit, const Ray& ray) const
   {
     const float reflectance = std::pow(surfaceAlbedo(lit_.scene, hit, 0.02f).mean(), 2.2f);
@@ -133,20 +156,29 @@ private:
     const Ray axis = worldRay(direction);
     const Vector3f u = axis.direction.unitOrthogonal(), v = axis.direction.cross(u),
                    normal = faceNormal(lit_.scene.mesh, hit.face);
-    const float spread = static_cast<float>(ring_radius) * radius(hit.distance) / hit.distance;
     const float plane = normal.dot(axis.direction) * hit.distance;
-    float near_sum = strength(hit, axis), near_weight = near_sum, far_sum = 0.f, far_weight = 0.f;
-    near_sum *= hit.distance;
-    for (int k = 0; k < ring; ++k) {
-      const float angle = 2.f * static_cast<float>(pi) * static_cast<float>(k) / ring;
-      const Ray ray{center_, (axis.direction + spread * (std::cos(angle) * u + std::sin(angle) * v)).normalized()};
+    thread_local std::vector<std::pair<VirtualHit, Ray>> rim; // what the rays beside the middle meet
+    rim.clear();
+    bool elsewhere = false;
+    for (const RimRay& beside : rim_) {
+      const float spread = beside.part * radius(hit.distance) / hit.distance;
+      const Ray ray{center_, (axis.direction + spread * (beside.cosine * u + beside.sine * v)).normalized()};
       const VirtualHit other = lit_.rays.intersect(ray);
       if (other.face < 0)
         continue;
-      const float off = std::fabs(other.distance * ray.direction.dot(normal) - plane);
+      const bool apart = isApart(other, hit);
+      const bool off = std::fabs(other.distance * ray.direction.dot(normal) - plane) > same_surface;
+      back.mixed = back.mixed || (off && !apart);
+      elsewhere = elsewhere || off || apart;
+      rim.emplace_back(other, ray);
+    }
+    if (!elsewhere)
+      return;
+    float near_sum = strength(hit, axis), near_weight = near_sum, far_sum = 0.f, far_weight = 0.f;
+    near_sum *= hit.distance;
+    for (const auto& [other, ray] : rim) {
+      const bool apart = isApart(other, hit);
       const float weight = strength(other, ray);
-      const bool apart = std::fabs(other.distance - hit.distance) > options_.pulse;
-      back.mixed = back.mixed || (off > same_surface && !apart);
       (apart ? far_sum : near_sum) += weight * other.distance;
       (apart ? far_weight : near_weight) += weight;
     }
@@ -164,6 +196,7 @@ private:
   const LaserOptions& options_;
   std::uint64_t number_;
   float brightness_, unit_, max_range_;
+  std::vector<RimRay> rim_;
 };
 } // namespace
 

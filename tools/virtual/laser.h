@@ -11,6 +11,7 @@ struct LaserOptions {
   float beam_radius = 0.002f; ///< metres at the exit, >= 0
   float divergence = 0.0006f; ///< radians, growth of the radius per metre, >= 0
   float pulse = 0.4f;         ///< metres; surfaces further apart within a beam are told apart, the stronger one counts
+  int rings = 1;              ///< of rays around the middle of a beam: 6, then 12 more ...
   float max_range = 0.f;      ///< metres, >= 0; 0 = 30 in rooms, without limit for meshes
   std::uint64_t seed = 1;
   int threads = 0; ///< 0 = all cores; the result does not depend on it
