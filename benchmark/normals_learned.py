@@ -13,10 +13,7 @@ edge count less (--elsewhere). The same files give the same network on the same 
 import argparse
 import sys
 
-try:
-    import numpy as np
-except ImportError:
-    sys.exit(f"normals_learned.py needs numpy (apt-get install python3-numpy): not in {sys.executable}")
+from rectifiers import Rectifiers, np
 
 FIGURES, OWN = 44, 1  # of a direction, where its cosine to the own normal stands
 BESIDE_EDGE, MOST_DEGREES, BATCH = 0, 60.0, 1024
@@ -57,31 +54,16 @@ def softmax(worth, firsts, counts):
     return e / np.repeat(np.add.reduceat(e, firsts), counts)
 
 
-class Network:
-    """weights: of the figures of a direction, of those of the own normal, bias; second layer, bias; last layer"""
+class Network(Rectifiers):
+    """The first layer gets the figures of a direction, and those of the own normal."""
 
     def __init__(self, offers, sizes, random):
-        # The extreme thousandths do not count: what was not seen in training is as what was.
-        part = offers.figures[:: max(1, len(offers.figures) // 1_000_000)]
-        self.lowest, self.highest = np.quantile(part, [0.001, 0.999], axis=0).astype(np.float32)
-        within = np.clip(part, self.lowest, self.highest)
-        self.mean, self.scale = within.mean(0), within.std(0)
-        first, second = sizes
-        spread = np.sqrt(1 / FIGURES)
-        self.weights = [random.normal(0, spread, (FIGURES, first)), random.normal(0, spread, (FIGURES, first)),
-                        np.zeros(first), random.normal(0, np.sqrt(2 / first), (first, second)), np.zeros(second),
-                        random.normal(0, 0.1, (second, 1))]
-        self.weights = [w.astype(np.float32) for w in self.weights]
-
-    def scaled(self, figures):
-        return (np.clip(figures, self.lowest, self.highest) - self.mean) / self.scale
+        super().__init__(offers.figures, 2, sizes, random)
 
     def forward(self, figures, own, counts):
         """-> values of both layers (N,first), (N,second), worths (N,)"""
-        direction, normal, bias, second, second_bias, last = self.weights
-        a = np.maximum(figures @ direction + np.repeat(own @ normal + bias, counts, axis=0), 0)
-        b = np.maximum(a @ second + second_bias, 0)
-        return a, b, (b @ last)[:, 0]
+        direction, normal, bias = self.weights[:3]
+        return self.upper(figures @ direction + np.repeat(own @ normal + bias, counts, axis=0))
 
     def worth(self, offers):
         parts = []
@@ -101,23 +83,15 @@ class Network:
         expected = np.add.reduceat(chance * cost, firsts)
         weight = np.where(offers.at_edge[points], 1, elsewhere).astype(np.float32)
         weight /= weight.sum()
-        back = (np.repeat(weight, counts) * chance * (cost - np.repeat(expected, counts)))[:, None].astype(np.float32)
-        at_second = (back @ self.weights[5].T) * (b > 0)
-        at_first = (at_second @ self.weights[3].T) * (a > 0)
+        change = (np.repeat(weight, counts) * chance * (cost - np.repeat(expected, counts)))[:, None]
+        at_first, others = self.back(change.astype(np.float32), a, b)
         of_own = np.add.reduceat(at_first, firsts)
-        return MOST_DEGREES * (weight * expected).sum(), [
-            figures.T @ at_first, own.T @ of_own, of_own.sum(0), a.T @ at_second, at_second.sum(0), b.T @ back]
-
-    def folded(self):
-        """Weights for figures as they come."""
-        direction, normal = (w / self.scale[:, None] for w in self.weights[:2])
-        return [direction, normal, self.weights[2] - self.mean @ (direction + normal)] + self.weights[3:]
+        return MOST_DEGREES * (weight * expected).sum(), [figures.T @ at_first, own.T @ of_own, of_own.sum(0)] + others
 
 
 def train(network, offers, options, random):
-    """Adam (Kingma & Ba 2015), step sizes falling as a cosine"""
-    means, squares = ([np.zeros_like(w) for w in network.weights] for _ in range(2))
-    step, points = 0, len(offers.starts)
+    """Step sizes fall as a cosine."""
+    points = len(offers.starts)
     offers.figures = network.scaled(offers.figures)
     for epoch in range(options.epochs):
         rate = 0.003 * 0.5 * (1 + np.cos(np.pi * epoch / options.epochs))
@@ -125,11 +99,7 @@ def train(network, offers, options, random):
         for begin in range(0, points, BATCH):
             degrees, gradients = network.gradients(offers, order[begin:begin + BATCH], options.elsewhere)
             total += degrees * min(BATCH, points - begin) / points
-            step += 1
-            for w, g, m, s in zip(network.weights, gradients, means, squares):
-                m += 0.1 * (g - m)
-                s += 0.001 * (g * g - s)
-                w -= rate * (m / (1 - 0.9**step) / (np.sqrt(s / (1 - 0.999**step)) + 1e-8) + options.decay * w)
+            network.learn(gradients, rate, options.decay)
         print(f"epoch {epoch + 1} of {options.epochs}: {total:.3f} degrees expected", file=sys.stderr, flush=True)
 
 
@@ -146,25 +116,6 @@ def print_row(name, network, path):
         cells.append(f" {there.sum()} |" + "".join(f" {d[there].mean():.2f}, {100 * np.mean(d[there] > 20):.1f} % |"
                                                    for d in (own, chosen, best)))
     print(f"| {name} |" + "".join(cells), flush=True)
-
-
-def write_weights(network, path):
-    direction, normal, first_bias, second, second_bias, last = network.folded()
-    lines = ["// SPDX-License-Identifier: BSD-3-Clause", "// Written by benchmark/normals_learned.py.", "#pragma once",
-             "namespace fresco::direction_weights {", "// clang-format off",
-             f"constexpr int inputs = {FIGURES}, first = {second.shape[0]}, second = {second.shape[1]};"]
-    for name, values in (("lowest", network.lowest), ("highest", network.highest), ("of_direction", direction),
-                         ("of_own", normal),
-                         ("first_bias", first_bias), ("second_weights", second), ("second_bias", second_bias),
-                         ("last_weights", last[:, 0])):
-        flat = [f"{v:.5g}" for v in np.asarray(values).ravel()]
-        flat = [v + "f" if "." in v or "e" in v else v + ".f" for v in flat]
-        lines.append(f"constexpr float {name}[{len(flat)}] = {{")
-        lines += ["  " + ", ".join(flat[i:i + 12]) + "," for i in range(0, len(flat), 12)]
-        lines.append("};")
-    lines += ["// clang-format on", "} // namespace fresco::direction_weights", ""]
-    with open(path, "w") as file:
-        file.write("\n".join(lines))
 
 
 def main():
@@ -186,7 +137,7 @@ def main():
     print(f"{len(offers.starts)} points, {len(offers.figures)} directions to learn from", file=sys.stderr)
     train(network, offers, options, random)
     if options.write:
-        write_weights(network, options.write)
+        network.write(options.write, ["of_direction", "of_own"], "normals_learned.py")
     print("| degrees, > 20 | points beside edges | own | chosen | best offered | elsewhere | own | chosen | best |")
     print("|" + "---|" * 9)
     for path in options.test:

@@ -15,6 +15,21 @@ struct ScannedRoom {
   }
   LitScene lit() const { return {scene, rays, light}; }
 
+  struct PlacedScan {
+    LaserScan scan;
+    Eigen::Matrix4d T_room_scan; ///< in the frame of the scene's vertices
+  };
+  /// A scan from a station, at any yaw and a small tilt.
+  PlacedScan scanFrom(Index station, const LaserOptions& laser) const
+  {
+    const auto number = static_cast<int>(station);
+    const Eigen::Vector3d place = stations.col(station).cast<double>() + scene.mesh.origin;
+    Eigen::Matrix4d pose = randomPose(place, laser.seed, number);
+    LaserScan scan = scanScene(lit(), pose, laser, number);
+    pose.topRightCorner<3, 1>() -= scene.mesh.origin;
+    return {std::move(scan), pose};
+  }
+
   Scene scene;
   VirtualRays rays;
   Lightmap light;

@@ -125,11 +125,8 @@ int main(int argc, char** argv)
     const TriangleTree surfaces(room.scene.mesh, common.threads);
     Counts counts;
     for (Index s = 0; s < room.stations.cols(); ++s) {
-      const Eigen::Vector3d station = room.stations.col(s).cast<double>() + room.scene.mesh.origin;
-      const Eigen::Matrix4d pose = randomPose(station, laser.seed, static_cast<int>(s));
-      Eigen::Matrix4d T_truth_scan = pose;
-      T_truth_scan.topRightCorner<3, 1>() -= room.scene.mesh.origin;
-      count(scanScene(room.lit(), pose, laser, static_cast<int>(s)), surfaces, T_truth_scan, counts);
+      const auto [scan, T_room_scan] = room.scanFrom(s, laser);
+      count(scan, surfaces, T_room_scan, counts);
     }
     std::printf("| points | veil | recall | off by 4 deviations - 1 cm | - 2 cm | - 4 cm | more | > 1 spacing | > 2 "
                 "spacings | precision | recall of all mixed |\n|---|---|---|---|---|---|---|---|---|---|---|\n");

@@ -34,8 +34,9 @@ void FilterOptions::declare(Args& args)
             "for -outliers: judge distances against those of the neighbours, so that sparse parts of a scan stay");
   args.option(
       "veil", veil.angle,
-      "remove the points in the air that a laser leaves at depth jumps: those whose way to nearly all neighbouring "
-      "beams' points leaves their own beam at less than this angle, degrees, above 0 and below 90");
+      "remove the points in the air that a laser leaves at depth jumps. What a surface could join with most of the "
+      "points next to it stays: the way to them leaves its beam at no less than this angle, degrees, above 0 and below "
+      "90; 20 is common, more removes more");
   args.option("noise", veil.noise, "for -veil: deviation of the ranges, metres; 0 = measured from the scan");
   args.values("viewpoint", "X Y Z",
               "for -veil: where the scanner stood; default: fields vp_x vp_y vp_z, else the header of the file",
@@ -50,7 +51,7 @@ void FilterOptions::declare(Args& args)
   args.note(
       "The steps run in the order veil, outliers, voxel; only those given run. Points that are not finite are always\n"
       "removed. Every field of the points that stay is kept.\n"
-      "Example: fresco_filter scan.pcd clean.pcd -veil 10 -outliers 16 2 -voxel 0.005");
+      "Example: fresco_filter scan.pcd clean.pcd -veil 20 -outliers 16 2 -voxel 0.005");
 }
 
 void validate(const Args& args, const FilterOptions& options)

@@ -7,11 +7,12 @@
 #include <fresco/common/parallel.h>
 namespace fresco {
 namespace {
-constexpr float pi = 3.14159265f;
 constexpr int most_beams = 64;          // of a window
 constexpr float largest_rms = 1.6f;     // deviations, of beams that lie on a plane
 constexpr float grazing = 0.05f;        // cosine of the incidence beyond which ranges tell nothing
 constexpr float largest_leverage = 9.f; // variance of a continuation / variance of a range
+constexpr float twin = 0.3f;            // of the distance of the eighth beam: nearer ones are left out
+constexpr float least_noise = 1e-6f;    // deviation / range, of ranges that have none
 
 using Places = std::array<const BeamWindow::Beam*, most_beams>;
 
@@ -62,34 +63,57 @@ float quantile(std::vector<float>& values, double share)
   std::nth_element(values.begin(), at, values.end());
   return *at;
 }
+/// What measures too much is held down by the others, since noise neither falls with the range nor grows faster than
+/// its square: groups between the ranges of surfaces, whose planes all cross a jump.
+RangeNoise plausible(const RangeNoise& measured)
+{
+  RangeNoise noise = measured;
+  for (std::size_t k = 0; k < noise.ranges.size(); ++k)
+    for (std::size_t j = 0; j < noise.ranges.size(); ++j) {
+      const float farther = std::max(1.f, measured.ranges[k] / measured.ranges[j]);
+      noise.deviations[k] = std::min(noise.deviations[k], farther * farther * measured.deviations[j]);
+    }
+  return noise;
+}
+/// Leaves out beams that are much nearer to the middle than others: in a grid none is.
+void leaveOutTwins(std::vector<BeamWindow::Beam>& beams)
+{
+  constexpr std::size_t eighth = 7; // in a grid the diagonal
+  if (beams.size() <= eighth)
+    return;
+  const float least = twin * beams[eighth].place.norm();
+  beams.erase(beams.begin(), std::find_if(beams.begin(), beams.begin() + eighth,
+                                          [&](const BeamWindow::Beam& beam) { return beam.place.norm() >= least; }));
+}
 } // namespace
 
-void fillWindow(const BeamScan& scan, Index i, BeamWindow& window)
+void fillWindow(const BeamScan& scan, Index i, const int* first, const int* last, BeamWindow& window)
 {
   const Eigen::Vector3f middle = scan.directions.col(i), e1 = middle.unitOrthogonal(), e2 = middle.cross(e1);
   window.beams.clear();
   window.range = scan.ranges[i];
-  for (const int* j = scan.lists.first(i); j != scan.lists.last(i); ++j) {
+  for (const int* j = first; j != last; ++j) {
     const Eigen::Vector3f beam = scan.directions.col(*j);
     const float forward = beam.dot(middle);
     if (*j == i || !(forward > 0.5f) || window.beams.size() == most_beams)
       continue;
     const Eigen::Vector2f place(beam.dot(e1) / forward, beam.dot(e2) / forward);
     const float range = scan.ranges[*j];
-    window.beams.push_back({place, std::atan2(place.y(), place.x()), 1 / (range * forward), range,
-                            place.norm() * std::min(range, window.range)});
+    window.beams.push_back(
+        {place, place.normalized(), 1 / (range * forward), range, *j, place.norm() * std::min(range, window.range)});
   }
+  leaveOutTwins(window.beams);
   window.spacing = window.beams.empty() ? 0.f : std::max(window.beams.front().place.norm(), 1e-6f);
   for (BeamWindow::Beam& beam : window.beams)
     beam.place /= window.spacing;
 }
 
-std::optional<Continuation> continueSide(const BeamWindow& window, float bearing, float reach, int most, float noise)
+std::optional<Continuation> continueSide(const BeamWindow& window, const WindowSide& side, float noise)
 {
   Places beams{};
   int count = 0;
   for (const BeamWindow::Beam& beam : window.beams)
-    if (count < most && std::abs(std::remainder(beam.bearing - bearing, 2 * pi)) <= reach)
+    if (count < side.most && beam.way.dot(side.way) >= side.least_cosine)
       beams[count++] = &beam;
   const int fewest = std::max(4, count * 2 / 3);
   for (; count >= fewest; --count) {
@@ -110,25 +134,43 @@ std::optional<Continuation> continueSide(const BeamWindow& window, float bearing
   return {};
 }
 
-float measureNoise(const BeamScan& scan, int threads)
+RangeNoise measureNoise(const BeamScan& scan, int threads)
 {
   constexpr int around = 12;
-  std::vector<float> differences(scan.columns.size());
+  constexpr std::size_t groups = 16, fewest = 500;                       // beams of a group
+  std::vector<std::pair<float, float>> differences(scan.columns.size()); // range on the plane, difference
   parallelRanges(scan.ranges.size(), threads, [&](Index begin, Index end) {
     BeamWindow window;
     Places beams{};
     for (Index i = begin; i < end; ++i) {
-      fillWindow(scan, i, window);
+      fillWindow(scan, i, scan.lists.first(i), scan.lists.last(i), window);
       const int count = std::min(around, static_cast<int>(window.beams.size()));
       for (int k = 0; k < count; ++k)
         beams[k] = &window.beams[k];
       const Plane plane = fitInverseDepth(beams, count);
-      const auto off = static_cast<float>(std::abs(window.range - 1 / plane.inverse_depth[0]) /
-                                          std::sqrt(1 + std::min<double>(largest_leverage, plane.leverage)));
-      differences[i] = count >= 4 && std::isfinite(off) ? off : 0.f;
+      const auto at = static_cast<float>(1 / plane.inverse_depth[0]); // unlike the range free of the beam's own noise
+      const float off =
+          std::abs(window.range - at) / std::sqrt(1 + std::min(largest_leverage, static_cast<float>(plane.leverage)));
+      const bool known = count >= 4 && std::isfinite(off) && at > 0;
+      differences[static_cast<std::size_t>(i)] = {known ? at : window.range, known ? off : 0.f};
     }
   });
-  const float middle = quantile(differences, 0.5) / 0.6745f;
-  return std::max(middle, 0.5f * quantile(differences, 0.75) / 1.15f);
+  std::sort(differences.begin(), differences.end());
+  const std::size_t parts = std::clamp<std::size_t>(differences.size() / fewest, 1, groups);
+  RangeNoise noise;
+  std::vector<float> group;
+  for (std::size_t part = 0; part < parts; ++part) {
+    group.clear();
+    const std::size_t begin = part * differences.size() / parts, end = (part + 1) * differences.size() / parts;
+    for (std::size_t k = begin; k < end; ++k)
+      group.push_back(differences[k].second);
+    const float range = differences[(begin + end) / 2].first, middle = quantile(group, 0.5) / 0.6745f;
+    const float deviation = std::max({middle, 0.5f * quantile(group, 0.75) / 1.15f, least_noise * range});
+    if (!noise.ranges.empty() && !(range > noise.ranges.back()))
+      continue;
+    noise.ranges.push_back(range);
+    noise.deviations.push_back(deviation);
+  }
+  return plausible(noise);
 }
 } // namespace fresco

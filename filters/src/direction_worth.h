@@ -7,11 +7,12 @@ namespace fresco {
 class DirectionWorth {
 public:
   static constexpr int first_size = 16;
+  using First = Eigen::Matrix<float, first_size, 1>;
   /// @param own figures of the normal that the point has
   explicit DirectionWorth(const DirectionFigures::Figures& own);
   float of(const DirectionFigures::Figures& figures) const;
 
 private:
-  Eigen::Array<float, first_size, 1> from_own_; ///< of the first layer
+  First from_own_; ///< of the first layer
 };
 } // namespace fresco

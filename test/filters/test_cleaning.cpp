@@ -95,7 +95,7 @@ TEST(VeilPoints, BeamsThatOverlapDoNotHideTheVeil)
   std::normal_distribution<float> noise(0, 0.002f);
   for (const float step : {0.003f, 0.001f}) {
     std::vector<Eigen::Vector3f> points;
-    std::vector<int> kinds; // 0 = a wall and a board in front of it, 1 = between them, 2 = a rod
+    std::vector<int> kinds; // 0 = a wall and a board in front of it, 1 = between them, 2 = a rod, 3 = a tenth mixed
     for (float azimuth = -0.1f; azimuth < 0.1f; azimuth += step)
       for (float elevation = -0.1f; elevation < 0.1f; elevation += step) {
         // beams are 4 mrad wide: where they meet the slanted border of the board, ranges mix
@@ -103,12 +103,13 @@ TEST(VeilPoints, BeamsThatOverlapDoNotHideTheVeil)
         const bool rod = std::abs(azimuth + 0.07f) < 0.0031f;
         const Eigen::Vector3f beam(1, std::tan(azimuth), std::tan(elevation));
         points.emplace_back(beam * ((rod ? 3.7f : 4 - 0.25f * on_board) + noise(generator)));
-        kinds.push_back(rod ? 2 : on_board > 0.1f && on_board < 0.9f ? 1 : 0);
+        const float mixed = std::min(on_board, 1 - on_board);
+        kinds.push_back(rod ? 2 : mixed > 0.1f ? 1 : mixed > 0 ? 3 : 0);
       }
     Points cloud(3, static_cast<Index>(points.size()));
     for (std::size_t i = 0; i < points.size(); ++i)
       cloud.col(static_cast<Index>(i)) = points[i];
-    Index kept[3] = {0, 0, 0}, all[3] = {0, 0, 0};
+    Index kept[4] = {0, 0, 0, 0}, all[4] = {0, 0, 0, 0};
     for (const int kind : kinds)
       ++all[kind];
     for (const Index i : withoutVeil(cloud, Eigen::Vector3f::Zero()))

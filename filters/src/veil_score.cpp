@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "veil_score.h"
+#include "likely_weights.h"
+#include "rectifiers.h"
+#include "veil_weights.h"
+namespace fresco {
+namespace {
+template <typename Weights>
+float score(const NetworkInputs<Weights>& figures)
+{
+  return networkOutput<Weights>(firstSums<Weights>(Weights::of_figures, figures)) + Weights::last_bias[0];
+}
+} // namespace
+
+float veilScore(const VeilFigures& figures) { return score<VeilWeights>(figures); }
+float veilScore(const LikelyFigures& figures) { return score<LikelyWeights>(figures); }
+} // namespace fresco
