@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scanned_room.h"
 #include "support/tool.h"
-#include "veil_candidates.h"
 #include "veil_score.h"
 #include "virtual/labels.h"
 #include "virtual/random.h"
@@ -78,30 +77,23 @@ Rows rowsOf(const BeamScan& beams, const std::vector<PointLabel>& labels, const 
   const auto leftOut = [&](std::size_t column) {
     return labels[column] == PointLabel::surface && CounterRandom(7, 7, column).uniform() >= choice.part;
   };
-  const auto add = [&](std::size_t column, const Eigen::VectorXf& figures) {
+  const auto add = [&](Index i, const auto& figures) { // () -> figures
+    const std::size_t column = columnOf(i);
+    seen[column] = 1;
+    if (leftOut(column))
+      return;
     const Head head{static_cast<float>(column), static_cast<float>(labels[column]),
                     labels[column] == PointLabel::surface ? static_cast<float>(1 / choice.part) : 1.f};
+    Rows::Row row{static_cast<Index>(column), head, figures()};
     const std::lock_guard lock(mutex);
-    rows.rows.push_back({static_cast<Index>(column), head, figures});
+    rows.rows.push_back(std::move(row));
   };
-  std::vector<float> scores(labels.size(), least_likely);
-  forVeilCandidates(beams, options, [&](Index i, const BeamSurroundings& around) {
-    const std::size_t column = columnOf(i);
-    if (choice.likely) {
-      scores[static_cast<std::size_t>(i)] = veilScore(veilFigures(around));
-    } else {
-      seen[column] = 1;
-      if (!leftOut(column))
-        add(column, veilFigures(around));
-    }
-  });
   if (choice.likely)
-    forLikelyVeil(beams, options, scores, [&](Index i, const LikelyFigures& figures) {
-      const std::size_t column = columnOf(i);
-      seen[column] = 1;
-      if (!leftOut(column))
-        add(column, figures);
-    });
+    forLikelyVeil(beams, options, firstScores(beams, options),
+                  [&](Index i, const LikelyFigures& figures) { add(i, [&] { return figures; }); });
+  else
+    forVeilCandidates(beams, options,
+                      [&](Index i, const BeamSurroundings& around) { add(i, [&] { return veilFigures(around); }); });
   Head others{-1, static_cast<float>(PointLabel::veil), 0};
   for (std::size_t i = 0; i < labels.size(); ++i)
     others.weight += seen[i] == 0 && labels[i] == PointLabel::veil ? 1.f : 0.f;
@@ -153,8 +145,9 @@ int main(int argc, char** argv)
     veil.threads = common.threads;
     OutputFile file(output);
     for (Index s = 0; s < room.stations.cols(); ++s) {
-      const auto [whole, T_room_scan] = room.scanFrom(s, laser);
-      const LaserScan scan = keep < 1 ? thinned(whole, keep) : whole;
+      auto [scan, T_room_scan] = room.scanFrom(s, laser);
+      if (keep < 1)
+        scan = thinned(scan, keep);
       rowsOf(beamScan(scan, veil), labelPoints(scan, surfaces, T_room_scan), choice, veil).write(file);
     }
     file.commit();

@@ -49,7 +49,6 @@ NeighborLists thinnedLists(const PointTree& directions, Index m, const VeilOptio
   });
   return lists;
 }
-
 } // namespace
 
 BeamScan makeBeamScan(const Points& points, const Eigen::Vector3f& viewpoint, const std::vector<Index>& columns,

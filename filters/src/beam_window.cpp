@@ -63,6 +63,7 @@ float quantile(std::vector<float>& values, double share)
   std::nth_element(values.begin(), at, values.end());
   return *at;
 }
+
 /// What measures too much is held down by the others, since noise neither falls with the range nor grows faster than
 /// its square: groups between the ranges of surfaces, whose planes all cross a jump.
 RangeNoise plausible(const RangeNoise& measured)
@@ -75,6 +76,7 @@ RangeNoise plausible(const RangeNoise& measured)
     }
   return noise;
 }
+
 /// Leaves out beams that are much nearer to the middle than others: in a grid none is.
 void leaveOutTwins(std::vector<BeamWindow::Beam>& beams)
 {

@@ -138,7 +138,10 @@ VeilFigures veilFigures(const BeamSurroundings& around)
   VeilFigures figures;
   const Compass near(around.near, around.noise), wide(around.wide, around.noise);
   float* at = measureWindow(around.near, around.noise, near, figures.data());
-  at = measureWindow(around.wide, around.noise, wide, at);
+  if (&around.wide == &around.near)
+    at = std::copy_n(figures.data(), of_window, at);
+  else
+    at = measureWindow(around.wide, around.noise, wide, at);
   at = measureDifferences(around, at);
   *at++ = std::log(around.noise / around.near.range);
   *at++ = std::acos(std::clamp(near.forward().dot(wide.forward()), -1.f, 1.f));

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "veil_candidates.h"
 #include "veil_score.h"
 #include <algorithm>
 #include <array>
@@ -20,9 +19,7 @@ void judge(BeamScan scan, const VeilOptions& options, std::vector<char>& veil)
     scan.noise = {{0}, {options.noise}};
   else
     scan.noise = measureNoise(scan, options.threads);
-  std::vector<float> scores(scan.columns.size(), least_likely);
-  forVeilCandidates(scan, options,
-                    [&](Index i, const BeamSurroundings& around) { scores[i] = veilScore(veilFigures(around)); });
+  const std::vector<float> scores = firstScores(scan, options);
   forLikelyVeil(scan, options, scores, [&](Index i, const LikelyFigures& figures) {
     veil[scan.columns[i]] = veilScore(figures) > least_score;
   });

@@ -14,4 +14,13 @@ float score(const NetworkInputs<Weights>& figures)
 
 float veilScore(const VeilFigures& figures) { return score<VeilWeights>(figures); }
 float veilScore(const LikelyFigures& figures) { return score<LikelyWeights>(figures); }
+
+std::vector<float> firstScores(const BeamScan& scan, const VeilOptions& options)
+{
+  std::vector<float> scores(scan.columns.size(), least_likely);
+  forVeilCandidates(scan, options, [&](Index i, const BeamSurroundings& around) {
+    scores[static_cast<std::size_t>(i)] = veilScore(veilFigures(around));
+  });
+  return scores;
+}
 } // namespace fresco
