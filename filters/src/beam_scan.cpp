@@ -26,25 +26,99 @@ float beamSpacing(const PointTree& directions)
   return count > 0 ? std::sqrt(*middle * 3.1416f / around) : 0.f;
 }
 
+/// Searches among every m-th beam. Near ones are found together.
+class SomeBeams {
+public:
+  /// @param some every m-th of `directions`
+  SomeBeams(const PointTree& directions, const PointTree& some, Index m) : directions_(directions), some_(some), m_(m)
+  {}
+
+  /// Those around the beams begin..end-1.
+  void gather(Index begin, Index end, int count);
+  /// The `count` nearest of a beam without those closer than half of least_spacing, nearest first; positions in
+  /// `directions`.
+  void list(Index i, int count, std::vector<PointTree::Key>& found);
+
+private:
+  void search(const Eigen::Vector3f& beam, int count)
+  {
+    some_.nearestKeys(beam, count, keys_);
+    for (PointTree::Key& key : keys_)
+      key = PointTree::key(PointTree::squaredDistance(key),
+                           m_ * some_.columns()[static_cast<std::size_t>(PointTree::position(key))]);
+  }
+
+  const PointTree &directions_, &some_;
+  Index m_;
+  std::vector<PointTree::Key> keys_;
+  std::vector<int> gathered_; ///< positions
+  Eigen::Vector3f middle_;    ///< of them
+  float radius_ = 0;          ///< all within it are there
+};
+
+void SomeBeams::gather(Index begin, Index end, int count)
+{
+  middle_.setZero();
+  for (Index i = begin; i < end; ++i)
+    middle_ += directions_.point(i) / static_cast<float>(end - begin);
+  search(middle_, count);
+  gathered_.clear();
+  PointTree::Key farthest = 0;
+  for (const PointTree::Key key : keys_) {
+    gathered_.push_back(PointTree::position(key));
+    farthest = std::max(farthest, key);
+  }
+  radius_ = std::sqrt(PointTree::squaredDistance(farthest));
+}
+
+void SomeBeams::list(Index i, int count, std::vector<PointTree::Key>& found)
+{
+  const Eigen::Vector3f beam = directions_.point(i);
+  const auto sortNearest = [&] {
+    const auto apart = [](PointTree::Key key) {
+      return PointTree::squaredDistance(key) > 0.25f * least_spacing * least_spacing;
+    };
+    found.erase(std::partition(found.begin(), found.end(), apart), found.end());
+    const auto last = found.begin() + std::min<std::ptrdiff_t>(count, std::distance(found.begin(), found.end()));
+    std::partial_sort(found.begin(), last, found.end());
+    found.erase(last, found.end());
+  };
+  found.clear();
+  for (const int j : gathered_)
+    found.push_back(PointTree::key((directions_.point(j) - beam).squaredNorm(), j));
+  sortNearest();
+  const bool all = static_cast<int>(found.size()) == count &&
+                   std::sqrt(PointTree::squaredDistance(found.back())) + (beam - middle_).norm() < radius_;
+  if (all)
+    return;
+  search(beam, 2 * count);
+  found = keys_;
+  sortNearest();
+}
+
 /// As nearestLists() of every m-th beam, without those closer than half of least_spacing; the beam itself comes first.
 NeighborLists thinnedLists(const PointTree& directions, Index m, const VeilOptions& options)
 {
-  Points some(3, (directions.size() + m - 1) / m);
-  for (Index i = 0; i < some.cols(); ++i)
-    some.col(i) = directions.point(m * i);
-  const PointTree tree(some, options.threads);
+  Points every(3, (directions.size() + m - 1) / m);
+  for (Index i = 0; i < every.cols(); ++i)
+    every.col(i) = directions.point(m * i);
+  const PointTree tree(every, options.threads);
   const auto each = static_cast<Index>(options.k) + 1;
   NeighborLists lists = evenLists(directions.size(), each);
-  parallelRanges(directions.size(), options.threads, [&](Index begin, Index end) {
-    std::vector<Neighbor> found;
-    for (Index i = begin; i < end; ++i) {
-      int* list = lists.index.data() + lists.begin[i];
-      std::fill_n(list, each, static_cast<int>(i));
-      Index count = 1;
-      tree.nearest(directions.point(i), 2 * options.k, found);
-      for (const Neighbor& beam : found)
-        if (count < each && beam.squared_distance > 0.25f * least_spacing * least_spacing)
-          list[count++] = static_cast<int>(m * beam.index);
+  const Index of_group = std::max(m, PointTree::leaf_size);
+  const Index groups = (directions.size() + of_group - 1) / of_group;
+  parallelRanges(groups, options.threads, [&](Index first, Index last) {
+    SomeBeams some(directions, tree, m);
+    std::vector<PointTree::Key> found;
+    for (Index group = first; group < last; ++group) {
+      const Index begin = of_group * group, end = std::min(begin + of_group, directions.size());
+      some.gather(begin, end, 3 * options.k);
+      for (Index i = begin; i < end; ++i) {
+        int* list = lists.index.data() + lists.begin[i];
+        std::fill_n(list, each, static_cast<int>(i));
+        some.list(i, options.k, found);
+        std::transform(found.begin(), found.end(), list + 1, PointTree::position);
+      }
     }
   });
   return lists;

@@ -11,6 +11,7 @@ constexpr int most_beams = 64;          // of a window
 constexpr float largest_rms = 1.6f;     // deviations, of beams that lie on a plane
 constexpr float grazing = 0.05f;        // cosine of the incidence beyond which ranges tell nothing
 constexpr float largest_leverage = 9.f; // variance of a continuation / variance of a range
+constexpr std::size_t eighth = 7;       // beam, in a grid a diagonal away
 constexpr float twin = 0.3f;            // of the distance of the eighth beam: nearer ones are left out
 constexpr float least_noise = 1e-6f;    // deviation / range, of ranges that have none
 
@@ -77,10 +78,16 @@ RangeNoise plausible(const RangeNoise& measured)
   return noise;
 }
 
+/// Radians between the beams of a grid that is as dense, whatever the nearest beam is.
+float spacingOf(const std::vector<BeamWindow::Beam>& beams)
+{
+  constexpr float least = 1e-6f;
+  return beams.empty() ? 0.f : std::max(beams[std::min(eighth, beams.size() - 1)].place.norm() * 0.70710678f, least);
+}
+
 /// Leaves out beams that are much nearer to the middle than others: in a grid none is.
 void leaveOutTwins(std::vector<BeamWindow::Beam>& beams)
 {
-  constexpr std::size_t eighth = 7; // in a grid the diagonal
   if (beams.size() <= eighth)
     return;
   const float least = twin * beams[eighth].place.norm();
@@ -105,7 +112,7 @@ void fillWindow(const BeamScan& scan, Index i, const int* first, const int* last
         {place, place.normalized(), 1 / (range * forward), range, *j, place.norm() * std::min(range, window.range)});
   }
   leaveOutTwins(window.beams);
-  window.spacing = window.beams.empty() ? 0.f : std::max(window.beams.front().place.norm(), 1e-6f);
+  window.spacing = spacingOf(window.beams);
   for (BeamWindow::Beam& beam : window.beams)
     beam.place /= window.spacing;
 }

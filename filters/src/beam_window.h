@@ -15,7 +15,7 @@ struct BeamWindow {
     float sideways;             ///< length, way across the beams at the nearer of both ranges
   };
   std::vector<Beam> beams;
-  float spacing = 0; ///< radians to the nearest beam
+  float spacing = 0; ///< radians between neighbouring beams
   float range = 0;   ///< of the beam in the middle
 };
 

@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "veil_candidates.h"
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <fresco/common/parallel.h>
 namespace fresco {
 namespace {
 constexpr float clear = 3;           // deviations
-constexpr std::size_t beside = 8;    // nearest beams
+constexpr std::size_t beside = 12;   // nearest beams
 constexpr float most_joined = 0.75f; // share of the nearer half of the beams around
+constexpr Index reach = 64;          // nearest beams of a second look
 
 /// Whether a point has nearer and farther ones beside it, and few that a surface could join it with.
 bool isBetween(const BeamWindow& window, float noise, float slope)
@@ -32,6 +34,13 @@ public:
   /// Without beams of positive scores, where enough others are there.
   void fillWithout(Index i, const std::vector<float>& scores);
   BeamSurroundings around() const { return {near_, scan_.thinned ? wide_ : near_, noise_}; }
+  /// ringsAround() over farther beams than those of around().
+  auto rings(Index i, const std::vector<float>& scores)
+  {
+    listNearest(i, reach);
+    fillFromList(i, far_);
+    return ringsAround(far_, noise_, scores);
+  }
 
 private:
   void listNearest(Index i, Index count); ///< nearest first
@@ -44,7 +53,7 @@ private:
   const BeamScan& scan_;
   Index k_;
   float slope_, noise_ = 0;
-  BeamWindow near_, wide_;
+  BeamWindow near_, wide_, far_;
   std::vector<PointTree::Key> found_;
   std::vector<int> list_;
 };
@@ -93,7 +102,7 @@ void BeamWindows::fillWithout(Index i, const std::vector<float>& scores)
     list_.resize(std::min(list_.size(), static_cast<std::size_t>(k_) + 1));
     return list_.size() > beside;
   };
-  listNearest(i, 2 * k_);
+  listNearest(i, reach);
   if (leaveOut())
     fillFromList(i, near_);
   if (!scan_.thinned)
@@ -101,6 +110,27 @@ void BeamWindows::fillWithout(Index i, const std::vector<float>& scores)
   list_.assign(scan_.lists.first(i), scan_.lists.last(i));
   if (leaveOut())
     fillFromList(i, wide_);
+}
+
+/// How wide the veil of a scan is: beams that score above 0 of the nearest in 8 directions, of `near`, then of `wide`,
+/// on average over the beams that do so themselves. Where these are few, mostly what is usual.
+Eigen::Vector2f veilWidth(const BeamScan& scan, const VeilOptions& options, const std::vector<float>& scores)
+{
+  constexpr int half = veil_figures::bearings;
+  constexpr float usual = 2, as_many = 4;
+  std::atomic<Index> near{0}, wide{0}, beams{0};
+  parallelRanges(scan.ranges.size(), options.threads, [&](Index begin, Index end) {
+    BeamWindows windows(scan, options);
+    for (Index i = begin; i < end; ++i)
+      if (scores[static_cast<std::size_t>(i)] > 0 && windows.fill(i)) {
+        const auto around = scoresAround(windows.around(), scores);
+        near += (around.head<half>().array() > 0).count();
+        wide += (around.tail<half>().array() > 0).count();
+        ++beams;
+      }
+  });
+  const Eigen::Vector2f sums(static_cast<float>(near), static_cast<float>(wide));
+  return (sums.array() + usual * as_many) / (static_cast<float>(beams) + as_many);
 }
 } // namespace
 
@@ -117,6 +147,7 @@ void forVeilCandidates(const BeamScan& scan, const VeilOptions& options, const U
 void forLikelyVeil(const BeamScan& scan, const VeilOptions& options, const std::vector<float>& scores,
                    const UseLikely& use)
 {
+  const Eigen::Vector2f width = veilWidth(scan, options, scores);
   parallelRanges(scan.ranges.size(), options.threads, [&](Index begin, Index end) {
     BeamWindows windows(scan, options);
     for (Index i = begin; i < end; ++i) {
@@ -125,9 +156,11 @@ void forLikelyVeil(const BeamScan& scan, const VeilOptions& options, const std::
         continue;
       const VeilFigures before = veilFigures(windows.around());
       const auto around = scoresAround(windows.around(), scores);
+      const auto rings = windows.rings(i, scores);
       windows.fillWithout(i, scores);
       LikelyFigures figures;
-      figures << before, veilFigures(windows.around()), std::max(score, veil_figures::least_score), around;
+      figures << before, veilFigures(windows.around()), std::max(score, veil_figures::least_score), around, rings,
+          width;
       use(i, figures);
     }
   });

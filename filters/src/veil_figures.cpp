@@ -6,7 +6,8 @@
 namespace fresco {
 using namespace veil_figures;
 namespace {
-constexpr float step = 0.78539816f;                            // between bearings
+constexpr float circle = 6.2831853f;
+constexpr float step = circle / bearings;
 constexpr float half_disc = 0.16997f, quarter_disc = 0.65998f; // cosines to the middle: 80 and 49 degrees
 constexpr float clear = 4.f;                                   // deviations that noise does not reach
 constexpr std::size_t beside = 8;                              // nearest beams
@@ -31,11 +32,8 @@ public:
     sideways_ = sides < 0 ? Eigen::Vector2f(-across) : across;
   }
   const Eigen::Vector2f& forward() const { return forward_; } ///< where ranges grow, unit
-  Eigen::Vector2f way(int b) const
-  {
-    const float angle = static_cast<float>(b) * step;
-    return std::cos(angle) * forward_ + std::sin(angle) * sideways_;
-  }
+  Eigen::Vector2f way(int b) const { return way(static_cast<float>(b) * step); }
+  Eigen::Vector2f way(float angle) const { return std::cos(angle) * forward_ + std::sin(angle) * sideways_; }
 
 private:
   static Eigen::Vector2f forwardOf(const BeamWindow& window, float noise)
@@ -90,7 +88,7 @@ float* measureWindow(const BeamWindow& window, float noise, const Compass& compa
     second = std::min(second, std::max(gap, distance));
     gap = std::min(gap, distance);
   }
-  const float across = std::max(window.beams.front().sideways, shortest_way);
+  const float across = std::max(window.spacing * window.range, shortest_way);
   for (const float figure :
        {front, behind, same, joinedShare(window, noise, slope), std::log(gap / across + 0.1f),
         std::log(second / across + 0.1f), std::log(window.spacing + 1e-5f), std::log(across / noise + 0.01f)})
@@ -158,6 +156,22 @@ Eigen::Matrix<float, 2 * bearings, 1> scoresAround(const BeamSurroundings& aroun
       found[at++] =
           std::max(scores[static_cast<std::size_t>(beamAt(*window, compass.way(b), 1).position)], least_score);
   }
+  return found;
+}
+
+Eigen::Matrix<float, of_rings, 1> ringsAround(const BeamWindow& window, float noise, const std::vector<float>& scores)
+{
+  Eigen::Matrix<float, of_rings, 1> found;
+  const Compass compass(window, noise);
+  int at = 0;
+  for (int ring = 1; ring <= rings; ++ring)
+    for (int k = 0; k < of_ring; ++k) {
+      const Eigen::Vector2f way = compass.way(static_cast<float>(k) * circle / of_ring);
+      const BeamWindow::Beam& beam = beamAt(window, way, static_cast<float>(ring));
+      found[at] = flattened((beam.range - window.range) / noise);
+      found[at + rings * of_ring] = std::max(scores[static_cast<std::size_t>(beam.position)], least_score);
+      ++at;
+    }
   return found;
 }
 } // namespace fresco

@@ -10,12 +10,14 @@ namespace fresco {
 namespace veil_figures {
 constexpr int bearings = 8, of_bearing = 8, of_window = bearings * of_bearing + 8, of_both = 10;
 constexpr int count = 2 * of_window + of_both;
-constexpr int likely_count = 2 * count + 2 * bearings + 1;
+constexpr int rings = 4, of_ring = 16, of_rings = 2 * rings * of_ring;
+constexpr int likely_count = 2 * count + 1 + 2 * bearings + of_rings + 2;
 constexpr float least_score = -8; ///< what lower ones count as
 } // namespace veil_figures
 
 using VeilFigures = Eigen::Matrix<float, veil_figures::count, 1>;
-/// Of a beam that has a score: VeilFigures, the same without beams that score high, its score, and scores around it.
+/// Of a beam that has a score: VeilFigures, the same without beams that score high, its score, scores around it, ranges
+/// and scores on rings, and how wide the veil of the scan is.
 using LikelyFigures = Eigen::Matrix<float, veil_figures::likely_count, 1>;
 
 /// The windows of a beam and what they are compared with.
@@ -35,4 +37,8 @@ VeilFigures veilFigures(const BeamSurroundings& around);
 /// @param scores by position
 Eigen::Matrix<float, 2 * veil_figures::bearings, 1> scoresAround(const BeamSurroundings& around,
                                                                  const std::vector<float>& scores);
+
+/// Ranges, then scores, of the beams nearest to 16 places on each of 4 rings, one spacing apart.
+Eigen::Matrix<float, veil_figures::of_rings, 1> ringsAround(const BeamWindow& window, float noise,
+                                                            const std::vector<float>& scores);
 } // namespace fresco

@@ -7,8 +7,8 @@
 #include <fresco/filters/core/veil_points.h>
 namespace fresco {
 namespace {
-constexpr Index fewest = 12;     // points of a viewpoint that can be judged
-constexpr float least_score = 1; // of a veil point: three to one
+constexpr Index fewest = 12;      // points of a viewpoint that can be judged
+constexpr float least_score = -1; // of a veil point
 
 /// Marks the columns of veil points.
 void judge(BeamScan scan, const VeilOptions& options, std::vector<char>& veil)

@@ -2,6 +2,7 @@
 #include "clouds.h"
 #include "veil_candidates.h"
 #include "veil_score.h"
+#include <algorithm>
 #include <map>
 #include <numeric>
 namespace fresco {
@@ -74,8 +75,62 @@ TEST(VeilFigures, ChangeNeitherWithTheFrameNorTheUnit)
   EXPECT_GE(same, here.size() * 95 / 100);
 }
 
+TEST(VeilFigures, OfASecondLookChangeNeitherWithTheFrameNorTheUnit)
+{
+  const Points points = boardBeforeWall(0.002f);
+  const Eigen::Isometry3f motion = test::someMotion();
+  const Points moved = 1000 * ((motion.linear() * points).colwise() + motion.translation());
+  const auto here = likelyOf(scanOf(points, Vector3f::Zero()), 1);
+  const auto there = likelyOf(scanOf(moved, 1000 * motion.translation()), 1);
+  EXPECT_GT(here.size(), 30u);
+  std::size_t same = 0;
+  for (const auto& [column, figures] : here) {
+    EXPECT_TRUE(figures.allFinite());
+    const auto found = there.find(column);
+    same += found != there.end() && (found->second - figures).cwiseAbs().maxCoeff() < 0.05f;
+  }
+  EXPECT_GE(same, here.size() * 9 / 10);
+}
+
+TEST(VeilFigures, TellHowWideTheVeilOfTheScanIs)
+{
+  const BeamScan scan = scanOf(boardBeforeWall(0.002f), Vector3f::Zero());
+  const auto widthAt = [&](float score) { return likelyOf(scan, score).begin()->second.tail<2>().eval(); };
+  EXPECT_EQ(widthAt(-1), Eigen::Vector2f(2, 2)); // nothing is taken for veil: as usual
+  EXPECT_EQ(widthAt(-2), widthAt(-1));
+  EXPECT_GT(widthAt(1).minCoeff(), 7); // everything is: all 8 around
+}
+
+TEST(BeamScan, ListsTheNearestOfSomeBeams)
+{
+  const BeamScan scan = scanOf(boardBeforeWall(0.002f, 40000), Vector3f::Zero());
+  ASSERT_TRUE(scan.thinned);
+  const int k = VeilOptions().k;
+  int m = 0;
+  for (Index i = 0; i < scan.directions.cols(); ++i)
+    for (const int* j = scan.lists.first(i) + 1; j != scan.lists.last(i); ++j)
+      m = std::gcd(m, *j);
+  EXPECT_GT(m, 1);
+  constexpr float least = 0.0015f; // radians
+  for (Index i = 0; i < scan.directions.cols(); i += 97) {
+    std::vector<float> expected, found;
+    for (Index j = 0; j < scan.directions.cols(); j += m)
+      expected.push_back((scan.directions.col(j) - scan.directions.col(i)).norm());
+    expected.erase(std::remove_if(expected.begin(), expected.end(), [](float d) { return d <= least; }),
+                   expected.end());
+    std::sort(expected.begin(), expected.end());
+    EXPECT_EQ(*scan.lists.first(i), i);
+    for (const int* j = scan.lists.first(i) + 1; j != scan.lists.last(i); ++j)
+      found.push_back((scan.directions.col(*j) - scan.directions.col(i)).norm());
+    ASSERT_EQ(static_cast<int>(found.size()), k);
+    for (int n = 0; n < k; ++n)
+      EXPECT_NEAR(found[n], expected[n], 1e-6f);
+  }
+}
+
 TEST(VeilFigures, OfASecondLookAreTheSameWhereNothingIsLeftOut)
 {
+  using veil_figures::bearings, veil_figures::of_rings;
   for (const Index beams : {2500, 40000}) {
     const BeamScan scan = scanOf(boardBeforeWall(0.002f, beams), Vector3f::Zero());
     EXPECT_EQ(scan.thinned, beams == 40000);
@@ -85,7 +140,8 @@ TEST(VeilFigures, OfASecondLookAreTheSameWhereNothingIsLeftOut)
     for (const auto& [column, figures] : second) {
       EXPECT_EQ(figures.head<veil_figures::count>(), first.at(column));
       EXPECT_EQ(figures.segment<veil_figures::count>(veil_figures::count), first.at(column));
-      EXPECT_TRUE((figures.tail<2 * veil_figures::bearings + 1>().array() == -1).all());
+      EXPECT_TRUE((figures.segment<2 * bearings + 1>(2 * veil_figures::count).array() == -1).all());
+      EXPECT_TRUE((figures.tail<of_rings / 2 + 2>().head<of_rings / 2>().array() == -1).all());
     }
     EXPECT_TRUE(likelyOf(scan, least_likely).empty());
   }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "test_data.h"
 #include "viewer/viewer.h"
+#include <algorithm>
 #include <array>
 #include <fresco/common/file.h>
 #include <fresco/common/mesh_io.h>
@@ -51,7 +52,18 @@ std::string chromium()
   return "";
 }
 
-Image screenshot(const std::string& folder, const std::string& page)
+bool isBlank(const Image& picture)
+{
+  const std::uint8_t* first = picture.pixel(0, 0);
+  for (int y = 0; y < picture.height; ++y)
+    for (int x = 0; x < picture.width; ++x)
+      if (!std::equal(first, first + 3, picture.pixel(x, y)))
+        return false;
+  return true;
+}
+
+/// On a busy machine the clock of the page can run out before its modules are read: what is blank then is tried again.
+Image screenshot(const std::string& folder, const std::string& page, int tries = 3)
 {
   const std::string picture = folder + "/picture.png";
   run("env HOME=" + folder + " " + chromium() +
@@ -60,7 +72,8 @@ Image screenshot(const std::string& folder, const std::string& page)
       " --virtual-time-budget=20000 --user-data-dir=" +
       folder + "/profile --screenshot=" + picture + " file://" + folder + "/" + page + " > " + folder +
       "/browser.txt 2>&1");
-  return readImage(picture);
+  const Image shown = readImage(picture);
+  return tries > 1 && isBlank(shown) ? screenshot(folder, page, tries - 1) : shown;
 }
 
 /// That the four quarters lie around (x, y), at `step` pixels to either side, with many shades of each.
