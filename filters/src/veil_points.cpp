@@ -8,7 +8,9 @@
 namespace fresco {
 namespace {
 constexpr Index fewest = 12;      // points of a viewpoint that can be judged
-constexpr float least_score = -1; // of a veil point
+// Scores of veil points. Beams that overlap tell so much that with -1 few are missed and few points taken wrongly; else
+// thin things stay when in doubt.
+constexpr float least_score = 0, least_of_overlapping = -1;
 
 /// Marks the columns of veil points.
 void judge(BeamScan scan, const VeilOptions& options, std::vector<char>& veil)
@@ -20,8 +22,9 @@ void judge(BeamScan scan, const VeilOptions& options, std::vector<char>& veil)
   else
     scan.noise = measureNoise(scan, options.threads);
   const std::vector<float> scores = firstScores(scan, options);
+  const float least = scan.thinned ? least_of_overlapping : least_score;
   forLikelyVeil(scan, options, scores, [&](Index i, const LikelyFigures& figures) {
-    veil[scan.columns[i]] = veilScore(figures) > least_score;
+    veil[scan.columns[i]] = veilScore(figures) > least;
   });
 }
 
