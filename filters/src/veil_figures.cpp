@@ -32,8 +32,8 @@ public:
     sideways_ = sides < 0 ? Eigen::Vector2f(-across) : across;
   }
   const Eigen::Vector2f& forward() const { return forward_; } ///< where ranges grow, unit
-  Eigen::Vector2f way(int b) const { return way(static_cast<float>(b) * step); }
-  Eigen::Vector2f way(float angle) const { return std::cos(angle) * forward_ + std::sin(angle) * sideways_; }
+  Eigen::Vector2f way(int b) const { return wayAt(static_cast<float>(b) * step); }
+  Eigen::Vector2f wayAt(float angle) const { return std::cos(angle) * forward_ + std::sin(angle) * sideways_; }
 
 private:
   static Eigen::Vector2f forwardOf(const BeamWindow& window, float noise)
@@ -166,7 +166,7 @@ Eigen::Matrix<float, of_rings, 1> ringsAround(const BeamWindow& window, float no
   int at = 0;
   for (int ring = 1; ring <= rings; ++ring)
     for (int k = 0; k < of_ring; ++k) {
-      const Eigen::Vector2f way = compass.way(static_cast<float>(k) * circle / of_ring);
+      const Eigen::Vector2f way = compass.wayAt(static_cast<float>(k) * circle / of_ring);
       const BeamWindow::Beam& beam = beamAt(window, way, static_cast<float>(ring));
       found[at] = flattened((beam.range - window.range) / noise);
       found[at + rings * of_ring] = std::max(scores[static_cast<std::size_t>(beam.position)], least_score);
