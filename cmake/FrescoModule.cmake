@@ -1,19 +1,28 @@
-# fresco_add_module(NAME SOURCES file... [DEPENDS target...] [PRIVATE_DEPENDS target...])
-# One shared library fresco_NAME, alias fresco::NAME, headers below include/fresco/NAME, installed and exported.
+# fresco_add_module(NAME SOURCES file... [DEPENDS target...] [PRIVATE_DEPENDS target...] [HEADERS folder...])
+# One shared library fresco_NAME, alias fresco::NAME, installed and exported. Public headers: include/fresco/FOLDER for each
+# folder of HEADERS (default: NAME). Symbols are hidden but for those marked FRESCO_EXPORT. Tests and measurements of
+# private parts link fresco_NAME_parts, a static library of the same objects, which also knows src/.
 function(fresco_add_module name)
-  cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS;PRIVATE_DEPENDS" ${ARGN})
-  if(NOT ARG_SOURCES)
-    return()
-  endif()
+  cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS;PRIVATE_DEPENDS;HEADERS" ${ARGN})
   set(target fresco_${name})
-  add_library(${target} ${ARG_SOURCES})
+  set(objects ${target}_objects)
+  add_library(${objects} OBJECT ${ARG_SOURCES})
+  add_library(${target} $<TARGET_OBJECTS:${objects}>)
+  add_library(${target}_parts STATIC EXCLUDE_FROM_ALL $<TARGET_OBJECTS:${objects}>)
   add_library(fresco::${name} ALIAS ${target})
-  target_include_directories(${target} PUBLIC
-    $<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/include>
-    $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
-  target_compile_features(${target} PUBLIC cxx_std_17)
-  target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O3>)
-  target_link_libraries(${target} PUBLIC ${ARG_DEPENDS} PRIVATE ${ARG_PRIVATE_DEPENDS} $<BUILD_INTERFACE:fresco_warnings>)
+  foreach(kind ${objects} ${target} ${target}_parts)
+    target_include_directories(${kind} PUBLIC
+      $<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/include>
+      $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+    target_compile_features(${kind} PUBLIC cxx_std_17)
+    target_link_libraries(${kind} PUBLIC ${ARG_DEPENDS} PRIVATE $<BUILD_INTERFACE:fresco_warnings>)
+    target_link_libraries(${kind} PRIVATE ${ARG_PRIVATE_DEPENDS})
+  endforeach()
+  target_include_directories(${objects} PRIVATE "${CMAKE_CURRENT_SOURCE_DIR}/src")
+  target_include_directories(${target}_parts INTERFACE "${CMAKE_CURRENT_SOURCE_DIR}/src")
+  target_compile_options(${objects} PRIVATE $<$<CONFIG:Release>:-O3>)
+  set_target_properties(${objects} PROPERTIES CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
+  set_target_properties(${target} ${target}_parts PROPERTIES LINKER_LANGUAGE CXX)
   target_link_options(${target} PRIVATE -Wl,--as-needed)
   if(NOT FRESCO_SANITIZE) # a sanitizer's own symbols are found when the program starts
     target_link_options(${target} PRIVATE -Wl,--no-undefined)
@@ -24,20 +33,28 @@ function(fresco_add_module name)
           LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT runtime NAMELINK_COMPONENT development
           ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development
           RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT runtime)
-  install(DIRECTORY include/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT development)
+  if(NOT DEFINED ARG_HEADERS)
+    set(ARG_HEADERS ${name})
+  endif()
+  foreach(folder IN LISTS ARG_HEADERS)
+    install(DIRECTORY include/fresco/${folder} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/fresco COMPONENT development)
+  endforeach()
 endfunction()
 
 # fresco_add_tool(NAME SOURCES file... [DEPENDS target...]): program fresco_NAME, installed; part of target fresco_tools.
+# Its target is fresco_tool_NAME, since some modules have the name of a tool.
 function(fresco_add_tool name)
   cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS" ${ARGN})
-  add_executable(fresco_${name} ${ARG_SOURCES})
-  target_link_libraries(fresco_${name} PRIVATE fresco_tool_support ${ARG_DEPENDS} fresco_warnings)
-  target_link_options(fresco_${name} PRIVATE -Wl,--as-needed)
-  install(TARGETS fresco_${name} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT runtime)
+  set(target fresco_tool_${name})
+  add_executable(${target} ${ARG_SOURCES})
+  set_target_properties(${target} PROPERTIES OUTPUT_NAME fresco_${name})
+  target_link_libraries(${target} PRIVATE fresco_tool_support ${ARG_DEPENDS} fresco_warnings)
+  target_link_options(${target} PRIVATE -Wl,--as-needed)
+  install(TARGETS ${target} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT runtime)
   if(NOT TARGET fresco_tools)
     add_custom_target(fresco_tools)
   endif()
-  add_dependencies(fresco_tools fresco_${name})
+  add_dependencies(fresco_tools ${target})
 endfunction()
 
 # fresco_add_test(NAME SOURCES file... [DEPENDS target...]): GoogleTest program test_NAME, one ctest entry.

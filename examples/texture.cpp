@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Texture from calibrated photographs on a mesh, as a pcl::TextureMesh and its images.
 #include <filesystem>
-#include <fresco/common/colmap.h>
+#include <fresco/io/colmap.h>
 #include <fresco/texture/texture_reconstruction.h>
 #include <iostream>
 #include <pcl/io/obj_io.h>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "compare_report.h"
 #include "support/tool.h"
-#include <fresco/common/file.h>
-#include <fresco/common/mesh_io.h>
+#include <fresco/io/file.h>
+#include <fresco/io/mesh_io.h>
 #include <fresco/surface/core/error_colors.h>
 #include <iostream>
 namespace {

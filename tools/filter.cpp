@@ -2,11 +2,11 @@
 #include "support/tool.h"
 #include <algorithm>
 #include <cstring>
-#include <fresco/common/cloud_file.h>
-#include <fresco/common/require.h>
+#include <fresco/core/require.h>
 #include <fresco/filters/core/outliers.h>
 #include <fresco/filters/core/veil_points.h>
 #include <fresco/filters/core/voxel_thinning.h>
+#include <fresco/io/cloud_file.h>
 #include <numeric>
 using namespace fresco;
 

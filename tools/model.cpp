@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "model/pipeline.h"
-#include "model/report.h"
+#include "pipeline.h"
+#include "report.h"
 #include "support/args.h"
 #include "support/tool.h"
+using namespace fresco::model;
 int main(int argc, char** argv)
 {
   return fresco::runTool("fresco_model", [&] {
-    fresco::ModelOptions options; // its defaults are the tool's defaults
+    fresco::model::ModelOptions options; // its defaults are the tool's defaults
     fresco::CommonOptions common;
     bool no_optimize = false;
     fresco::Args args(
@@ -32,9 +33,9 @@ int main(int argc, char** argv)
     const auto words = args.parse(argc, argv, 2);
     options.threads = common.threads;
     options.optimize = !no_optimize;
-    const fresco::ModelReport report =
-        fresco::buildModel(fresco::readModelInput(words[0]), words[1], options, fresco::printProgress(common.quiet));
-    for (const fresco::StageRecord& stage : report.stages)
-      fresco::inform(common.quiet, fresco::stageSummary(stage));
+    const fresco::model::ModelReport report = fresco::model::buildModel(
+        fresco::model::readModelInput(words[0]), words[1], options, fresco::printProgress(common.quiet));
+    for (const fresco::model::StageRecord& stage : report.stages)
+      fresco::inform(common.quiet, fresco::model::stageSummary(stage));
   });
 }

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
-#include <fresco/common/cloud_file.h>
 #include <fresco/filters/core/bilateral_normals.h>
 #include <fresco/filters/core/oriented_normals.h>
+#include <fresco/io/cloud_file.h>
 #include <limits>
 #ifdef __GLIBC__
 #include <malloc.h>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "support/tool.h"
-#include <fresco/common/file.h>
-#include <fresco/common/mesh_io.h>
-#include <fresco/common/point_io.h>
-#include <fresco/common/require.h>
+#include <fresco/core/require.h>
+#include <fresco/io/file.h>
+#include <fresco/io/mesh_io.h>
+#include <fresco/io/point_io.h>
 #include <fresco/surface/core/surface_optimization.h>
 #include <limits>
 #include <malloc.h>

@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <fresco/common/file.h>
-#include <fresco/common/point_io.h>
-#include <fresco/common/require.h>
+#include <fresco/core/require.h>
+#include <fresco/io/file.h>
+#include <fresco/io/point_io.h>
+#include <fresco/io/pose_file.h>
 #include <fresco/registration/core/scan_registration.h>
 #include <nlohmann/json.hpp>
 namespace {

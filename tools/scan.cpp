@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "simulation/sensors/dataset.h"
 #include "support/tool.h"
-#include "virtual/dataset.h"
 using namespace fresco;
+using namespace fresco::simulation;
 
 namespace {
 struct Switches {

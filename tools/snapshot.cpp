@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "picture/indoor_view.h"
-#include "picture/picture.h"
+#include "rendering/indoor_view.h"
+#include "rendering/picture.h"
 #include "support/args.h"
 #include "support/tool.h"
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <filesystem>
-#include <fresco/common/file.h>
-#include <fresco/common/mesh_io.h>
-#include <fresco/common/point_io.h>
-#include <fresco/common/require.h>
+#include <fresco/core/require.h>
+#include <fresco/io/file.h>
+#include <fresco/io/image_io.h>
+#include <fresco/io/mesh_io.h>
+#include <fresco/io/point_io.h>
 #include <fresco/surface/core/mesh_distance.h>
 #include <optional>
 #include <sstream>
@@ -17,6 +18,7 @@
 
 namespace {
 using namespace fresco;
+using namespace fresco::rendering;
 
 struct Request {
   std::string model, output, reference, room, view = "corner";

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "support/tool.h"
 #include <cstdio>
-#include <fresco/common/colmap.h>
-#include <fresco/common/file.h>
-#include <fresco/common/mesh_io.h>
-#include <fresco/common/require.h>
+#include <fresco/core/require.h>
+#include <fresco/io/colmap.h>
+#include <fresco/io/file.h>
+#include <fresco/io/image_io.h>
+#include <fresco/io/mesh_io.h>
 #include <fresco/texture/core/texture_reconstruction.h>
 namespace {
 using namespace fresco;

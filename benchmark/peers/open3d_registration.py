@@ -1,10 +1,10 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Pairwise registration by Open3D, for the table beside bench_registration.
+"""Pairwise registration by Open3D, for the table beside fresco_benchmark_registration.
 
 open3d_registration.py pairs|pairs-one-way|local TRUTH.txt VOXEL SCAN.pcd SCAN.pcd... [OVERLAPS.txt]
 pairs: FPFH + RANSAC + point-to-plane ICP of every pair; overlap at the true pose by points within 1.5 voxels, or as in
-       OVERLAPS.txt, which bench_registration writes. A pair is held certain if its overlap is above 30 % as found.
+       OVERLAPS.txt, which fresco_benchmark_registration writes. A pair is held certain if its overlap is above 30 % as found.
        Features must choose each other; with pairs-one-way they need not.
 local: point-to-plane ICP of the first two, from 0.3 m and 15 degrees off and from 5 cm and 3 degrees off.
 """

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "pose_uncertainty.h"
+#include "refinement/pose_uncertainty.h"
 #include "registration_state.h"
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-namespace fresco {
+namespace fresco::registration {
 namespace {
 using Groups = std::vector<std::vector<Index>>;
 
@@ -153,4 +153,4 @@ ScanRegistrationResult describeRegistration(const std::vector<PreparedScan>& sca
 {
   return Description(scans, start, options).run(placements);
 }
-} // namespace fresco
+} // namespace fresco::registration

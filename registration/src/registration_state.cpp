@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "registration_state.h"
-#include "pair_overlap.h"
+#include "pair/pair_overlap.h"
 #include <algorithm>
 #include <cmath>
-#include <fresco/common/parallel.h>
-namespace fresco {
+#include <fresco/core/parallel.h>
+namespace fresco::registration {
 namespace {
 constexpr int most_rounds = 4; // of leaving out contradicting pairs
 
@@ -85,4 +85,4 @@ void refinePlacement(const std::vector<PreparedScan>& scans, const ScanRegistrat
       return;
   }
 }
-} // namespace fresco
+} // namespace fresco::registration

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include "joint_refinement.h"
+#include "refinement/joint_refinement.h"
 #include <fresco/registration/core/scan_registration.h>
 #include <optional>
 #include <vector>
-namespace fresco {
+namespace fresco::registration {
 /// Scans with a pose in one common frame, and what is known of their pairs.
 struct Placement {
   std::vector<Index> members;    ///< indices of the scans
@@ -26,4 +26,4 @@ void refinePlacement(const std::vector<PreparedScan>& scans, const ScanRegistrat
 ScanRegistrationResult describeRegistration(const std::vector<PreparedScan>& scans,
                                             const std::vector<Placement>& placements, const std::vector<Pose>& start,
                                             const ScanRegistrationOptions& options);
-} // namespace fresco
+} // namespace fresco::registration

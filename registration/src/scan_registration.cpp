@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "global_alignment.h"
+#include "graph/global_alignment.h"
 #include "registration_state.h"
 #include <algorithm>
 #include <cmath>
-#include <fresco/common/parallel.h>
-#include <fresco/common/require.h>
+#include <fresco/core/parallel.h>
+#include <fresco/core/require.h>
 #include <fresco/registration/core/scan_registration.h>
 #include <numeric>
 namespace fresco {
+using namespace registration;
 namespace {
 constexpr float distance_voxels = 20.f; // basin of start poses
 constexpr double size_ratio = 100.0;    // between scans of one job: above, one of them is in millimetres

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "../../benchmark/cases.h"
-#include "../../benchmark/process.h"
-#include "../../benchmark/table.h"
+#include "cases/cases.h"
+#include "cases/process.h"
+#include "cases/table.h"
 #include "test_data.h"
-#include <fresco/common/file.h>
+#include <fresco/io/file.h>
 #include <fstream>
 namespace fresco::benchmark {
 namespace {
@@ -66,7 +66,7 @@ TEST(BenchmarkProcess, ReportsAreReadBack)
 
 TEST(BenchmarkCases, TheTableOfTheProjectIsValid)
 {
-  const CaseTable table = readCases(std::string(FRESCO_SOURCE_DIR) + "/benchmark/cases.json");
+  const CaseTable table = readCases(std::string(FRESCO_SOURCE_DIR) + "/benchmark/cases/cases.json");
   EXPECT_GE(table.cases.size(), 4U);
   for (const Case& c : table.cases) {
     EXPECT_EQ(c.runs.size(), 3U) << c.name;

@@ -14,8 +14,8 @@ except ImportError:
     print("SKIPPED: no numpy")
     sys.exit(77)
 
-import normals_learned
-import veil_network
+import candidate_score
+import mixed_pixels
 
 
 def check_gradients(network, value_and_gradients, random):
@@ -38,7 +38,7 @@ def check_gradients(network, value_and_gradients, random):
 
 def test_veil(random):
     figures = random.normal(size=(60, 7))
-    network = veil_network.Network(figures, (5, 4), random)
+    network = mixed_pixels.Network(figures, (5, 4), random)
     veil, weight = (random.random(60) < 0.4).astype(float), random.random(60)
 
     def both():
@@ -53,19 +53,19 @@ def test_normals(random):
     starts = np.cumsum(counts) - counts
     offers = SimpleNamespace(figures=random.normal(size=(counts.sum(), 6)), starts=starts, counts=counts,
                              degrees=random.uniform(0, 90, counts.sum()), at_edge=random.random(20) < 0.5)
-    offers.rows_of = lambda points: normals_learned.Offers.rows_of(offers, points)
-    network = normals_learned.Network(offers, (5, 4), random)
+    offers.rows_of = lambda points: candidate_score.Offers.rows_of(offers, points)
+    network = candidate_score.Network(offers, (5, 4), random)
 
     def both():
         degrees, gradients = network.gradients(offers, np.arange(20), 0.3)
-        return degrees / normals_learned.MOST_DEGREES, gradients
+        return degrees / candidate_score.MOST_DEGREES, gradients
 
     check_gradients(network, both, random)
 
 
 def test_written_weights(random):
     figures = random.normal(3, 2, (500, 7)).astype(np.float32)
-    network = veil_network.Network(figures, (5, 4), random)
+    network = mixed_pixels.Network(figures, (5, 4), random)
     with tempfile.TemporaryDirectory() as folder:
         network.write(folder + "/some_weights.h", ["of_figures"], "test_networks.py")
         with open(folder + "/some_weights.h") as file:

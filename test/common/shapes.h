@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include <cmath>
-#include <fresco/common/mesh.h>
+#include <fresco/core/mesh.h>
 #include <map>
 #include <vector>
 /// Meshes of known geometry for tests.

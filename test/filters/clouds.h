@@ -3,7 +3,7 @@
 #include "test_data.h"
 #include <Eigen/Geometry>
 #include <cmath>
-#include <fresco/common/point_set.h>
+#include <fresco/core/point_set.h>
 #include <limits>
 #include <random>
 /// Points on surfaces of known normals.

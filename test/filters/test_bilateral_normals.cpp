@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "../../filters/src/exponential.h"
-#include "clouds.h"
+#include "bilateral/exponential.h"
+#include "filters/clouds.h"
 #include <fresco/filters/core/bilateral_normals.h>
 #include <fresco/filters/core/local_sampling.h>
 #include <fresco/filters/core/oriented_normals.h>
+using namespace fresco::filters;
 namespace fresco {
 namespace {
 using test::Cloud;

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "virtual_scan.h"
+#include "filters/virtual_scan.h"
 #include <algorithm>
 #include <array>
-#include <fresco/common/point_io.h>
 #include <fresco/filters/core/outliers.h>
 #include <fresco/filters/core/veil_points.h>
 #include <fresco/filters/core/voxel_thinning.h>
+#include <fresco/io/point_io.h>
 #include <map>
 #include <numeric>
 namespace fresco {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "virtual_scan.h"
-#include <fresco/common/pcl_conversions.h>
+#include "filters/virtual_scan.h"
+#include <fresco/core/pcl_conversions.h>
 #include <fresco/filters/bilateral_normal_filter.h>
 #include <fresco/filters/core/outliers.h>
 #include <fresco/filters/oriented_normal_estimation.h>

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "../../filters/src/near_kernels.h"
-#include "../../filters/src/plane_kernels.h"
-#include "../../filters/src/tree_items.h"
-#include "clouds.h"
+#include "filters/clouds.h"
+#include "normals/plane_kernels.h"
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cstring>
-#include <fresco/filters/core/neighbors.h>
+#include <fresco/search/knn_kernels.h>
+#include <fresco/search/neighbors.h>
+#include <fresco/search/tree_items.h>
 #include <numeric>
+using namespace fresco::filters;
 namespace fresco {
 namespace {
 constexpr float infinity = std::numeric_limits<float>::infinity();

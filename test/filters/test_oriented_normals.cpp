@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "clouds.h"
-#include <fresco/common/point_io.h>
+#include "filters/clouds.h"
 #include <fresco/filters/core/normal_orientation.h>
 #include <fresco/filters/core/oriented_normals.h>
+#include <fresco/io/point_io.h>
 namespace fresco {
 namespace {
 using test::Cloud;

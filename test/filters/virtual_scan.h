@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include "clouds.h"
+#include "filters/clouds.h"
 /// A small laser scan with veil points, made from three distances.
 namespace fresco::test {
 struct LabelledScan {

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <cstdlib>
 #include <filesystem>
-#include <fresco/common/parallel.h>
+#include <fresco/core/parallel.h>
 #include <iostream>
 #include <unistd.h>
 namespace {
@@ -25,7 +25,7 @@ extern "C" int LLVMFuzzerInitialize(int*, char***)
     std::cerr << "\n";
     std::exit(2);
   }
-  fresco::setDefaultThreads(1); // handing small inputs to threads would cost more than reading them
+  fresco::setDefaultThreads(1);                    // handing small inputs to threads would cost more than reading them
   const std::filesystem::path memory = "/dev/shm"; // no disk is needed
   const auto parent = std::filesystem::is_directory(memory) ? memory : std::filesystem::temp_directory_path();
   folder = (parent / ("fresco_fuzz." + std::to_string(getpid()))).string();

@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "seeds.h"
-#include "model/stage_log.h"
+#include "stage_log.h"
 #include "targets.h"
 #include <filesystem>
-#include <fresco/common/cloud_file.h>
-#include <fresco/common/colmap.h>
-#include <fresco/common/file.h>
-#include <fresco/common/image.h>
-#include <fresco/common/mesh_io.h>
-#include <fresco/common/point_io.h>
-#include <fresco/common/poses.h>
+#include <fresco/core/image.h>
+#include <fresco/io/cloud_file.h>
+#include <fresco/io/colmap.h>
+#include <fresco/io/file.h>
+#include <fresco/io/mesh_io.h>
+#include <fresco/io/point_io.h>
+#include <fresco/io/pose_file.h>
+using namespace fresco::model;
 namespace fresco::fuzz {
 namespace {
 PointSet somePoints()

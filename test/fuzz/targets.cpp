@@ -1,17 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "targets.h"
-#include "model/rgbd.h"
-#include "model/stage_log.h"
+#include "rgbd.h"
+#include "stage_log.h"
 #include "support/args.h"
 #include <filesystem>
-#include <fresco/common/cloud_file.h>
-#include <fresco/common/colmap.h>
-#include <fresco/common/file.h>
-#include <fresco/common/mesh_io.h>
-#include <fresco/common/point_io.h>
-#include <fresco/common/poses.h>
-#include <fresco/common/require.h>
+#include <fresco/core/require.h>
+#include <fresco/io/cloud_file.h>
+#include <fresco/io/colmap.h>
+#include <fresco/io/file.h>
+#include <fresco/io/image_io.h>
+#include <fresco/io/mesh_io.h>
+#include <fresco/io/point_io.h>
+#include <fresco/io/pose_file.h>
 #include <fstream>
+using namespace fresco::model;
 namespace fresco::fuzz {
 namespace {
 namespace fs = std::filesystem;

@@ -5,7 +5,7 @@
 #include "test_data.h"
 #include <algorithm>
 #include <chrono>
-#include <fresco/common/file.h>
+#include <fresco/io/file.h>
 namespace {
 using namespace fresco;
 namespace fs = std::filesystem;

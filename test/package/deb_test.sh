@@ -50,7 +50,7 @@ fresco_snapshot mesh.ply mesh.png -size 320x240 -quiet'
 
 inside sh -c 'apt-get -q -y install --no-install-recommends /packages/libfresco-dev_*.deb' >>"$root/job/install.log" 2>&1 ||
   { tail -20 "$root/job/install.log" >&2; exit 1; }
-[ -f "$root/usr/include/fresco/common/mesh.h" ]
+[ -f "$root/usr/include/fresco/core/mesh.h" ]
 inside apt-get -q -y purge fresco libfresco-dev >>"$root/job/install.log" 2>&1
 [ -z "$(list)" ] || { echo "left behind: $(list)" >&2; exit 1; }
 echo "packages: installed, ran $(cd "$root/job" && ls fresco_*.txt | wc -l) tools, removed"

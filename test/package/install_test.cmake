@@ -59,7 +59,7 @@ run("${CMAKE_COMMAND}" --build "${snippets}/build")
 
 # What a package holds besides.
 file(GLOB_RECURSE installed RELATIVE "${prefix}" "${prefix}/*")
-foreach(part "libfresco_common.so.${SOVERSION}" "libfresco_surface.so.${SOVERSION}." share/man/man1/fresco_model.1
+foreach(part "libfresco_core.so.${SOVERSION}" "libfresco_surface.so.${SOVERSION}." share/man/man1/fresco_model.1
              include/fresco/surface/volumetric_reconstruction.h share/doc/fresco/copyright frescoConfig.cmake)
   if(NOT installed MATCHES "${part}")
     message(FATAL_ERROR "${part} was not installed")

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include "registration_scene.h"
+#include "registration/registration_scene.h"
 #include <algorithm>
 #include <fresco/registration/core/scan_registration.h>
 #include <string>

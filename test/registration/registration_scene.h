@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include "synthetic_rooms.h"
-#include <fresco/common/poses.h>
+#include "registration/synthetic_rooms.h"
+#include <fresco/io/pose_file.h>
 namespace fresco::test {
 struct ScannedScene {
   std::vector<PointSet> scans;

@@ -2,7 +2,7 @@
 #pragma once
 #include <Eigen/Geometry>
 #include <cmath>
-#include <fresco/common/point_set.h>
+#include <fresco/core/point_set.h>
 #include <limits>
 #include <random>
 #include <vector>

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "../../registration/src/pose_graph.h"
+#include "graph/pose_graph.h"
 #include <gtest/gtest.h>
 #include <random>
+using namespace fresco::registration;
 namespace fresco {
 namespace {
 struct Ring {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "registration/registration_scene.h"
 #include "test_data.h"
-#include <fresco/common/point_io.h>
+#include <fresco/io/point_io.h>
 #include <fresco/registration/core/scan_registration.h>
 namespace fresco {
 namespace {

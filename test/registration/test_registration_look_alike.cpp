@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "../../registration/src/self_similarity.h"
 #include "registration/look_alike_scenes.h"
+#include "scan/self_alignment.h"
 #include <fresco/registration/core/point_to_plane_registration.h>
 #include <gtest/gtest.h>
+using namespace fresco::registration;
 namespace fresco {
 namespace {
 using test::heldPairs;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "test_data.h"
 #include "texture/texture_scene.h"
+#include <fresco/io/image_io.h>
 #include <fresco/texture/core/texture_reconstruction.h>
 #include <gtest/gtest.h>
 namespace fresco::test {

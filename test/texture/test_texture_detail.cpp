@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "patch_map.h"
-#include "texel_spans.h"
-#include "texture_scene.h"
+#include "charts/patch_map.h"
+#include "charts/texel_spans.h"
+#include "texture/texture_scene.h"
 #include <gtest/gtest.h>
+using namespace fresco::texture;
 namespace fresco::test {
 namespace {
 /// Structure of a few pixels in the photographs below, no two places alike.

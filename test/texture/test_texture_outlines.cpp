@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "outline_mask.h"
-#include "texture_scene.h"
+#include "texture/texture_scene.h"
+#include "views/outline_mask.h"
 #include <gtest/gtest.h>
+using namespace fresco::texture;
 namespace fresco::test {
 namespace {
 /// @param depth of the cell (x, y)

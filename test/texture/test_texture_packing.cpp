@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "atlas_packing.h"
+#include "charts/atlas_packing.h"
 #include <gtest/gtest.h>
 #include <random>
+using namespace fresco::texture;
 namespace fresco::test {
 namespace {
 /// Discs and rectangles of 4 to 60 texels.

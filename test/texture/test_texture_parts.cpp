@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "hidden_parts.h"
 #include "texture/texture_scene.h"
+#include "views/hidden_parts.h"
 #include <gtest/gtest.h>
+using namespace fresco::texture;
 namespace fresco::test {
 namespace {
 /// A floor of patches as long as a tenth of it, and a board that hides another part of it from each of two cameras.

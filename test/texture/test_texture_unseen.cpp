@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "atlas_gaps.h"
-#include "exemplar_synthesis.h"
-#include "exif.h"
+#include "filling/exemplar_synthesis.h"
+#include "painting/atlas_gaps.h"
 #include "test_data.h"
 #include "texture/texture_scene.h"
-#include <fresco/common/file.h>
+#include "views/exif.h"
+#include <fresco/io/file.h>
+#include <fresco/io/image_io.h>
+using namespace fresco::texture;
 namespace fresco::test {
 namespace {
 Eigen::Vector3f stripes(int x, int y)

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "texture/texture_scene.h"
-#include "visibility.h"
+#include "views/visibility.h"
 #include <algorithm>
 #include <gtest/gtest.h>
 #include <random>
+using namespace fresco::texture;
 namespace fresco::test {
 namespace {
 /// Waves with detail that corners can be found in.

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include <cmath>
-#include <fresco/common/colmap.h>
-#include <fresco/common/file.h>
-#include <fresco/common/image.h>
-#include <fresco/common/point_io.h>
-#include <fresco/common/poses.h>
+#include <fresco/io/colmap.h>
+#include <fresco/io/file.h>
+#include <fresco/io/image_io.h>
+#include <fresco/io/point_io.h>
+#include <fresco/io/pose_file.h>
 #include <string>
 namespace fresco::test {
 inline const Eigen::Vector3d& roomSize()

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "surface/distance_meshes.h"
+#include "surface/distance/distance_meshes.h"
 #include "test_data.h"
 #include <algorithm>
 #include <cstdlib>
-#include <fresco/common/file.h>
-#include <fresco/common/mesh_io.h>
+#include <fresco/io/file.h>
+#include <fresco/io/mesh_io.h>
 #include <fresco/surface/core/mesh_distance.h>
 #include <fstream>
 #include <nlohmann/json.hpp>

@@ -2,12 +2,12 @@
 // Every tool that works for long, asked to stop at several moments: it ends soon, with 1 and one line, and leaves
 // neither half nor temporary files.
 #include "common/shapes.h"
-#include "small_room.h"
 #include "test_data.h"
+#include "tools/small_room.h"
 #include <csignal>
 #include <cstring>
 #include <fcntl.h>
-#include <fresco/common/mesh_io.h>
+#include <fresco/io/mesh_io.h>
 #include <fstream>
 #include <sys/wait.h>
 #include <thread>

@@ -1,203 +1,293 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "model/fusion.h"
-#include "model/optimization_stage.h"
-#include "model/pipeline.h"
-#include "model/report.h"
+// fresco_model when it is killed, stopped, out of disk or out of memory. FRESCO_KILLS = moments of SIGKILL (default 3).
 #include "test_data.h"
-#include <fresco/common/file.h>
-#include <fresco/common/mesh_io.h>
-#include <fresco/common/require.h>
+#include "tools/small_room.h"
+#include <csignal>
+#include <fcntl.h>
 #include <fstream>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <random>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <thread>
+#include <unistd.h>
 namespace {
 using namespace fresco;
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
+using Clock = std::chrono::steady_clock;
 
-constexpr CameraModel camera{160, 120, 146.25, 146.25, 80.5, 60.5, 0, 0, 0, 0};
+double secondsSince(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
-/// Depth image of the plane n . p = d in front of the camera.
-Image16 planeDepth(const Eigen::Vector3d& n, double d)
-{
-  Image16 image{camera.width, camera.height, {}};
-  for (int y = 0; y < image.height; ++y)
-    for (int x = 0; x < image.width; ++x)
-      image.data.push_back(
-          static_cast<std::uint16_t>(std::lround(1000 * d / n.dot(unproject(camera, {x + 0.5, y + 0.5})))));
-  return image;
-}
-
-TEST(DepthImage, PlaneGivesItsPointsAndNormal)
-{
-  const Eigen::Vector3d n = Eigen::Vector3d(0.2, -0.3, 1.0).normalized();
-  const PointSet set = depthPoints(planeDepth(n, 2.0), camera, {}, 1);
-  ASSERT_GT(set.size(), 80 * 60 / 2);
-  const Eigen::VectorXf off = (n.cast<float>().transpose() * set.points).transpose().array() - 2.f;
-  EXPECT_LT(off.cwiseAbs().maxCoeff(), 2e-3f); // depth is rounded to millimetres
-  EXPECT_LT((set.normals.colwise() + n.cast<float>()).colwise().norm().maxCoeff(), 0.05f);
-  EXPECT_EQ(set.points, depthPoints(planeDepth(n, 2.0), camera, {}, 4).points);
-}
-
-TEST(DepthImage, NoPointsAcrossJumpsAndWhereDepthIsMissing)
-{
-  Image16 image = planeDepth(Eigen::Vector3d::UnitZ(), 2.0);
-  for (int y = 0; y < image.height; ++y)
-    for (int x = 0; x < image.width; ++x) {
-      std::uint16_t& depth = image.data[static_cast<std::size_t>(y * image.width + x)];
-      depth = x < 40 ? 0 : x > 120 ? 65535 : x < 80 ? 1500 : depth;
-    }
-  const PointSet set = depthPoints(image, camera, {}, 1);
-  ASSERT_GT(set.size(), 500);
-  for (Index i = 0; i < set.size(); ++i) {
-    const float z = set.points(2, i);
-    EXPECT_TRUE(std::abs(z - 1.5f) < 1e-3f || std::abs(z - 2.f) < 1e-3f) << z;
-  }
-}
-
-TEST(Fusion, SamplesOfOneSurfaceBecomeOneAndBothSidesOfASheetStayTwo)
-{
-  PointSet set;
-  set.points = 0.3f * (Points::Random(3, 20000).array() + 1.f).matrix();
-  set.points.row(2) = 0.0015f * Eigen::RowVectorXf::Random(20000).array() + 0.005f;
-  set.normals = Points::Zero(3, 20000);
-  set.normals.row(2).setOnes();
-  PointFusion fusion(0.01);
-  fusion.add(set);
-  const PointSet one = fusion.result();
-  EXPECT_LE(one.size(), 61 * 61);
-  EXPECT_NEAR(one.confidences.sum(), 20000.f, 1.f);
-  EXPECT_LT((one.points.row(2).array() - 0.005f).abs().maxCoeff(), 0.0015f);
-  set.normals *= -1.f;
-  fusion.add(set);
-  EXPECT_EQ(fusion.result().size(), 2 * one.size());
-  EXPECT_THROW(PointFusion(0.0), std::invalid_argument);
-}
-
-TEST(Fusion, OptimisationGetsNoMorePointsThanVerticesCanUse)
-{
-  PointSet set; // a square of 0.6 m, cells of 2 cm: about 900 vertices
-  set.points = 0.3f * Points::Random(3, 50000);
-  set.points.row(2) = 0.001f * Eigen::RowVectorXf::Random(50000);
-  set.normals = Points::Zero(3, 50000);
-  set.normals.row(2).setOnes();
-  set.viewpoints = set.points;
-  set.origin = {1000, 2000, 3000};
-  const PointSet same = pointsForVertices(set, 4000, 0.02);
-  EXPECT_EQ(same.points, set.points);
-  const PointSet thinned = pointsForVertices(set, 900, 0.02);
-  EXPECT_LE(thinned.size(), 2 * 92 * 92); // two layers of cells meet at z = 0
-  EXPECT_GT(thinned.size(), 90 * 90);
-  EXPECT_EQ(thinned.origin, set.origin);
-  EXPECT_NEAR(thinned.confidences.sum(), 50000.f, 1.f);
-  EXPECT_NEAR(thinned.points.row(2).mean(), 0.f, 1e-4f);
-}
-
-struct Job {
-  std::string folder;
-  int runs_a = 0, runs_b = 0;
-
-  std::vector<StageRecord> run(const std::string& key, const std::string& option, bool resume)
-  {
-    StageLog log(folder + "/work", key, resume, {});
-    const auto write = [](const std::string& path, int& count) {
-      ++count;
-      OutputFile file(path);
-      file.write("result");
-      file.commit();
-      return Json{{"answer", 42}};
-    };
-    log.run({"a", option, {folder + "/a"}, [&](const Progress&) { return write(folder + "/a", runs_a); }});
-    log.run({"b", "", {folder + "/b"}, [&](const Progress&) { return write(folder + "/b", runs_b); }});
-    return log.records();
-  }
+/// What the operating system allows the program; 0 = as much as there is.
+struct Limits {
+  rlim_t file_bytes = 0;
+  rlim_t memory_bytes = 0;
+  bool foreign = false; ///< run by root: as a user who owns nothing
 };
 
-TEST(Stages, ProgramFilesAreTheProgramAndItsLibraries)
+struct Outcome {
+  int status = 0; ///< exit status, or 128 + signal
+  std::string err;
+};
+
+/// fresco_model in a process of its own.
+class ModelRun {
+public:
+  ModelRun(const std::string& input, const std::string& out, bool resume, Limits limits = {}) : log_(out + ".err")
+  {
+    const std::string program = std::string(FRESCO_BINARY_DIR) + "/bin/fresco_model";
+    process_ = fork();
+    if (process_ == 0) {
+      const int log = open(log_.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0666);
+      dup2(log, STDERR_FILENO);
+      apply(RLIMIT_FSIZE, limits.file_bytes);
+      apply(RLIMIT_AS, limits.memory_bytes);
+      if (limits.foreign && geteuid() == 0 && (setgid(nobody) != 0 || setuid(nobody) != 0))
+        _exit(126);
+      execl(program.c_str(), "fresco_model", input.c_str(), out.c_str(), "-poses", "-cell", "0.1", "-size", "160x120",
+            "-quiet", resume ? "-resume" : nullptr, nullptr);
+      _exit(127);
+    }
+  }
+
+  void signal(int number) const { kill(process_, number); }
+
+  Outcome wait()
+  {
+    int status = 0;
+    const auto start = Clock::now();
+    while (waitpid(process_, &status, WNOHANG) == 0) {
+      if (secondsSince(start) > 500)
+        signal(SIGKILL); // it hangs
+      std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    }
+    std::ifstream log(log_);
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status),
+            {std::istreambuf_iterator<char>(log), {}}};
+  }
+
+private:
+  static constexpr unsigned nobody = 65534;
+
+  static void apply(int what, rlim_t most)
+  {
+    const rlimit limit{most, most};
+    if (most > 0)
+      setrlimit(static_cast<__rlimit_resource>(what), &limit);
+  }
+
+  std::string log_;
+  pid_t process_ = 0;
+};
+
+/// A report or a record of a stage without what differs from run to run.
+void dropCosts(nlohmann::ordered_json& json)
 {
-  const std::vector<std::string> files = programFiles();
-  EXPECT_EQ(fs::path(files.at(0)).filename(), "test_model");
-  for (const std::string& file : files)
-    EXPECT_TRUE(fs::is_regular_file(file)) << file;
+  if (json.is_object())
+    for (const char* cost : {"seconds", "cpu_seconds", "peak_megabytes", "resumed"})
+      json.erase(cost);
+  for (auto& part : json)
+    if (part.is_structured())
+      dropCosts(part);
 }
 
-TEST(Stages, ResumeTakesOverOnlyWhatIsStillValid)
+/// Every file below the folder by name, with its bytes; costs are left out of .json, report.html (which shows them)
+/// too.
+std::map<std::string, std::string> contents(const std::string& folder)
 {
-  Job job{test::scratchFolder()};
-  job.run("input", "x", false);
-  EXPECT_EQ(job.runs_a + job.runs_b, 2);
-  const auto records = job.run("input", "x", true);
-  EXPECT_EQ(job.runs_a + job.runs_b, 2);
-  EXPECT_TRUE(records[0].resumed && records[1].resumed);
-  EXPECT_EQ(records[0].figures["answer"], 42);
-  job.run("input", "x", false); // not asked to resume
-  EXPECT_EQ(job.runs_a + job.runs_b, 4);
-  fs::remove(job.folder + "/b");
-  job.run("input", "x", true);
-  EXPECT_EQ(job.runs_a, 2);
-  EXPECT_EQ(job.runs_b, 3);
-  job.run("input", "y", true); // another option of a: b depends on it
-  EXPECT_EQ(job.runs_a, 3);
-  EXPECT_EQ(job.runs_b, 4);
-  job.run("other input", "y", true);
-  EXPECT_EQ(job.runs_a, 4);
-  std::ofstream(job.folder + "/work/a.json") << "{ broken";
-  job.run("other input", "y", true);
-  EXPECT_EQ(job.runs_a, 5);
+  std::map<std::string, std::string> files;
+  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+    const std::string name = fs::relative(entry.path(), folder).string();
+    if (!entry.is_regular_file() || name == "report.html")
+      continue;
+    std::string bytes = readFile(entry.path().string());
+    if (entry.path().extension() == ".json") {
+      auto json = nlohmann::ordered_json::parse(bytes);
+      dropCosts(json);
+      bytes = json.dump();
+    }
+    files[name] = std::move(bytes);
+  }
+  return files;
 }
 
-TEST(Report, SummaryOfAStageIsOneLineForPeople)
+/// Same names, same bytes.
+void expectSame(const std::map<std::string, std::string>& found, const std::map<std::string, std::string>& wanted)
 {
-  StageRecord stage;
-  stage.name = "surface";
-  stage.seconds = 1.25;
-  stage.cpu_seconds = 2.5;
-  stage.peak_megabytes = 300.2;
-  stage.resumed = true;
-  stage.figures = {{"vertices", 85709}, {"cell", 0.0200004}, {"seconds", {{"solve", 1.0}}}, {"up", {0, 0, 1}}};
-  EXPECT_EQ(stageSummary(stage), "surface (earlier run): 1.2 s, 2.5 s of CPU, 300 MB, vertices 85709, cell 0.02");
+  for (const auto& [name, bytes] : wanted) {
+    ASSERT_TRUE(found.count(name)) << name << " is missing";
+    EXPECT_TRUE(found.at(name) == bytes) << name << " differs";
+  }
+  for (const auto& [name, bytes] : found)
+    EXPECT_TRUE(wanted.count(name)) << name << " should not be there";
 }
 
-TEST(Report, IsWholeAndEscaped)
+/// What stands under its final name is whole.
+void expectNothingHalf(const std::string& folder, const std::map<std::string, std::string>& wanted)
 {
-  const ModelFiles files(test::scratchFolder());
-  makeFolder(files.snapshots);
-  writeImage(files.snapshots + "/p.png", Image(8, 8));
-  StageRecord stage;
-  stage.name = "texture";
-  stage.figures = {{"coverage", 0.5}, {"note", "<b>"}};
-  makeFolder(files.work);
-  TexturedMesh model;
-  model.mesh.vertices = Points::Identity(3, 3);
-  model.mesh.faces = Faces(3, 1);
-  model.mesh.faces << 0, 1, 2;
-  model.texcoord_faces = Faces::Constant(3, 1, -1);
-  model.face_atlas = Eigen::VectorXi::Constant(1, -1);
-  writeTexturedMesh(files.viewer_glb, model);
-  ModelReport content;
-  content.input = "a<b>";
-  content.stages = {stage};
-  content.pictures = {{"snapshots/p.png", "title"}};
-  content.seconds = 1.5;
-  writeReport(content, files);
-  const std::string html = readFile(files.report_html);
-  EXPECT_NE(html.find("data:image/png;base64,iVBORw0KGgo"), std::string::npos);
-  EXPECT_NE(html.find("a&lt;b&gt;"), std::string::npos);
-  EXPECT_EQ(html.find("<b>\""), std::string::npos);
-  EXPECT_NE(html.find("fresco-viewer"), std::string::npos);
-  const Json json = Json::parse(readFile(files.report_json));
-  EXPECT_EQ(json["stages"][0]["figures"]["coverage"], 0.5);
-  EXPECT_EQ(json["pictures"][0]["file"], "snapshots/p.png");
+  if (!fs::exists(folder))
+    return;
+  for (const auto& entry : fs::recursive_directory_iterator(folder))
+    if (entry.is_regular_file() && entry.path().filename().string()[0] == '.') // an unfinished file of a killed run
+      fs::remove(entry.path());
+  for (const auto& [name, bytes] : contents(folder))
+    EXPECT_TRUE(wanted.count(name) && wanted.at(name) == bytes) << name << " is half or wrong";
 }
 
-TEST(RgbdFolder, RealRoomIsRead)
+void expectOneLine(const Outcome& outcome)
 {
-  FRESCO_NEED_DATA("room7");
-  const RgbdFolder room = readRgbdFolder(test::dataFolder() + "/room7");
-  EXPECT_EQ(room.frames.size(), 100U);
-  EXPECT_EQ(room.camera.width, 640);
-  EXPECT_EQ(room.camera.fx, 585.0);
-  const PointSet points = depthPoints(readImage16(room.frames[50].depth), room.camera, {}, 0);
-  EXPECT_GT(points.size(), 10000);
-  for (Index i = 0; i < points.size(); ++i)
-    EXPECT_LT(points.normals.col(i).dot(points.points.col(i)), 0.f);
+  EXPECT_EQ(outcome.status, 1) << outcome.err;
+  EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+  EXPECT_EQ(outcome.err.rfind("fresco_model: ", 0), 0U) << outcome.err;
+}
+
+/// A small room, and what an undisturbed run makes of it.
+class Faults : public testing::Test {
+protected:
+  static void SetUpTestSuite()
+  {
+    folder_ = std::string(FRESCO_BINARY_DIR) + "/scratch/Faults";
+    fs::remove_all(folder_);
+    input_ = folder_ + "/room";
+    test::writeSmallRoom(input_);
+    const auto start = Clock::now();
+    const Outcome outcome = ModelRun(input_, folder_ + "/whole", false).wait();
+    seconds_ = secondsSince(start);
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    whole_ = contents(folder_ + "/whole");
+  }
+
+  void SetUp() override
+  {
+    for (const char* name : {"model.obj", "model.glb", "mesh.ply", "report.json"})
+      ASSERT_TRUE(whole_.count(name)) << name;
+  }
+
+  /// The run that `out` was left by is gone on with, and ends as if nothing had happened.
+  static void expectResumeCompletes(const std::string& out)
+  {
+    const Outcome outcome = ModelRun(input_, out, true).wait();
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    expectSame(contents(out), whole_);
+  }
+
+  static inline std::string folder_, input_;
+  static inline double seconds_ = 0; ///< of the undisturbed run
+  static inline std::map<std::string, std::string> whole_;
+};
+
+TEST_F(Faults, KilledAtAnyMomentAndResumed)
+{
+  const char* wanted = std::getenv("FRESCO_KILLS");
+  const int kills = wanted ? std::atoi(wanted) : 3;
+  std::mt19937 generator(std::random_device{}());
+  std::uniform_real_distribution<double> moment(0.02 * seconds_, 0.98 * seconds_);
+  int killed = 0;
+  for (int i = 0; i < kills; ++i) {
+    const double seconds = moment(generator);
+    SCOPED_TRACE("killed after " + std::to_string(seconds) + " of " + std::to_string(seconds_) + " s");
+    const std::string out = folder_ + "/killed_" + std::to_string(i);
+    ModelRun run(input_, out, false);
+    std::this_thread::sleep_for(std::chrono::duration<double>(seconds));
+    run.signal(SIGKILL);
+    killed += run.wait().status == 128 + SIGKILL;
+    if (fs::exists(out) && i % 2 == 0) // every other run resumes beside what the killed one left unfinished
+      expectNothingHalf(out, whole_);
+    expectResumeCompletes(out);
+  }
+  std::cout << killed << " of " << kills << " runs were killed before their end\n";
+}
+
+TEST_F(Faults, KilledAgainAndAgain)
+{
+  const std::string out = folder_ + "/again";
+  for (const double share : {0.3, 0.5, 0.4}) {
+    ModelRun run(input_, out, true);
+    std::this_thread::sleep_for(std::chrono::duration<double>(share * seconds_));
+    run.signal(SIGKILL);
+    run.wait();
+  }
+  expectResumeCompletes(out);
+}
+
+TEST_F(Faults, ControlCEndsItSoonAndCleanly)
+{
+  for (const double share : {0.2, 0.5, 0.8}) {
+    const std::string out = folder_ + "/stopped_" + std::to_string(share);
+    ModelRun run(input_, out, false);
+    std::this_thread::sleep_for(std::chrono::duration<double>(share * seconds_));
+    const auto start = Clock::now();
+    run.signal(SIGINT);
+    const Outcome outcome = run.wait();
+    EXPECT_LT(secondsSince(start), 10.0);                      // a second on a machine that is not busy otherwise
+    if (outcome.status != 0 && outcome.status != 128 + SIGINT) // it may have ended, or not yet have begun
+      expectOneLine(outcome);
+    if (fs::exists(out)) {
+      for (const auto& entry : fs::recursive_directory_iterator(out))
+        EXPECT_TRUE(entry.is_directory() || entry.path().filename().string()[0] != '.') << entry.path();
+    }
+    expectNothingHalf(out, whole_);
+    expectResumeCompletes(out);
+  }
+}
+
+TEST_F(Faults, DiskFull)
+{
+  std::vector<std::size_t> sizes;
+  for (const auto& [name, bytes] : whole_)
+    sizes.push_back(bytes.size());
+  std::sort(sizes.begin(), sizes.end());
+  // The largest file no longer fits; half of the files do not; nothing does.
+  for (const std::size_t room : {sizes.back() - 1, sizes[sizes.size() / 2], std::size_t{400}}) {
+    SCOPED_TRACE("files of " + std::to_string(room) + " bytes");
+    const std::string out = folder_ + "/full_" + std::to_string(room);
+    const Outcome outcome = ModelRun(input_, out, false, {static_cast<rlim_t>(room), 0}).wait();
+    expectOneLine(outcome);
+    EXPECT_NE(outcome.err.find(out), std::string::npos) << outcome.err;
+    expectNothingHalf(out, whole_);
+    expectResumeCompletes(out);
+  }
+}
+
+TEST_F(Faults, NotEnoughMemory)
+{
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  GTEST_SKIP() << "a sanitizer needs more address space than any limit leaves";
+#endif
+  for (const rlim_t megabytes : {300, 304, 310, 400, 550}) {
+    SCOPED_TRACE(std::to_string(megabytes) + " MB");
+    const std::string out = folder_ + "/memory_" + std::to_string(megabytes);
+    const Outcome outcome = ModelRun(input_, out, false, {0, megabytes << 20}).wait();
+    if (outcome.status == 127 || outcome.status == 0)
+      continue; // too little even for its libraries, or enough
+    expectOneLine(outcome);
+    expectNothingHalf(out, whole_);
+    expectResumeCompletes(out);
+  }
+}
+
+TEST_F(Faults, NoPermissionAndAFileInTheWay)
+{
+  std::ofstream(folder_ + "/file") << "in the way";
+  const Outcome outcome = ModelRun(input_, folder_ + "/file", false).wait();
+  expectOneLine(outcome);
+  EXPECT_NE(outcome.err.find(folder_ + "/file"), std::string::npos) << outcome.err;
+  const std::string out = folder_ + "/locked";
+  fs::create_directory(out);
+  fs::permissions(out, fs::perms::owner_read | fs::perms::owner_exec);
+  Limits foreign;
+  foreign.foreign = true;
+  const Outcome locked = ModelRun(input_, out, false, foreign).wait();
+  expectOneLine(locked);
+  EXPECT_NE(locked.err.find(out), std::string::npos) << locked.err;
+  EXPECT_TRUE(fs::is_empty(out));
+  fs::permissions(out, fs::perms::owner_all);
+  fs::create_directories(out + "/mesh.ply"); // a folder where a stage wants its file
+  const Outcome blocked = ModelRun(input_, out, false).wait();
+  expectOneLine(blocked);
+  EXPECT_NE(blocked.err.find("mesh.ply"), std::string::npos) << blocked.err;
+  fs::remove_all(out + "/mesh.ply");
+  expectResumeCompletes(out);
 }
 } // namespace

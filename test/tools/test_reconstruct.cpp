@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "surface/volumetric_shapes.h"
+#include "surface/poisson/volumetric_shapes.h"
 #include "test_data.h"
 #include <cstdlib>
-#include <fresco/common/file.h>
-#include <fresco/common/mesh_io.h>
-#include <fresco/common/point_io.h>
+#include <fresco/io/file.h>
+#include <fresco/io/mesh_io.h>
+#include <fresco/io/point_io.h>
 #include <fstream>
 #include <iomanip>
 #include <sys/wait.h>

@@ -1,26 +1,27 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "atlas_gaps.h"
-#include "atlas_paint.h"
-#include "back_projection.h"
-#include "camera_refinement.h"
-#include "color_diffusion.h"
-#include "exemplar_inpainting.h"
-#include "exif.h"
-#include "exposure.h"
-#include "hidden_parts.h"
-#include "outline_texels.h"
-#include "photo_consistency.h"
-#include "resolution.h"
-#include "texture_atlas.h"
-#include "view_selection.h"
+#include "cameras/camera_refinement.h"
+#include "charts/texture_atlas.h"
+#include "filling/color_diffusion.h"
+#include "filling/exemplar_inpainting.h"
+#include "painting/atlas_gaps.h"
+#include "painting/atlas_paint.h"
+#include "painting/back_projection.h"
+#include "painting/outline_texels.h"
+#include "views/exif.h"
+#include "views/exposure.h"
+#include "views/hidden_parts.h"
+#include "views/photo_consistency.h"
+#include "views/resolution.h"
+#include "views/view_selection.h"
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <fresco/common/parallel.h>
-#include <fresco/common/require.h>
+#include <fresco/core/parallel.h>
+#include <fresco/core/require.h>
 #include <fresco/texture/core/texture_reconstruction.h>
 #include <memory>
 namespace fresco {
+using namespace texture;
 namespace {
 constexpr float patch_pixels = 16; // longest side of a patch in a typical view
 

@@ -8,10 +8,10 @@
 #include <condition_variable>
 #include <csignal>
 #include <exception>
-#include <fresco/common/file.h>
-#include <fresco/common/parallel.h>
-#include <fresco/common/require.h>
-#include <fresco/common/unfinished_files.h>
+#include <fresco/core/parallel.h>
+#include <fresco/core/require.h>
+#include <fresco/io/file.h>
+#include <fresco/io/unfinished_files.h>
 #include <memory>
 #include <mutex>
 #include <new>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include "support/args.h"
-#include <fresco/common/progress.h>
+#include <fresco/core/progress.h>
 #include <functional>
 namespace fresco {
 /// Options that every tool has: -threads, -quiet.

@@ -1,13 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// The old name of <fresco/io/colmap.h>, for one version.
 #pragma once
-#include <fresco/common/camera.h>
-#include <string>
-namespace fresco {
-/// COLMAP model in `folder`: cameras.txt and images.txt, else cameras.bin and images.bin. Models PINHOLE,
-/// SIMPLE_PINHOLE, SIMPLE_RADIAL, RADIAL, OPENCV. Views in the order of their image id.
-/// @throws std::runtime_error "PATH: reason" if missing, malformed, of another camera model or not finite
-CameraSet readColmap(const std::string& folder);
-
-/// Text model (cameras.txt, images.txt, points3D.txt) into `folder`, which is created.
-void writeColmap(const std::string& folder, const CameraSet& set);
-} // namespace fresco
+#include <fresco/io/colmap.h>

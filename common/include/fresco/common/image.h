@@ -1,45 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// The old name of <fresco/io/image_io.h>, for one version.
 #pragma once
-#include <cstddef>
-#include <cstdint>
-#include <string>
-#include <vector>
-namespace fresco {
-/// 8-bit image, rows from the top, interleaved.
-struct Image {
-  int width = 0, height = 0;
-  int channels = 3; ///< 1 grey, 3 RGB, 4 RGBA
-  std::vector<std::uint8_t> data;
-
-  Image() = default;
-  Image(int w, int h, int c = 3, std::uint8_t value = 0)
-      : width(w), height(h), channels(c), data(static_cast<std::size_t>(w) * h * c, value)
-  {}
-  bool empty() const { return data.empty(); }
-  std::uint8_t* pixel(int x, int y) { return data.data() + (static_cast<std::size_t>(y) * width + x) * channels; }
-  const std::uint8_t* pixel(int x, int y) const
-  {
-    return data.data() + (static_cast<std::size_t>(y) * width + x) * channels;
-  }
-};
-
-/// 16-bit image of one channel, rows from the top: depth images.
-struct Image16 {
-  int width = 0, height = 0;
-  std::vector<std::uint16_t> data;
-};
-
-/// PNG, JPEG, TIFF, BMP or WebP; 16 bit and alpha are reduced to 8-bit RGB; EXIF orientation is not applied.
-/// @throws std::runtime_error naming the file if it is missing, empty, truncated or no image
-Image readImage(const std::string& path);
-
-/// @throws std::runtime_error as readImage, and if the image is not 16 bit with one channel
-Image16 readImage16(const std::string& path);
-
-/// PNG or JPEG by extension; whole or not at all.
-/// @param quality of JPEG, 0..100
-void writeImage(const std::string& path, const Image& image, int quality = 95);
-
-/// The bytes that writeImage() would put into a file with extension ".png" or ".jpg".
-std::vector<std::uint8_t> encodeImage(const Image& image, const std::string& extension, int quality = 95);
-} // namespace fresco
+#include <fresco/io/image_io.h>

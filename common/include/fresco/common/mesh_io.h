@@ -1,27 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// The old name of <fresco/io/mesh_io.h>, for one version.
 #pragma once
-#include <fresco/common/mesh.h>
-#include <fresco/common/textured_mesh.h>
-#include <string>
-namespace fresco {
-/// PLY (ASCII, both binary orders, polygons, triangle strips), OBJ, legacy VTK polydata by extension. Polygons are
-/// triangulated as fans. Normals, colours and further scalars per vertex are kept. Coordinates too large for float are
-/// kept exact through `origin`.
-/// @throws std::runtime_error "PATH: reason" if the file is missing, empty, truncated, malformed or has no vertex;
-///         faces may be absent
-TriangleMesh readMesh(const std::string& path);
-
-/// PLY (binary), OBJ or legacy VTK (binary) by extension; whole or not at all.
-void writeMesh(const std::string& path, const TriangleMesh& mesh);
-
-/// OBJ + MTL + PNG (`NAME.obj`, `NAME.mtl`, `NAME.png` or `NAME_0.png` ...) or binary glTF (`.glb`, images inside,
-/// unlit), by extension. The set of files is whole or absent; the .obj appears last.
-/// @param jpeg_quality of the images inside a .glb, 1..100; 0: PNG, without loss
-/// @throws std::invalid_argument as validateTexturedMesh(), std::runtime_error "PATH: reason" if it cannot be written
-void writeTexturedMesh(const std::string& path, const TexturedMesh& model, int jpeg_quality = 0);
-
-/// What writeTexturedMesh() writes, and OBJ + MTL and .glb of others. Faces whose material has no image, or whose
-/// corners have no texture coordinates, are without texture. From a .glb, vertices at the same place become one.
-/// @throws std::runtime_error "PATH: reason" if the model or a file that it names is missing, truncated or malformed
-TexturedMesh readTexturedMesh(const std::string& path);
-} // namespace fresco
+#include <fresco/io/mesh_io.h>

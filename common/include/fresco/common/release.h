@@ -1,10 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// The old name of <fresco/core/release.h>, for one version.
 #pragma once
-namespace fresco {
-/// Empties a vector and gives its memory back, which `v = {}` and clear() do not.
-template <typename Vector>
-void releaseMemory(Vector& v)
-{
-  Vector().swap(v);
-}
-} // namespace fresco
+#include <fresco/core/release.h>

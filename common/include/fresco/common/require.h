@@ -1,24 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// The old name of <fresco/core/require.h>, for one version.
 #pragma once
-#include <sstream>
-#include <stdexcept>
-#include <string>
-namespace fresco {
-/// All parts printed one after the other.
-template <typename... Parts>
-std::string concat(const Parts&... parts)
-{
-  std::ostringstream text;
-  (text << ... << parts);
-  return text.str();
-}
-
-/// Argument check at the door of a public function. Write the condition so that NaN fails it.
-/// @throws std::invalid_argument with all `parts` joined if `ok` is false
-template <typename... Parts>
-void require(bool ok, const Parts&... parts)
-{
-  if (!ok)
-    throw std::invalid_argument(concat(parts...));
-}
-} // namespace fresco
+#include <fresco/core/require.h>

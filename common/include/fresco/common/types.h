@@ -1,11 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// The old name of <fresco/core/types.h>, for one version.
 #pragma once
-#include <Eigen/Core>
-#include <cstdint>
-namespace fresco {
-using Index = Eigen::Index; ///< signed, for counts and loops
-
-using Points = Eigen::Matrix3Xf;                               ///< 3xN positions or directions
-using Colors = Eigen::Matrix<std::uint8_t, 3, Eigen::Dynamic>; ///< 3xN, RGB, 0..255
-using Faces = Eigen::Matrix3Xi;                                ///< 3xF vertex indices, counter-clockwise from outside
-} // namespace fresco
+#include <fresco/core/types.h>

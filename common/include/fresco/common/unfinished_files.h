@@ -1,7 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// The old name of <fresco/io/unfinished_files.h>, for one version.
 #pragma once
-namespace fresco {
-/// Removes what every OutputFile of this process has written and not committed: for a program that ends at once, without
-/// unwinding. No OutputFile can be made or committed afterwards (the caller blocks for ever).
-void abandonUnfinishedFiles() noexcept;
-} // namespace fresco
+#include <fresco/io/unfinished_files.h>

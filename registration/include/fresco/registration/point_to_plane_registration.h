@@ -46,7 +46,7 @@ private:
   float voxel_ = 0.f;
   float prepared_voxel_ = 0.f;
   typename Base::PointCloudTargetConstPtr prepared_target_cloud_; ///< that prepared_target_ was made of
-  std::shared_ptr<const PreparedScan> prepared_source_, prepared_target_;
+  std::shared_ptr<const registration::PreparedScan> prepared_source_, prepared_target_;
 };
 } // namespace fresco
 #include <fresco/registration/impl/point_to_plane_registration.hpp>

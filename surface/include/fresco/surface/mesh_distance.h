@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+#include <fresco/core/export.h>
 #include <fresco/surface/core/mesh_distance.h>
 #include <pcl/surface/processing.h>
 #include <string>
 namespace fresco {
 /// PCL face of measureMeshDistance(); setters: see MeshDistanceOptions. process() puts out the input mesh coloured by
 /// its distance to the reference (red = zero, green, blue = large), with the distances as field "distance".
-class MeshDistance : public pcl::MeshProcessing {
+class FRESCO_EXPORT MeshDistance : public pcl::MeshProcessing {
 public:
   using Ptr = pcl::shared_ptr<MeshDistance>;
   using ConstPtr = pcl::shared_ptr<const MeshDistance>;

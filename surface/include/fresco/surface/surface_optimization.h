@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include <fresco/common/point_set.h>
+#include <fresco/core/export.h>
+#include <fresco/core/point_set.h>
 #include <fresco/surface/core/surface_optimization.h>
 #include <pcl/point_cloud.h>
 #include <pcl/surface/processing.h>
@@ -8,7 +9,7 @@
 namespace fresco {
 /// PCL face of optimizeSurface(); setters: see SurfaceOptimizationOptions. process() puts out the input mesh with moved
 /// vertices; its other attributes are kept.
-class SurfaceOptimization : public pcl::MeshProcessing {
+class FRESCO_EXPORT SurfaceOptimization : public pcl::MeshProcessing {
 public:
   using Ptr = pcl::shared_ptr<SurfaceOptimization>;
   using ConstPtr = pcl::shared_ptr<const SurfaceOptimization>;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+#include <fresco/core/export.h>
 #include <fresco/texture/core/texture_reconstruction.h>
 #include <memory>
 #include <pcl/PolygonMesh.h>
@@ -16,7 +17,7 @@ namespace fresco {
 ///   pcl::TextureMesh out;
 ///   texture.process(out);
 ///   texture.saveAtlases(folder); // the images that the materials of `out` name
-class TextureReconstruction {
+class FRESCO_EXPORT TextureReconstruction {
 public:
   using Ptr = std::shared_ptr<TextureReconstruction>;
   using ConstPtr = std::shared_ptr<const TextureReconstruction>;

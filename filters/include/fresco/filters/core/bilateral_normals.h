@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include <fresco/common/point_set.h>
-#include <fresco/common/progress.h>
+#include <fresco/core/export.h>
+#include <fresco/core/point_set.h>
+#include <fresco/core/progress.h>
 namespace fresco {
 struct BilateralOptions {
   int rounds = 3;      ///< >= 0; 0 = the input
@@ -30,14 +31,14 @@ struct BilateralResult {
 /// @param normals 3xN, of any length; an input with rounds = 0 comes back as it is
 /// @throws std::invalid_argument if sizes differ or an option is out of range
 /// @throws Cancelled
-BilateralResult smoothNormals(const Points& points, const Points& normals, const BilateralOptions& options = {},
-                              const Progress& progress = {});
+FRESCO_EXPORT BilateralResult smoothNormals(const Points& points, const Points& normals,
+                                            const BilateralOptions& options = {}, const Progress& progress = {});
 
 /// As above with set.points. If set.viewpoints are known, after each of the first two rounds normals beside creases are
 /// compared with the directions that are frequent around, by how the neighbours lie about their planes for the noise
 /// along the beams; a trained network weighs that (docs/filters.md). Normals that do not face their viewpoint stay.
 /// @param normals 3xN, facing the viewpoints; those of the set are not used
 /// @throws std::invalid_argument also if the set's attributes do not fit
-BilateralResult smoothNormals(const PointSet& set, const Points& normals, const BilateralOptions& options = {},
-                              const Progress& progress = {});
+FRESCO_EXPORT BilateralResult smoothNormals(const PointSet& set, const Points& normals,
+                                            const BilateralOptions& options = {}, const Progress& progress = {});
 } // namespace fresco

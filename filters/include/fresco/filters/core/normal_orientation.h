@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include <fresco/common/point_set.h>
+#include <fresco/core/export.h>
+#include <fresco/core/point_set.h>
 namespace fresco {
 /// Turns each normal to the side of its viewpoint: n . (v - p) >= 0. Non-finite points and normals stay as they are.
 /// @param viewpoints 3xN or 3x1
 /// @throws std::invalid_argument if sizes differ
-void orientToViewpoints(const Points& points, const Points& viewpoints, Points& normals, int threads = 0);
+FRESCO_EXPORT void orientToViewpoints(const Points& points, const Points& viewpoints, Points& normals, int threads = 0);
 
 /// Turns normals so that neighbours agree, and closed objects outward, where no viewpoint is known: signs are passed on
 /// along the minimum spanning tree of the graph of the 10 nearest neighbours (Hoppe et al. 1992); whether two normals
@@ -14,5 +15,5 @@ void orientToViewpoints(const Points& points, const Points& viewpoints, Points& 
 /// a whole so that the volume it encloses is positive. Non-finite points and normals stay as they are.
 /// @param normals 3xN unit
 /// @throws std::invalid_argument if sizes differ
-void orientByNeighbors(const Points& points, Points& normals, int threads = 0);
+FRESCO_EXPORT void orientByNeighbors(const Points& points, Points& normals, int threads = 0);
 } // namespace fresco

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include <fresco/common/point_set.h>
-#include <fresco/common/progress.h>
+#include <fresco/core/export.h>
+#include <fresco/core/point_set.h>
+#include <fresco/core/progress.h>
 namespace fresco {
 struct NormalOptions {
   int k = 16; ///< neighbours of the plane fit, the point included, 3..1000; where `radius` is 0: the nearest, or, where
@@ -27,5 +28,6 @@ struct NormalField {
 /// (set.viewpoints); where no viewpoints are known, orientNormals() turns them.
 /// @throws std::invalid_argument if an option is out of range, the set is malformed or a viewpoint is not finite
 /// @throws Cancelled
-NormalField estimateNormals(const PointSet& set, const NormalOptions& options = {}, const Progress& progress = {});
+FRESCO_EXPORT NormalField estimateNormals(const PointSet& set, const NormalOptions& options = {},
+                                          const Progress& progress = {});
 } // namespace fresco

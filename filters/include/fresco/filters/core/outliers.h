@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include <fresco/common/types.h>
+#include <fresco/core/export.h>
+#include <fresco/core/types.h>
 #include <vector>
 namespace fresco {
 struct OutlierOptions {
@@ -17,5 +18,5 @@ struct OutlierOptions {
 /// density of the scan.
 /// @return indices of the points that stay, ascending; finite ones only
 /// @throws std::invalid_argument if an option is out of range
-std::vector<Index> withoutOutliers(const Points& points, const OutlierOptions& options = {});
+FRESCO_EXPORT std::vector<Index> withoutOutliers(const Points& points, const OutlierOptions& options = {});
 } // namespace fresco

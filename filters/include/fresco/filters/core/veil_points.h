@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include <fresco/common/types.h>
+#include <fresco/core/export.h>
+#include <fresco/core/types.h>
 #include <vector>
 namespace fresco {
 struct VeilOptions {
@@ -23,5 +24,6 @@ struct VeilOptions {
 /// @param viewpoints 3xN or 3x1; points of one viewpoint are judged among themselves, all stay if they are 12 or fewer
 /// @return indices of the points that stay, ascending; finite ones only
 /// @throws std::invalid_argument if sizes differ, a viewpoint is not finite or an option is out of range
-std::vector<Index> withoutVeil(const Points& points, const Points& viewpoints, const VeilOptions& options = {});
+FRESCO_EXPORT std::vector<Index> withoutVeil(const Points& points, const Points& viewpoints,
+                                             const VeilOptions& options = {});
 } // namespace fresco

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include <fresco/common/types.h>
+#include <fresco/core/export.h>
+#include <fresco/core/types.h>
 #include <vector>
 namespace fresco {
 /// One point for each occupied cell of a grid through the lowest corner of the bounding box.
@@ -12,5 +13,5 @@ struct VoxelThinning {
 /// Non-finite points are left out.
 /// @param cell side of the cells, length, > 0
 /// @throws std::invalid_argument if `cell` is out of range or the points span more than 2^21 cells along an axis
-VoxelThinning thinByVoxel(const Points& points, float cell, int threads = 0);
+FRESCO_EXPORT VoxelThinning thinByVoxel(const Points& points, float cell, int threads = 0);
 } // namespace fresco

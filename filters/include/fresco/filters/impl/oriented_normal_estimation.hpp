@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include <fresco/common/pcl_conversions.h>
-#include <fresco/common/require.h>
-#include <fresco/filters/core/neighbors.h>
+#include <fresco/core/pcl_conversions.h>
+#include <fresco/core/require.h>
 #include <fresco/filters/oriented_normal_estimation.h>
+#include <fresco/search/neighbors.h>
 #include <pcl/common/copy_point.h>
 #include <pcl/common/point_tests.h>
 namespace fresco {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include <fresco/common/pcl_conversions.h>
+#include <fresco/core/pcl_conversions.h>
 #include <fresco/filters/veil_point_removal.h>
 namespace fresco {
 template <typename PointT>

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include <fresco/common/point_set.h>
+#include <fresco/core/export.h>
+#include <fresco/core/point_set.h>
 #include <fresco/registration/core/scan_registration.h>
 #include <memory>
 #include <optional>
 namespace fresco {
+namespace registration {
 struct PreparedScan;
+}
 
 struct PointToPlaneOptions {
   float max_distance = 0.f; ///< between corresponding points at the start, length; 0 = 20 voxels
@@ -28,22 +31,26 @@ struct PointToPlaneResult {
 
 /// Edge of the thinning cells that suits a scan's extent and density, length.
 /// @throws std::invalid_argument if it has no finite point
-float registrationVoxel(const PointSet& scan);
+FRESCO_EXPORT float registrationVoxel(const PointSet& scan);
 
 /// A scan thinned to `voxel` and coarser, with normals and search trees: what alignPointToPlane() works on.
 /// @param voxel length, > 0
 /// @throws std::invalid_argument if the scan is malformed, voxel is out of range or fewer than 50 points are usable
-std::shared_ptr<const PreparedScan> prepareForRegistration(const PointSet& scan, float voxel, int threads = 0);
+FRESCO_EXPORT std::shared_ptr<const registration::PreparedScan> prepareForRegistration(const PointSet& scan,
+                                                                                       float voxel, int threads = 0);
 
 /// Local registration of two scans: points of each onto the tangent planes of the other (Chen & Medioni 1992, "Object
 /// modelling by registration of multiple range images"), Tukey weights, coarse to fine. Both must have been prepared
 /// with the same voxel.
 /// @param guess 4x4 rigid, target from source
 /// @throws std::invalid_argument if an option is out of range or the guess is not finite
-PointToPlaneResult alignPointToPlane(const PreparedScan& source, const PreparedScan& target,
-                                     const Eigen::Matrix4d& guess, const PointToPlaneOptions& options = {});
+FRESCO_EXPORT PointToPlaneResult alignPointToPlane(const registration::PreparedScan& source,
+                                                   const registration::PreparedScan& target,
+                                                   const Eigen::Matrix4d& guess,
+                                                   const PointToPlaneOptions& options = {});
 
 /// The same of two point sets, prepared with the larger of their registrationVoxel().
-PointToPlaneResult alignPointToPlane(const PointSet& source, const PointSet& target, const Eigen::Matrix4d& guess,
-                                     const PointToPlaneOptions& options = {});
+FRESCO_EXPORT PointToPlaneResult alignPointToPlane(const PointSet& source, const PointSet& target,
+                                                   const Eigen::Matrix4d& guess,
+                                                   const PointToPlaneOptions& options = {});
 } // namespace fresco

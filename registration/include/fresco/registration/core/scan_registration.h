@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include <fresco/common/point_set.h>
-#include <fresco/common/poses.h>
-#include <fresco/common/progress.h>
+#include <fresco/core/export.h>
+#include <fresco/core/point_set.h>
+#include <fresco/core/progress.h>
+#include <fresco/io/pose_file.h>
 #include <functional>
 #include <optional>
 #include <string>
@@ -31,7 +32,7 @@ struct ScanSource {
 };
 
 /// What messages call a scan.
-std::string scanName(const ScanRegistrationOptions& options, Index scan);
+FRESCO_EXPORT std::string scanName(const ScanRegistrationOptions& options, Index scan);
 
 /// One pair of scans at the end.
 struct PairResult {
@@ -81,17 +82,20 @@ struct ScanRegistrationResult {
 /// @throws std::invalid_argument if there is no scan, sizes differ, an attribute is malformed, an option is out of
 /// range or
 ///         the scans differ in size so much that their units must differ
-ScanRegistrationResult registerScans(const std::vector<PointSet>& scans, const std::vector<Pose>& start = {},
-                                     const ScanRegistrationOptions& options = {}, const Progress& progress = {});
+FRESCO_EXPORT ScanRegistrationResult registerScans(const std::vector<PointSet>& scans,
+                                                   const std::vector<Pose>& start = {},
+                                                   const ScanRegistrationOptions& options = {},
+                                                   const Progress& progress = {});
 
 /// The same; at any time one scan is in memory, and thinned copies of all.
-ScanRegistrationResult registerScans(const ScanSource& scans, const std::vector<Pose>& start = {},
-                                     const ScanRegistrationOptions& options = {}, const Progress& progress = {});
+FRESCO_EXPORT ScanRegistrationResult registerScans(const ScanSource& scans, const std::vector<Pose>& start = {},
+                                                   const ScanRegistrationOptions& options = {},
+                                                   const Progress& progress = {});
 
 /// All placed scans in the world, one after the other, without non-finite points. Normals (those of the scans turned,
 /// else estimated) point to each point's own viewpoint, which is kept per point. Colours, intensities and confidences
 /// are kept where all placed scans have them. `origin` differs from zero where the world's coordinates are large.
 /// @throws std::invalid_argument if sizes differ or an attribute is malformed
-PointSet mergeScans(const std::vector<PointSet>& scans, const std::vector<Pose>& poses, int threads = 0);
-PointSet mergeScans(const ScanSource& scans, const std::vector<Pose>& poses, int threads = 0);
+FRESCO_EXPORT PointSet mergeScans(const std::vector<PointSet>& scans, const std::vector<Pose>& poses, int threads = 0);
+FRESCO_EXPORT PointSet mergeScans(const ScanSource& scans, const std::vector<Pose>& poses, int threads = 0);
 } // namespace fresco

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include <cmath>
-#include <fresco/common/pcl_conversions.h>
+#include <fresco/core/pcl_conversions.h>
 #include <fresco/registration/point_to_plane_registration.h>
 #include <pcl/common/point_tests.h>
 #include <pcl/common/transforms.h>

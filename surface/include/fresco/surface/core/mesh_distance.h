@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include <cstdint>
-#include <fresco/common/mesh.h>
-#include <fresco/common/progress.h>
+#include <fresco/core/export.h>
+#include <fresco/core/mesh.h>
+#include <fresco/core/progress.h>
 #include <string>
 namespace fresco {
 /// Distance between two surfaces as Cignoni, Rocchini, Scopigno 1998, "Metro: measuring error on simplified surfaces":
@@ -49,17 +50,18 @@ struct MeshDistanceResult {
 /// @param mesh, reference in one world frame; their origins may differ
 /// @throws std::invalid_argument if one is not measurable (see requireMeasurable), the reference has no extent, or an
 ///         option is out of range
-MeshDistanceResult measureMeshDistance(const TriangleMesh& mesh, const TriangleMesh& reference,
-                                       const MeshDistanceOptions& options = {}, const Progress& progress = {});
+FRESCO_EXPORT MeshDistanceResult measureMeshDistance(const TriangleMesh& mesh, const TriangleMesh& reference,
+                                                     const MeshDistanceOptions& options = {},
+                                                     const Progress& progress = {});
 
 /// MeshDistanceResult::vertex_distances alone.
 /// @throws std::invalid_argument as measureMeshDistance()
-Eigen::VectorXf vertexDistances(const TriangleMesh& mesh, const TriangleMesh& reference, int threads = 0);
+FRESCO_EXPORT Eigen::VectorXf vertexDistances(const TriangleMesh& mesh, const TriangleMesh& reference, int threads = 0);
 
 /// @param name        how errors call the mesh
 /// @param need_faces  false for MeshDistanceOptions::vertex_to_vertex: points without faces will do
 /// @throws std::invalid_argument "NAME: reason" if the mesh has no faces, no area, an index out of range, or a vertex
 /// that
 ///         counts is not finite
-void requireMeasurable(const TriangleMesh& mesh, const std::string& name, bool need_faces = true);
+FRESCO_EXPORT void requireMeasurable(const TriangleMesh& mesh, const std::string& name, bool need_faces = true);
 } // namespace fresco

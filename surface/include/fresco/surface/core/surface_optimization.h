@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include <fresco/common/mesh.h>
-#include <fresco/common/point_set.h>
-#include <fresco/common/progress.h>
+#include <fresco/core/export.h>
+#include <fresco/core/mesh.h>
+#include <fresco/core/point_set.h>
+#include <fresco/core/progress.h>
 #include <vector>
 namespace fresco {
 enum class OptimizationMode {
@@ -62,7 +63,7 @@ struct SurfaceOptimizationResult {
 /// the
 ///         mesh, or an option is out of range
 /// @throws Cancelled if `progress` asks to stop
-SurfaceOptimizationResult optimizeSurface(const TriangleMesh& mesh, const PointSet& points,
-                                          const SurfaceOptimizationOptions& options = {},
-                                          const Progress& progress = {});
+FRESCO_EXPORT SurfaceOptimizationResult optimizeSurface(const TriangleMesh& mesh, const PointSet& points,
+                                                        const SurfaceOptimizationOptions& options = {},
+                                                        const Progress& progress = {});
 } // namespace fresco

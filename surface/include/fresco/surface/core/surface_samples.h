@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include <cstdint>
-#include <fresco/common/mesh.h>
+#include <fresco/core/export.h>
+#include <fresco/core/mesh.h>
 namespace fresco {
 /// Points spread over a surface.
 struct SurfaceSamples {
@@ -13,5 +14,5 @@ struct SurfaceSamples {
 /// 2002, "Shape distributions", eq. 1). The same seed gives the same points on every machine and for any number of
 /// threads.
 /// @throws std::invalid_argument if `count` is not positive, the mesh is not valid or its area is zero
-SurfaceSamples sampleSurface(const TriangleMesh& mesh, Index count, std::uint64_t seed, int threads = 0);
+FRESCO_EXPORT SurfaceSamples sampleSurface(const TriangleMesh& mesh, Index count, std::uint64_t seed, int threads = 0);
 } // namespace fresco

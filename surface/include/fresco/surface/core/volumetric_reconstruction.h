@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include <cstddef>
-#include <fresco/common/mesh.h>
-#include <fresco/common/point_set.h>
-#include <fresco/common/progress.h>
+#include <fresco/core/export.h>
+#include <fresco/core/mesh.h>
+#include <fresco/core/point_set.h>
+#include <fresco/core/progress.h>
 namespace fresco {
 /// Screened Poisson reconstruction over an adaptive octree: Kazhdan, Bolitho, Hoppe 2006, "Poisson Surface
 /// Reconstruction"; Kazhdan, Hoppe 2013, "Screened Poisson Surface Reconstruction". The function is a sum of B-splines
@@ -41,21 +42,21 @@ struct VolumetricResult {
 };
 
 /// @throws std::invalid_argument if an option is out of range
-void validateVolumetricOptions(const VolumetricOptions& options);
+FRESCO_EXPORT void validateVolumetricOptions(const VolumetricOptions& options);
 
 /// @param points with normals that point to the free side
 /// @throws std::invalid_argument if there are no normals, fewer than 4 usable points, all usable points coincide, or an
 ///         option is out of range
 /// @throws Cancelled if `progress` asks to stop
-VolumetricResult reconstructVolumetric(const PointSet& points, const VolumetricOptions& options = {},
-                                       const Progress& progress = {});
+FRESCO_EXPORT VolumetricResult reconstructVolumetric(const PointSet& points, const VolumetricOptions& options = {},
+                                                     const Progress& progress = {});
 
 /// The same; the points are freed as soon as they have been sampled, which lowers the peak of the memory used.
-VolumetricResult reconstructVolumetric(PointSet&& points, const VolumetricOptions& options = {},
-                                       const Progress& progress = {});
+FRESCO_EXPORT VolumetricResult reconstructVolumetric(PointSet&& points, const VolumetricOptions& options = {},
+                                                     const Progress& progress = {});
 
 /// Bytes that reconstructVolumetric() needs at most beside the points themselves, judged from how many octree cells the
 /// points occupy. Costs a fraction of the reconstruction.
 /// @throws as reconstructVolumetric()
-std::size_t estimateMemory(const PointSet& points, const VolumetricOptions& options = {});
+FRESCO_EXPORT std::size_t estimateMemory(const PointSet& points, const VolumetricOptions& options = {});
 } // namespace fresco

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include <fresco/common/pcl_conversions.h>
-#include <fresco/common/require.h>
+#include <fresco/core/pcl_conversions.h>
+#include <fresco/core/require.h>
 #include <fresco/surface/core/error_colors.h>
 #include <fresco/surface/mesh_distance.h>
 #include <utility>

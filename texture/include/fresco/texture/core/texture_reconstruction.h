@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include <cstdint>
-#include <fresco/common/camera.h>
-#include <fresco/common/mesh.h>
-#include <fresco/common/progress.h>
-#include <fresco/common/textured_mesh.h>
+#include <fresco/core/camera.h>
+#include <fresco/core/export.h>
+#include <fresco/core/mesh.h>
+#include <fresco/core/progress.h>
+#include <fresco/core/textured_mesh.h>
 #include <string>
 #include <utility>
 #include <vector>
@@ -75,6 +76,6 @@ struct TextureResult {
 /// @throws std::runtime_error naming the photograph that is missing, no image, or of another size than its camera; if
 /// the
 ///         texture would be larger than a thousand megatexels; Cancelled
-TextureResult reconstructTexture(const TriangleMesh& mesh, const std::vector<TextureView>& views,
-                                 const TextureOptions& options = {}, const Progress& progress = {});
+FRESCO_EXPORT TextureResult reconstructTexture(const TriangleMesh& mesh, const std::vector<TextureView>& views,
+                                               const TextureOptions& options = {}, const Progress& progress = {});
 } // namespace fresco

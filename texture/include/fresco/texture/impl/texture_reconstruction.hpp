@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include <fresco/common/pcl_conversions.h>
-#include <fresco/common/require.h>
+#include <fresco/core/pcl_conversions.h>
+#include <fresco/core/require.h>
+#include <fresco/io/image_io.h>
+#include <fresco/io/texture_mesh_conversions.h>
 #include <fresco/texture/texture_reconstruction.h>
 namespace fresco {
 inline void TextureReconstruction::process(pcl::TextureMesh& output)

@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include <Eigen/Geometry>
+#include <array>
+#include <cstdint>
+#include <cstring>
+#include <fresco/core/export.h>
+#include <fresco/core/mesh.h>
+#include <fresco/core/parallel.h>
+#include <fresco/core/point_set.h>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+/// What the readers and writers of all formats share: points as rows of named columns.
+namespace fresco::core {
+enum class Scalar : std::uint8_t { int8, uint8, int16, uint16, int32, uint32, int64, uint64, float32, float64 };
+
+/// f(T{}) with the C++ type of `type`.
+template <typename Function>
+decltype(auto) visitScalar(Scalar type, Function&& f)
+{
+  switch (type) {
+  case Scalar::int8:
+    return f(std::int8_t{});
+  case Scalar::uint8:
+    return f(std::uint8_t{});
+  case Scalar::int16:
+    return f(std::int16_t{});
+  case Scalar::uint16:
+    return f(std::uint16_t{});
+  case Scalar::int32:
+    return f(std::int32_t{});
+  case Scalar::uint32:
+    return f(std::uint32_t{});
+  case Scalar::int64:
+    return f(std::int64_t{});
+  case Scalar::uint64:
+    return f(std::uint64_t{});
+  case Scalar::float32:
+    return f(float{});
+  case Scalar::float64:
+    return f(double{});
+  }
+  throw std::logic_error("unknown scalar type");
+}
+
+/// Bytes of one value.
+FRESCO_EXPORT std::size_t scalarSize(Scalar type);
+
+template <typename T>
+T loadScalar(const void* at)
+{
+  T value;
+  std::memcpy(&value, at, sizeof(T));
+  return value;
+}
+
+struct Column {
+  std::string name;
+  Scalar type = Scalar::float32;
+  std::size_t count = 1;  ///< values per row, >= 1
+  std::size_t offset = 0; ///< bytes from the begin of a row
+
+  std::size_t bytes() const { return count * scalarSize(type); }
+};
+
+/// Where a cloud was seen from.
+struct SensorPose {
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();
+  Eigen::Quaternionf orientation = Eigen::Quaternionf::Identity();
+};
+
+/// Rows of little-endian values. Columns bear PCL's names: x y z, normal_x normal_y normal_z, rgb (float32, packed
+/// 0RGB) or rgba (uint32, packed ARGB), intensity, confidence, vp_x vp_y vp_z, anything else.
+struct FRESCO_EXPORT PointTable {
+  std::vector<Column> columns;
+  std::size_t stride = 0; ///< bytes per row
+  Index rows = 0;
+  Index width = 0, height = 0; ///< of an organised cloud, width * height = rows; 0 = not organised
+  std::vector<std::uint8_t> data;
+  const std::uint8_t* view = nullptr; ///< rows to be read only, owned by somebody else, instead of `data`
+  std::optional<SensorPose> sensor;
+
+  const Column* find(std::string_view name) const; ///< nullptr if there is none
+  const std::uint8_t* rowsBegin() const { return view ? view : data.data(); }
+  const std::uint8_t* cell(Index row, const Column& column) const
+  {
+    return rowsBegin() + static_cast<std::size_t>(row) * stride + column.offset;
+  }
+  std::uint8_t* cell(Index row, const Column& column)
+  {
+    return data.data() + static_cast<std::size_t>(row) * stride + column.offset;
+  }
+  /// Appends a column to the layout; before data is allocated.
+  void addColumn(const std::string& name, Scalar type, std::size_t count = 1);
+  void allocate(Index row_count); ///< zeros
+  void own();                     ///< copies what `view` shows into `data`
+};
+
+/// body(row, T value) with component `component` of `column` of the rows begin .. end - 1.
+template <typename Body>
+void forEachValue(const PointTable& table, const Column& column, std::size_t component, const Body& body, Index begin,
+                  Index end)
+{
+  visitScalar(column.type, [&](auto zero) {
+    using T = decltype(zero);
+    const std::uint8_t* at = table.cell(begin, column) + component * sizeof(T);
+    for (Index row = begin; row < end; ++row, at += table.stride)
+      body(row, loadScalar<T>(at));
+  });
+}
+
+/// Rows that are converted in one go; a table with fewer starts no thread.
+inline constexpr Index rows_per_task = Index{1} << 16;
+
+/// body(row, T value) of every row, in parallel: a body writes only what belongs to its row.
+template <typename Body>
+void forEachValue(const PointTable& table, const Column& column, std::size_t component, const Body& body)
+{
+  const auto part = [&](Index begin, Index end) { forEachValue(table, column, component, body, begin, end); };
+  parallelRanges(table.rows, 0, part, rows_per_task);
+}
+
+/// Value `component` of every row as float, N.
+FRESCO_EXPORT Eigen::VectorXf columnValues(const PointTable& table, const Column& column, std::size_t component = 0);
+
+/// Columns of these names with one value each; nothing unless all three are there.
+using NameTriple = const char* const (&)[3];
+FRESCO_EXPORT std::optional<std::array<Column, 3>> findTriple(const PointTable& table, NameTriple names);
+inline constexpr const char* xyz_names[3] = {"x", "y", "z"};
+inline constexpr const char* normal_names[3] = {"normal_x", "normal_y", "normal_z"};
+inline constexpr const char* viewpoint_names[3] = {"vp_x", "vp_y", "vp_z"};
+inline constexpr const char* color_names[3] = {"red", "green", "blue"};
+
+/// Column rgb or rgba of four bytes, nullptr if there is none.
+FRESCO_EXPORT const Column* packedColor(const PointTable& table);
+
+/// Joins byte columns red green blue (and alpha) into PCL's packed rgb (rgba), as PCL's own readers do, unless a column
+/// has that name already.
+FRESCO_EXPORT void packColors(PointTable& table);
+
+/// Replaces packed rgb (rgba) by byte columns red green blue (and alpha), unless a column has such a name already.
+FRESCO_EXPORT void unpackColors(PointTable& table);
+
+/// Bounds of finite coordinates and what rounding them to float loses.
+struct CoordinateBounds {
+  Eigen::Array3d low, high, loss;
+
+  double extent() const;     ///< longest side, >= 0
+  bool exceedsFloat() const; ///< float loses more than 1e-6 of the extent
+  /// Centre of the bounds, rounded to a power of two near the extent: short to write and exact to add.
+  Eigen::Vector3d origin() const;
+};
+FRESCO_EXPORT CoordinateBounds coordinateBounds(const PointTable& table, const std::array<Column, 3>& xyz);
+
+/// Values of `names`, row by row, as float32, red green blue as uint8; x y z and vp_x vp_y vp_z as float64 where float
+/// loses more than 1e-6 of the extent of x y z.
+FRESCO_EXPORT PointTable tableOfRows(const std::vector<std::string>& names, const std::vector<double>& values);
+
+/// @throws std::runtime_error if x y z are missing
+FRESCO_EXPORT PointSet tableToPoints(const PointTable& table);
+FRESCO_EXPORT PointTable pointsToTable(const PointSet& set);
+
+/// Vertices and their attributes; faces stay empty. @throws std::runtime_error if x y z are missing
+FRESCO_EXPORT TriangleMesh tableToMesh(const PointTable& table);
+/// Vertices and their attributes.
+FRESCO_EXPORT PointTable meshToTable(const TriangleMesh& mesh);
+} // namespace fresco::core
+/// Readers and writers work on these tables.
+namespace fresco::io {
+using namespace fresco::core;
+}

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include <cstdint>
+#include <fresco/core/export.h>
+#include <fresco/core/image.h>
+#include <string>
+#include <vector>
+namespace fresco {
+/// PNG, JPEG, TIFF, BMP or WebP; 16 bit and alpha are reduced to 8-bit RGB; EXIF orientation is not applied.
+/// @throws std::runtime_error naming the file if it is missing, empty, truncated or no image
+FRESCO_EXPORT Image readImage(const std::string& path);
+
+/// @throws std::runtime_error as readImage, and if the image is not 16 bit with one channel
+FRESCO_EXPORT Image16 readImage16(const std::string& path);
+
+/// PNG or JPEG by extension; whole or not at all.
+/// @param quality of JPEG, 0..100
+FRESCO_EXPORT void writeImage(const std::string& path, const Image& image, int quality = 95);
+
+/// The bytes that writeImage() would put into a file with extension ".png" or ".jpg".
+FRESCO_EXPORT std::vector<std::uint8_t> encodeImage(const Image& image, const std::string& extension, int quality = 95);
+} // namespace fresco

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <fresco/core/cloud_table.h>
+#include <fresco/core/require.h>
+#include <pcl/PCLPointCloud2.h>
+#include <tuple>
+namespace fresco::core {
+namespace {
+using Field = pcl::PCLPointField;
+
+constexpr std::pair<std::uint8_t, Scalar> field_types[] = {
+    {Field::INT8, Scalar::int8},       {Field::UINT8, Scalar::uint8},   {Field::INT16, Scalar::int16},
+    {Field::UINT16, Scalar::uint16},   {Field::INT32, Scalar::int32},   {Field::UINT32, Scalar::uint32},
+    {Field::INT64, Scalar::int64},     {Field::UINT64, Scalar::uint64}, {Field::FLOAT32, Scalar::float32},
+    {Field::FLOAT64, Scalar::float64}, {Field::BOOL, Scalar::uint8}};
+
+std::uint8_t fieldType(Scalar scalar)
+{
+  return std::find_if(std::begin(field_types), std::end(field_types),
+                      [&](auto& entry) { return entry.second == scalar; })
+      ->first;
+}
+
+bool isDense(const PointTable& table)
+{
+  bool finite = true;
+  const auto check = [&](Index, auto value) { finite &= std::isfinite(static_cast<double>(value)); };
+  for (const char* name : xyz_names)
+    if (const Column* column = table.find(name))
+      forEachValue(table, *column, 0, check, 0, table.rows);
+  return finite;
+}
+
+/// Copies the kept columns of every row; `sources` holds their offsets in the cloud.
+void copyRows(const pcl::PCLPointCloud2& cloud, const std::vector<std::size_t>& sources, PointTable& table)
+{
+  for (std::size_t y = 0; y < cloud.height; ++y)
+    for (std::size_t x = 0; x < cloud.width; ++x) {
+      const std::uint8_t* from = cloud.data.data() + y * cloud.row_step + x * cloud.point_step;
+      const auto row = static_cast<Index>(y * cloud.width + x);
+      for (std::size_t c = 0; c < sources.size(); ++c)
+        std::memcpy(table.cell(row, table.columns[c]), from + sources[c], table.columns[c].bytes());
+    }
+}
+} // namespace
+
+Scalar scalarOfField(std::uint8_t datatype)
+{
+  for (const auto& [known, scalar] : field_types)
+    if (known == datatype)
+      return scalar;
+  throw std::invalid_argument(concat("cloud: unknown field type ", static_cast<int>(datatype)));
+}
+
+PointTable tableOfCloud(const pcl::PCLPointCloud2& cloud)
+{
+  require(!cloud.is_bigendian, "cloud: big-endian data");
+  const std::size_t rows = std::size_t{cloud.width} * cloud.height;
+  require(cloud.height <= 1 || std::size_t{cloud.row_step} >= std::size_t{cloud.width} * cloud.point_step,
+          "cloud: row_step ", cloud.row_step, " is too small");
+  const std::size_t last_row = cloud.height > 0 ? (cloud.height - std::size_t{1}) * cloud.row_step : 0;
+  require(rows == 0 || cloud.data.size() >= last_row + std::size_t{cloud.width} * cloud.point_step,
+          "cloud: ", cloud.data.size(), " bytes of data are too few for ", cloud.width, " x ", cloud.height, " points");
+  PointTable table;
+  std::vector<std::size_t> sources;
+  for (const Field& field : cloud.fields) {
+    const std::size_t count = std::max<std::size_t>(field.count, 1);
+    const Scalar type = scalarOfField(field.datatype);
+    require(field.offset + count * scalarSize(type) <= cloud.point_step, "cloud: field ", field.name,
+            " lies outside of the point");
+    if (field.name == "_")
+      continue;
+    table.addColumn(field.name, type, count);
+    sources.push_back(field.offset);
+  }
+  table.allocate(static_cast<Index>(rows));
+  copyRows(cloud, sources, table);
+  if (cloud.height > 1)
+    std::tie(table.width, table.height) = std::pair(static_cast<Index>(cloud.width), static_cast<Index>(cloud.height));
+  return table;
+}
+
+pcl::PCLPointCloud2 cloudOfTable(PointTable table)
+{
+  pcl::PCLPointCloud2 cloud;
+  for (const Column& column : table.columns) {
+    Field field;
+    field.name = column.name;
+    field.offset = static_cast<pcl::uindex_t>(column.offset);
+    field.datatype = fieldType(column.type);
+    field.count = static_cast<pcl::uindex_t>(column.count);
+    cloud.fields.push_back(field);
+  }
+  const bool organised = table.height > 0;
+  cloud.width = static_cast<pcl::uindex_t>(organised ? table.width : table.rows);
+  cloud.height = organised ? static_cast<pcl::uindex_t>(table.height) : 1;
+  cloud.point_step = static_cast<pcl::uindex_t>(table.stride);
+  cloud.row_step = cloud.width * cloud.point_step;
+  cloud.is_bigendian = false;
+  cloud.is_dense = isDense(table);
+  cloud.data = std::move(table.data);
+  return cloud;
+}
+} // namespace fresco::core

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <Eigen/Geometry>
+#include <fresco/core/mesh.h>
+#include <fresco/core/parallel.h>
+#include <fresco/core/require.h>
+namespace fresco {
+namespace {
+Eigen::Vector3d corner(const TriangleMesh& mesh, Index face, int k)
+{
+  return mesh.vertices.col(mesh.faces(k, face)).cast<double>();
+}
+
+/// Twice the area times the unit normal.
+Eigen::Vector3d areaVector(const TriangleMesh& mesh, Index face)
+{
+  const Eigen::Vector3d a = corner(mesh, face, 0);
+  return (corner(mesh, face, 1) - a).cross(corner(mesh, face, 2) - a);
+}
+
+Eigen::Vector3f unitOrZero(const Eigen::Vector3d& v)
+{
+  const double length = v.norm();
+  return length > 0 && std::isfinite(length) ? Eigen::Vector3f((v / length).cast<float>()) : Eigen::Vector3f::Zero();
+}
+
+/// Faces around each vertex, ascending: faces[start[v]] .. faces[start[v + 1]].
+struct VertexFaces {
+  std::vector<Index> start;
+  std::vector<int> faces;
+};
+
+VertexFaces facesOfVertices(const TriangleMesh& mesh)
+{
+  VertexFaces around;
+  around.start.assign(static_cast<std::size_t>(mesh.vertexCount()) + 1, 0);
+  for (Index i = 0; i < mesh.faces.size(); ++i)
+    ++around.start[static_cast<std::size_t>(mesh.faces.data()[i]) + 1];
+  for (std::size_t v = 1; v < around.start.size(); ++v)
+    around.start[v] += around.start[v - 1];
+  around.faces.resize(static_cast<std::size_t>(mesh.faces.size()));
+  std::vector<Index> next(around.start.begin(), around.start.end() - 1);
+  for (Index f = 0; f < mesh.faceCount(); ++f)
+    for (int k = 0; k < 3; ++k)
+      around.faces[static_cast<std::size_t>(next[static_cast<std::size_t>(mesh.faces(k, f))]++)] = static_cast<int>(f);
+  return around;
+}
+} // namespace
+
+void validateMesh(const TriangleMesh& mesh)
+{
+  const Index count = mesh.vertexCount();
+  require(mesh.normals.cols() == 0 || mesh.normals.cols() == count, "mesh: ", count, " vertices, ", mesh.normals.cols(),
+          " normals");
+  require(mesh.colors.cols() == 0 || mesh.colors.cols() == count, "mesh: ", count, " vertices, ", mesh.colors.cols(),
+          " colours");
+  for (const auto& [name, values] : mesh.fields)
+    require(values.size() == count, "mesh: ", count, " vertices, ", values.size(), " values of ", name);
+  for (Index f = 0; f < mesh.faceCount(); ++f)
+    for (int k = 0; k < 3; ++k) {
+      const Index v = mesh.faces(k, f);
+      require(v >= 0 && v < count, "mesh: face ", f, " names vertex ", v, " of ", count);
+      require(mesh.vertices.col(v).allFinite(), "mesh: vertex ", v, " is not finite");
+    }
+}
+
+Points faceNormals(const TriangleMesh& mesh, int threads)
+{
+  Points normals(3, mesh.faceCount());
+  parallelFor(mesh.faceCount(), threads, [&](Index f) { normals.col(f) = unitOrZero(areaVector(mesh, f)); });
+  return normals;
+}
+
+Points vertexNormals(const TriangleMesh& mesh, int threads)
+{
+  const VertexFaces around = facesOfVertices(mesh);
+  Points normals(3, mesh.vertexCount());
+  parallelFor(mesh.vertexCount(), threads, [&](Index v) {
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    for (Index i = around.start[static_cast<std::size_t>(v)]; i < around.start[static_cast<std::size_t>(v) + 1]; ++i)
+      sum += areaVector(mesh, around.faces[static_cast<std::size_t>(i)]);
+    normals.col(v) = unitOrZero(sum);
+  });
+  return normals;
+}
+
+double signedVolume(const TriangleMesh& mesh)
+{
+  if (mesh.faceCount() == 0)
+    return 0;
+  const Eigen::Vector3d center = corner(mesh, 0, 0); // near the mesh, so that large coordinates cancel early
+  return parallelSum(mesh.faceCount(), 0, 0.0, [&](Index f) {
+    const Eigen::Vector3d a = corner(mesh, f, 0) - center;
+    return a.dot((corner(mesh, f, 1) - center).cross(corner(mesh, f, 2) - center)) / 6.0;
+  });
+}
+
+double surfaceArea(const TriangleMesh& mesh)
+{
+  return parallelSum(mesh.faceCount(), 0, 0.0, [&](Index f) { return areaVector(mesh, f).norm() / 2.0; });
+}
+
+TriangleMesh removeUnreferencedVertices(const TriangleMesh& mesh)
+{
+  std::vector<int> renamed(static_cast<std::size_t>(mesh.vertexCount()), -1);
+  for (Index i = 0; i < mesh.faces.size(); ++i)
+    renamed[static_cast<std::size_t>(mesh.faces.data()[i])] = 0;
+  std::vector<Index> kept;
+  for (std::size_t v = 0; v < renamed.size(); ++v)
+    if (renamed[v] == 0) {
+      renamed[v] = static_cast<int>(kept.size());
+      kept.push_back(static_cast<Index>(v));
+    }
+  TriangleMesh result;
+  result.origin = mesh.origin;
+  result.vertices = mesh.vertices(Eigen::all, kept);
+  if (mesh.normals.cols() > 0)
+    result.normals = mesh.normals(Eigen::all, kept);
+  if (mesh.colors.cols() > 0)
+    result.colors = mesh.colors(Eigen::all, kept);
+  for (const auto& [name, values] : mesh.fields)
+    result.fields[name] = values(kept);
+  result.faces = mesh.faces.unaryExpr([&](int v) { return renamed[static_cast<std::size_t>(v)]; });
+  return result;
+}
+} // namespace fresco

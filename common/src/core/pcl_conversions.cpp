@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <cmath>
+#include <fresco/core/cloud_table.h>
+#include <fresco/core/pcl_conversions.h>
+#include <fresco/core/polygon_fans.h>
+#include <fresco/core/require.h>
+#include <limits>
+namespace fresco {
+namespace core {
+namespace {
+/// Coordinates with `origin` added in double, rounded to float.
+template <typename Derived>
+Points inWorld(const Eigen::MatrixBase<Derived>& points, const Eigen::Vector3d& origin)
+{
+  if (origin.isZero(0))
+    return points;
+  return (points.template cast<double>().colwise() + origin).template cast<float>();
+}
+
+const Column* sourceOf(const PointTable& table, const pcl::PCLPointField& field)
+{
+  return table.find(field.name == "rgba" ? "rgb" : field.name);
+}
+
+void convertCell(const PointTable& table, Index row, const Column& from, const pcl::PCLPointField& to, std::uint8_t* at)
+{
+  if (from.name == "rgb") {
+    const std::uint32_t opaque = loadScalar<std::uint32_t>(table.cell(row, from)) | 0xff000000U;
+    std::memcpy(at, &opaque, sizeof(opaque));
+    return;
+  }
+  const float value = loadScalar<float>(table.cell(row, from));
+  visitScalar(scalarOfField(to.datatype), [&](auto zero) {
+    using T = decltype(zero);
+    T stored{};
+    if constexpr (std::is_floating_point_v<T>)
+      stored = static_cast<T>(value);
+    else if (value >= static_cast<float>(std::numeric_limits<T>::max()))
+      stored = std::numeric_limits<T>::max();
+    else if (value > static_cast<float>(std::numeric_limits<T>::min())) // false for NaN
+      stored = static_cast<T>(std::round(value));
+    std::memcpy(at, &stored, sizeof(stored));
+  });
+}
+
+pcl::PCLPointCloud2 verticesToCloud(TriangleMesh vertices, const pcl::PCLHeader& header)
+{
+  vertices.vertices = inWorld(vertices.vertices, vertices.origin);
+  vertices.origin.setZero();
+  vertices.faces.resize(3, 0);
+  pcl::PCLPointCloud2 cloud = cloudOfTable(meshToTable(vertices));
+  cloud.header = header;
+  return cloud;
+}
+
+TriangleMesh cloudToVertices(const pcl::PCLPointCloud2& cloud)
+{
+  try {
+    return tableToMesh(tableOfCloud(cloud));
+  } catch (const std::runtime_error& error) {
+    throw std::invalid_argument(std::string("mesh: ") + error.what());
+  }
+}
+
+void addFans(const pcl::Vertices& polygon, FaceCollector& collector)
+{
+  const std::vector<std::int64_t> corners(polygon.vertices.begin(), polygon.vertices.end());
+  collector.addPolygon(corners.data(), corners.size());
+}
+
+Faces checkedFaces(const FaceCollector& collector, Index vertices)
+{
+  try {
+    return collector.faces(vertices);
+  } catch (const std::runtime_error& error) {
+    throw std::invalid_argument(std::string("mesh: ") + error.what());
+  }
+}
+} // namespace
+
+PointSet pointsFromBytes(const std::vector<pcl::PCLPointField>& fields, const PointBytes& bytes,
+                         const pcl::Indices* indices)
+{
+  PointTable table;
+  for (const pcl::PCLPointField& field : fields)
+    table.columns.push_back(
+        {field.name, scalarOfField(field.datatype), std::max<std::size_t>(field.count, 1), field.offset});
+  table.stride = bytes.stride;
+  const auto* points = static_cast<const std::uint8_t*>(bytes.data);
+  if (!indices) {
+    table.rows = static_cast<Index>(bytes.count);
+    table.view = points;
+    return tableToPoints(table);
+  }
+  table.allocate(static_cast<Index>(indices->size()));
+  for (std::size_t i = 0; i < indices->size(); ++i) {
+    const auto index = static_cast<std::size_t>((*indices)[i]);
+    require((*indices)[i] >= 0 && index < bytes.count, "index ", (*indices)[i], " is not one of ", bytes.count,
+            " points");
+    std::memcpy(table.data.data() + i * bytes.stride, points + index * bytes.stride, bytes.stride);
+  }
+  return tableToPoints(table);
+}
+
+void pointsToBytes(const PointSet& set, const std::vector<pcl::PCLPointField>& fields, void* data, std::size_t stride)
+{
+  PointSet world = set;
+  world.points = inWorld(set.points, set.origin);
+  world.viewpoints = inWorld(set.viewpoints, set.origin);
+  world.origin.setZero();
+  const PointTable table = pointsToTable(world);
+  for (const pcl::PCLPointField& field : fields) {
+    const Column* column = sourceOf(table, field);
+    if (!column)
+      continue;
+    std::uint8_t* at = static_cast<std::uint8_t*>(data) + field.offset;
+    for (Index row = 0; row < table.rows; ++row, at += stride)
+      convertCell(table, row, *column, field, at);
+  }
+}
+} // namespace core
+
+void toPolygonMesh(const TriangleMesh& mesh, pcl::PolygonMesh& polygons)
+{
+  validateMesh(mesh);
+  polygons.cloud = core::verticesToCloud(mesh, polygons.cloud.header);
+  polygons.polygons.resize(static_cast<std::size_t>(mesh.faceCount()));
+  for (Index f = 0; f < mesh.faceCount(); ++f)
+    polygons.polygons[static_cast<std::size_t>(f)].vertices = {mesh.faces(0, f), mesh.faces(1, f), mesh.faces(2, f)};
+}
+
+TriangleMesh toTriangleMesh(const pcl::PolygonMesh& polygons)
+{
+  TriangleMesh mesh = core::cloudToVertices(polygons.cloud);
+  core::FaceCollector collector;
+  for (const pcl::Vertices& polygon : polygons.polygons)
+    core::addFans(polygon, collector);
+  mesh.faces = core::checkedFaces(collector, mesh.vertexCount());
+  return mesh;
+}
+} // namespace fresco

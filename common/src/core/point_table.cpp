@@ -1,0 +1,243 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <cmath>
+#include <fresco/core/point_table.h>
+#include <limits>
+namespace fresco::core {
+namespace {
+struct ByteRun {
+  std::size_t from, to, bytes; ///< offsets in a row
+};
+
+/// Copies the columns that both tables have; neighbours that stay neighbours in one go.
+void copyShared(const PointTable& from, PointTable& to)
+{
+  std::vector<ByteRun> runs;
+  for (const Column& column : to.columns) {
+    const Column* source = from.find(column.name);
+    if (!source)
+      continue;
+    if (!runs.empty() && runs.back().from + runs.back().bytes == source->offset &&
+        runs.back().to + runs.back().bytes == column.offset)
+      runs.back().bytes += column.bytes();
+    else
+      runs.push_back({source->offset, column.offset, column.bytes()});
+  }
+  const std::uint8_t* source = from.rowsBegin();
+  std::uint8_t* target = to.data.data();
+  for (Index row = 0; row < from.rows; ++row, source += from.stride, target += to.stride)
+    for (const ByteRun& run : runs)
+      std::memcpy(target + run.to, source + run.from, run.bytes);
+}
+
+PointTable withoutColumns(const PointTable& table)
+{
+  PointTable empty;
+  empty.width = table.width;
+  empty.height = table.height;
+  empty.sensor = table.sensor;
+  return empty;
+}
+
+bool isColorName(const std::string& name)
+{
+  return name == "red" || name == "green" || name == "blue" || name == "alpha";
+}
+
+bool isByte(const Column* column) { return column && column->type == Scalar::uint8 && column->count == 1; }
+} // namespace
+
+std::size_t scalarSize(Scalar type)
+{
+  return visitScalar(type, [](auto zero) { return sizeof(zero); });
+}
+
+const Column* PointTable::find(std::string_view name) const
+{
+  const auto found = std::find_if(columns.begin(), columns.end(), [&](const Column& c) { return c.name == name; });
+  return found == columns.end() ? nullptr : &*found;
+}
+
+void PointTable::addColumn(const std::string& name, Scalar type, std::size_t count)
+{
+  columns.push_back({name, type, count, stride});
+  stride += columns.back().bytes();
+}
+
+void PointTable::allocate(Index row_count)
+{
+  rows = row_count;
+  data.resize(static_cast<std::size_t>(row_count) * stride);
+}
+
+void PointTable::own()
+{
+  if (view)
+    data.assign(view, view + static_cast<std::size_t>(rows) * stride);
+  view = nullptr;
+}
+
+std::optional<std::array<Column, 3>> findTriple(const PointTable& table, NameTriple names)
+{
+  std::array<Column, 3> triple;
+  for (int i = 0; i < 3; ++i) {
+    const Column* column = table.find(names[i]);
+    if (!column || column->count != 1)
+      return std::nullopt;
+    triple[static_cast<std::size_t>(i)] = *column;
+  }
+  return triple;
+}
+
+const Column* packedColor(const PointTable& table)
+{
+  for (const char* name : {"rgb", "rgba"})
+    if (const Column* column = table.find(name); column && column->count == 1 && scalarSize(column->type) == 4)
+      return column;
+  return nullptr;
+}
+
+Eigen::VectorXf columnValues(const PointTable& table, const Column& column, std::size_t component)
+{
+  Eigen::VectorXf values(table.rows);
+  forEachValue(table, column, component, [&](Index row, auto value) { values[row] = static_cast<float>(value); });
+  return values;
+}
+
+void packColors(PointTable& table)
+{
+  const Column* alpha = table.find("alpha");
+  const auto color = findTriple(table, color_names);
+  if (!color || table.find("rgb") || table.find("rgba") ||
+      !std::all_of(color->begin(), color->end(), [](const Column& c) { return isByte(&c); }))
+    return;
+  const bool has_alpha = isByte(alpha);
+  PointTable packed = withoutColumns(table);
+  for (const Column& column : table.columns) {
+    if (column.name == "red")
+      packed.addColumn(has_alpha ? "rgba" : "rgb", has_alpha ? Scalar::uint32 : Scalar::float32);
+    else if (!isColorName(column.name) || (column.name == "alpha" && !has_alpha))
+      packed.addColumn(column.name, column.type, column.count);
+  }
+  packed.allocate(table.rows);
+  copyShared(table, packed);
+  const Column target = *packedColor(packed);
+  for (Index row = 0; row < table.rows; ++row) {
+    const auto byte = [&](const Column& column) { return std::uint32_t(*table.cell(row, column)); };
+    const std::uint32_t value =
+        (has_alpha ? byte(*alpha) << 24 : 0U) | byte((*color)[0]) << 16 | byte((*color)[1]) << 8 | byte((*color)[2]);
+    std::memcpy(packed.cell(row, target), &value, sizeof(value));
+  }
+  table = std::move(packed);
+}
+
+void unpackColors(PointTable& table)
+{
+  const Column* color = packedColor(table);
+  if (!color)
+    return;
+  const bool has_alpha = color->name == "rgba";
+  for (const char* name : {"red", "green", "blue"})
+    if (table.find(name))
+      return;
+  if (has_alpha && table.find("alpha"))
+    return;
+  PointTable bytes = withoutColumns(table);
+  for (const Column& column : table.columns) {
+    if (&column != color) {
+      bytes.addColumn(column.name, column.type, column.count);
+      continue;
+    }
+    for (const char* name : color_names)
+      bytes.addColumn(name, Scalar::uint8);
+    if (has_alpha)
+      bytes.addColumn("alpha", Scalar::uint8);
+  }
+  bytes.allocate(table.rows);
+  copyShared(table, bytes);
+  const Column first = *bytes.find("red");
+  for (Index row = 0; row < table.rows; ++row) {
+    const auto value = loadScalar<std::uint32_t>(table.cell(row, *color));
+    std::uint8_t* at = bytes.cell(row, first);
+    for (int channel = 0; channel < 3; ++channel)
+      at[channel] = static_cast<std::uint8_t>(value >> (16 - 8 * channel));
+    if (has_alpha)
+      at[3] = static_cast<std::uint8_t>(value >> 24);
+  }
+  table = std::move(bytes);
+}
+
+double CoordinateBounds::extent() const { return std::max(0.0, (high - low).maxCoeff()); }
+
+bool CoordinateBounds::exceedsFloat() const { return !(loss.maxCoeff() <= 1e-6 * extent()); }
+
+Eigen::Vector3d CoordinateBounds::origin() const
+{
+  const double step = extent() > 0 ? std::exp2(std::floor(std::log2(extent()))) : 1.0;
+  const Eigen::Array3d center = (0.5 * (low + high) / step).round() * step;
+  return center.isFinite().select(center, 0.0).matrix();
+}
+
+CoordinateBounds coordinateBounds(const PointTable& table, const std::array<Column, 3>& xyz)
+{
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  CoordinateBounds bounds{Eigen::Array3d::Constant(infinity), Eigen::Array3d::Constant(-infinity),
+                          Eigen::Array3d::Zero()};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    double low = infinity, high = -infinity, loss = 0;
+    forEachValue(
+        table, xyz[axis], 0,
+        [&](Index, auto raw) {
+          const double value = static_cast<double>(raw);
+          if (!std::isfinite(value))
+            return;
+          low = std::min(low, value);
+          high = std::max(high, value);
+          loss = std::max(loss, std::abs(value - static_cast<double>(static_cast<float>(value))));
+        },
+        0, table.rows);
+    const auto at = static_cast<Index>(axis);
+    bounds.low[at] = low;
+    bounds.high[at] = high;
+    bounds.loss[at] = loss;
+  }
+  return bounds;
+}
+
+namespace {
+Scalar rowType(const std::string& name, Scalar coordinate)
+{
+  const auto is_in = [&](NameTriple names) { return std::count(names, names + 3, name) > 0; };
+  return is_in(xyz_names) || is_in(viewpoint_names) ? coordinate : is_in(color_names) ? Scalar::uint8 : Scalar::float32;
+}
+
+PointTable convertRows(const std::vector<std::string>& names, const std::vector<double>& values, Scalar coordinate)
+{
+  PointTable table;
+  for (const std::string& name : names)
+    table.addColumn(name, rowType(name, coordinate));
+  table.allocate(static_cast<Index>(values.size() / names.size()));
+  for (std::size_t c = 0; c < names.size(); ++c)
+    visitScalar(table.columns[c].type, [&](auto zero) {
+      using T = decltype(zero);
+      for (Index row = 0; row < table.rows; ++row) {
+        double value = values[static_cast<std::size_t>(row) * names.size() + c];
+        if constexpr (std::is_integral_v<T>)
+          value = value > 0 ? std::min(std::round(value), 255.0) : 0.0;
+        const T stored = static_cast<T>(value);
+        std::memcpy(table.cell(row, table.columns[c]), &stored, sizeof(T));
+      }
+    });
+  return table;
+}
+} // namespace
+
+PointTable tableOfRows(const std::vector<std::string>& names, const std::vector<double>& values)
+{
+  PointTable table = convertRows(names, values, Scalar::float64);
+  const auto xyz = findTriple(table, xyz_names);
+  if (xyz && coordinateBounds(table, *xyz).exceedsFloat())
+    return table;
+  return convertRows(names, values, Scalar::float32);
+}
+} // namespace fresco::core

@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "io/colmap/colmap_model.h"
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <fresco/core/require.h>
+#include <fresco/io/file.h>
+#include <map>
+namespace fresco::io {
+namespace {
+[[noreturn]] void fail(const std::string& where, const std::string& reason)
+{
+  throw std::runtime_error(where + ": " + reason);
+}
+
+/// Little-endian reader that never reads beyond the end.
+class Bytes {
+public:
+  explicit Bytes(const std::string& path) : path_(path), data_(readFile(path)) {}
+
+  template <typename T>
+  T next()
+  {
+    if (data_.size() - at_ < sizeof(T))
+      fail(path_, "the file is truncated");
+    T value;
+    std::memcpy(&value, data_.data() + at_, sizeof(T));
+    at_ += sizeof(T);
+    return value;
+  }
+
+  std::string text()
+  {
+    const std::size_t end = data_.find('\0', at_);
+    if (end == std::string::npos)
+      fail(path_, "the file is truncated");
+    std::string word = data_.substr(at_, end - at_);
+    at_ = end + 1;
+    return word;
+  }
+
+  void skip(std::uint64_t count, std::size_t size)
+  {
+    if (count > (data_.size() - at_) / size)
+      fail(path_, "the file is truncated");
+    at_ += static_cast<std::size_t>(count) * size;
+  }
+
+private:
+  std::string path_, data_;
+  std::size_t at_ = 0;
+};
+} // namespace
+
+int parameterCount(const std::string& model)
+{
+  static const std::map<std::string, int> counts = {
+      {"SIMPLE_PINHOLE", 3}, {"PINHOLE", 4}, {"SIMPLE_RADIAL", 4}, {"RADIAL", 5}, {"OPENCV", 8}};
+  const auto found = counts.find(model);
+  return found == counts.end() ? -1 : found->second;
+}
+
+std::string modelName(int id)
+{
+  static const char* const names[] = {"SIMPLE_PINHOLE", "PINHOLE", "SIMPLE_RADIAL", "RADIAL", "OPENCV"};
+  return id >= 0 && id < 5 ? names[id] : "";
+}
+
+CameraModel makeCamera(const std::string& model, std::uint64_t width, std::uint64_t height,
+                       const std::vector<double>& p, const std::string& where)
+{
+  const int wanted = parameterCount(model);
+  if (wanted < 0)
+    fail(where, "camera model " + model + " is none of SIMPLE_PINHOLE, PINHOLE, SIMPLE_RADIAL, RADIAL, OPENCV");
+  if (static_cast<int>(p.size()) != wanted)
+    fail(where, concat("camera model ", model, " has ", wanted, " parameters, not ", p.size()));
+  if (!std::all_of(p.begin(), p.end(), [](double value) { return std::isfinite(value); }))
+    fail(where, "a camera parameter is not finite");
+  if (width < 1 || height < 1 || width > 1000000 || height > 1000000)
+    fail(where, concat("an image of ", width, "x", height, " pixels"));
+  const bool two_focal_lengths = model == "PINHOLE" || model == "OPENCV";
+  const std::size_t center = two_focal_lengths ? 2 : 1;
+  CameraModel camera;
+  camera.width = static_cast<int>(width);
+  camera.height = static_cast<int>(height);
+  camera.fx = p[0];
+  camera.fy = two_focal_lengths ? p[1] : p[0];
+  camera.cx = p[center];
+  camera.cy = p[center + 1];
+  double* const distortion[] = {&camera.k1, &camera.k2, &camera.p1, &camera.p2};
+  for (std::size_t i = center + 2; i < p.size(); ++i)
+    *distortion[i - center - 2] = p[i];
+  if (!(camera.fx > 0 && camera.fy > 0))
+    fail(where, "a focal length is not positive");
+  return camera;
+}
+
+Eigen::Isometry3d makePose(const double (&q)[4], const double (&t)[3], const std::string& where)
+{
+  const Eigen::Quaterniond rotation(q[0], q[1], q[2], q[3]);
+  const Eigen::Vector3d translation(t[0], t[1], t[2]);
+  if (!(rotation.coeffs().allFinite() && rotation.norm() > 1e-6 && translation.allFinite()))
+    fail(where, "the pose is not finite or has no rotation");
+  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
+  T.linear() = rotation.normalized().toRotationMatrix();
+  T.translation() = translation;
+  return T;
+}
+
+CameraSet joinEntries(const std::string& path, const std::vector<CameraEntry>& cameras, std::vector<ImageEntry> images)
+{
+  CameraSet set;
+  std::map<std::uint64_t, int> numbers;
+  for (const CameraEntry& camera : cameras) {
+    numbers[camera.id] = static_cast<int>(set.cameras.size());
+    set.cameras.push_back(camera.model);
+  }
+  if (images.empty())
+    fail(path, "no image in it");
+  std::stable_sort(images.begin(), images.end(), [](const auto& a, const auto& b) { return a.id < b.id; });
+  for (const ImageEntry& image : images) {
+    const auto camera = numbers.find(image.camera);
+    if (camera == numbers.end())
+      fail(path, concat("image ", image.id, " names camera ", image.camera, ", which is not there"));
+    if (image.name.empty())
+      fail(path, concat("image ", image.id, " has no name"));
+    set.views.push_back({image.name, camera->second, image.T_camera_world});
+  }
+  return set;
+}
+
+std::vector<CameraEntry> readCamerasBinary(const std::string& path)
+{
+  Bytes bytes(path);
+  std::vector<CameraEntry> cameras;
+  for (auto left = bytes.next<std::uint64_t>(); left > 0; --left) {
+    const auto id = bytes.next<std::uint32_t>();
+    const auto model = bytes.next<std::int32_t>();
+    const auto width = bytes.next<std::uint64_t>(), height = bytes.next<std::uint64_t>();
+    const std::string name = modelName(model);
+    if (name.empty())
+      fail(path,
+           concat("camera model number ", model, " is none of SIMPLE_PINHOLE, PINHOLE, SIMPLE_RADIAL, RADIAL, OPENCV"));
+    std::vector<double> parameters(static_cast<std::size_t>(parameterCount(name)));
+    for (double& value : parameters)
+      value = bytes.next<double>();
+    cameras.push_back({id, makeCamera(name, width, height, parameters, path)});
+  }
+  return cameras;
+}
+
+std::vector<ImageEntry> readImagesBinary(const std::string& path)
+{
+  Bytes bytes(path);
+  std::vector<ImageEntry> images;
+  for (auto left = bytes.next<std::uint64_t>(); left > 0; --left) {
+    ImageEntry image;
+    image.id = bytes.next<std::uint32_t>();
+    double q[4], t[3];
+    for (double& value : q)
+      value = bytes.next<double>();
+    for (double& value : t)
+      value = bytes.next<double>();
+    image.camera = bytes.next<std::uint32_t>();
+    image.name = bytes.text();
+    bytes.skip(bytes.next<std::uint64_t>(),
+               2 * sizeof(double) + sizeof(std::uint64_t)); // x, y, id of each feature point
+    image.T_camera_world = makePose(q, t, path);
+    images.push_back(image);
+  }
+  return images;
+}
+} // namespace fresco::io

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include <cstdint>
+#include <fresco/core/camera.h>
+#include <string>
+#include <vector>
+/// Parts that COLMAP's text and binary models share. `where` names file and place in errors.
+namespace fresco::io {
+struct CameraEntry {
+  std::uint64_t id = 0;
+  CameraModel model;
+};
+
+struct ImageEntry {
+  std::uint64_t id = 0, camera = 0;
+  std::string name;
+  Eigen::Isometry3d T_camera_world = Eigen::Isometry3d::Identity();
+};
+
+/// Number of parameters of a camera model by COLMAP's name; -1 if fresco does not read that model.
+int parameterCount(const std::string& model);
+
+/// COLMAP's name of the model with this number in binary files; "" if fresco does not read it.
+std::string modelName(int id);
+
+/// @throws std::runtime_error naming `where`
+CameraModel makeCamera(const std::string& model, std::uint64_t width, std::uint64_t height,
+                       const std::vector<double>& parameters, const std::string& where);
+
+/// @param q quaternion w x y z, normalised here
+Eigen::Isometry3d makePose(const double (&q)[4], const double (&t)[3], const std::string& where);
+
+/// Views in the order of their ids. @throws std::runtime_error if an image names an unknown camera or there is none
+CameraSet joinEntries(const std::string& path, const std::vector<CameraEntry>& cameras, std::vector<ImageEntry> images);
+
+std::vector<CameraEntry> readCamerasBinary(const std::string& path);
+std::vector<ImageEntry> readImagesBinary(const std::string& path);
+} // namespace fresco::io

@@ -1,0 +1,262 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "io/mesh/obj.h"
+#include "io/points/text_numbers.h"
+#include <algorithm>
+#include <fresco/core/require.h>
+#include <limits>
+namespace fresco::io {
+namespace {
+/// Next word of a statement; a backslash at the end of a line continues it.
+std::string_view nextWord(TextScanner& scanner)
+{
+  std::string_view word = scanner.word();
+  while (word == "\\" && scanner.atLineEnd() && !scanner.done()) {
+    scanner.nextLine();
+    word = scanner.word();
+  }
+  return word;
+}
+
+struct Corner {
+  int vertex = -1, texcoord = -1, normal = -1;
+};
+
+class ObjParser {
+public:
+  explicit ObjParser(std::string_view text) : scanner_(text) {}
+
+  ObjContent parse()
+  {
+    try {
+      for (; !scanner_.done(); scanner_.nextLine())
+        parseStatement();
+    } catch (const std::exception& error) {
+      throw std::runtime_error(concat("line ", scanner_.line(), ": ", error.what()));
+    }
+    if (content_.vertices.empty())
+      throw std::runtime_error("no vertices");
+    finishColors();
+    checkIndices();
+    return std::move(content_);
+  }
+
+private:
+  void parseStatement()
+  {
+    const std::string_view keyword = nextWord(scanner_);
+    if (keyword == "v")
+      parseVertex();
+    else if (keyword == "vn")
+      append(content_.normals, 3);
+    else if (keyword == "vt")
+      append(content_.texcoords, 2);
+    else if (keyword == "f" || keyword == "fo")
+      parseFace();
+    else if (keyword == "usemtl")
+      useMaterial(std::string(restOfStatement()));
+    else if (keyword == "mtllib")
+      parseLibraries();
+  }
+
+  template <typename T>
+  void append(std::vector<T>& values, int count)
+  {
+    for (int i = 0; i < count; ++i)
+      values.push_back(parseNumber<T>(nextWord(scanner_)));
+  }
+
+  void parseVertex()
+  {
+    append(content_.vertices, 3);
+    double extra[4];
+    std::size_t count = 0;
+    for (std::string_view word = nextWord(scanner_); !word.empty() && count < 4; word = nextWord(scanner_))
+      extra[count++] = parseNumber<double>(word);
+    if (count < 3)
+      return;
+    const auto row = content_.vertices.size() / 3 - 1;
+    colors_.resize(3 * row, 1.0);
+    colors_.insert(colors_.end(), extra + count - 3, extra + count);
+  }
+
+  Corner parseCorner(std::string_view word) const
+  {
+    Corner corner;
+    int* const slots[3] = {&corner.vertex, &corner.texcoord, &corner.normal};
+    const std::size_t counts[3] = {content_.vertices.size() / 3, content_.texcoords.size() / 2,
+                                   content_.normals.size() / 3};
+    for (int k = 0; k < 3 && !word.empty(); ++k) {
+      const std::size_t slash = std::min(word.find('/'), word.size());
+      if (slash > 0)
+        *slots[k] = absolute(parseNumber<std::int64_t>(word.substr(0, slash)), counts[k]);
+      word.remove_prefix(std::min(slash + 1, word.size()));
+    }
+    return corner;
+  }
+
+  /// From 1, or negative counted from the end so far. The upper end is checked when all of the file is known.
+  static int absolute(std::int64_t index, std::size_t count)
+  {
+    const std::int64_t from_zero = index > 0 ? index - 1 : static_cast<std::int64_t>(count) + index;
+    if (index == 0 || from_zero < 0 || from_zero > std::numeric_limits<int>::max())
+      throw std::runtime_error(concat("index ", index, " is out of range"));
+    return static_cast<int>(from_zero);
+  }
+
+  void parseFace()
+  {
+    corners_.clear();
+    for (std::string_view word = nextWord(scanner_); !word.empty(); word = nextWord(scanner_))
+      corners_.push_back(parseCorner(word));
+    if (corners_.size() < 3)
+      throw std::runtime_error("a face has fewer than 3 corners");
+    for (std::size_t i = 2; i < corners_.size(); ++i) {
+      const Corner &a = corners_[0], &b = corners_[i - 1], &c = corners_[i];
+      content_.triangles.push_back({{a.vertex, b.vertex, c.vertex},
+                                    {a.texcoord, b.texcoord, c.texcoord},
+                                    {a.normal, b.normal, c.normal},
+                                    material_});
+    }
+  }
+
+  void useMaterial(const std::string& name)
+  {
+    auto& names = content_.materials;
+    const auto found = std::find(names.begin(), names.end(), name);
+    material_ = static_cast<int>(found - names.begin());
+    if (found == names.end())
+      names.push_back(name);
+  }
+
+  void parseLibraries()
+  {
+    const std::string_view rest = restOfStatement();
+    if (!rest.empty())
+      content_.libraries.emplace_back(rest);
+  }
+
+  /// Names may hold blanks.
+  std::string_view restOfStatement()
+  {
+    const std::string_view first = scanner_.word();
+    std::string_view last = first;
+    for (std::string_view word = scanner_.word(); !word.empty(); word = scanner_.word())
+      last = word;
+    return {first.data(), static_cast<std::size_t>(last.data() + last.size() - first.data())};
+  }
+
+  /// Colours beside the coordinates: 0..1 become 0..255, vertices without colour white.
+  void finishColors()
+  {
+    if (colors_.empty())
+      return;
+    const std::size_t count = content_.vertices.size() / 3;
+    colors_.resize(3 * count, 1.0);
+    const bool is_unit = std::none_of(colors_.begin(), colors_.end(), [](double value) { return value > 1.0; });
+    std::vector<double> joined(6 * count);
+    for (std::size_t i = 0; i < count; ++i)
+      for (std::size_t k = 0; k < 3; ++k) {
+        joined[6 * i + k] = content_.vertices[3 * i + k];
+        joined[6 * i + 3 + k] = colors_[3 * i + k] * (is_unit ? 255.0 : 1.0);
+      }
+    content_.vertices = std::move(joined);
+    content_.has_colors = true;
+  }
+
+  void checkIndices() const
+  {
+    const Index counts[3] = {content_.vertexCount(), static_cast<Index>(content_.texcoords.size() / 2),
+                             static_cast<Index>(content_.normals.size() / 3)};
+    for (const ObjTriangle& triangle : content_.triangles)
+      for (std::size_t k = 0; k < 3; ++k) {
+        const int indices[3] = {triangle.vertices[k], triangle.texcoords[k], triangle.normals[k]};
+        for (int kind = 0; kind < 3; ++kind)
+          if (indices[kind] >= counts[kind] || (kind == 0 && indices[kind] < 0))
+            throw std::runtime_error(
+                concat("a face names element ", Index{indices[kind]} + 1, ", there are ", counts[kind]));
+      }
+  }
+
+  TextScanner scanner_;
+  ObjContent content_;
+  std::vector<double> colors_;
+  std::vector<Corner> corners_;
+  int material_ = -1;
+};
+
+/// 3 values per vertex; empty if the file's normals belong to no vertex.
+std::vector<double> normalsPerVertex(const ObjContent& content)
+{
+  const auto count = static_cast<std::size_t>(content.vertexCount());
+  std::vector<double> sums(3 * count, 0.0);
+  std::vector<int> sole(count, -1); // the one normal of a vertex so far, -2: several
+  bool any = false;
+  const auto add = [&](std::size_t vertex, int normal) {
+    for (std::size_t k = 0; k < 3; ++k)
+      sums[3 * vertex + k] += content.normals[3 * static_cast<std::size_t>(normal) + k];
+  };
+  for (const ObjTriangle& triangle : content.triangles)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto vertex = static_cast<std::size_t>(triangle.vertices[k]);
+      const int normal = triangle.normals[k];
+      if (normal < 0 || sole[vertex] == normal)
+        continue;
+      any = true;
+      add(vertex, normal);
+      sole[vertex] = sole[vertex] == -1 ? normal : -2;
+    }
+  if (!any)
+    return content.normals.size() == sums.size() ? content.normals : std::vector<double>();
+  for (std::size_t vertex = 0; vertex < count; ++vertex)
+    if (sole[vertex] == -2)
+      Eigen::Map<Eigen::Vector3d>(sums.data() + 3 * vertex).normalize();
+  return sums;
+}
+} // namespace
+
+ObjContent parseObj(std::string_view content) { return ObjParser(content).parse(); }
+
+PointTable objVertices(const ObjContent& content)
+{
+  std::vector<std::string> names(std::begin(xyz_names), std::end(xyz_names));
+  if (content.has_colors)
+    names.insert(names.end(), std::begin(color_names), std::end(color_names));
+  const std::vector<double> normals = normalsPerVertex(content);
+  if (normals.empty())
+    return tableOfRows(names, content.vertices);
+  const std::size_t width = content.valuesPerVertex();
+  names.insert(names.end(), std::begin(normal_names), std::end(normal_names));
+  std::vector<double> rows;
+  rows.reserve(content.vertices.size() + normals.size());
+  for (std::size_t i = 0; i < normals.size() / 3; ++i) {
+    rows.insert(rows.end(), content.vertices.data() + width * i, content.vertices.data() + width * (i + 1));
+    rows.insert(rows.end(), normals.data() + 3 * i, normals.data() + 3 * (i + 1));
+  }
+  return tableOfRows(names, rows);
+}
+
+Faces objFaces(const ObjContent& content)
+{
+  Faces faces(3, static_cast<Index>(content.triangles.size()));
+  for (Index f = 0; f < faces.cols(); ++f) {
+    const auto& corners = content.triangles[static_cast<std::size_t>(f)].vertices;
+    faces.col(f) << corners[0], corners[1], corners[2];
+  }
+  return faces;
+}
+
+std::vector<std::pair<std::string, std::string>> parseMtl(std::string_view content)
+{
+  std::vector<std::pair<std::string, std::string>> materials;
+  TextScanner scanner(content);
+  while (!scanner.done()) {
+    const std::string_view keyword = scanner.word();
+    const std::string_view rest = scanner.restOfLine();
+    if (keyword == "newmtl")
+      materials.emplace_back(rest, "");
+    else if (keyword == "map_Kd" && !materials.empty())
+      materials.back().second = rest;
+  }
+  return materials;
+}
+} // namespace fresco::io

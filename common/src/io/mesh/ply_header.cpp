@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "io/mesh/ply.h"
+#include "io/points/text_numbers.h"
+#include <algorithm>
+#include <fresco/core/require.h>
+namespace fresco::io {
+namespace {
+Scalar parseType(std::string_view word)
+{
+  static constexpr std::pair<std::string_view, Scalar> types[] = {
+      {"char", Scalar::int8},      {"int8", Scalar::int8},       {"uchar", Scalar::uint8},
+      {"uint8", Scalar::uint8},    {"short", Scalar::int16},     {"int16", Scalar::int16},
+      {"ushort", Scalar::uint16},  {"uint16", Scalar::uint16},   {"int", Scalar::int32},
+      {"int32", Scalar::int32},    {"uint", Scalar::uint32},     {"uint32", Scalar::uint32},
+      {"float", Scalar::float32},  {"float32", Scalar::float32}, {"double", Scalar::float64},
+      {"float64", Scalar::float64}};
+  for (const auto& [name, type] : types)
+    if (name == word)
+      return type;
+  throw std::runtime_error(concat("PLY header: unknown type '", word.substr(0, 40), "'"));
+}
+
+bool isInteger(Scalar type) { return type != Scalar::float32 && type != Scalar::float64; }
+
+PlyFormat parseFormat(std::string_view word)
+{
+  if (word == "ascii")
+    return PlyFormat::ascii;
+  if (word == "binary_little_endian")
+    return PlyFormat::little_endian;
+  if (word == "binary_big_endian")
+    return PlyFormat::big_endian;
+  throw std::runtime_error(concat("PLY header: unknown format '", word.substr(0, 40), "'"));
+}
+
+PlyProperty parseProperty(TextScanner& scanner)
+{
+  PlyProperty property;
+  std::string_view word = scanner.word();
+  if (word == "list") {
+    property.count_type = parseType(scanner.word());
+    if (!isInteger(*property.count_type))
+      throw std::runtime_error("PLY header: length of a list is no integer");
+    word = scanner.word();
+  }
+  property.type = parseType(word);
+  property.name = scanner.word();
+  if (property.name.empty())
+    throw std::runtime_error("PLY header: property without a name");
+  return property;
+}
+
+PlyElement parseElement(TextScanner& scanner)
+{
+  PlyElement element;
+  element.name = scanner.word();
+  element.count = parseNumber<std::uint64_t>(scanner.word());
+  return element;
+}
+
+/// One line of the header. @return false at its end
+bool parseLine(TextScanner& scanner, PlyHeader& header, bool& has_format)
+{
+  const std::string_view keyword = scanner.word();
+  if (keyword == "end_header")
+    return false;
+  if (keyword == "format") {
+    header.format = parseFormat(scanner.word());
+    has_format = true;
+  } else if (keyword == "element") {
+    header.elements.push_back(parseElement(scanner));
+  } else if (keyword == "property") {
+    if (header.elements.empty())
+      throw std::runtime_error("PLY header: property before any element");
+    header.elements.back().properties.push_back(parseProperty(scanner));
+  } else if (keyword != "comment" && keyword != "obj_info" && !keyword.empty()) {
+    throw std::runtime_error(concat("PLY header: unknown keyword '", keyword.substr(0, 40), "'"));
+  }
+  return true;
+}
+} // namespace
+
+bool PlyElement::hasList() const
+{
+  return std::any_of(properties.begin(), properties.end(),
+                     [](const PlyProperty& p) { return p.count_type.has_value(); });
+}
+
+std::size_t PlyElement::fixedSize() const
+{
+  std::size_t bytes = 0;
+  for (const PlyProperty& property : properties)
+    bytes += scalarSize(property.count_type.value_or(property.type));
+  return bytes;
+}
+
+PlyHeader parsePlyHeader(std::string_view content)
+{
+  TextScanner scanner(content);
+  if (scanner.restOfLine() != "ply")
+    throw std::runtime_error("not a PLY file");
+  PlyHeader header;
+  bool has_format = false;
+  while (parseLine(scanner, header, has_format)) {
+    scanner.nextLine();
+    if (scanner.done())
+      throw std::runtime_error("PLY header ends early");
+  }
+  if (!has_format)
+    throw std::runtime_error("PLY header: no format");
+  scanner.nextLine();
+  header.size = content.size() - scanner.remaining();
+  return header;
+}
+} // namespace fresco::io

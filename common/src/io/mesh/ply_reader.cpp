@@ -1,0 +1,286 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "io/mesh/ply.h"
+#include "io/points/text_numbers.h"
+#include <algorithm>
+#include <cmath>
+#include <fresco/core/polygon_fans.h>
+#include <fresco/core/require.h>
+#include <limits>
+namespace fresco::io {
+namespace {
+[[noreturn]] void failEarly(const PlyElement& element)
+{
+  throw std::runtime_error(concat("truncated: ", element.count, " rows of '", element.name, "' do not fit"));
+}
+
+/// Values one after the other from the data of a binary file.
+template <bool Swap>
+class BinarySource {
+public:
+  explicit BinarySource(std::string_view data) : at_(data.data()), end_(data.data() + data.size()) {}
+
+  template <typename T>
+  T next()
+  {
+    if (remaining() < sizeof(T))
+      throw std::runtime_error("truncated");
+    char bytes[sizeof(T)];
+    std::copy(at_, at_ + sizeof(T), bytes);
+    if constexpr (Swap)
+      std::reverse(bytes, bytes + sizeof(T));
+    at_ += sizeof(T);
+    return loadScalar<T>(bytes);
+  }
+  /// Rows without lists are in the file what they are in memory. @return where `bytes` of them begin, or nullptr
+  const std::uint8_t* takeRows(std::size_t bytes)
+  {
+    if (Swap || bytes > remaining())
+      return nullptr;
+    at_ += bytes;
+    return reinterpret_cast<const std::uint8_t*>(at_ - bytes);
+  }
+  /// Appends the rows that follow and are a list of three, as long as they are. @return their number
+  std::uint64_t copyTriangles(std::uint64_t most, FaceCollector& collector)
+  {
+    constexpr std::size_t row_bytes = 1 + 3 * sizeof(int);
+    std::uint64_t rows = 0;
+    for (; !Swap && rows < most && remaining() >= row_bytes && *at_ == 3; ++rows, at_ += row_bytes)
+      collector.addTriangle(loadScalar<std::array<int, 3>>(at_ + 1));
+    return rows;
+  }
+  std::size_t remaining() const { return static_cast<std::size_t>(end_ - at_); }
+  static std::size_t leastBytes(const PlyElement& element) { return element.fixedSize(); }
+  static std::size_t leastItemBytes(Scalar type) { return scalarSize(type); }
+
+private:
+  const char* at_;
+  const char* end_;
+};
+
+/// Values one after the other from the data of an ASCII file.
+class TextSource {
+public:
+  explicit TextSource(std::string_view data) : scanner_(data) {}
+
+  template <typename T>
+  T next()
+  {
+    return parseNumber<T>(scanner_.wordAcrossLines());
+  }
+  static const std::uint8_t* takeRows(std::size_t) { return nullptr; }
+  static std::uint64_t copyTriangles(std::uint64_t, FaceCollector&) { return 0; }
+  /// The last word of a file needs no separator.
+  std::size_t remaining() const { return scanner_.remaining() + 1; }
+  static std::size_t leastBytes(const PlyElement& element) { return 2 * element.properties.size(); }
+  static std::size_t leastItemBytes(Scalar) { return 2; }
+
+private:
+  TextScanner scanner_;
+};
+
+/// Length of a list, checked against the rest of the file.
+template <typename Source>
+std::size_t nextLength(Source& source, const PlyProperty& list)
+{
+  return visitScalar(*list.count_type, [&](auto zero) -> std::size_t {
+    const auto raw = source.template next<decltype(zero)>();
+    const auto length = static_cast<std::int64_t>(raw);
+    if (length < 0 || static_cast<std::uint64_t>(length) > source.remaining() / Source::leastItemBytes(list.type))
+      throw std::runtime_error(concat("truncated: a list of ", length, " values does not fit"));
+    return static_cast<std::size_t>(length);
+  });
+}
+
+template <typename Source>
+void skipValues(Source& source, Scalar type, std::size_t count)
+{
+  visitScalar(type, [&](auto zero) {
+    for (std::size_t i = 0; i < count; ++i)
+      source.template next<decltype(zero)>();
+  });
+}
+
+template <typename Source>
+void skipProperty(Source& source, const PlyProperty& property)
+{
+  skipValues(source, property.type, property.count_type ? nextLength(source, property) : 1);
+}
+
+template <typename Source>
+void checkSize(const Source& source, const PlyElement& element)
+{
+  const std::size_t least = Source::leastBytes(element);
+  if (least > 0 && element.count > source.remaining() / least)
+    failEarly(element);
+  if (element.count > static_cast<std::uint64_t>(std::numeric_limits<int>::max()))
+    throw std::runtime_error(concat("too many rows of '", element.name, "'"));
+}
+
+std::string columnName(const std::string& property)
+{
+  static constexpr std::pair<const char*, const char*> names[] = {
+      {"nx", "normal_x"},         {"ny", "normal_y"}, {"nz", "normal_z"},       {"diffuse_red", "red"}, {"r", "red"},
+      {"diffuse_green", "green"}, {"g", "green"},     {"diffuse_blue", "blue"}, {"b", "blue"}};
+  for (const auto& [from, to] : names)
+    if (property == from)
+      return to;
+  return property;
+}
+
+template <typename Source>
+PointTable readVertices(Source& source, const PlyElement& element)
+{
+  PointTable table;
+  for (const PlyProperty& property : element.properties)
+    if (!property.count_type)
+      table.addColumn(columnName(property.name), property.type);
+  if (table.columns.empty())
+    throw std::runtime_error("vertices without properties");
+  table.rows = static_cast<Index>(element.count);
+  if (!element.hasList())
+    table.view = source.takeRows(static_cast<std::size_t>(element.count) * table.stride);
+  if (table.view)
+    return table;
+  table.allocate(table.rows);
+  std::uint8_t* at = table.data.data();
+  for (std::uint64_t row = 0; row < element.count; ++row)
+    for (const PlyProperty& property : element.properties) {
+      if (property.count_type) {
+        skipProperty(source, property);
+        continue;
+      }
+      visitScalar(property.type, [&](auto zero) {
+        const auto value = source.template next<decltype(zero)>();
+        std::memcpy(at, &value, sizeof(value));
+        at += sizeof(value);
+      });
+    }
+  return table;
+}
+
+template <typename Source>
+void readList(Source& source, const PlyProperty& list, std::vector<std::int64_t>& items)
+{
+  items.resize(nextLength(source, list));
+  visitScalar(list.type, [&](auto zero) {
+    using T = decltype(zero);
+    if constexpr (std::is_floating_point_v<T>)
+      throw std::runtime_error("vertex indices are no integers");
+    else
+      for (std::int64_t& item : items)
+        item = static_cast<std::int64_t>(source.template next<T>());
+  });
+}
+
+bool isIndexList(const PlyProperty& property)
+{
+  return property.count_type && (property.name == "vertex_indices" || property.name == "vertex_index");
+}
+
+bool isPlainIndexList(const PlyProperty& property)
+{
+  return isIndexList(property) && property.count_type == Scalar::uint8 &&
+         (property.type == Scalar::int32 || property.type == Scalar::uint32);
+}
+
+template <typename Source>
+void readFaces(Source& source, const PlyElement& element, FaceCollector& collector)
+{
+  const bool strips = element.name == "tristrips";
+  const bool plain = !strips && element.properties.size() == 1 && isPlainIndexList(element.properties[0]);
+  std::vector<std::int64_t> corners;
+  for (std::uint64_t row = 0; row < element.count; ++row) {
+    if (plain)
+      row += source.copyTriangles(element.count - row, collector);
+    if (row == element.count)
+      break;
+    for (const PlyProperty& property : element.properties) {
+      if (!isIndexList(property)) {
+        skipProperty(source, property);
+        continue;
+      }
+      readList(source, property, corners);
+      if (strips)
+        collector.addStrip(corners.data(), corners.size());
+      else
+        collector.addPolygon(corners.data(), corners.size());
+    }
+  }
+}
+
+template <typename Source>
+void skipElement(Source& source, const PlyElement& element)
+{
+  for (std::uint64_t row = 0; row < element.count && !element.properties.empty(); ++row)
+    for (const PlyProperty& property : element.properties)
+      skipProperty(source, property);
+}
+
+/// First row of PCL's element `camera`: position, axes and the size of an organised cloud.
+template <typename Source>
+void readCamera(Source& source, const PlyElement& element, PointTable& sensor)
+{
+  const PointTable camera = readVertices(source, element);
+  const auto value = [&](const std::string& name, double missing) {
+    const Column* column = camera.find(name);
+    const float given = column && camera.rows > 0 ? columnValues(camera, *column)[0] : std::nanf("");
+    return std::isfinite(given) ? static_cast<double>(given) : missing;
+  };
+  SensorPose pose;
+  Eigen::Matrix3f axes;
+  for (int row = 0; row < 3; ++row) {
+    const std::string axis(1, static_cast<char>('x' + row));
+    pose.position[row] = value("view_p" + axis, 0.0);
+    for (int column = 0; column < 3; ++column)
+      axes(row, column) =
+          static_cast<float>(value(axis + "_axis" + static_cast<char>('x' + column), row == column ? 1.0 : 0.0));
+  }
+  if (axes.allFinite() && axes.isUnitary(1e-3f))
+    pose.orientation = Eigen::Quaternionf(axes);
+  sensor.sensor = pose;
+  sensor.width = static_cast<Index>(std::clamp(value("viewportx", 0), 0.0, 1e9));
+  sensor.height = static_cast<Index>(std::clamp(value("viewporty", 0), 0.0, 1e9));
+}
+
+template <typename Source>
+PlyContent readElements(Source source, const PlyHeader& header)
+{
+  PlyContent content;
+  FaceCollector collector;
+  PointTable camera;
+  for (const PlyElement& element : header.elements) {
+    checkSize(source, element);
+    if (element.name == "vertex")
+      content.vertices = readVertices(source, element);
+    else if (element.name == "face" || element.name == "tristrips")
+      readFaces(source, element, collector);
+    else if (element.name == "camera" && !element.hasList() && !element.properties.empty())
+      readCamera(source, element, camera);
+    else
+      skipElement(source, element);
+  }
+  if (content.vertices.rows == 0)
+    throw std::runtime_error("no vertices");
+  content.faces = collector.faces(content.vertices.rows);
+  content.vertices.sensor = camera.sensor;
+  if (camera.width * camera.height == content.vertices.rows)
+    std::tie(content.vertices.width, content.vertices.height) = std::pair(camera.width, camera.height);
+  return content;
+}
+} // namespace
+
+PlyContent parsePly(std::string_view content)
+{
+  const PlyHeader header = parsePlyHeader(content);
+  const std::string_view data = content.substr(header.size);
+  switch (header.format) {
+  case PlyFormat::ascii:
+    return readElements(TextSource(data), header);
+  case PlyFormat::little_endian:
+    return readElements(BinarySource<false>(data), header);
+  case PlyFormat::big_endian:
+    return readElements(BinarySource<true>(data), header);
+  }
+  throw std::logic_error("unknown PLY format");
+}
+} // namespace fresco::io

@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "io/mesh/ply.h"
+#include "io/points/text_numbers.h"
+#include <algorithm>
+#include <array>
+#include <fresco/core/require.h>
+#include <fresco/io/file.h>
+namespace fresco::io {
+namespace {
+const char* typeName(Scalar type)
+{
+  switch (type) {
+  case Scalar::int8:
+    return "char";
+  case Scalar::uint8:
+    return "uchar";
+  case Scalar::int16:
+    return "short";
+  case Scalar::uint16:
+    return "ushort";
+  case Scalar::int32:
+    return "int";
+  case Scalar::uint32:
+    return "uint";
+  case Scalar::float32:
+    return "float";
+  case Scalar::float64:
+    return "double";
+  default:
+    throw std::runtime_error("PLY has no 64-bit integers");
+  }
+}
+
+std::string propertyName(const std::string& column)
+{
+  for (const char axis : {'x', 'y', 'z'})
+    if (column == std::string("normal_") + axis)
+      return std::string("n") + axis;
+  return singleWord(column);
+}
+
+std::string propertyLines(const PointTable& table)
+{
+  std::string lines;
+  for (const Column& column : table.columns)
+    for (std::size_t k = 0; k < column.count; ++k)
+      lines += concat("property ", typeName(column.type), ' ', propertyName(column.name),
+                      column.count > 1 ? concat('_', k) : "", '\n');
+  return lines;
+}
+
+/// The element `camera` as PCL writes it.
+std::pair<std::string, std::string> cameraElement(const PointTable& table, Index rows)
+{
+  std::string header = "element camera 1\n", row;
+  const auto add = [&](const std::string& name, auto value) {
+    header += concat("property ",
+                     sizeof(value) == 8                    ? "double"
+                     : std::is_integral_v<decltype(value)> ? "int"
+                                                           : "float",
+                     ' ', name, '\n');
+    row.append(reinterpret_cast<const char*>(&value), sizeof(value));
+  };
+  const Eigen::Matrix3f axes = table.sensor->orientation.toRotationMatrix();
+  for (int i = 0; i < 3; ++i)
+    add(std::string("view_p") + "xyz"[i], static_cast<float>(table.sensor->position[i]));
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j)
+      add(std::string(1, "xyz"[i]) + "_axis" + "xyz"[j], axes(i, j));
+  for (const char* name : {"focal", "scalex", "scaley", "centerx", "centery"})
+    add(name, 0.f);
+  const bool organised = table.height > 0;
+  add("viewportx", static_cast<int>(organised ? table.width : rows));
+  add("viewporty", static_cast<int>(organised ? table.height : 1));
+  add("k1", 0.f);
+  add("k2", 0.f);
+  return {header, row};
+}
+
+void writeFaces(OutputFile& file, const Faces& faces)
+{
+#pragma pack(push, 1)
+  struct Row {
+    std::uint8_t count;
+    int corners[3];
+  };
+#pragma pack(pop)
+  std::vector<Row> rows(static_cast<std::size_t>(faces.cols()));
+  const auto store = [&](Index f) { rows[static_cast<std::size_t>(f)] = {3, {faces(0, f), faces(1, f), faces(2, f)}}; };
+  parallelFor(faces.cols(), 0, store, rows_per_task);
+  file.write(rows.data(), rows.size() * sizeof(Row));
+}
+/// Colours as bytes, and only what PLY has types for.
+void prepare(const std::string& path, PointTable& table)
+{
+  unpackColors(table);
+  for (const Column& column : table.columns)
+    if (column.type == Scalar::int64 || column.type == Scalar::uint64)
+      throw std::runtime_error(concat(path, ": PLY has no 64-bit integers for the field ", column.name));
+}
+
+/// Everything before the first vertex of `rows`, and what comes after faces.
+std::pair<std::string, std::string> headerAndEnd(const PointTable& table, Index rows, Index faces)
+{
+  std::string header = concat("ply\nformat binary_little_endian 1.0\nelement vertex ", rows, '\n');
+  header += propertyLines(table);
+  if (faces > 0)
+    header += concat("element face ", faces, "\nproperty list uchar int vertex_indices\n");
+  std::string camera;
+  if (table.sensor) {
+    const auto [lines, row] = cameraElement(table, rows);
+    header += lines;
+    camera = row;
+  }
+  return {header + "end_header\n", camera};
+}
+} // namespace
+
+void writePly(const std::string& path, PointTable vertices, const Faces& faces)
+{
+  prepare(path, vertices);
+  OutputFile file(path);
+  const auto [header, end] = headerAndEnd(vertices, vertices.rows, faces.cols());
+  file.write(header);
+  file.write(vertices.data.data(), vertices.data.size());
+  writeFaces(file, faces);
+  file.write(end);
+  file.commit();
+}
+
+void writePly(const std::string& path, Index rows, const std::function<PointTable(Index, Index)>& part)
+{
+  constexpr Index at_most = Index{1} << 19;
+  const Index parts = std::max<Index>(1, (rows + at_most - 1) / at_most); // of about the same size
+  PointTable table = part(0, rows / parts);
+  prepare(path, table);
+  OutputFile file(path);
+  const auto [header, end] = headerAndEnd(table, rows, 0);
+  file.write(header);
+  file.write(table.data.data(), table.data.size());
+  for (Index i = 1; i < parts; ++i) {
+    table = part(rows * i / parts, rows * (i + 1) / parts);
+    prepare(path, table);
+    file.write(table.data.data(), table.data.size());
+  }
+  file.write(end);
+  file.commit();
+}
+} // namespace fresco::io

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include <fresco/core/point_table.h>
+#include <string>
+#include <string_view>
+namespace fresco::io {
+struct VtkContent {
+  PointTable vertices; ///< colours as byte columns red green blue
+  Faces faces;         ///< polygons as fans, strips as triangles
+};
+
+/// Legacy VTK polydata, ASCII or binary; point data arrays become columns.
+/// @throws std::runtime_error if malformed, truncated, of another kind of dataset or without points
+VtkContent parseVtk(std::string_view content);
+
+/// Legacy VTK polydata, binary. Normals become NORMALS, colours COLOR_SCALARS, the rest arrays of a FIELD.
+void writeVtk(const std::string& path, const PointTable& vertices, const Faces& faces);
+} // namespace fresco::io

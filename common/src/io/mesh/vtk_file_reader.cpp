@@ -1,0 +1,327 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "io/mesh/vtk_file.h"
+#include "io/points/text_numbers.h"
+#include <algorithm>
+#include <fresco/core/polygon_fans.h>
+#include <fresco/core/require.h>
+namespace fresco::io {
+namespace {
+/// Values of one data array, tuple by tuple, little-endian.
+struct Array {
+  std::string name;
+  Scalar type = Scalar::float32;
+  std::size_t components = 1;
+  std::vector<std::uint8_t> bytes;
+
+  std::vector<std::int64_t> integers() const
+  {
+    return visitScalar(type, [&](auto zero) {
+      using T = decltype(zero);
+      std::vector<std::int64_t> values(bytes.size() / sizeof(T));
+      if (std::is_floating_point_v<T>)
+        throw std::runtime_error("VTK: cell indices are no integers");
+      for (std::size_t i = 0; i < values.size(); ++i)
+        values[i] = static_cast<std::int64_t>(loadScalar<T>(bytes.data() + i * sizeof(T)));
+      return values;
+    });
+  }
+};
+
+std::string lower(std::string_view word)
+{
+  std::string text(word);
+  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
+  return text;
+}
+
+Scalar parseType(std::string_view word)
+{
+  static constexpr std::pair<const char*, Scalar> types[] = {{"char", Scalar::int8},
+                                                             {"signed_char", Scalar::int8},
+                                                             {"unsigned_char", Scalar::uint8},
+                                                             {"short", Scalar::int16},
+                                                             {"unsigned_short", Scalar::uint16},
+                                                             {"int", Scalar::int32},
+                                                             {"unsigned_int", Scalar::uint32},
+                                                             {"long", Scalar::int64},
+                                                             {"unsigned_long", Scalar::uint64},
+                                                             {"vtkidtype", Scalar::int32},
+                                                             {"vtktypeint64", Scalar::int64},
+                                                             {"vtktypeuint64", Scalar::uint64},
+                                                             {"float", Scalar::float32},
+                                                             {"double", Scalar::float64}};
+  const std::string name = lower(word);
+  for (const auto& [known, type] : types)
+    if (name == known)
+      return type;
+  throw std::runtime_error(concat("VTK: values of type '", word.substr(0, 40), "' are not supported"));
+}
+
+/// Names are written with %XX for blanks and special characters.
+std::string decodeName(std::string_view word)
+{
+  std::string name;
+  for (std::size_t i = 0; i < word.size(); ++i) {
+    unsigned code = 0;
+    if (word[i] == '%' && i + 2 < word.size() &&
+        std::from_chars(word.data() + i + 1, word.data() + i + 3, code, 16).ptr == word.data() + i + 3) {
+      name += static_cast<char>(code);
+      i += 2;
+    } else {
+      name += word[i];
+    }
+  }
+  return name;
+}
+
+class VtkParser {
+public:
+  explicit VtkParser(std::string_view text) : scanner_(text) {}
+
+  VtkContent parse()
+  {
+    parseHeader();
+    for (std::string_view word = nextKeyword(); !word.empty(); word = nextKeyword())
+      parseSection(lower(word));
+    if (points_.bytes.empty())
+      throw std::runtime_error("no points");
+    VtkContent content;
+    content.vertices = assemble();
+    content.faces = collector_.faces(content.vertices.rows);
+    return content;
+  }
+
+private:
+  void parseHeader()
+  {
+    if (lower(scanner_.restOfLine()).rfind("# vtk datafile version", 0) != 0)
+      throw std::runtime_error("not a legacy VTK file");
+    scanner_.restOfLine(); // title
+    const std::string storage = lower(scanner_.restOfLine());
+    if (storage != "ascii" && storage != "binary")
+      throw std::runtime_error("VTK: neither ASCII nor BINARY");
+    binary_ = storage == "binary";
+    if (lower(nextKeyword()) != "dataset" || lower(scanner_.wordAcrossLines()) != "polydata")
+      throw std::runtime_error("VTK: the dataset is not POLYDATA");
+  }
+
+  /// Next word on whatever line, empty at the end of the file.
+  std::string_view nextKeyword()
+  {
+    while (scanner_.atLineEnd()) {
+      if (scanner_.done())
+        return {};
+      scanner_.nextLine();
+    }
+    return scanner_.word();
+  }
+
+  std::size_t nextCount()
+  {
+    const auto count = parseNumber<std::int64_t>(scanner_.wordAcrossLines());
+    if (count < 0)
+      throw std::runtime_error(concat("VTK: negative count ", count));
+    return static_cast<std::size_t>(count);
+  }
+
+  void parseSection(const std::string& keyword)
+  {
+    if (keyword == "points") {
+      const std::size_t count = nextCount();
+      const Scalar type = parseType(scanner_.wordAcrossLines());
+      points_ = readArray("points", type, 3, count);
+    } else if (keyword == "vertices" || keyword == "lines") {
+      readCells([](const std::int64_t*, std::size_t) {});
+    } else if (keyword == "polygons") {
+      readCells([&](const std::int64_t* corners, std::size_t count) { collector_.addPolygon(corners, count); });
+    } else if (keyword == "triangle_strips") {
+      readCells([&](const std::int64_t* corners, std::size_t count) { collector_.addStrip(corners, count); });
+    } else if (keyword == "point_data" || keyword == "cell_data") {
+      tuples_ = nextCount();
+      is_point_data_ = keyword == "point_data";
+      if (is_point_data_ && tuples_ * 3 * scalarSize(points_.type) != points_.bytes.size())
+        throw std::runtime_error(concat("VTK: POINT_DATA has ", tuples_, " tuples, which is not the number of points"));
+    } else if (keyword == "metadata") {
+      scanner_.nextLine();
+      while (!scanner_.restOfLine().empty()) {
+      }
+    } else {
+      parseAttribute(keyword);
+    }
+  }
+
+  void parseAttribute(const std::string& keyword)
+  {
+    if (keyword == "field") {
+      parseField();
+      return;
+    }
+    const std::string name = decodeName(scanner_.wordAcrossLines());
+    if (keyword == "lookup_table") {
+      readArray(name, binary_ ? Scalar::uint8 : Scalar::float32, 4, nextCount());
+      return;
+    }
+    if (keyword == "color_scalars") {
+      const std::size_t components = nextCount();
+      keep(readArray("colors", binary_ ? Scalar::uint8 : Scalar::float32, components, tuples_));
+      return;
+    }
+    std::size_t components = keyword == "normals" || keyword == "vectors" ? 3 : keyword == "tensors" ? 9 : 1;
+    if (keyword == "texture_coordinates")
+      components = nextCount();
+    else if (keyword != "scalars" && keyword != "normals" && keyword != "vectors" && keyword != "tensors")
+      throw std::runtime_error(concat("VTK: unknown section '", keyword.substr(0, 40), "'"));
+    const Scalar type = parseType(scanner_.wordAcrossLines());
+    if (keyword == "scalars")
+      components = parseScalarsRest();
+    keep(readArray(keyword == "normals" ? "normals" : name, type, components, tuples_));
+  }
+
+  /// Number of components, and the line with the lookup table. @return components
+  std::size_t parseScalarsRest()
+  {
+    const std::string_view word = scanner_.word();
+    const std::size_t components = word.empty() ? 1 : parseNumber<std::uint32_t>(word);
+    if (lower(scanner_.wordAcrossLines()) != "lookup_table" || scanner_.word().empty())
+      throw std::runtime_error("VTK: SCALARS without LOOKUP_TABLE");
+    return components;
+  }
+
+  void parseField()
+  {
+    scanner_.wordAcrossLines();
+    const std::size_t arrays = nextCount();
+    for (std::size_t i = 0; i < arrays; ++i) {
+      std::string_view word = scanner_.wordAcrossLines();
+      if (lower(word) == "metadata") {
+        parseSection("metadata");
+        word = scanner_.wordAcrossLines();
+      }
+      const std::size_t components = nextCount(), tuples = nextCount();
+      const Scalar type = parseType(scanner_.wordAcrossLines());
+      keep(readArray(decodeName(word), type, components, tuples));
+    }
+  }
+
+  Array readArray(const std::string& name, Scalar type, std::size_t components, std::size_t tuples)
+  {
+    const std::size_t least = binary_ ? scalarSize(type) : 2; // bytes per value; the last word needs no separator
+    if (components == 0 || components > 1000 || tuples > (scanner_.remaining() + 1) / (least * components))
+      throw std::runtime_error(concat("truncated: ", tuples, " tuples of '", name.substr(0, 40), "' do not fit"));
+    Array array{name, type, components, {}};
+    const std::size_t count = tuples * components;
+    if (binary_)
+      scanner_.nextLine();
+    visitScalar(type, [&](auto zero) {
+      using T = decltype(zero);
+      array.bytes.resize(count * sizeof(T));
+      if (binary_) {
+        const std::string_view raw = scanner_.bytes(count * sizeof(T));
+        std::copy(raw.begin(), raw.end(), array.bytes.begin());
+        for (std::size_t i = 0; i < array.bytes.size() && sizeof(T) > 1; i += sizeof(T)) // stored big-endian
+          std::reverse(array.bytes.data() + i, array.bytes.data() + i + sizeof(T));
+        return;
+      }
+      for (std::size_t i = 0; i < count; ++i) {
+        const T value = parseNumber<T>(scanner_.wordAcrossLines());
+        std::memcpy(array.bytes.data() + i * sizeof(T), &value, sizeof(T));
+      }
+    });
+    return array;
+  }
+
+  /// Until version 4 one list "count corner corner ...", since version 5 offsets and corners apart.
+  template <typename Add>
+  void readCells(const Add& add)
+  {
+    const std::size_t cells = nextCount(), size = nextCount();
+    TextScanner ahead = scanner_;
+    while (ahead.atLineEnd() && !ahead.done())
+      ahead.nextLine();
+    if (lower(ahead.word()) == "offsets") {
+      readOffsetCells(cells, size, add);
+      return;
+    }
+    const std::vector<std::int64_t> list = readArray("cells", Scalar::int32, 1, size).integers();
+    std::size_t at = 0;
+    for (std::size_t i = 0; i < cells; ++i) {
+      if (at >= list.size() || list[at] < 0 || static_cast<std::size_t>(list[at]) >= list.size() - at)
+        throw std::runtime_error("VTK: a cell does not fit into its list");
+      add(list.data() + at + 1, static_cast<std::size_t>(list[at]));
+      at += static_cast<std::size_t>(list[at]) + 1;
+    }
+  }
+
+  template <typename Add>
+  void readOffsetCells(std::size_t count, std::size_t size, const Add& add)
+  {
+    scanner_.wordAcrossLines();
+    const Scalar offset_type = parseType(scanner_.wordAcrossLines());
+    const std::vector<std::int64_t> offsets = readArray("offsets", offset_type, 1, count).integers();
+    if (lower(scanner_.wordAcrossLines()) != "connectivity")
+      throw std::runtime_error("VTK: OFFSETS without CONNECTIVITY");
+    const Scalar type = parseType(scanner_.wordAcrossLines());
+    const std::vector<std::int64_t> corners = readArray("connectivity", type, 1, size).integers();
+    for (std::size_t i = 1; i < offsets.size(); ++i) {
+      const std::int64_t begin = offsets[i - 1], end = offsets[i];
+      if (begin < 0 || end < begin || end > static_cast<std::int64_t>(corners.size()))
+        throw std::runtime_error("VTK: a cell does not fit into its list");
+      add(corners.data() + begin, static_cast<std::size_t>(end - begin));
+    }
+  }
+
+  void keep(Array array)
+  {
+    const std::size_t tuples = array.bytes.size() / (array.components * scalarSize(array.type));
+    if (is_point_data_ && tuples * 3 * scalarSize(points_.type) == points_.bytes.size())
+      arrays_.push_back(std::move(array));
+  }
+
+  static std::vector<std::string> columnNames(const Array& array)
+  {
+    const std::string name = lower(array.name);
+    if (array.components == 3 && name == "normals")
+      return {std::begin(normal_names), std::end(normal_names)};
+    const bool is_color = array.type == Scalar::uint8 || name == "colors";
+    if (array.components == 3 && is_color)
+      return {std::begin(color_names), std::end(color_names)};
+    if (array.components == 4 && is_color)
+      return {"red", "green", "blue", "alpha"};
+    return {array.name};
+  }
+
+  PointTable assemble() const
+  {
+    PointTable table;
+    std::vector<std::pair<const Array*, std::size_t>> sources; // array and its first column in the table
+    const auto place = [&](const Array& array, const std::vector<std::string>& names) {
+      if (std::any_of(names.begin(), names.end(), [&](const std::string& name) { return table.find(name); }))
+        return;
+      sources.emplace_back(&array, table.columns.size());
+      for (const std::string& name : names)
+        table.addColumn(name, array.type, array.components / names.size());
+    };
+    place(points_, {std::begin(xyz_names), std::end(xyz_names)});
+    for (const Array& array : arrays_)
+      place(array, columnNames(array));
+    table.allocate(static_cast<Index>(points_.bytes.size() / (3 * scalarSize(points_.type))));
+    for (const auto& [array, column] : sources) {
+      const std::size_t bytes = array->components * scalarSize(array->type);
+      for (Index row = 0; row < table.rows; ++row)
+        std::memcpy(table.cell(row, table.columns[column]), array->bytes.data() + static_cast<std::size_t>(row) * bytes,
+                    bytes);
+    }
+    return table;
+  }
+
+  TextScanner scanner_;
+  bool binary_ = false, is_point_data_ = false;
+  std::size_t tuples_ = 0;
+  Array points_;
+  std::vector<Array> arrays_;
+  FaceCollector collector_;
+};
+} // namespace
+
+VtkContent parseVtk(std::string_view content) { return VtkParser(content).parse(); }
+} // namespace fresco::io

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include <charconv>
+#include <fresco/core/export.h>
+#include <fresco/io/file.h>
+#include <string>
+#include <string_view>
+namespace fresco::io {
+/// Words and numbers of a text, read without copies. Lines end with LF, CR LF or CR.
+class TextScanner {
+public:
+  explicit TextScanner(std::string_view text) : at_(text.data()), end_(text.data() + text.size()) {}
+
+  bool done() const { return at_ == end_; }
+  std::size_t line() const { return line_; } ///< from 1
+  std::size_t remaining() const { return static_cast<std::size_t>(end_ - at_); }
+
+  /// Skips blanks; true at the end of the line or text.
+  bool atLineEnd();
+  /// Next word of the line, empty at its end.
+  std::string_view word();
+  /// Next word, on whatever line. @throws std::runtime_error at the end of the text
+  std::string_view wordAcrossLines();
+  /// Rest of the line without blanks at its ends; goes on to the next line.
+  std::string_view restOfLine();
+  void nextLine();
+  /// The next `count` bytes as they are. @throws std::runtime_error if there are fewer
+  std::string_view bytes(std::size_t count);
+
+private:
+  const char* at_;
+  const char* end_;
+  std::size_t line_ = 1;
+};
+
+/// Whole word as a number; "nan", "inf" and a leading + are accepted, too large values become infinite.
+/// @throws std::runtime_error naming the word
+template <typename T>
+T parseNumber(std::string_view word);
+
+/// `name` as one word: blanks and control characters become '_'.
+std::string singleWord(std::string name);
+
+/// Text output with the shortest numbers that read back as the same value.
+class FRESCO_EXPORT TextWriter {
+public:
+  explicit TextWriter(OutputFile& file) : file_(file) {}
+  ~TextWriter() = default;
+  TextWriter(const TextWriter&) = delete;
+  TextWriter& operator=(const TextWriter&) = delete;
+
+  TextWriter& text(std::string_view words)
+  {
+    if (words.size() > sizeof(buffer_) - used_)
+      flush();
+    if (words.size() > sizeof(buffer_)) {
+      file_.write(words);
+      return *this;
+    }
+    words.copy(buffer_ + used_, words.size());
+    used_ += words.size();
+    return *this;
+  }
+  template <typename T>
+  TextWriter& number(T value)
+  {
+    constexpr std::size_t longest = 64;
+    if (sizeof(buffer_) - used_ < longest)
+      flush();
+    used_ = static_cast<std::size_t>(std::to_chars(buffer_ + used_, buffer_ + sizeof(buffer_), value).ptr - buffer_);
+    return *this;
+  }
+  /// Hands what is left to the file; to be called at the end.
+  void flush();
+
+private:
+  OutputFile& file_;
+  char buffer_[1 << 14];
+  std::size_t used_ = 0;
+};
+} // namespace fresco::io

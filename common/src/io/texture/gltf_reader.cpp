@@ -1,0 +1,329 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "io/texture/texture_io.h"
+#include "io/texture/texture_io_image.h"
+#include <Eigen/Geometry>
+#include <cmath>
+#include <fresco/core/point_table.h>
+#include <fresco/core/require.h>
+#include <limits>
+#include <tiny_gltf.h>
+#include <unordered_map>
+namespace fresco::io {
+namespace {
+[[noreturn]] void fail(const std::string& reason) { throw std::runtime_error("glTF: " + reason); }
+
+template <typename T>
+const T& at(const std::vector<T>& items, int index, const char* what)
+{
+  if (index < 0 || static_cast<std::size_t>(index) >= items.size())
+    fail(concat("there is no ", what, ' ', index));
+  return items[static_cast<std::size_t>(index)];
+}
+
+Scalar componentType(int type)
+{
+  switch (type) {
+  case TINYGLTF_COMPONENT_TYPE_BYTE:
+    return Scalar::int8;
+  case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
+    return Scalar::uint8;
+  case TINYGLTF_COMPONENT_TYPE_SHORT:
+    return Scalar::int16;
+  case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
+    return Scalar::uint16;
+  case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
+    return Scalar::uint32;
+  case TINYGLTF_COMPONENT_TYPE_FLOAT:
+    return Scalar::float32;
+  default:
+    fail(concat("unknown component type ", type));
+  }
+}
+
+/// Bytes `offset` .. `offset + length` of a buffer view.
+const unsigned char* viewBytes(const tinygltf::Model& gltf, int index, std::size_t offset, std::size_t length)
+{
+  const tinygltf::BufferView& view = at(gltf.bufferViews, index, "buffer view");
+  const std::vector<unsigned char>& data = at(gltf.buffers, view.buffer, "buffer").data;
+  if (view.byteOffset > data.size() || view.byteLength > data.size() - view.byteOffset || offset > view.byteLength ||
+      length > view.byteLength - offset)
+    fail(concat("truncated: buffer view ", index, " does not fit into its buffer"));
+  return data.data() + view.byteOffset + offset;
+}
+
+/// Values of an accessor, `components` x count; integers that stand for fractions as 0..1.
+Eigen::MatrixXd readAccessor(const tinygltf::Model& gltf, int index, int components)
+{
+  const tinygltf::Accessor& accessor = at(gltf.accessors, index, "accessor");
+  const Scalar type = componentType(accessor.componentType);
+  const int stored = tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(accessor.type));
+  if (stored < components || accessor.sparse.isSparse)
+    fail(concat("accessor ", index, " is not of the kind that its use asks for"));
+  const tinygltf::BufferView& view = at(gltf.bufferViews, accessor.bufferView, "buffer view");
+  const std::size_t element = scalarSize(type) * static_cast<std::size_t>(stored);
+  const std::size_t stride = view.byteStride == 0 ? element : view.byteStride;
+  if (accessor.count == 0 || stride < element || accessor.count > view.byteLength / stride + 1)
+    fail(concat("truncated: accessor ", index, " of ", accessor.count, " elements does not fit"));
+  const unsigned char* bytes =
+      viewBytes(gltf, accessor.bufferView, accessor.byteOffset, (accessor.count - 1) * stride + element);
+  Eigen::MatrixXd values(components, static_cast<Index>(accessor.count));
+  visitScalar(type, [&](auto zero) {
+    using T = decltype(zero);
+    const double scale = accessor.normalized && std::is_integral_v<T> ? 1.0 / std::numeric_limits<T>::max() : 1.0;
+    for (Index i = 0; i < values.cols(); ++i)
+      for (int k = 0; k < components; ++k)
+        values(k, i) = scale * static_cast<double>(loadScalar<T>(bytes + static_cast<std::size_t>(i) * stride +
+                                                                 static_cast<std::size_t>(k) * sizeof(T)));
+  });
+  return values;
+}
+
+/// sRGB byte of linear light 0..1 (IEC 61966-2-1).
+std::uint8_t displayByte(double linear)
+{
+  const double s = linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1.0 / 2.4) - 0.055;
+  return static_cast<std::uint8_t>(s > 0 ? std::lround(255.0 * std::min(s, 1.0)) : 0);
+}
+
+Image readImageOf(const tinygltf::Model& gltf, const tinygltf::Image& source)
+{
+  if (source.bufferView < 0)
+    return decodeImage(source.image.data(), source.image.size());
+  const std::size_t length = at(gltf.bufferViews, source.bufferView, "buffer view").byteLength;
+  return decodeImage(viewBytes(gltf, source.bufferView, 0, length), length);
+}
+
+/// The bytes of an image outside of the buffers; those inside are decoded later.
+bool keepImageBytes(tinygltf::Image* image, int, std::string*, std::string*, int, int, const unsigned char* bytes,
+                    int size, void*)
+{
+  if (image->bufferView < 0 && size > 0)
+    image->image.assign(bytes, bytes + size);
+  return true;
+}
+
+struct PositionHash {
+  std::size_t operator()(const std::array<float, 3>& p) const
+  {
+    std::uint64_t hash = 0;
+    for (const float value : p)
+      hash = (hash ^ loadScalar<std::uint32_t>(&value)) * 0x9E3779B97F4A7C15ULL;
+    return static_cast<std::size_t>(hash ^ (hash >> 32));
+  }
+};
+
+/// Joins the primitives of a scene.
+class ModelBuilder {
+public:
+  explicit ModelBuilder(const tinygltf::Model& gltf) : gltf_(gltf), atlas_of_image_(gltf.images.size(), -1) {}
+
+  void setOrigin(const Eigen::Vector3d& origin) { model_.mesh.origin = origin; }
+
+  /// @param T_scene_mesh where the mesh stands, less the origin
+  void addPrimitive(const tinygltf::Primitive& primitive, const Eigen::Affine3d& T_scene_mesh)
+  {
+    if (primitive.mode != TINYGLTF_MODE_TRIANGLES && primitive.mode != -1)
+      fail("a primitive is no list of triangles");
+    const Eigen::MatrixXd positions = attribute(primitive, "POSITION", 3);
+    if (positions.cols() == 0)
+      fail("a primitive has no positions");
+    const std::vector<int> vertices = addVertices(primitive, T_scene_mesh, positions);
+    const int atlas = atlasOf(primitive);
+    const Eigen::MatrixXd texcoords = atlas < 0 ? Eigen::MatrixXd() : attribute(primitive, "TEXCOORD_0", 2);
+    const auto first_texcoord = static_cast<int>(texcoords_.size());
+    for (Index i = 0; i < texcoords.cols(); ++i)
+      texcoords_.emplace_back(static_cast<float>(texcoords(0, i)), static_cast<float>(1.0 - texcoords(1, i)));
+    addFaces(cornerIndices(primitive, positions.cols()), vertices, texcoords.cols() > 0 ? atlas : -1, first_texcoord);
+  }
+
+  TexturedMesh take()
+  {
+    if (faces_.empty())
+      fail("no triangles");
+    TriangleMesh& mesh = model_.mesh;
+    mesh.vertices = Eigen::Map<const Points>(positions_[0].data(), 3, static_cast<Index>(positions_.size()));
+    if (has_normals_)
+      mesh.normals = Eigen::Map<const Points>(normals_[0].data(), 3, static_cast<Index>(normals_.size()));
+    if (has_colors_)
+      mesh.colors = Eigen::Map<const Colors>(colors_[0].data(), 3, static_cast<Index>(colors_.size()));
+    const auto faces = static_cast<Index>(atlases_.size());
+    mesh.faces = Eigen::Map<const Faces>(faces_.data(), 3, faces);
+    model_.texcoord_faces = Eigen::Map<const Faces>(texcoord_faces_.data(), 3, faces);
+    model_.face_atlas = Eigen::Map<const Eigen::VectorXi>(atlases_.data(), faces);
+    model_.texcoords.resize(2, static_cast<Index>(texcoords_.size()));
+    for (Index i = 0; i < model_.texcoords.cols(); ++i)
+      model_.texcoords.col(i) = texcoords_[static_cast<std::size_t>(i)];
+    return std::move(model_);
+  }
+
+private:
+  using Color = Eigen::Matrix<std::uint8_t, 3, 1>;
+
+  Eigen::MatrixXd attribute(const tinygltf::Primitive& primitive, const char* name, int components) const
+  {
+    const auto found = primitive.attributes.find(name);
+    return found == primitive.attributes.end() ? Eigen::MatrixXd() : readAccessor(gltf_, found->second, components);
+  }
+
+  /// @return vertex of the model for each position of the primitive
+  std::vector<int> addVertices(const tinygltf::Primitive& primitive, const Eigen::Affine3d& T_scene_mesh,
+                               const Eigen::MatrixXd& positions)
+  {
+    const Eigen::MatrixXd normals = attribute(primitive, "NORMAL", 3), colors = attribute(primitive, "COLOR_0", 3);
+    has_normals_ |= normals.cols() == positions.cols();
+    has_colors_ |= colors.cols() == positions.cols();
+    const Eigen::Matrix3d normal_matrix = T_scene_mesh.linear().inverse().transpose();
+    const bool moved = !T_scene_mesh.matrix().isIdentity(0);
+    std::vector<int> vertices;
+    for (Index i = 0; i < positions.cols(); ++i) {
+      const Eigen::Vector3d p = positions.col(i);
+      const Eigen::Vector3f position = (moved ? T_scene_mesh * p : p).cast<float>();
+      const auto [entry, is_new] = known_.try_emplace({position.x(), position.y(), position.z()}, positions_.size());
+      if (is_new) {
+        positions_.push_back(position);
+        normals_.emplace_back(Eigen::Vector3f::Zero());
+        colors_.emplace_back(Color::Constant(255));
+      }
+      const auto vertex = static_cast<std::size_t>(entry->second);
+      if (normals.cols() == positions.cols())
+        normals_[vertex] = (moved ? (normal_matrix * normals.col(i)).normalized() : normals.col(i)).cast<float>();
+      if (colors.cols() == positions.cols())
+        colors_[vertex] << displayByte(colors(0, i)), displayByte(colors(1, i)), displayByte(colors(2, i));
+      vertices.push_back(static_cast<int>(vertex));
+    }
+    return vertices;
+  }
+
+  std::vector<std::size_t> cornerIndices(const tinygltf::Primitive& primitive, Index positions) const
+  {
+    std::vector<std::size_t> corners;
+    if (primitive.indices < 0) {
+      for (Index i = 0; i < positions; ++i)
+        corners.push_back(static_cast<std::size_t>(i));
+    } else {
+      const Eigen::MatrixXd indices = readAccessor(gltf_, primitive.indices, 1);
+      for (Index i = 0; i < indices.cols(); ++i) {
+        if (!(indices(0, i) >= 0 && indices(0, i) < static_cast<double>(positions)))
+          fail(concat("a triangle names vertex ", indices(0, i), ", there are ", positions));
+        corners.push_back(static_cast<std::size_t>(indices(0, i)));
+      }
+    }
+    if (corners.size() % 3 != 0)
+      fail("the number of indices is no multiple of 3");
+    return corners;
+  }
+
+  void addFaces(const std::vector<std::size_t>& corners, const std::vector<int>& vertices, int atlas,
+                int first_texcoord)
+  {
+    const std::size_t texcoords = texcoords_.size() - static_cast<std::size_t>(first_texcoord);
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+      if (atlas >= 0 && corners[i] >= texcoords)
+        fail("fewer texture coordinates than positions");
+      faces_.push_back(vertices[corners[i]]);
+      texcoord_faces_.push_back(atlas < 0 ? -1 : first_texcoord + static_cast<int>(corners[i]));
+      if (i % 3 == 0)
+        atlases_.push_back(atlas);
+    }
+  }
+
+  /// Atlas of the material's base colour, -1 if it has none.
+  int atlasOf(const tinygltf::Primitive& primitive)
+  {
+    if (primitive.material < 0)
+      return -1;
+    const int texture = at(gltf_.materials, primitive.material, "material").pbrMetallicRoughness.baseColorTexture.index;
+    if (texture < 0)
+      return -1;
+    const int source = at(gltf_.textures, texture, "texture").source;
+    const tinygltf::Image& image = at(gltf_.images, source, "image");
+    int& atlas = atlas_of_image_[static_cast<std::size_t>(source)];
+    if (atlas < 0) {
+      atlas = static_cast<int>(model_.atlases.size());
+      model_.atlases.push_back(readImageOf(gltf_, image));
+    }
+    return atlas;
+  }
+
+  const tinygltf::Model& gltf_;
+  std::vector<int> atlas_of_image_;
+  TexturedMesh model_;
+  std::unordered_map<std::array<float, 3>, std::size_t, PositionHash> known_;
+  std::vector<Eigen::Vector3f> positions_, normals_;
+  std::vector<Color> colors_;
+  std::vector<Eigen::Vector2f> texcoords_;
+  std::vector<int> faces_, texcoord_faces_, atlases_;
+  bool has_normals_ = false, has_colors_ = false;
+};
+
+Eigen::Affine3d nodeTransform(const tinygltf::Node& node)
+{
+  Eigen::Affine3d T = Eigen::Affine3d::Identity();
+  if (node.matrix.size() == 16) {
+    T.matrix() = Eigen::Map<const Eigen::Matrix4d>(node.matrix.data());
+    return T;
+  }
+  if (node.translation.size() == 3)
+    T.translate(Eigen::Vector3d(node.translation[0], node.translation[1], node.translation[2]));
+  if (node.rotation.size() == 4)
+    T.rotate(Eigen::Quaterniond(node.rotation[3], node.rotation[0], node.rotation[1], node.rotation[2]));
+  if (node.scale.size() == 3)
+    T.scale(Eigen::Vector3d(node.scale[0], node.scale[1], node.scale[2]));
+  return T;
+}
+
+struct PlacedMesh {
+  int mesh;
+  Eigen::Affine3d T_scene_mesh;
+};
+
+/// Meshes of a scene, walked without recursion since the nodes of a damaged file may form a circle.
+std::vector<PlacedMesh> collectMeshes(const tinygltf::Model& gltf, const tinygltf::Scene& scene)
+{
+  std::vector<PlacedMesh> meshes;
+  std::vector<std::pair<int, Eigen::Affine3d>> open; // node and its parent's transform
+  for (auto node = scene.nodes.rbegin(); node != scene.nodes.rend(); ++node)
+    open.emplace_back(*node, Eigen::Affine3d::Identity());
+  for (std::size_t visited = 0; !open.empty(); ++visited) {
+    if (visited > gltf.nodes.size())
+      fail("the nodes of the scene are no tree");
+    const auto [index, T_scene_parent] = open.back();
+    open.pop_back();
+    const tinygltf::Node& node = at(gltf.nodes, index, "node");
+    const Eigen::Affine3d T_scene_node = T_scene_parent * nodeTransform(node);
+    if (node.mesh >= 0)
+      meshes.push_back({node.mesh, T_scene_node});
+    for (auto child = node.children.rbegin(); child != node.children.rend(); ++child)
+      open.emplace_back(*child, T_scene_node);
+  }
+  return meshes;
+}
+
+tinygltf::Model loadModel(std::string_view content)
+{
+  tinygltf::TinyGLTF loader;
+  loader.SetImageLoader(keepImageBytes, nullptr);
+  tinygltf::Model gltf;
+  std::string error, warning;
+  if (content.size() > std::numeric_limits<std::uint32_t>::max())
+    fail("larger than the 4 GiB that binary glTF can hold");
+  const auto* bytes = reinterpret_cast<const unsigned char*>(content.data());
+  if (!loader.LoadBinaryFromMemory(&gltf, &error, &warning, bytes, static_cast<unsigned>(content.size())))
+    fail(error.empty() ? "not binary glTF" : error.substr(0, error.find('\n')));
+  return gltf;
+}
+} // namespace
+
+TexturedMesh parseGlb(std::string_view content)
+{
+  const tinygltf::Model gltf = loadModel(content);
+  const std::vector<PlacedMesh> meshes = collectMeshes(gltf, at(gltf.scenes, std::max(gltf.defaultScene, 0), "scene"));
+  ModelBuilder builder(gltf);
+  const Eigen::Vector3d origin = meshes.empty() ? Eigen::Vector3d::Zero() : meshes[0].T_scene_mesh.translation().eval();
+  builder.setOrigin(origin);
+  for (const PlacedMesh& placed : meshes)
+    for (const tinygltf::Primitive& primitive : at(gltf.meshes, placed.mesh, "mesh").primitives)
+      builder.addPrimitive(primitive, Eigen::Translation3d(-origin) * placed.T_scene_mesh);
+  return builder.take();
+}
+} // namespace fresco::io

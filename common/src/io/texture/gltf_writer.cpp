@@ -1,0 +1,292 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "io/texture/texture_io.h"
+#include <cmath>
+#include <fresco/core/require.h>
+#include <fresco/io/file.h>
+#include <fresco/io/image_io.h>
+#include <limits>
+#include <streambuf>
+#include <tiny_gltf.h>
+namespace fresco::io {
+namespace {
+using Color16 = Eigen::Matrix<std::uint16_t, 4, 1>;
+
+/// Vertices and triangles of one primitive.
+struct Part {
+  std::vector<Eigen::Vector3f> positions, normals;
+  std::vector<Eigen::Vector2f> texcoords; ///< v points down
+  std::vector<Color16> colors;            ///< linear RGBA
+  std::vector<std::uint32_t> indices;
+};
+
+/// Linear light of an sRGB byte as 16 bit (IEC 61966-2-1).
+std::uint16_t linearLight(std::uint8_t value)
+{
+  const double s = value / 255.0;
+  const double linear = s <= 0.04045 ? s / 12.92 : std::pow((s + 0.055) / 1.055, 2.4);
+  return static_cast<std::uint16_t>(std::lround(65535.0 * linear));
+}
+
+/// Gives each pair of vertex and texture coordinate one place in the part.
+class PartBuilder {
+public:
+  PartBuilder(const TexturedMesh& model, bool textured)
+      : model_(model), textured_(textured), first_(static_cast<std::size_t>(model.mesh.vertexCount()), -1)
+  {
+    for (int value = 0; value < 256; ++value)
+      linear_[value] = linearLight(static_cast<std::uint8_t>(value));
+  }
+
+  void addFace(Index f)
+  {
+    for (int k = 0; k < 3; ++k)
+      part_.indices.push_back(place(model_.mesh.faces(k, f), textured_ ? model_.texcoord_faces(k, f) : -1));
+  }
+
+  Part take() { return std::move(part_); }
+
+private:
+  struct Place {
+    int texcoord, next; ///< next place of the same vertex, -1: none
+  };
+
+  std::uint32_t place(int vertex, int texcoord)
+  {
+    int& first = first_[static_cast<std::size_t>(vertex)];
+    for (int at = first; at >= 0; at = places_[static_cast<std::size_t>(at)].next)
+      if (places_[static_cast<std::size_t>(at)].texcoord == texcoord)
+        return static_cast<std::uint32_t>(at);
+    places_.push_back({texcoord, first});
+    first = static_cast<int>(places_.size()) - 1;
+    append(vertex, texcoord);
+    return static_cast<std::uint32_t>(first);
+  }
+
+  void append(int vertex, int texcoord)
+  {
+    const TriangleMesh& mesh = model_.mesh;
+    part_.positions.emplace_back(mesh.vertices.col(vertex));
+    if (mesh.normals.cols() > 0)
+      part_.normals.emplace_back(mesh.normals.col(vertex).normalized());
+    if (textured_)
+      part_.texcoords.emplace_back(model_.texcoords(0, texcoord), 1.f - model_.texcoords(1, texcoord));
+    else if (mesh.colors.cols() > 0)
+      part_.colors.emplace_back(linear_[mesh.colors(0, vertex)], linear_[mesh.colors(1, vertex)],
+                                linear_[mesh.colors(2, vertex)], std::uint16_t{65535});
+  }
+
+  const TexturedMesh& model_;
+  bool textured_;
+  std::vector<int> first_;
+  std::vector<Place> places_;
+  std::uint16_t linear_[256];
+  Part part_;
+};
+
+/// Faces with atlas `atlas`, -1: without texture.
+Part buildPart(const TexturedMesh& model, int atlas)
+{
+  PartBuilder builder(model, atlas >= 0);
+  for (Index f = 0; f < model.mesh.faceCount(); ++f)
+    if (model.face_atlas[f] == atlas)
+      builder.addFace(f);
+  return builder.take();
+}
+
+class GltfBuilder {
+public:
+  explicit GltfBuilder(const TexturedMesh& model) : source_(model)
+  {
+    gltf_.asset.version = "2.0";
+    gltf_.asset.generator = "fresco";
+    gltf_.buffers.emplace_back();
+    gltf_.meshes.emplace_back();
+  }
+
+  void addTexturedPart(int atlas, int jpeg_quality)
+  {
+    const Part part = buildPart(source_, atlas);
+    if (part.indices.empty())
+      return;
+    tinygltf::Texture texture;
+    texture.source = addImage(source_.atlases[static_cast<std::size_t>(atlas)], jpeg_quality);
+    texture.sampler = sampler();
+    gltf_.textures.push_back(texture);
+    tinygltf::Material material = plainMaterial();
+    material.pbrMetallicRoughness.baseColorTexture.index = static_cast<int>(gltf_.textures.size()) - 1;
+    addPrimitive(part, unlit(material));
+  }
+
+  void addUntexturedPart()
+  {
+    const Part part = buildPart(source_, -1);
+    if (part.indices.empty())
+      return;
+    tinygltf::Material material = plainMaterial();
+    if (part.colors.empty())
+      material.pbrMetallicRoughness.baseColorFactor = {0.5, 0.5, 0.5, 1.0};
+    addPrimitive(part, part.colors.empty() ? material : unlit(material));
+  }
+
+  const tinygltf::Model& finish()
+  {
+    require(!gltf_.meshes[0].primitives.empty(), "glTF: the model has no faces");
+    tinygltf::Node node;
+    node.mesh = 0;
+    if (const Eigen::Vector3d& origin = source_.mesh.origin; !origin.isZero(0))
+      node.translation = {origin.x(), origin.y(), origin.z()};
+    gltf_.nodes.push_back(node);
+    tinygltf::Scene scene;
+    scene.nodes.push_back(0);
+    gltf_.scenes.push_back(scene);
+    gltf_.defaultScene = 0;
+    return gltf_;
+  }
+
+private:
+  static tinygltf::Material plainMaterial()
+  {
+    tinygltf::Material material;
+    material.pbrMetallicRoughness.metallicFactor = 0.0;
+    material.pbrMetallicRoughness.roughnessFactor = 1.0;
+    return material;
+  }
+
+  /// Photographs hold the light already: they are shown as they are.
+  tinygltf::Material unlit(tinygltf::Material material)
+  {
+    material.extensions["KHR_materials_unlit"] = tinygltf::Value(tinygltf::Value::Object());
+    gltf_.extensionsUsed = {"KHR_materials_unlit"};
+    return material;
+  }
+
+  int sampler()
+  {
+    if (gltf_.samplers.empty()) {
+      gltf_.samplers.emplace_back();
+      gltf_.samplers[0].minFilter = TINYGLTF_TEXTURE_FILTER_LINEAR_MIPMAP_LINEAR;
+      gltf_.samplers[0].magFilter = TINYGLTF_TEXTURE_FILTER_LINEAR;
+      gltf_.samplers[0].wrapS = gltf_.samplers[0].wrapT = TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE;
+    }
+    return 0;
+  }
+
+  int addImage(const Image& atlas, int jpeg_quality)
+  {
+    const std::vector<std::uint8_t> bytes =
+        jpeg_quality > 0 ? encodeImage(atlas, ".jpg", jpeg_quality) : encodeImage(atlas, ".png");
+    tinygltf::Image image;
+    image.mimeType = jpeg_quality > 0 ? "image/jpeg" : "image/png";
+    image.bufferView = addView(bytes.data(), bytes.size(), 0);
+    gltf_.images.push_back(image);
+    return static_cast<int>(gltf_.images.size()) - 1;
+  }
+
+  int addView(const void* data, std::size_t bytes, int target)
+  {
+    std::vector<unsigned char>& buffer = gltf_.buffers[0].data;
+    buffer.resize((buffer.size() + 3) / 4 * 4);
+    tinygltf::BufferView view;
+    view.buffer = 0;
+    view.byteOffset = buffer.size();
+    view.byteLength = bytes;
+    view.target = target;
+    const auto* from = static_cast<const unsigned char*>(data);
+    buffer.insert(buffer.end(), from, from + bytes);
+    gltf_.bufferViews.push_back(view);
+    return static_cast<int>(gltf_.bufferViews.size()) - 1;
+  }
+
+  template <typename T>
+  tinygltf::Accessor& addAccessor(const std::vector<T>& values, int component_type, int type)
+  {
+    const bool is_index = type == TINYGLTF_TYPE_SCALAR;
+    tinygltf::Accessor accessor;
+    accessor.bufferView = addView(values.data(), values.size() * sizeof(T),
+                                  is_index ? TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER : TINYGLTF_TARGET_ARRAY_BUFFER);
+    accessor.componentType = component_type;
+    accessor.type = type;
+    accessor.count = values.size();
+    gltf_.accessors.push_back(accessor);
+    return gltf_.accessors.back();
+  }
+
+  int lastAccessor() const { return static_cast<int>(gltf_.accessors.size()) - 1; }
+
+  void addPrimitive(const Part& part, const tinygltf::Material& material)
+  {
+    tinygltf::Primitive primitive;
+    primitive.mode = TINYGLTF_MODE_TRIANGLES;
+    const Eigen::Map<const Points> positions(part.positions[0].data(), 3, static_cast<Index>(part.positions.size()));
+    const Eigen::Vector3d low = positions.rowwise().minCoeff().cast<double>();
+    const Eigen::Vector3d high = positions.rowwise().maxCoeff().cast<double>();
+    tinygltf::Accessor& accessor = addAccessor(part.positions, TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_VEC3);
+    accessor.minValues.assign(low.data(), low.data() + 3);
+    accessor.maxValues.assign(high.data(), high.data() + 3);
+    primitive.attributes["POSITION"] = lastAccessor();
+    const auto is_unit = [](const Eigen::Vector3f& normal) { return std::abs(normal.squaredNorm() - 1.f) < 1e-3f; };
+    if (!part.normals.empty() && std::all_of(part.normals.begin(), part.normals.end(), is_unit)) {
+      addAccessor(part.normals, TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_VEC3);
+      primitive.attributes["NORMAL"] = lastAccessor();
+    }
+    if (!part.texcoords.empty()) {
+      addAccessor(part.texcoords, TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_VEC2);
+      primitive.attributes["TEXCOORD_0"] = lastAccessor();
+    }
+    if (!part.colors.empty()) {
+      addAccessor(part.colors, TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT, TINYGLTF_TYPE_VEC4).normalized = true;
+      primitive.attributes["COLOR_0"] = lastAccessor();
+    }
+    addAccessor(part.indices, TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT, TINYGLTF_TYPE_SCALAR);
+    primitive.indices = lastAccessor();
+    gltf_.materials.push_back(material);
+    primitive.material = static_cast<int>(gltf_.materials.size()) - 1;
+    gltf_.meshes[0].primitives.push_back(primitive);
+  }
+
+  const TexturedMesh& source_;
+  tinygltf::Model gltf_;
+};
+
+/// Lets a library write to an OutputFile.
+class FileStreambuf : public std::streambuf {
+public:
+  explicit FileStreambuf(OutputFile& file) : file_(file) {}
+
+protected:
+  std::streamsize xsputn(const char* data, std::streamsize count) override
+  {
+    file_.write(data, static_cast<std::size_t>(count));
+    return count;
+  }
+  int_type overflow(int_type c) override
+  {
+    const char byte = traits_type::to_char_type(c);
+    file_.write(&byte, 1);
+    return c;
+  }
+
+private:
+  OutputFile& file_;
+};
+} // namespace
+
+void writeGlb(const std::string& path, const TexturedMesh& model, int jpeg_quality)
+{
+  OutputFile file(path);
+  GltfBuilder builder(model);
+  for (std::size_t i = 0; i < model.atlases.size(); ++i)
+    builder.addTexturedPart(static_cast<int>(i), jpeg_quality);
+  builder.addUntexturedPart();
+  const tinygltf::Model& gltf = builder.finish();
+  // The header of the format counts bytes with 32 bits; one MiB is left for the JSON part.
+  if (gltf.buffers[0].data.size() > std::numeric_limits<std::uint32_t>::max() - (std::size_t{1} << 20))
+    throw std::runtime_error(path + ": the model is larger than the 4 GiB that binary glTF can hold");
+  FileStreambuf buffer(file);
+  std::ostream stream(&buffer);
+  stream.exceptions(std::ios::badbit | std::ios::failbit);
+  if (!tinygltf::TinyGLTF().WriteGltfSceneToStream(&gltf, stream, false, true))
+    throw std::runtime_error(path + ": cannot be written as glTF");
+  file.commit();
+}
+} // namespace fresco::io

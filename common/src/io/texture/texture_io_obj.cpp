@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "io/mesh/obj.h"
+#include "io/points/parse_file.h"
+#include "io/points/text_numbers.h"
+#include "io/texture/texture_io.h"
+#include <algorithm>
+#include <filesystem>
+#include <fresco/core/require.h>
+#include <fresco/io/image_io.h>
+#include <map>
+#include <memory>
+namespace fresco::io {
+namespace {
+namespace fs = std::filesystem;
+
+/// Writes `vt` lines and the faces of each material after another.
+void writeFaces(TextWriter& writer, const TexturedMesh& model, int atlas)
+{
+  const bool has_normals = model.mesh.normals.cols() > 0;
+  for (Index f = 0; f < model.mesh.faceCount(); ++f) {
+    if (model.face_atlas[f] != atlas)
+      continue;
+    writer.text("f");
+    for (int k = 0; k < 3; ++k) {
+      const int vertex = model.mesh.faces(k, f) + 1;
+      writer.text(" ").number(vertex);
+      if (atlas >= 0)
+        writer.text("/").number(model.texcoord_faces(k, f) + 1);
+      if (has_normals)
+        writer.text(atlas >= 0 ? "/" : "//").number(vertex);
+    }
+    writer.text("\n");
+  }
+}
+
+bool hasUntextured(const TexturedMesh& model) { return (model.face_atlas.array() < 0).any(); }
+
+void writeMaterials(OutputFile& file, const TexturedMesh& model, const std::vector<std::string>& images)
+{
+  // No light: photographs hold it already.
+  for (std::size_t i = 0; i < images.size(); ++i)
+    file.write(concat("newmtl material_", i, "\nKa 1 1 1\nKd 1 1 1\nKs 0 0 0\nillum 0\nmap_Kd ", images[i], "\n\n"));
+  if (hasUntextured(model))
+    file.write("newmtl untextured\nKa 0.7 0.7 0.7\nKd 0.7 0.7 0.7\nKs 0 0 0\nillum 1\n");
+}
+
+void writeModel(OutputFile& file, const TexturedMesh& model, const std::string& library)
+{
+  TextWriter writer(file);
+  writer.text("mtllib ").text(library).text("\n");
+  writeObjVertices(writer, model.mesh);
+  for (Index i = 0; i < model.texcoords.cols(); ++i)
+    writer.text("vt ").number(model.texcoords(0, i)).text(" ").number(model.texcoords(1, i)).text("\n");
+  for (std::size_t i = 0; i < model.atlases.size(); ++i) {
+    writer.text(concat("usemtl material_", i, "\n"));
+    writeFaces(writer, model, static_cast<int>(i));
+  }
+  if (hasUntextured(model)) {
+    writer.text("usemtl untextured\n");
+    writeFaces(writer, model, -1);
+  }
+  writer.flush();
+}
+
+/// File name of a map_Kd entry without options, relative to the .mtl file.
+std::string imageName(std::string entry)
+{
+  if (!entry.empty() && entry[0] == '-')
+    entry = entry.substr(entry.find_last_of(" \t") + 1);
+  std::replace(entry.begin(), entry.end(), '\\', '/');
+  return entry;
+}
+
+/// Result of `read`, which reads a file that `path` names: errors say who wanted it.
+template <typename Read>
+auto readFor(const std::string& path, const Read& read)
+{
+  try {
+    return read();
+  } catch (const std::runtime_error& error) {
+    throw std::runtime_error(path + ": " + error.what());
+  }
+}
+
+/// Image file of each material name, "" for a material without one.
+std::map<std::string, std::string> readLibraries(const std::string& path, const ObjContent& obj)
+{
+  std::map<std::string, std::string> images;
+  for (const std::string& library : obj.libraries) {
+    const fs::path file = fs::path(path).parent_path() / library;
+    for (const auto& [name, entry] : readFor(path, [&] { return parseMtl(readFile(file.string())); }))
+      images[name] = entry.empty() ? "" : (file.parent_path() / imageName(entry)).string();
+  }
+  return images;
+}
+
+/// Reads each image once. @return atlas of each material, -1 where it has no image
+std::vector<int> readAtlases(const std::string& path, const ObjContent& obj, std::vector<Image>& atlases)
+{
+  const auto files = readLibraries(path, obj);
+  std::map<std::string, int> known;
+  std::vector<int> of_material;
+  for (const std::string& material : obj.materials) {
+    const auto file = files.find(material);
+    if (file == files.end() && !obj.libraries.empty())
+      throw std::runtime_error(path + ": no library holds the material '" + material + "'");
+    if (file == files.end() || file->second.empty()) {
+      of_material.push_back(-1);
+      continue;
+    }
+    const auto [entry, is_new] = known.emplace(file->second, static_cast<int>(atlases.size()));
+    if (is_new)
+      atlases.push_back(readFor(path, [&] { return readImage(file->second); }));
+    of_material.push_back(entry->second);
+  }
+  return of_material;
+}
+} // namespace
+
+void writeTexturedObj(const std::string& path, const TexturedMesh& model)
+{
+  const fs::path folder = fs::path(path).parent_path();
+  const std::string stem = fs::path(path).stem().string();
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < model.atlases.size(); ++i)
+    names.push_back(model.atlases.size() == 1 ? stem + ".png" : concat(stem, '_', i, ".png"));
+  OutputFile object(path), materials((folder / (stem + ".mtl")).string());
+  std::vector<std::unique_ptr<OutputFile>> images;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const std::vector<std::uint8_t> bytes = encodeImage(model.atlases[i], ".png");
+    images.push_back(std::make_unique<OutputFile>((folder / names[i]).string()));
+    images.back()->write(bytes.data(), bytes.size());
+  }
+  writeMaterials(materials, model, names);
+  writeModel(object, model, stem + ".mtl");
+  for (const auto& image : images)
+    image->commit();
+  materials.commit();
+  object.commit();
+}
+
+TexturedMesh readTexturedObj(const std::string& path)
+{
+  const ObjContent obj = parseFile(path, parseObj);
+  TexturedMesh model;
+  model.mesh = tableToMesh(objVertices(obj));
+  model.mesh.faces = objFaces(obj);
+  model.texcoords =
+      Eigen::Map<const Eigen::Matrix2Xf>(obj.texcoords.data(), 2, static_cast<Index>(obj.texcoords.size() / 2));
+  const std::vector<int> atlas_of_material = readAtlases(path, obj, model.atlases);
+  const Index faces = model.mesh.faceCount();
+  model.texcoord_faces.setConstant(3, faces, -1);
+  model.face_atlas.setConstant(faces, -1);
+  for (Index f = 0; f < faces; ++f) {
+    const ObjTriangle& triangle = obj.triangles[static_cast<std::size_t>(f)];
+    const Eigen::Vector3i texcoords(triangle.texcoords[0], triangle.texcoords[1], triangle.texcoords[2]);
+    const int atlas = triangle.material < 0 ? -1 : atlas_of_material[static_cast<std::size_t>(triangle.material)];
+    if (atlas < 0 || texcoords.minCoeff() < 0)
+      continue;
+    model.texcoord_faces.col(f) = texcoords;
+    model.face_atlas[f] = atlas;
+  }
+  return model;
+}
+} // namespace fresco::io

@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bilateral/candidate_features.h"
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+namespace fresco::filters {
+using Eigen::ArrayXf;
+using Eigen::Index;
+using Eigen::Vector3f;
+
+namespace {
+constexpr Index nearest = 8, wide = 24; // neighbours across the beam
+constexpr int ring_count = 4;
+constexpr Index rings[] = {8, 16, 32}; // nearest neighbours counted apart, then all
+constexpr float least_noise = 0.05f;   // spacings: surfaces between beams are not flatter, however exact these are
+constexpr int placings = 4;            // of the plane
+constexpr float held = 2.5f, close = 1.2f, beyond = 4.f; // deviations of the noise
+constexpr float fading = 16.f; // squared spacings across the beam at which a neighbour places a plane by half
+constexpr float alike = 0.9f;  // cosine
+
+// Where figures stand; the first are of the offer and the place of its plane.
+constexpr int from_rings = 7, from_spread = from_rings + 6 * ring_count, from_fit = from_spread + 6;
+static_assert(from_fit + 7 == DirectionFigures::count);
+
+/// ln(n + 1/2)
+float logCount(float count)
+{
+  static const std::array<float, 256> logs = [] {
+    std::array<float, 256> values{};
+    for (std::size_t n = 0; n < values.size(); ++n)
+      values[n] = std::log(static_cast<float>(n) + 0.5f);
+    return values;
+  }();
+  return logs[static_cast<std::size_t>(std::min(count, 255.f))];
+}
+} // namespace
+
+void DirectionFigures::set(const std::vector<FacedNeighbor>& neighbors, const Vector3f& beam, float noise)
+{
+  sortIntoRings(neighbors);
+  const auto n = static_cast<Index>(neighbors.size());
+  beam_ = beam;
+  offsets_.resize(3, n);
+  normals_.resize(3, n);
+  at_crease_.resize(n);
+  for (Index j = 0; j < n; ++j) {
+    const FacedNeighbor& neighbor = neighbors[static_cast<std::size_t>(order_[static_cast<std::size_t>(j)].second)];
+    offsets_.col(j) = neighbor.offset;
+    normals_.col(j) = neighbor.normal;
+    at_crease_[j] = neighbor.at_crease;
+  }
+  const ArrayXf along = (beam.transpose() * offsets_.matrix()).transpose().array();
+  across_ = (offsets_.square().colwise().sum().transpose() - along.square()).max(0.f);
+  measureSpacing();
+  across_ /= spacing_ * spacing_;
+  markNearestAcross();
+  placing_ = (1 + across_ / fading).inverse();
+  noise_ = std::max(noise, least_noise * spacing_);
+}
+
+/// Those of each ring before those of the next, in no order within it.
+void DirectionFigures::sortIntoRings(const std::vector<FacedNeighbor>& neighbors)
+{
+  order_.clear();
+  for (std::size_t j = 0; j < neighbors.size(); ++j)
+    order_.emplace_back(neighbors[j].offset.squaredNorm(), static_cast<int>(j));
+  auto end = order_.end();
+  for (int ring = ring_count - 2; ring >= 0; --ring)
+    if (order_.begin() + rings[ring] < end) {
+      std::nth_element(order_.begin(), order_.begin() + rings[ring], end);
+      end = order_.begin() + rings[ring];
+    }
+}
+
+/// Harmonic mean of the distances of the nearest across the beam: some of them lie far across it.
+void DirectionFigures::measureSpacing()
+{
+  float inverse = 0, found = 0;
+  for (Index j = 0; j < std::min(nearest, across_.size()); ++j)
+    if (across_[j] > 0) {
+      inverse += 1 / std::sqrt(across_[j]);
+      ++found;
+    }
+  spacing_ = inverse > 0 ? found / inverse : 1.f;
+}
+
+/// Marks those nearest across the beam.
+void DirectionFigures::markNearestAcross()
+{
+  sorted_.assign(across_.data(), across_.data() + across_.size());
+  auto end = sorted_.end();
+  const auto mark = [&](Index count, ArrayXf& marked) {
+    if (end - sorted_.begin() <= count) {
+      marked.setOnes(across_.size());
+      return;
+    }
+    const auto last = sorted_.begin() + (count - 1);
+    std::nth_element(sorted_.begin(), last, end);
+    marked = (across_ <= *last).cast<float>();
+    end = last + 1;
+  };
+  mark(wide, wide_across_);
+  mark(nearest, near_across_);
+}
+
+/// Height of the plane that most of the neighbours are on, starting at the point, in deviations.
+float DirectionFigures::placeOfPlane() const
+{
+  float place = 0;
+  for (int k = 0; k < placings; ++k) {
+    const ArrayXf weights = ((height_ - place).abs() < held).cast<float>() * placing_;
+    const float total = weights.sum();
+    if (!(total > 0))
+      break;
+    place = (weights * height_).sum() / total;
+  }
+  return place;
+}
+
+DirectionFigures::Figures DirectionFigures::of(const DirectionOffer& offer)
+{
+  const float cosine = -offer.direction.dot(beam_);
+  thickness_ = noise_ * cosine;
+  height_ = (offer.direction.transpose() * offsets_.matrix()).transpose().array() / thickness_;
+  const float place = placeOfPlane();
+  height_ -= place;
+  held_ = (height_.abs() < held).cast<float>();
+  Figures figures;
+  figures[0] = offer.to_own > 0.97f;
+  figures[1] = offer.to_own;
+  figures[2] = std::clamp(place, -4.f, 4.f);
+  figures[3] = std::abs(figures[2]);
+  figures[4] = std::log(offer.share + 0.003f);
+  figures[5] = std::log(cosine);
+  figures[6] = std::log(thickness_ / spacing_ + 0.001f);
+  countRings(offer.direction, figures);
+  measureSpread(offer.direction, figures);
+  measureFit(offer.direction, figures);
+  return figures;
+}
+
+void DirectionFigures::countRings(const Vector3f& direction, Figures& figures)
+{
+  const ArrayXf inside = (height_.abs() < close).cast<float>();
+  const ArrayXf same = ((direction.transpose() * normals_.matrix()).transpose().array() > alike).cast<float>() * held_;
+  const ArrayXf other = (held_ - same) * (1 - at_crease_);
+  const ArrayXf front = (height_ > beyond).cast<float>(), behind = (height_ < -beyond).cast<float>();
+  int at = from_rings;
+  for (int ring = 0; ring < ring_count; ++ring) {
+    const Index end = ring < ring_count - 1 ? std::min(rings[ring], held_.size()) : held_.size();
+    for (const ArrayXf* counted :
+         std::initializer_list<const ArrayXf*>{&inside, &held_, &same, &other, &front, &behind})
+      figures[at++] = logCount(counted->head(end).sum());
+  }
+}
+
+/// Of the neighbours held: the nearest across the beam, and deviations within the plane, in spacings.
+void DirectionFigures::measureSpread(const Vector3f& direction, Figures& figures)
+{
+  float gap = across_.size() > 0 ? across_.maxCoeff() : 1.f;
+  for (Index j = 0; j < across_.size(); ++j)
+    if (held_[j] > 0)
+      gap = std::min(gap, across_[j]);
+  const Vector3f u = direction.unitOrthogonal(), v = direction.cross(u);
+  const ArrayXf a = (u.transpose() * offsets_.matrix()).transpose().array() / spacing_;
+  const ArrayXf b = (v.transpose() * offsets_.matrix()).transpose().array() / spacing_;
+  const float total = std::max(1.f, held_.sum()), mean_a = (held_ * a).sum() / total,
+              mean_b = (held_ * b).sum() / total;
+  const float aa = (held_ * a.square()).sum() / total - mean_a * mean_a;
+  const float bb = (held_ * b.square()).sum() / total - mean_b * mean_b;
+  const float ab = (held_ * a * b).sum() / total - mean_a * mean_b;
+  const float middle = (aa + bb) / 2, apart = std::hypot((aa - bb) / 2, ab);
+  const float longer = std::sqrt(std::max(0.f, middle + apart)), shorter = std::sqrt(std::max(0.f, middle - apart));
+  figures[from_spread] = std::log(gap + 0.1f);
+  figures[from_spread + 1] = std::log(longer + 0.1f);
+  figures[from_spread + 2] = std::log(shorter + 0.1f);
+  figures[from_spread + 3] = std::log(std::max(shorter * spacing_ / thickness_, 0.1f));
+  figures[from_spread + 4] = std::log(noise_ / spacing_);
+  figures[from_spread + 5] = std::log(static_cast<float>(across_.size()) + 1.f);
+}
+/// How far the neighbours are from the plane, and how far those that it holds agree with it.
+void DirectionFigures::measureFit(const Vector3f& direction, Figures& figures)
+{
+  const ArrayXf off = height_.abs().min(beyond);
+  const float total = std::max(1.f, held_.sum());
+  figures[from_fit] = logCount((held_ * near_across_).sum());
+  figures[from_fit + 1] = (off * near_across_).sum() / std::max(1.f, near_across_.sum());
+  figures[from_fit + 2] = (off * wide_across_).sum() / std::max(1.f, wide_across_.sum());
+  figures[from_fit + 3] = std::sqrt((held_ * height_.square()).sum() / total);
+  figures[from_fit + 4] = (held_ * (direction.transpose() * normals_.matrix()).transpose().array()).sum() / total;
+  figures[from_fit + 5] = (height_.max(-beyond).min(beyond) * wide_across_).sum() / std::max(1.f, wide_across_.sum());
+  figures[from_fit + 6] = at_crease_.size() > 0 ? at_crease_.mean() : 0.f;
+}
+} // namespace fresco::filters

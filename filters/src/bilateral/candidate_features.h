@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include <Eigen/Core>
+#include <utility>
+#include <vector>
+namespace fresco::filters {
+/// A neighbour of a point.
+struct FacedNeighbor {
+  Eigen::Vector3f offset; ///< from the point
+  Eigen::Vector3f normal; ///< unit
+  bool at_crease;         ///< its own neighbours have different normals
+};
+
+/// A direction that the normal of a point may have.
+struct DirectionOffer {
+  Eigen::Vector3f direction; ///< unit, facing the viewer
+  float share;               ///< of the directions around, 0..1
+  float to_own;              ///< cosine to the normal the point has
+};
+
+/// Numbers that tell how well directions fit a point beside a crease, from its neighbours and the noise of the beams.
+/// They change neither with the frame nor with the unit of length.
+class DirectionFigures {
+public:
+  static constexpr int count = 44;
+  using Figures = Eigen::Matrix<float, count, 1>;
+
+  /// @param neighbors without the point itself
+  /// @param beam unit, towards the point
+  /// @param noise deviation along the beam, length, > 0
+  void set(const std::vector<FacedNeighbor>& neighbors, const Eigen::Vector3f& beam, float noise);
+  Figures of(const DirectionOffer& offer);
+
+private:
+  void sortIntoRings(const std::vector<FacedNeighbor>& neighbors);
+  void measureSpacing();
+  void markNearestAcross();
+  float placeOfPlane() const;
+  void countRings(const Eigen::Vector3f& direction, Figures& figures);
+  void measureFit(const Eigen::Vector3f& direction, Figures& figures);
+  void measureSpread(const Eigen::Vector3f& direction, Figures& figures);
+
+  Eigen::Vector3f beam_;
+  float noise_ = 0, spacing_ = 1;            ///< of the beams, lengths
+  Eigen::Array3Xf offsets_, normals_;        ///< of the neighbours, ring by ring
+  Eigen::ArrayXf at_crease_, across_;        ///< 0 or 1; squared distance across the beam in spacings
+  Eigen::ArrayXf near_across_, wide_across_; ///< 1 for those nearest across the beam, else 0
+  Eigen::ArrayXf placing_;                   ///< weights where the height of a plane is sought
+  Eigen::ArrayXf height_, held_;             ///< above the plane in deviations of the noise; 0 or 1
+  float thickness_ = 0;                      ///< deviation of the noise across the plane, length
+  std::vector<std::pair<float, int>> order_; ///< squared distance, neighbour
+  std::vector<float> sorted_;
+};
+} // namespace fresco::filters

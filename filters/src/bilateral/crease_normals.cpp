@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bilateral/crease_normals.h"
+#include "bilateral/candidate_score.h"
+#include "bilateral/direction_grid.h"
+#include "normals/view_direction.h"
+#include <algorithm>
+#include <cmath>
+#include <fresco/core/parallel.h>
+namespace fresco::filters {
+namespace {
+constexpr float agreeing = 0.94f;      // cosine between normals of one surface
+constexpr float same = 0.97f;          // cosine between directions that are one
+constexpr float grazing = 0.08f;       // cosine to the beam at least
+constexpr float cell_spacings = 64.f;  // edge of the cells in which directions are counted
+constexpr float part_at_crease = 0.3f; // that a normal counts for a direction where its neighbours do not agree
+constexpr std::size_t fewest = 8;      // neighbours that tell the noise
+
+class SurfaceChoice {
+public:
+  SurfaceChoice(const SmoothingField& field, const Points& viewpoints, const Points& normals, int threads)
+      : field_(field), viewpoints_(viewpoints), normals_(normals),
+        grid_(cell_spacings * std::sqrt(typicalArea(field.areas)))
+  {
+    markCreases(threads);
+    grid_.finish(threads);
+  }
+
+  void compare(int threads, const UseOffers& use) const;
+
+private:
+  static float typicalArea(const Eigen::VectorXf& areas);
+  void markCreases(int threads);
+  float noiseAt(Index i, const std::vector<int>& list) const;
+  Eigen::Vector3f beam(Index i) const;
+  void setNeighbors(Index i, const std::vector<int>& list, std::vector<FacedNeighbor>& near) const;
+  void setOffers(Index i, const Eigen::Vector3f& ray, const DirectionGrid::Surroundings& around,
+                 std::vector<DirectionOffer>& all) const;
+
+  const SmoothingField& field_;
+  const Points& viewpoints_;
+  const Points& normals_;
+  DirectionGrid grid_;
+  std::vector<char> at_crease_; ///< by position
+};
+
+float SurfaceChoice::typicalArea(const Eigen::VectorXf& areas)
+{
+  std::vector<float> sorted;
+  for (const float area : areas)
+    if (area > 0 && std::isfinite(area))
+      sorted.push_back(area);
+  if (sorted.empty())
+    return 1.f;
+  std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2), sorted.end());
+  return sorted[sorted.size() / 2];
+}
+
+/// From the viewer to the point, unit; zero where unknown.
+Eigen::Vector3f SurfaceChoice::beam(Index i) const
+{
+  return -viewDirection(viewpoints_, field_.tree->columns()[static_cast<std::size_t>(i)], field_.tree->point(i))
+              .normalized();
+}
+
+/// Deviation of the neighbours across the plane of a point, along its beam; 0 where the beam grazes.
+float SurfaceChoice::noiseAt(Index i, const std::vector<int>& list) const
+{
+  const Eigen::Vector3f normal = normals_.col(i);
+  const float cosine = -normal.dot(beam(i));
+  if (cosine < 0.3f || list.size() <= fewest)
+    return 0;
+  double sum = 0, squares = 0;
+  for (const int j : list) {
+    const double off = normal.dot(field_.tree->point(j) - field_.tree->point(i));
+    sum += off;
+    squares += off * off;
+  }
+  const auto count = static_cast<double>(list.size());
+  return static_cast<float>(std::sqrt(std::max(0.0, squares / count - sum * sum / (count * count))) / cosine);
+}
+
+void SurfaceChoice::markCreases(int threads)
+{
+  at_crease_.assign(static_cast<std::size_t>(normals_.cols()), 0);
+  std::vector<float> noises(at_crease_.size());
+  parallelFor(static_cast<Index>(field_.lists.size()), threads, [&](Index range) {
+    const CompactLists& lists = field_.lists[static_cast<std::size_t>(range)];
+    CompactReader reader(lists);
+    std::vector<int> list;
+    for (Index i = lists.begin; i < lists.end; ++i) {
+      reader.next(list);
+      const Eigen::Vector3f normal = normals_.col(i);
+      const bool crease =
+          std::any_of(list.begin(), list.end(), [&](int j) { return !(normals_.col(j).dot(normal) > agreeing); });
+      at_crease_[static_cast<std::size_t>(i)] = crease;
+      noises[static_cast<std::size_t>(i)] = crease ? 0.f : noiseAt(i, list);
+    }
+  });
+  for (Index i = 0; i < normals_.cols(); ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    const float weight = field_.areas[i] * (at_crease_[at] ? part_at_crease : 1.f);
+    grid_.add({field_.tree->point(i), normals_.col(i), weight, noises[at]});
+  }
+}
+
+void SurfaceChoice::setNeighbors(Index i, const std::vector<int>& list, std::vector<FacedNeighbor>& near) const
+{
+  near.clear();
+  for (const int j : list)
+    if (j != i)
+      near.push_back({field_.tree->point(j) - field_.tree->point(i), normals_.col(j),
+                      at_crease_[static_cast<std::size_t>(j)] != 0});
+}
+
+/// The own normal first; none where it does not face the viewer or the noise is unknown.
+void SurfaceChoice::setOffers(Index i, const Eigen::Vector3f& ray, const DirectionGrid::Surroundings& around,
+                              std::vector<DirectionOffer>& all) const
+{
+  const Eigen::Vector3f own = normals_.col(i);
+  all.clear();
+  if (!(around.noise > 0) || -own.dot(ray) < grazing)
+    return;
+  all.push_back({own, 0, 1});
+  for (std::size_t k = 0; k < around.directions.size(); ++k) {
+    const Eigen::Vector3f& direction = around.directions[k];
+    const float to_own = direction.dot(own);
+    if (to_own > same)
+      all.front().share = std::max(all.front().share, around.shares[k]);
+    else if (-direction.dot(ray) >= grazing)
+      all.push_back({direction, around.shares[k], to_own});
+  }
+}
+
+void SurfaceChoice::compare(int threads, const UseOffers& use) const
+{
+  parallelFor(static_cast<Index>(field_.lists.size()), threads, [&](Index range) {
+    const CompactLists& lists = field_.lists[static_cast<std::size_t>(range)];
+    CompactReader reader(lists);
+    std::vector<int> list;
+    std::vector<DirectionOffer> offered;
+    std::vector<FacedNeighbor> near;
+    DirectionFigures figures;
+    for (Index i = lists.begin; i < lists.end; ++i) {
+      reader.next(list);
+      if (!at_crease_[static_cast<std::size_t>(i)])
+        continue;
+      const Eigen::Vector3f ray = beam(i);
+      const DirectionGrid::Surroundings& around = grid_.at(field_.tree->point(i));
+      setOffers(i, ray, around, offered);
+      if (offered.size() < 2)
+        continue;
+      setNeighbors(i, list, near);
+      figures.set(near, ray, around.noise);
+      use(i, offered, figures);
+    }
+  });
+}
+} // namespace
+
+void compareDirections(const SmoothingField& field, const Points& viewpoints, const Points& normals, int threads,
+                       const UseOffers& use)
+{
+  SurfaceChoice(field, viewpoints, normals, threads).compare(threads, use);
+}
+
+Points chooseSurfaces(const SmoothingField& field, const Points& viewpoints, const Points& normals, int threads)
+{
+  Points chosen = normals;
+  compareDirections(field, viewpoints, normals, threads,
+                    [&](Index i, const std::vector<DirectionOffer>& offered, DirectionFigures& figures) {
+                      const DirectionFigures::Figures own = figures.of(offered.front());
+                      const DirectionWorth worth(own);
+                      float most = worth.of(own);
+                      for (std::size_t k = 1; k < offered.size(); ++k)
+                        if (const float its = worth.of(figures.of(offered[k])); its > most) {
+                          most = its;
+                          chosen.col(i) = offered[k].direction;
+                        }
+                    });
+  return chosen;
+}
+} // namespace fresco::filters

@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "mixed_pixels/mixed_pixel_candidates.h"
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <fresco/core/parallel.h>
+namespace fresco::filters {
+namespace {
+constexpr float clear = 3;           // deviations
+constexpr std::size_t beside = 12;   // nearest beams
+constexpr float most_joined = 0.75f; // share of the nearer half of the beams around
+constexpr Index reach = 64;          // nearest beams of a second look
+
+/// Whether a point has nearer and farther ones beside it, and few that a surface could join it with.
+bool isBetween(const BeamWindow& window, float noise, float slope)
+{
+  bool front = false, behind = false;
+  for (std::size_t k = 0; k < window.beams.size() && k < beside; ++k) {
+    front |= window.beams[k].range < window.range - clear * noise;
+    behind |= window.beams[k].range > window.range + clear * noise;
+  }
+  return front && behind && joinedShare(window, noise, slope) <= most_joined;
+}
+
+/// The windows of one beam after the other.
+class BeamWindows {
+public:
+  BeamWindows(const BeamScan& scan, const VeilOptions& options)
+      : scan_(scan), k_(options.k), slope_(1 / std::tan(options.angle * 0.017453293f))
+  {}
+
+  /// @return whether it is a candidate
+  bool fill(Index i);
+  /// Without beams of positive scores, where enough others are there.
+  void fillWithout(Index i, const std::vector<float>& scores);
+  BeamSurroundings around() const { return {near_, scan_.thinned ? wide_ : near_, noise_}; }
+  /// ringsAround() over farther beams than those of around().
+  auto rings(Index i, const std::vector<float>& scores)
+  {
+    listNearest(i, reach);
+    fillFromList(i, far_);
+    return ringsAround(far_, noise_, scores);
+  }
+
+private:
+  void listNearest(Index i, Index count); ///< nearest first
+  void fillFromList(Index i, BeamWindow& window) const
+  {
+    fillWindow(scan_, i, list_.data(), list_.data() + list_.size(), window);
+  }
+  bool canBeBetween() const;
+
+  const BeamScan& scan_;
+  Index k_;
+  float slope_, noise_ = 0;
+  BeamWindow near_, wide_, far_;
+  std::vector<PointTree::Key> found_;
+  std::vector<int> list_;
+};
+
+void BeamWindows::listNearest(Index i, Index count)
+{
+  scan_.tree->nearestKeys(scan_.directions.col(i), count + 1, found_);
+  std::sort(found_.begin(), found_.end());
+  list_.clear();
+  for (const PointTree::Key key : found_)
+    list_.push_back(static_cast<int>(PointTree::position(key)));
+}
+
+/// Whether anything of the wide window is nearer and anything farther.
+bool BeamWindows::canBeBetween() const
+{
+  float least = wide_.range, most = wide_.range;
+  for (const BeamWindow::Beam& beam : wide_.beams) {
+    least = std::min(least, beam.range);
+    most = std::max(most, beam.range);
+  }
+  return least < wide_.range - clear * noise_ && most > wide_.range + clear * noise_;
+}
+
+bool BeamWindows::fill(Index i)
+{
+  noise_ = scan_.noise.at(scan_.ranges[i]);
+  BeamWindow& listed = scan_.thinned ? wide_ : near_;
+  fillWindow(scan_, i, scan_.lists.first(i), scan_.lists.last(i), listed);
+  if (listed.beams.size() < beside)
+    return false;
+  if (!scan_.thinned)
+    return isBetween(near_, noise_, slope_);
+  if (!canBeBetween())
+    return false;
+  listNearest(i, k_);
+  fillFromList(i, near_);
+  return near_.beams.size() >= beside && (isBetween(wide_, noise_, slope_) || isBetween(near_, noise_, slope_));
+}
+
+void BeamWindows::fillWithout(Index i, const std::vector<float>& scores)
+{
+  const auto leaveOut = [&] {
+    const auto high = [&](int j) { return j != i && scores[static_cast<std::size_t>(j)] > 0; };
+    list_.erase(std::remove_if(list_.begin(), list_.end(), high), list_.end());
+    list_.resize(std::min(list_.size(), static_cast<std::size_t>(k_) + 1));
+    return list_.size() > beside;
+  };
+  listNearest(i, reach);
+  if (leaveOut())
+    fillFromList(i, near_);
+  if (!scan_.thinned)
+    return;
+  list_.assign(scan_.lists.first(i), scan_.lists.last(i));
+  if (leaveOut())
+    fillFromList(i, wide_);
+}
+
+/// How wide the veil of a scan is: beams that score above 0 of the nearest in 8 directions, of `near`, then of `wide`,
+/// on average over the beams that do so themselves. Where these are few, mostly what is usual.
+Eigen::Vector2f veilWidth(const BeamScan& scan, const VeilOptions& options, const std::vector<float>& scores)
+{
+  constexpr int half = veil_figures::bearings;
+  constexpr float usual = 2, as_many = 4;
+  std::atomic<Index> near{0}, wide{0}, beams{0};
+  parallelRanges(scan.ranges.size(), options.threads, [&](Index begin, Index end) {
+    BeamWindows windows(scan, options);
+    for (Index i = begin; i < end; ++i)
+      if (scores[static_cast<std::size_t>(i)] > 0 && windows.fill(i)) {
+        const auto around = scoresAround(windows.around(), scores);
+        near += (around.head<half>().array() > 0).count();
+        wide += (around.tail<half>().array() > 0).count();
+        ++beams;
+      }
+  });
+  const Eigen::Vector2f sums(static_cast<float>(near), static_cast<float>(wide));
+  return (sums.array() + usual * as_many) / (static_cast<float>(beams) + as_many);
+}
+} // namespace
+
+void forVeilCandidates(const BeamScan& scan, const VeilOptions& options, const UseCandidate& use)
+{
+  parallelRanges(scan.ranges.size(), options.threads, [&](Index begin, Index end) {
+    BeamWindows windows(scan, options);
+    for (Index i = begin; i < end; ++i)
+      if (windows.fill(i))
+        use(i, windows.around());
+  });
+}
+
+void forLikelyVeil(const BeamScan& scan, const VeilOptions& options, const std::vector<float>& scores,
+                   const UseLikely& use)
+{
+  const Eigen::Vector2f width = veilWidth(scan, options, scores);
+  parallelRanges(scan.ranges.size(), options.threads, [&](Index begin, Index end) {
+    BeamWindows windows(scan, options);
+    for (Index i = begin; i < end; ++i) {
+      const float score = scores[static_cast<std::size_t>(i)];
+      if (!(score > least_likely) || !windows.fill(i))
+        continue;
+      const VeilFigures before = veilFigures(windows.around());
+      const auto around = scoresAround(windows.around(), scores);
+      const auto rings = windows.rings(i, scores);
+      windows.fillWithout(i, scores);
+      LikelyFigures figures;
+      figures << before, veilFigures(windows.around()), std::max(score, veil_figures::least_score), around, rings,
+          width;
+      use(i, figures);
+    }
+  });
+}
+} // namespace fresco::filters

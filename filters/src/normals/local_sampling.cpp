@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <cmath>
+#include <fresco/core/parallel.h>
+#include <fresco/core/require.h>
+#include <fresco/filters/core/local_sampling.h>
+#include <fresco/search/batch_knn.h>
+namespace fresco {
+namespace {
+constexpr float pi = 3.14159265f;
+
+float smallestPositive(const Eigen::VectorXf& values)
+{
+  float smallest = std::numeric_limits<float>::infinity();
+  for (const float value : values)
+    if (value > 0)
+      smallest = std::min(smallest, value);
+  return std::isfinite(smallest) ? smallest : 1.f;
+}
+
+Eigen::VectorXf withoutZeros(const Eigen::VectorXf& areas)
+{
+  const float least = smallestPositive(areas) / 1000;
+  return areas.cwiseMax(least);
+}
+
+/// @param near positions by distance, the point itself included
+float areaOf(const PointTree& tree, Index i, const int* near, Index count)
+{
+  const Index others = count - 1;
+  const float squared = others > 0 ? (tree.point(near[count - 1]) - tree.point(i)).squaredNorm() : 0.f;
+  return others > 0 && std::isfinite(squared) ? pi * squared / static_cast<float>(others) : 0.f;
+}
+} // namespace
+
+Eigen::VectorXf sampleAreas(const PointTree& tree, int k, int threads)
+{
+  require(k >= 1, "sample areas: k ", k, " is below 1");
+  Eigen::VectorXf areas(tree.size());
+  forNearest(tree, k + 1, threads,
+             [&](Index i, const int* found, Index count) { areas[i] = areaOf(tree, i, found, count); });
+  return withoutZeros(areas);
+}
+
+Eigen::VectorXf sampleAreas(const PointTree& tree, const NeighborLists& lists, int threads)
+{
+  require(lists.size() == tree.size(), "sample areas: ", lists.size(), " lists of ", tree.size(), " points");
+  Eigen::VectorXf areas(tree.size());
+  parallelFor(tree.size(), threads, [&](Index i) { areas[i] = areaOf(tree, i, lists.first(i), lists.count(i)); });
+  return withoutZeros(areas);
+}
+} // namespace fresco

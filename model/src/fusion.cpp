@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "fusion.h"
+#include <algorithm>
+#include <fresco/core/require.h>
+namespace fresco::model {
+PointFusion::PointFusion(double cell) : cell_(cell) { require(cell > 0, "fusion: cell ", cell, " is not positive"); }
+
+PointFusion::Sum& PointFusion::at(const Eigen::Vector3f& point, const Eigen::Vector3f& normal)
+{
+  constexpr std::int64_t half = std::int64_t{1} << 19;
+  std::uint64_t key = 0;
+  for (int k = 0; k < 3; ++k) {
+    const auto index = static_cast<std::int64_t>(std::floor(point[k] / cell_)) + half;
+    require(index >= 0 && index < 2 * half, "fusion: a point lies more than ", half, " cells from the origin");
+    key = key << 20 | static_cast<std::uint64_t>(index);
+  }
+  int axis = 0;
+  normal.cwiseAbs().maxCoeff(&axis);
+  key = key << 3 | static_cast<std::uint64_t>(2 * axis + (normal[axis] < 0.f));
+  const auto [found, fresh] = cells_.try_emplace(key, sums_.size());
+  if (fresh)
+    sums_.emplace_back();
+  return sums_[found->second];
+}
+
+void PointFusion::add(const PointSet& set)
+{
+  validatePointSet(set);
+  require(set.hasNormals(), "fusion: the points have no normals");
+  for (Index i = 0; i < set.size(); ++i) {
+    const double weight = set.confidences.size() > 0 ? set.confidences[i] : 1.0;
+    if (!set.points.col(i).allFinite() || !set.normals.col(i).allFinite() || !(weight > 0))
+      continue;
+    Sum& sum = at(set.points.col(i), set.normals.col(i));
+    sum.weight += weight;
+    sum.point += weight * set.points.col(i).cast<double>();
+    sum.normal += weight * set.normals.col(i).cast<double>();
+    if (set.colors.cols() > 0) {
+      sum.color += weight * set.colors.col(i).cast<double>();
+      sum.color_weight += weight;
+    }
+    if (set.viewpoints.cols() > 0) {
+      sum.viewpoint += weight * set.viewpoints.col(set.viewpoints.cols() == 1 ? 0 : i).cast<double>();
+      sum.viewpoint_weight += weight;
+    }
+  }
+}
+
+PointSet PointFusion::result(double least_weight) const
+{
+  std::vector<double> weights;
+  for (const Sum& sum : sums_)
+    weights.push_back(sum.weight);
+  double threshold = 0;
+  if (!weights.empty() && least_weight > 0) {
+    std::nth_element(weights.begin(), weights.begin() + static_cast<std::ptrdiff_t>(weights.size() / 2), weights.end());
+    threshold = least_weight * weights[weights.size() / 2];
+  }
+  std::vector<const Sum*> kept;
+  for (const Sum& sum : sums_)
+    if (sum.weight >= threshold && sum.normal.norm() > 0)
+      kept.push_back(&sum);
+  const auto all = [&](auto has) { return !kept.empty() && std::all_of(kept.begin(), kept.end(), has); };
+  const bool colors = all([](const Sum* sum) { return sum->color_weight > 0; });
+  const bool viewpoints = all([](const Sum* sum) { return sum->viewpoint_weight > 0; });
+  const auto count = static_cast<Index>(kept.size());
+  PointSet set;
+  set.points.resize(3, count);
+  set.normals.resize(3, count);
+  set.confidences.resize(count);
+  set.colors.resize(3, colors ? count : 0);
+  set.viewpoints.resize(3, viewpoints ? count : 0);
+  for (Index i = 0; i < count; ++i) {
+    const Sum& sum = *kept[static_cast<std::size_t>(i)];
+    set.points.col(i) = (sum.point / sum.weight).cast<float>();
+    set.normals.col(i) = sum.normal.normalized().cast<float>();
+    set.confidences[i] = static_cast<float>(sum.weight);
+    if (colors)
+      set.colors.col(i) = (sum.color / sum.color_weight).array().round().matrix().cast<std::uint8_t>();
+    if (viewpoints)
+      set.viewpoints.col(i) = (sum.viewpoint / sum.viewpoint_weight).cast<float>();
+  }
+  return set;
+}
+} // namespace fresco::model

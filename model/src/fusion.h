@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include <cstdint>
+#include <fresco/core/point_set.h>
+#include <unordered_map>
+#include <vector>
+namespace fresco::model {
+/// Merges overlapping oriented point sets into one of even density: points of one cell whose normals point the same way
+/// (towards the same side of a cube) become their mean, weighted by confidence. Memory follows the surface, not the
+/// number of points added. The result depends on the order of add(), not on threads.
+class PointFusion {
+public:
+  /// @param cell side of a cell, in the unit of the points, > 0
+  explicit PointFusion(double cell);
+
+  /// @param set in the common frame, with normals; missing confidences count as 1; viewpoints and colours are kept
+  void add(const PointSet& set);
+
+  /// In the order in which cells were first met. The confidence is the sum of those that fell into the cell.
+  /// @param least_weight cells of less confidence than this share of the median cell are left out, >= 0
+  PointSet result(double least_weight = 0.0) const;
+
+private:
+  struct Sum {
+    Eigen::Vector3d point = Eigen::Vector3d::Zero(), normal = Eigen::Vector3d::Zero(), color = Eigen::Vector3d::Zero(),
+                    viewpoint = Eigen::Vector3d::Zero();
+    double weight = 0, color_weight = 0, viewpoint_weight = 0;
+  };
+  Sum& at(const Eigen::Vector3f& point, const Eigen::Vector3f& normal);
+
+  double cell_;
+  std::unordered_map<std::uint64_t, std::size_t> cells_;
+  std::vector<Sum> sums_;
+};
+} // namespace fresco::model

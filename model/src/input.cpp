@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "input.h"
+#include <algorithm>
+#include <filesystem>
+#include <fresco/core/require.h>
+#include <fresco/io/colmap.h>
+#include <fresco/io/file.h>
+#include <fresco/io/pose_file.h>
+namespace fresco::model {
+namespace {
+namespace fs = std::filesystem;
+
+std::vector<std::string> scanFiles(const std::string& folder)
+{
+  std::vector<std::string> files;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    const std::string kind = extension(entry.path().string());
+    const bool hidden = entry.path().filename().string()[0] == '.';
+    if (!hidden && (kind == ".pcd" || kind == ".ply" || kind == ".xyz" || kind == ".vtk" || kind == ".obj"))
+      files.push_back(entry.path().string());
+  }
+  std::sort(files.begin(), files.end());
+  if (files.empty())
+    throw std::runtime_error(folder + ": no scan (.pcd, .ply, .xyz, .vtk, .obj) in it");
+  return files;
+}
+
+void readPhotographs(ModelInput& input)
+{
+  const std::string cameras = input.folder + "/cameras";
+  input.images = input.folder + "/images";
+  if (!fs::is_directory(cameras))
+    return;
+  input.cameras = readColmap(cameras);
+  for (const View& view : input.cameras.views)
+    if (!fs::exists(input.images + "/" + view.image))
+      throw std::runtime_error(input.images + "/" + view.image + ": no such photograph, but " + cameras + " names it");
+}
+} // namespace
+
+std::vector<std::string> ModelInput::files() const
+{
+  std::vector<std::string> all = scans;
+  for (const View& view : cameras.views)
+    all.push_back(images + "/" + view.image);
+  for (const char* name : {"poses.txt", "cameras/cameras.txt", "cameras/images.txt", "camera-intrinsics.txt"})
+    if (fs::exists(folder + "/" + name))
+      all.push_back(folder + "/" + name);
+  if (rgbd)
+    for (const RgbdFrame& frame : rgbd->frames)
+      all.insert(all.end(), {frame.color, frame.depth});
+  return all;
+}
+
+ModelInput readModelInput(const std::string& folder)
+{
+  if (!fs::is_directory(folder))
+    throw std::runtime_error(folder + ": no such folder");
+  ModelInput input;
+  input.folder = folder;
+  if (isRgbdFolder(folder)) {
+    input.rgbd = readRgbdFolder(folder);
+    for (const RgbdFrame& frame : input.rgbd->frames)
+      input.poses.emplace_back(frame.T_world_camera.matrix());
+    return input;
+  }
+  if (!fs::is_directory(folder + "/scans"))
+    throw std::runtime_error(folder + ": neither a folder scans nor RGB-D frames (camera-intrinsics.txt) in it");
+  input.scans = scanFiles(folder + "/scans");
+  if (fs::exists(folder + "/poses.txt")) {
+    input.poses = readPoses(folder + "/poses.txt");
+    if (input.poses.size() != input.scans.size())
+      throw std::runtime_error(
+          concat(folder, "/poses.txt: ", input.poses.size(), " poses for ", input.scans.size(), " scans"));
+  }
+  readPhotographs(input);
+  return input;
+}
+} // namespace fresco::model

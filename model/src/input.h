@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include "rgbd.h"
+#include <fresco/core/camera.h>
+#include <fresco/io/pose_file.h>
+#include <optional>
+#include <string>
+#include <vector>
+namespace fresco::model {
+/// What a model is made from: a folder of scans and photographs, or a folder of RGB-D frames.
+struct ModelInput {
+  std::string folder;
+  std::vector<std::string> scans; ///< files, in the order of their names; empty for RGB-D
+  std::vector<Pose> poses;        ///< world from scan; empty where the folder has none
+  CameraSet cameras;              ///< photographs; no view where the folder has none
+  std::string images;             ///< folder of the photographs
+  std::optional<RgbdFolder> rgbd;
+
+  std::vector<std::string> files() const; ///< everything that the model depends on
+};
+
+/// Looks at a folder and reads everything small (poses, cameras). Folder of scans: `scans/*.pcd` (or .ply, .xyz, .vtk,
+/// .obj), `poses.txt`, `cameras/`, `images/`. RGB-D: see readRgbdFolder().
+/// @throws std::runtime_error naming what is missing or does not fit together: neither kind, no scan, more or fewer
+/// poses
+///         than scans, a photograph that is missing
+ModelInput readModelInput(const std::string& folder);
+} // namespace fresco::model

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "optimization_stage.h"
+#include "fusion.h"
+#include <fresco/io/mesh_io.h>
+#include <fresco/io/point_io.h>
+#include <fresco/surface/core/surface_optimization.h>
+namespace fresco::model {
+PointSet pointsForVertices(PointSet points, Index vertices, double cell)
+{
+  constexpr Index most_per_vertex = 16; // more cost memory and time in every iteration and say little that is new
+  if (points.size() <= most_per_vertex * vertices || !points.hasNormals())
+    return points;
+  points.viewpoints.resize(3, 0);
+  points.colors.resize(3, 0);
+  PointFusion fusion(cell / 3);
+  fusion.add(points);
+  const Eigen::Vector3d origin = points.origin;
+  points = PointSet();
+  points = fusion.result();
+  points.origin = origin;
+  return points;
+}
+
+nlohmann::ordered_json makeOptimizedSurface(const ModelFiles& files, const ModelOptions& options,
+                                            const Progress& progress)
+{
+  report(progress, "read", 0.0);
+  const TriangleMesh surface = readMesh(files.surface);
+  if (!options.optimize) {
+    writeMesh(files.mesh, surface);
+    return {{"optimized", false}};
+  }
+  SurfaceOptimizationOptions optimization;
+  optimization.flip = true;
+  optimization.threads = options.threads;
+  const PointSet points = pointsForVertices(readPoints(files.points), surface.vertexCount(), options.cell);
+  const SurfaceOptimizationResult result = optimizeSurface(surface, points, optimization, progress);
+  writeMesh(files.mesh, result.mesh);
+  return {{"optimized", true},
+          {"iterations", result.steps.size()},
+          {"converged", result.converged},
+          {"points", points.size()},
+          {"noise", result.noise},
+          {"supported_vertices", result.supported_vertices},
+          {"restored_vertices", result.restored_vertices},
+          {"flipped_edges", result.flipped_edges}};
+}
+} // namespace fresco::model

@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "points_stage.h"
+#include "fusion.h"
+#include <Eigen/LU>
+#include <algorithm>
+#include <fresco/core/require.h>
+#include <fresco/filters/core/bilateral_normals.h>
+#include <fresco/filters/core/oriented_normals.h>
+#include <fresco/filters/core/outliers.h>
+#include <fresco/filters/core/veil_points.h>
+#include <fresco/io/image_io.h>
+#include <fresco/io/point_io.h>
+#include <fresco/io/pose_file.h>
+#include <fresco/registration/core/scan_registration.h>
+#include <utility>
+namespace fresco::model {
+namespace {
+using Json = nlohmann::ordered_json;
+
+/// `set` without points that are not finite or have no normal; normals smoothed.
+PointSet smoothed(const PointSet& set, const ModelOptions& options, const Progress& progress)
+{
+  BilateralOptions smoothing;
+  smoothing.rounds = options.bilateral;
+  smoothing.threads = options.threads;
+  PointSet result = set;
+  result.normals = smoothNormals(set, set.normals, smoothing, progress).normals;
+  std::vector<Index> kept;
+  for (Index i = 0; i < result.size(); ++i)
+    if (result.points.col(i).allFinite() && result.normals.col(i).allFinite())
+      kept.push_back(i);
+  return selectPoints(result, kept);
+}
+
+/// Beams of a sparser scan stand too far apart to tell a veil point from an edge: see docs/filters.md.
+constexpr Index least_points_for_veil = 100000;
+
+/// Without veil points at depth jumps and isolated points.
+PointSet cleaned(const PointSet& scan, int threads)
+{
+  VeilOptions veil;
+  veil.threads = threads;
+  const PointSet unveiled =
+      scan.size() < least_points_for_veil ? scan : selectPoints(scan, withoutVeil(scan.points, scan.viewpoints, veil));
+  OutlierOptions outliers;
+  outliers.relative = true; // density falls with the distance from the scanner
+  outliers.sigma = 3;
+  outliers.threads = threads;
+  return selectPoints(unveiled, withoutOutliers(unveiled.points, outliers));
+}
+
+struct PreparedScan {
+  PointSet points;
+  Index read = 0; ///< points in the file
+};
+
+/// One scan in its own frame, cleaned, with normals that point to the scanner.
+PreparedScan preparedScan(const std::string& file, const ModelOptions& options, const Progress& progress)
+{
+  PointSet read = readPoints(file);
+  if (read.viewpoints.cols() == 0)
+    read.viewpoints = (-read.origin).cast<float>(); // the scanner stands at the origin of its scan's frame
+  PointSet scan = cleaned(read, options.threads);
+  NormalOptions normals;
+  normals.threads = options.threads;
+  const NormalField field = estimateNormals(scan, normals, subProgress(progress, 0.3, 0.6));
+  scan.normals = field.normals;
+  scan.confidences = field.confidences;
+  return {smoothed(scan, options, subProgress(progress, 0.6, 1.0)), read.size()};
+}
+
+/// World from scan. Without -poses all scans are registered from scratch, as they were measured: what cleaning takes
+/// from a sparse scan is what its place would be known by. The folder's first pose then only ties the result to the
+/// frame of the photographs.
+std::vector<Pose> placeScans(const ModelInput& input, const ModelOptions& options, const Progress& progress,
+                             Json& figures)
+{
+  if (options.use_poses) {
+    figures["registration"] = "given poses";
+    return input.poses;
+  }
+  ScanRegistrationOptions registration;
+  registration.threads = options.threads;
+  registration.names = input.scans;
+  const ScanSource scans{static_cast<Index>(input.scans.size()),
+                         [&](Index i) { return readPoints(input.scans[static_cast<std::size_t>(i)]); }};
+  const ScanRegistrationResult result = registerScans(scans, {}, registration, progress);
+  std::vector<Pose> poses = result.poses;
+  figures["registration"] = "found";
+  figures["registration_rms"] = result.rms;
+  Index tie = 0;
+  while (tie < static_cast<Index>(poses.size()) && !poses[static_cast<std::size_t>(tie)])
+    ++tie;
+  if (tie == static_cast<Index>(poses.size()))
+    throw std::runtime_error(input.folder + ": no scan could be placed");
+  if (const auto t = static_cast<std::size_t>(tie); t < input.poses.size() && input.poses[t]) {
+    const Eigen::Matrix4d T_world_group = *input.poses[t] * poses[t]->inverse();
+    for (Pose& pose : poses)
+      if (pose)
+        pose = T_world_group * *pose;
+  }
+  return poses;
+}
+
+Json pointsFromScans(const ModelInput& input, const ModelFiles& files, const ModelOptions& options,
+                     const Progress& progress)
+{
+  Json figures;
+  const auto count = static_cast<Index>(input.scans.size());
+  const std::vector<Pose> poses = placeScans(input, options, subProgress(progress, 0.0, 0.4), figures);
+  Index raw = 0;
+  const double step = 0.55 / static_cast<double>(count);
+  const auto prepared = [&](Index s) {
+    const double begin = 0.4 + step * static_cast<double>(s);
+    report(progress, concat("scan ", s + 1, " of ", count), begin);
+    PreparedScan scan =
+        preparedScan(input.scans[static_cast<std::size_t>(s)], options, subProgress(progress, begin, begin + step));
+    raw += scan.read;
+    return std::move(scan.points);
+  };
+  const PointSet merged = mergeScans({count, prepared}, poses, options.threads);
+  report(progress, "write", 0.95);
+  writePoints(files.points, merged);
+  writePoses(files.poses, poses);
+  figures["scans"] = count;
+  figures["raw_points"] = raw; // of the scans that have a place
+  figures["points"] = merged.size();
+  figures["unplaced_scans"] = std::count(poses.begin(), poses.end(), std::nullopt);
+  return figures;
+}
+
+Json pointsFromFrames(const ModelInput& input, const ModelFiles& files, const ModelOptions& options,
+                      const Progress& progress)
+{
+  PointFusion fusion(options.fuse);
+  const RgbdFolder& rgbd = *input.rgbd;
+  Index raw = 0;
+  for (std::size_t f = 0; f < rgbd.frames.size(); ++f) {
+    report(progress, concat("frame ", f + 1, " of ", rgbd.frames.size()),
+           0.8 * static_cast<double>(f) / static_cast<double>(rgbd.frames.size()));
+    const Image16 depth = readImage16(rgbd.frames[f].depth);
+    if (depth.width != rgbd.camera.width || depth.height != rgbd.camera.height)
+      throw std::runtime_error(concat(rgbd.frames[f].depth, ": ", depth.width, "x", depth.height,
+                                      " pixels, but the first frame has ", rgbd.camera.width, "x", rgbd.camera.height));
+    const PointSet seen = depthPoints(depth, rgbd.camera, {}, options.threads);
+    raw += seen.size();
+    fusion.add(transformPoints(seen, rgbd.frames[f].T_world_camera.matrix()));
+  }
+  PointSet fused = fusion.result(0.1);
+  if (fused.size() < 100)
+    throw std::runtime_error(input.folder + ": hardly any depth in the frames");
+  const PointSet points = smoothed(fused, options, subProgress(progress, 0.8, 1.0));
+  writePoints(files.points, points);
+  writePoses(files.poses, input.poses);
+  return {
+      {"registration", "given poses"}, {"frames", rgbd.frames.size()}, {"raw_points", raw}, {"points", points.size()}};
+}
+} // namespace
+
+Json makePoints(const ModelInput& input, const ModelFiles& files, const ModelOptions& options, const Progress& progress)
+{
+  return input.rgbd ? pointsFromFrames(input, files, options, progress)
+                    : pointsFromScans(input, files, options, progress);
+}
+} // namespace fresco::model

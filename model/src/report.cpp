@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "report.h"
+#include "viewer/viewer.h"
+#include <fresco/core/require.h>
+#include <fresco/io/file.h>
+#include <iomanip>
+#include <sstream>
+namespace fresco::model {
+namespace {
+using Json = nlohmann::ordered_json;
+
+std::string escaped(const std::string& text)
+{
+  std::string result;
+  for (const char c : text)
+    result += c == '&' ? "&amp;" : c == '<' ? "&lt;" : c == '>' ? "&gt;" : c == '"' ? "&quot;" : std::string(1, c);
+  return result;
+}
+
+std::string fixed(double value, int digits)
+{
+  std::ostringstream text;
+  text << std::fixed << std::setprecision(digits) << value;
+  return text.str();
+}
+
+std::string shown(const Json& value)
+{
+  if (value.is_number_float()) {
+    std::ostringstream text;
+    text << std::setprecision(4) << value.get<double>();
+    return text.str();
+  }
+  return value.is_string() ? value.get<std::string>() : value.dump();
+}
+
+/// Figures for people; lists and what describes the pictures are in report.json.
+std::vector<std::pair<std::string, std::string>> shownFigures(const StageRecord& stage)
+{
+  std::vector<std::pair<std::string, std::string>> figures;
+  for (const auto& [name, value] : stage.figures.items())
+    if (name != "pictures" && name != "up")
+      figures.emplace_back(name, shown(value));
+  return figures;
+}
+
+Json toJson(const ModelReport& report)
+{
+  Json json{
+      {"input", report.input}, {"seconds", report.seconds}, {"stages", Json::array()}, {"pictures", Json::array()}};
+  for (const StageRecord& stage : report.stages) {
+    Json figures = stage.figures;
+    figures.erase("pictures");
+    figures.erase("up");
+    json["stages"].push_back({{"name", stage.name},
+                              {"seconds", stage.seconds},
+                              {"cpu_seconds", stage.cpu_seconds},
+                              {"peak_megabytes", stage.peak_megabytes},
+                              {"resumed", stage.resumed},
+                              {"figures", figures}});
+  }
+  for (const ModelPicture& picture : report.pictures)
+    json["pictures"].push_back({{"file", picture.file}, {"title", picture.title}});
+  return json;
+}
+
+std::string stageTable(const ModelReport& report)
+{
+  std::string html = "<table><tr><th>stage<th>time, s<th>CPU, s<th>peak memory, MB<th>figures</tr>\n";
+  for (const StageRecord& stage : report.stages) {
+    html += "<tr><td>" + escaped(stage.name) + (stage.resumed ? " (earlier run)" : "") + "<td>" +
+            fixed(stage.seconds, 1) + "<td>" + fixed(stage.cpu_seconds, 1) + "<td>" + fixed(stage.peak_megabytes, 0) +
+            "<td>";
+    for (const auto& [name, value] : shownFigures(stage))
+      html += "<span><b>" + escaped(name) + "</b> " + escaped(value) + "</span> ";
+    html += "</tr>\n";
+  }
+  return html + "</table>\n";
+}
+
+std::string viewer(const ModelReport& report, const ModelFiles& files)
+{
+  ViewerOptions options;
+  options.up = report.up;
+  for (const ModelPicture& picture : report.pictures)
+    if (picture.textured && picture.angle > 0)
+      options.places.push_back({picture.title, picture.eye, picture.look, picture.angle});
+  return "<div class=\"viewer\">" + viewerElement(readFile(files.viewer_glb), options) + "</div>\n";
+}
+
+std::string toHtml(const ModelReport& report, const ModelFiles& files)
+{
+  std::string html =
+      "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>fresco model</title>\n"
+      "<style>body{font:15px/1.5 sans-serif;margin:2em auto;max-width:1200px;padding:0 1em;color:#222}"
+      "table{border-collapse:collapse}td,th{border-bottom:1px solid #ccc;padding:.3em .8em;text-align:left;"
+      "vertical-align:top}td span{white-space:nowrap;margin-right:1em;display:inline-block}"
+      ".viewer{height:min(75vh,800px);margin:1em 0}"
+      "figure{margin:1.5em 0}img{max-width:100%;border:1px solid #ddd}figcaption{color:#555}"
+      "</style></head><body>\n<h1>fresco model</h1>\n<p>Input: " +
+      escaped(report.input) + ". Time of this run: " + fixed(report.seconds, 1) +
+      " s. Model: <code>model.glb</code>, <code>model.obj</code>; mesh: <code>mesh.ply</code>; poses: "
+      "<code>poses.txt</code>.</p>\n" +
+      viewer(report, files) + stageTable(report);
+  for (const ModelPicture& picture : report.pictures)
+    html += "<figure><img alt=\"" + escaped(picture.title) + "\" src=\"data:image/png;base64," +
+            base64(readFile(files.folder + "/" + picture.file)) + "\"><figcaption>" + escaped(picture.title) +
+            "</figcaption></figure>\n";
+  return html + "</body></html>\n";
+}
+} // namespace
+
+std::string stageSummary(const StageRecord& stage)
+{
+  std::string line = stage.name + (stage.resumed ? " (earlier run)" : "") + ": " + fixed(stage.seconds, 1) + " s, " +
+                     fixed(stage.cpu_seconds, 1) + " s of CPU, " + fixed(stage.peak_megabytes, 0) + " MB";
+  for (const auto& [name, value] : shownFigures(stage))
+    if (value.find_first_of("{[") == std::string::npos)
+      line += ", " + name + " " + value;
+  return line;
+}
+
+void writeReport(const ModelReport& report, const ModelFiles& files)
+{
+  OutputGroup outputs;
+  writeFile(files.report_html, toHtml(report, files));
+  writeFile(files.report_json, toJson(report).dump(2) + "\n");
+  outputs.commit();
+}
+} // namespace fresco::model

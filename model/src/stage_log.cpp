@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "stage_log.h"
+#include <algorithm>
+#include <chrono>
+#include <cstdint>
+#include <ctime>
+#include <filesystem>
+#include <fresco/core/require.h>
+#include <fresco/io/file.h>
+#include <fstream>
+#include <iomanip>
+#include <link.h>
+#include <sstream>
+namespace fresco::model {
+namespace {
+using Json = nlohmann::ordered_json;
+
+/// FNV-1a (Fowler, Noll, Vo), 64 bits, as hexadecimal text.
+std::string hashed(const std::string& text)
+{
+  std::uint64_t hash = 0xcbf29ce484222325ULL;
+  for (const unsigned char c : text)
+    hash = (hash ^ c) * 0x100000001b3ULL;
+  std::ostringstream out;
+  out << std::hex << std::setw(16) << std::setfill('0') << hash;
+  return out.str();
+}
+
+/// Restarts the kernel's count of the highest resident memory.
+void resetPeakMemory() { std::ofstream("/proc/self/clear_refs") << "5"; }
+
+double peakMegabytes()
+{
+  std::ifstream status("/proc/self/status");
+  for (std::string line; std::getline(status, line);)
+    if (line.rfind("VmHWM:", 0) == 0)
+      return std::stod(line.substr(6)) / 1024.0;
+  return 0;
+}
+
+double cpuSeconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
+} // namespace
+
+std::string fingerprint(const std::vector<std::string>& files)
+{
+  std::ostringstream text;
+  for (const std::string& file : files) {
+    std::error_code error;
+    text << file << " " << std::filesystem::file_size(file, error) << " "
+         << std::filesystem::last_write_time(file, error).time_since_epoch().count() << "\n";
+  }
+  return text.str();
+}
+
+std::vector<std::string> programFiles()
+{
+  std::error_code error;
+  std::vector<std::string> files{std::filesystem::read_symlink("/proc/self/exe", error).string()};
+  const auto add = [](dl_phdr_info* object, std::size_t, void* list) {
+    const std::string path = object->dlpi_name;
+    if (path.find("libfresco_") != std::string::npos)
+      static_cast<std::vector<std::string>*>(list)->push_back(path);
+    return 0;
+  };
+  dl_iterate_phdr(add, &files);
+  return files;
+}
+
+StageLog::StageLog(std::string folder, const std::string& key, bool resume, Progress progress)
+    : folder_(std::move(folder)), key_(hashed(key)), resume_(resume), progress_(std::move(progress))
+{
+  makeFolder(folder_);
+}
+
+bool StageLog::takeOver(const Stage& stage, const std::string& file)
+try {
+  const auto exists = [](const std::string& path) { return std::filesystem::exists(path); };
+  if (!resume_ || !exists(file) || !std::all_of(stage.outputs.begin(), stage.outputs.end(), exists))
+    return false;
+  const Json stored = Json::parse(readFile(file), nullptr, false);
+  if (stored.is_discarded() || !stored.is_object() || stored.value("key", "") != key_ || !stored.contains("figures"))
+    return false;
+  records_.push_back({stage.name, stored.value("seconds", 0.0), stored.value("cpu_seconds", 0.0),
+                      stored.value("peak_megabytes", 0.0), true, stored["figures"]});
+  return true;
+} catch (const Json::exception&) { // a value of another type: not a record of ours
+  return false;
+}
+
+void StageLog::run(const Stage& stage)
+{
+  key_ = hashed(key_ + "\n" + stage.name + "\n" + stage.options);
+  const std::string file = folder_ + "/" + stage.name + ".json";
+  report(progress_, stage.name, 0.0);
+  if (takeOver(stage, file)) {
+    report(progress_, stage.name + ": taken from an earlier run", 1.0);
+    return;
+  }
+  resume_ = false; // what follows depends on what is made anew here
+  std::error_code error;
+  std::filesystem::remove(file, error);
+  resetPeakMemory();
+  const auto start = std::chrono::steady_clock::now();
+  const double cpu_start = cpuSeconds();
+  StageRecord record{stage.name, 0, 0, 0, false, stage.body([&](std::string_view step, double fraction) {
+                       return !progress_ || progress_(stage.name + ": " + std::string(step), std::min(fraction, 0.999));
+                     })};
+  record.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  record.cpu_seconds = cpuSeconds() - cpu_start;
+  record.peak_megabytes = peakMegabytes();
+  writeFile(file, Json{{"key", key_},
+                       {"seconds", record.seconds},
+                       {"cpu_seconds", record.cpu_seconds},
+                       {"peak_megabytes", record.peak_megabytes},
+                       {"figures", record.figures}}
+                          .dump(2) +
+                      "\n");
+  records_.push_back(std::move(record));
+  report(progress_, stage.name + ": done", 1.0);
+}
+} // namespace fresco::model

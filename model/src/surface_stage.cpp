@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "surface_stage.h"
+#include "surface_violation.h"
+#include <algorithm>
+#include <fresco/core/parallel.h>
+#include <fresco/core/require.h>
+#include <fresco/io/image_io.h>
+#include <fresco/io/mesh_io.h>
+#include <fresco/io/point_io.h>
+#include <fresco/io/pose_file.h>
+#include <fresco/search/neighbors.h>
+#include <fresco/surface/core/volumetric_reconstruction.h>
+namespace fresco::model {
+namespace {
+/// 1 where no point of the data is within a cell.
+std::vector<char> farFromPoints(const TriangleMesh& mesh, const PointSet& points, const ModelOptions& options)
+{
+  const PointTree tree(points.points, options.threads);
+  const Eigen::Vector3f shift = (mesh.origin - points.origin).cast<float>();
+  std::vector<char> far(static_cast<std::size_t>(mesh.vertexCount()));
+  parallelFor(mesh.vertexCount(), options.threads, [&](Index v) {
+    const Eigen::Vector3f place = mesh.vertices.col(v) + shift;
+    far[static_cast<std::size_t>(v)] = tree.nearest(place, static_cast<float>(options.cell)).index < 0;
+  });
+  return far;
+}
+
+FreeSpace askAllViews(const Points& places, const ModelInput& input, const ModelFiles& files,
+                      const ModelOptions& options)
+{
+  FreeSpace space(places, options.cell, options.threads);
+  if (input.rgbd)
+    for (const RgbdFrame& frame : input.rgbd->frames)
+      space.ask(readImage16(frame.depth), input.rgbd->camera, frame.T_world_camera);
+  const std::vector<Pose> poses = readPoses(files.poses);
+  for (std::size_t s = 0; s < input.scans.size(); ++s)
+    if (poses.at(s)) {
+      const PointSet scan = readPoints(input.scans[s]);
+      if (scan.viewpoints.cols() > 1) // of several stations: no one place that the beams come from
+        continue;
+      Eigen::Vector3f scanner = (-scan.origin).cast<float>();
+      if (scan.viewpoints.cols() == 1)
+        scanner = scan.viewpoints.col(0);
+      const Eigen::Translation3d T_frame_scanner(scan.origin + scanner.cast<double>());
+      space.ask((scan.points.colwise() - scanner).eval(), Eigen::Isometry3d(*poses[s]) * T_frame_scanner);
+    }
+  return space;
+}
+
+/// 1 for the vertices in places that the sensors saw through and that no point is near to. Poses of depth cameras are
+/// not exact: there, one frame in thirty must have seen through.
+std::vector<char> inFreeSpace(const TriangleMesh& mesh, const PointSet& points, const ModelInput& input,
+                              const ModelFiles& files, const ModelOptions& options)
+{
+  std::vector<char> removed = farFromPoints(mesh, points, options);
+  std::vector<Index> asked;
+  for (Index v = 0; v < mesh.vertexCount(); ++v)
+    if (removed[static_cast<std::size_t>(v)])
+      asked.push_back(v);
+  const Points places = (mesh.vertices(Eigen::all, asked).colwise() + mesh.origin.cast<float>()).eval();
+  const int least = input.rgbd ? std::max(2, static_cast<int>(input.rgbd->frames.size()) / 30) : 1;
+  const std::vector<char> empty = askAllViews(places, input, files, options).empty(least);
+  for (std::size_t i = 0; i < asked.size(); ++i)
+    removed[static_cast<std::size_t>(asked[i])] = empty[i];
+  return removed;
+}
+} // namespace
+
+nlohmann::ordered_json makeSurface(const ModelInput& input, const ModelFiles& files, const ModelOptions& options,
+                                   const Progress& progress)
+{
+  report(progress, "read", 0.0);
+  PointSet points = readPoints(files.points);
+  VolumetricOptions volumetric;
+  volumetric.cell_size = options.cell;
+  volumetric.threads = options.threads;
+  volumetric.trim_levels = static_cast<float>(options.trim);
+  VolumetricResult result = reconstructVolumetric(std::move(points), volumetric, subProgress(progress, 0.0, 0.7));
+  Index carved = 0;
+  if (options.trim > 0) {
+    report(progress, "free space", 0.7);
+    std::vector<char> removed = inFreeSpace(result.mesh, readPoints(files.points), input, files, options);
+    carved = std::count(removed.begin(), removed.end(), 1);
+    result.mesh = withoutVertices(result.mesh, std::move(removed));
+  }
+  if (result.mesh.faceCount() == 0)
+    throw std::runtime_error(files.points + ": no surface could be made of the points");
+  writeMesh(files.surface, result.mesh);
+  const MeshTopology topology = meshTopology(result.mesh);
+  return {{"vertices", result.mesh.vertexCount()},
+          {"faces", result.mesh.faceCount()},
+          {"octree_depth", result.depth},
+          {"cell", result.cell_size},
+          {"trim_depth", result.trim_depth},
+          {"vertices_in_free_space", carved},
+          {"components", topology.components},
+          {"boundary_edges", topology.boundary_edges},
+          {"non_manifold_edges", topology.nonmanifold_edges},
+          {"watertight", topology.watertight}};
+}
+} // namespace fresco::model

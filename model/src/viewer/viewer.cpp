@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "viewer/viewer.h"
+#include "viewer/viewer_sources.h"
+#include <cstdint>
+#include <fresco/core/require.h>
+#include <iomanip>
+#include <sstream>
+namespace fresco::model {
+namespace {
+void validate(const std::string& glb, const ViewerOptions& options)
+{
+  require(glb.size() >= 20 && glb.compare(0, 4, "glTF") == 0, "viewer: this is no binary glTF");
+  require(options.up.allFinite() && options.up.norm() > 0, "viewer: the upright direction is not finite or zero");
+  for (const ViewerPlace& place : options.places) {
+    require(place.eye.allFinite() && place.look.allFinite() && (place.look - place.eye).norm() > 0, "viewer: place ",
+            place.name, ": not finite, or it looks nowhere");
+    require(place.angle >= 1 && place.angle <= 170, "viewer: place ", place.name, ": angle ", place.angle,
+            " is not in 1..170");
+  }
+}
+
+std::string escapedHtml(const std::string& text)
+{
+  std::string out;
+  for (const char c : text)
+    out += c == '&' ? "&amp;" : c == '<' ? "&lt;" : c == '>' ? "&gt;" : c == '"' ? "&quot;" : std::string(1, c);
+  return out;
+}
+
+/// A string of JavaScript that may stand inside of a <script> element.
+std::string quoted(const std::string& text)
+{
+  std::ostringstream out;
+  out << '"';
+  for (const char c : text)
+    if (const auto code = static_cast<unsigned char>(c); code < 32 || c == '"' || c == '\\' || c == '<')
+      out << "\\u" << std::hex << std::setw(4) << std::setfill('0') << static_cast<int>(code);
+    else
+      out << c;
+  out << '"';
+  return out.str();
+}
+
+std::string numbers(const Eigen::Vector3d& v)
+{
+  std::ostringstream out;
+  out << std::setprecision(12) << '[' << v.x() << ',' << v.y() << ',' << v.z() << ']';
+  return out.str();
+}
+
+std::string optionsText(const ViewerOptions& options)
+{
+  std::ostringstream out;
+  out << "{up:" << numbers(options.up) << ",places:[";
+  for (const ViewerPlace& place : options.places)
+    out << "{name:" << quoted(place.name) << ",eye:" << numbers(place.eye) << ",look:" << numbers(place.look)
+        << ",angle:" << place.angle << "},";
+  out << "]}";
+  return out.str();
+}
+} // namespace
+
+std::string base64(const std::string& bytes)
+{
+  static const char* const digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  text.reserve((bytes.size() + 2) / 3 * 4);
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    std::uint32_t group = 0;
+    for (std::size_t k = 0; k < 3; ++k)
+      group = group << 8 | (i + k < bytes.size() ? static_cast<std::uint8_t>(bytes[i + k]) : 0U);
+    for (std::size_t k = 0; k < 4; ++k)
+      text += i + k <= bytes.size() ? digits[group >> (18 - 6 * k) & 63U] : '=';
+  }
+  return text;
+}
+
+std::string viewerElement(const std::string& glb, const ViewerOptions& options)
+{
+  validate(glb, options);
+  std::string html =
+      concat("<style>\n", viewer_css, "</style>\n<div class=\"fresco-viewer\" id=\"fresco-viewer\"></div>\n");
+  html += "<script type=\"application/octet-stream\" id=\"fresco-model\">";
+  html += base64(glb);
+  html += "</script>\n<script>\n";
+  html += viewer_js;
+  html += concat("{\n"
+                 "const text = document.getElementById('fresco-model').textContent, bytes = new Uint8Array(",
+                 glb.size(),
+                 ");\n"
+                 "for (let i = 0, at = 0; i < text.length; i += 65536)\n"
+                 "  for (const c of atob(text.substr(i, 65536))) bytes[at++] = c.charCodeAt(0);\n"
+                 "frescoViewer(document.getElementById('fresco-viewer'), bytes, ",
+                 optionsText(options),
+                 ");\n"
+                 "}\n</script>\n");
+  return html;
+}
+
+std::string viewerHtml(const std::string& glb, const ViewerOptions& options)
+{
+  return concat("<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">"
+                "<meta name=\"viewport\" content=\"width=device-width\"><title>",
+                escapedHtml(options.title),
+                "</title>\n"
+                "<style>html,body{margin:0;height:100%}</style></head><body>\n",
+                viewerElement(glb, options), "</body></html>\n");
+}
+} // namespace fresco::model

@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "graph/pose_graph.h"
+#include <Eigen/SparseCholesky>
+#include <cmath>
+namespace fresco::registration {
+namespace {
+constexpr double least_gain = 1e-9; // relative fall of the energy that is still worth a step
+constexpr double most_damping = 1e8;
+
+Eigen::Matrix3d cross(const Eigen::Vector3d& v)
+{
+  Eigen::Matrix3d matrix;
+  matrix << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
+  return matrix;
+}
+
+Eigen::Isometry3d motion(const Vector6d& step, double size)
+{
+  const Eigen::Vector3d w = step.head<3>() / size;
+  const double angle = w.norm();
+  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
+  if (angle > 0.0)
+    T.linear() = Eigen::AngleAxisd(angle, w / angle).toRotationMatrix();
+  T.translation() = step.tail<3>();
+  return T;
+}
+
+class PoseGraph {
+public:
+  PoseGraph(const PoseEdges& edges, const PoseGraphOptions& options) : edges_(edges), options_(options) {}
+  IsometryVector run(IsometryVector poses) const;
+
+private:
+  bool fixed(std::size_t i) const { return options_.fixed.empty() ? i == 0 : options_.fixed[i] != 0; }
+  Vector6d error(const IsometryVector& poses, const PoseEdge& edge) const;
+  double energy(const IsometryVector& poses) const;
+  Eigen::VectorXd step(const IsometryVector& poses, double damping) const;
+  IsometryVector moved(const IsometryVector& poses, const Eigen::VectorXd& x) const;
+
+  const PoseEdges& edges_;
+  const PoseGraphOptions& options_;
+};
+
+// Rotation (times size) and translation that the edge misses, in the frame of b.
+Vector6d PoseGraph::error(const IsometryVector& poses, const PoseEdge& edge) const
+{
+  const Eigen::Isometry3d difference = edge.T_a_b.inverse() * poses[static_cast<std::size_t>(edge.a)].inverse() *
+                                       poses[static_cast<std::size_t>(edge.b)];
+  const Eigen::AngleAxisd turn(difference.linear());
+  Vector6d e;
+  e << options_.size * turn.angle() * turn.axis(), difference.translation();
+  return e;
+}
+
+double PoseGraph::energy(const IsometryVector& poses) const
+{
+  const double c = options_.tolerance * options_.tolerance;
+  double sum = 0.0;
+  for (const PoseEdge& edge : edges_) {
+    const double squared = error(poses, edge).squaredNorm();
+    sum += edge.weight * c * squared / (c + squared);
+  }
+  return sum;
+}
+
+Eigen::VectorXd PoseGraph::step(const IsometryVector& poses, double damping) const
+{
+  const Index n = 6 * static_cast<Index>(poses.size());
+  const double c = options_.tolerance * options_.tolerance;
+  std::vector<Eigen::Triplet<double>> entries;
+  Eigen::VectorXd g = Eigen::VectorXd::Zero(n), diagonal = Eigen::VectorXd::Zero(n);
+  const auto add = [&](Index row, Index column, const Matrix6d& block) {
+    for (Index r = 0; r < 6; ++r)
+      for (Index k = 0; k < 6; ++k)
+        entries.emplace_back(6 * row + r, 6 * column + k, block(r, k));
+  };
+  for (const PoseEdge& edge : edges_) {
+    const Vector6d e = error(poses, edge);
+    const double falloff = c / (c + e.squaredNorm()), weight = edge.weight * falloff * falloff;
+    const Eigen::Isometry3d T =
+        poses[static_cast<std::size_t>(edge.b)].inverse() * poses[static_cast<std::size_t>(edge.a)];
+    // The error moves with b and against a motion of a carried over to the frame of b.
+    Matrix6d J = Matrix6d::Zero();
+    J.topLeftCorner<3, 3>() = J.bottomRightCorner<3, 3>() = -T.linear();
+    J.bottomLeftCorner<3, 3>() = -cross(T.translation()) * T.linear() / options_.size;
+    add(edge.a, edge.a, weight * J.transpose() * J);
+    add(edge.a, edge.b, weight * J.transpose());
+    add(edge.b, edge.a, weight * J);
+    add(edge.b, edge.b, weight * Matrix6d::Identity());
+    g.segment<6>(6 * edge.a) += weight * J.transpose() * e;
+    g.segment<6>(6 * edge.b) += weight * e;
+    diagonal.segment<6>(6 * edge.a) += weight * J.colwise().squaredNorm().transpose();
+    diagonal.segment<6>(6 * edge.b).array() += weight;
+  }
+  for (Index k = 0; k < n; ++k)
+    entries.emplace_back(k, k, damping * diagonal[k] + 1e-12);
+  Eigen::SparseMatrix<double> H(n, n);
+  H.setFromTriplets(entries.begin(), entries.end());
+  // Rows of fixed poses become those of the identity.
+  H.prune([&](Index row, Index column, double) {
+    return !fixed(static_cast<std::size_t>(row / 6)) && !fixed(static_cast<std::size_t>(column / 6));
+  });
+  for (Index k = 0; k < n; ++k)
+    if (fixed(static_cast<std::size_t>(k / 6))) {
+      H.coeffRef(k, k) = 1.0;
+      g[k] = 0.0;
+    }
+  return Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>(H).solve(-g);
+}
+
+IsometryVector PoseGraph::moved(const IsometryVector& poses, const Eigen::VectorXd& x) const
+{
+  IsometryVector result = poses;
+  for (std::size_t i = 0; i < poses.size(); ++i)
+    if (!fixed(i)) {
+      result[i] = poses[i] * motion(x.segment<6>(6 * static_cast<Index>(i)), options_.size);
+      result[i].linear() = Eigen::Quaterniond(result[i].linear()).normalized().toRotationMatrix();
+    }
+  return result;
+}
+
+IsometryVector PoseGraph::run(IsometryVector poses) const
+{
+  double damping = 1e-6, now = energy(poses);
+  for (int k = 0; k < options_.max_iterations && damping < most_damping; ++k) {
+    const Eigen::VectorXd x = step(poses, damping);
+    const IsometryVector next = moved(poses, x);
+    const double then = energy(next);
+    if (!(then < now)) {
+      damping *= 10.0;
+      continue;
+    }
+    const bool done = now - then < least_gain * now;
+    poses = next;
+    now = then;
+    damping = std::max(1e-9, 0.1 * damping);
+    if (done)
+      break;
+  }
+  return poses;
+}
+} // namespace
+
+IsometryVector optimizePoseGraph(IsometryVector poses, const PoseEdges& edges, const PoseGraphOptions& options)
+{
+  return edges.empty() ? poses : PoseGraph(edges, options).run(std::move(poses));
+}
+} // namespace fresco::registration

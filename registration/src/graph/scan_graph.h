@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include "pair/pair_alignment.h"
+#include "refinement/joint_refinement.h"
+namespace fresco::registration {
+/// Scans in one common frame.
+struct ScanCluster {
+  std::vector<Index> scans;
+  IsometryVector poses;    ///< frame of the cluster from working frame
+  bool look_alike = false; ///< whether it fits to other clusters in several ways between which nothing decides
+};
+
+struct ScanGraph {
+  std::vector<ScanCluster> clusters; ///< every usable scan in one of them, largest first, but `known` before all
+};
+
+struct GraphOptions {
+  float max_violation = 0.04f;
+  float strong_overlap = 0.25f; ///< a pair below it joins two clusters only together with a second pair that agrees
+  float tolerance = 0.f;        ///< of agreement between chains of poses, length
+  int threads = 0;
+};
+
+/// Joins scans to clusters by the relative poses of pairs, the best first. Two clusters are joined only if no scan of
+/// one lies in space that a scan of the other saw through. Of an ambiguous pair a mode is used only if it is the one
+/// that the clusters' other scans do not contradict. `scans` without a problem take part.
+/// @param known scans that already share a frame; may be empty
+ScanGraph buildScanGraph(const std::vector<PreparedScan>& scans, const std::vector<PairAlignment>& pairs,
+                         const ScanCluster& known, const GraphOptions& options);
+} // namespace fresco::registration

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include <Eigen/Geometry>
+#include <fresco/core/types.h>
+#include <vector>
+namespace fresco::registration {
+/// What a scan says of the space along its rays: a cube map of ranges around every place it was seen from.
+/// A point well in front of all ranges of its direction lies where the scanner saw through.
+class FreeSpace {
+public:
+  FreeSpace() = default;
+
+  /// @param points     3xN, finite
+  /// @param viewpoints 3xN or 3x1
+  /// @param grain      viewpoints nearer to each other than this share a map, length
+  FreeSpace(const Points& points, const Points& viewpoints, float grain);
+
+  /// What the scan says of one point.
+  enum class Verdict : signed char {
+    unknown, ///< behind what was measured, or in a direction without measurement
+    agrees,  ///< at the depth that was measured in its direction
+    violates ///< in space that was seen through
+  };
+
+  /// How far in front of the measured ranges a point still agrees with them: absolute + relative * range.
+  struct Slack {
+    float absolute = 0.f; ///< length
+    float relative = 0.f;
+  };
+
+  /// @param T_scan_points rigid, brings `points` into the frame of the scan
+  std::vector<Verdict> judge(const Points& points, const Eigen::Isometry3f& T_scan_points, const Slack& slack) const;
+
+  bool empty() const { return maps_.empty(); }
+
+  /// Share of all directions in which something was measured, 0..1.
+  double coverage() const { return coverage_; }
+
+  /// Share of the directions in which the ranges lie in one narrow band, 0..1: high where the viewpoints are the true
+  /// ones.
+  double coherence() const { return coherence_; }
+
+private:
+  struct Map {
+    Eigen::Vector3f center;
+    std::vector<float> nearest, farthest; ///< per cell; nearest = +inf in cells without a measurement
+  };
+  Map buildMap(const Points& points, const std::vector<Index>& members, const Eigen::Vector3f& center);
+  std::vector<Map> maps_;
+  int side_ = 0; ///< cells per edge of a cube face
+  float grain_ = 0.f;
+  double coherence_ = 0.0, coverage_ = 0.0;
+};
+} // namespace fresco::registration

@@ -1,0 +1,231 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "optimization/common/data_terms.h"
+#include <algorithm>
+#include <fresco/core/parallel.h>
+#include <fresco/search/closest_on_triangle.h>
+#include <fresco/search/triangle_tree.h>
+#include <numeric>
+namespace fresco::optimization {
+namespace {
+using Eigen::Vector3d;
+std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+
+constexpr Index block_size = 1 << 19; // queries at a time: bounds the memory for answers
+constexpr int longest_walk = 16;      // faces; a step of the optimiser moves the mesh by less
+
+Vector3d areaVector(const MeshGraph& graph, const Positions& x, Index f)
+{
+  const Vector3d a = x.col(graph.faces(0, f));
+  return (x.col(graph.faces(1, f)) - a).cross(x.col(graph.faces(2, f)) - a);
+}
+
+TriangleMesh workingMesh(const MeshGraph& graph, const Positions& x)
+{
+  TriangleMesh mesh;
+  mesh.vertices = x.cast<float>();
+  mesh.faces = graph.faces;
+  return mesh;
+}
+
+// Queries whose answer looks the wrong way are repeated from a place one edge length along their normal, which lies
+// nearer to the side of a thin part that the point was seen on.
+void repeatFromOutside(const MeshGraph& graph, const Positions& x, const TriangleTree& tree,
+                       const Eigen::Matrix3Xd& queries, const Points& normals, std::vector<ClosestPoint>& found,
+                       double reach, int threads)
+{
+  parallelFor(queries.cols(), threads, [&](Index i) {
+    ClosestPoint& answer = found[at(i)];
+    const Vector3d normal = normals.col(i).cast<double>();
+    if (answer.face < 0 || !normal.allFinite() || areaVector(graph, x, answer.face).dot(normal) >= 0.0)
+      return;
+    answer = tree.closest(queries.col(i) + normal, reach);
+    if (answer.face < 0 || areaVector(graph, x, answer.face).dot(normal) < 0.0)
+      answer.face = -1;
+  });
+}
+
+struct Assigned {
+  std::vector<Index> columns; // of the input
+  std::vector<int> faces;
+};
+
+Assigned assignFaces(const MeshGraph& graph, const Positions& x, const PointSet& set, const WorkingFrame& frame,
+                     double reach, int threads)
+{
+  const TriangleTree tree(workingMesh(graph, x), threads);
+  Assigned assigned;
+  std::vector<Index> columns;
+  for (Index begin = 0; begin < set.size(); begin += block_size) {
+    columns.clear();
+    for (Index i = begin; i < std::min(set.size(), begin + block_size); ++i)
+      if (set.points.col(i).allFinite() && set.points.col(i).cwiseAbs().maxCoeff() < 1e15f)
+        columns.push_back(i);
+    const Eigen::Matrix3Xd queries =
+        (set.points(Eigen::all, columns).cast<double>().colwise() + (set.origin - frame.center)) / frame.unit;
+    std::vector<ClosestPoint> found = closestPoints(tree, queries, threads);
+    if (set.hasNormals())
+      repeatFromOutside(graph, x, tree, queries, set.normals(Eigen::all, columns), found, reach, threads);
+    for (std::size_t i = 0; i < columns.size(); ++i)
+      if (found[i].face >= 0 && found[i].distance <= reach && graph.face_edges(0, found[i].face) >= 0) {
+        assigned.columns.push_back(columns[i]);
+        assigned.faces.push_back(static_cast<int>(found[i].face));
+      }
+  }
+  return assigned;
+}
+
+std::vector<int> sortedByFace(const std::vector<int>& faces, Index face_count, std::vector<int>& begin)
+{
+  begin.assign(at(face_count) + 1, 0);
+  for (const int f : faces)
+    ++begin[at(f) + 1];
+  std::partial_sum(begin.begin(), begin.end(), begin.begin());
+  std::vector<int> order(faces.size()), next(begin.begin(), begin.end() - 1);
+  for (std::size_t i = 0; i < faces.size(); ++i)
+    order[at(next[at(faces[i])]++)] = static_cast<int>(i);
+  return order;
+}
+
+// Where on its triangle the closest point lies: inside (feature 0), on edge `corner` (1) or on the corner itself (2).
+struct Place {
+  int feature, corner;
+};
+
+Place placeOf(const Vector3d& foot)
+{
+  constexpr double rim = 1e-9;
+  for (int k = 0; k < 3; ++k)
+    if (foot[k] >= 1.0 - rim)
+      return {2, k};
+  for (int k = 0; k < 3; ++k)
+    if (foot[k] <= rim)
+      return {1, (k + 1) % 3}; // the edge that joins the two other corners starts at the next one
+  return {0, 0};
+}
+
+class Walk {
+public:
+  Walk(const MeshGraph& graph, const Positions& x, const Vector3d& point, const Vector3d& normal)
+      : graph_(graph), x_(x), point_(point), normal_(normal)
+  {}
+
+  int from(int face)
+  {
+    face_ = face;
+    foot_ = footOn(graph_, x_, face, point_);
+    squared_ = squaredDistance(face, foot_);
+    for (int step = 0; step < longest_walk; ++step) {
+      const int last = face_;
+      tryNeighbours(placeOf(foot_));
+      if (face_ == last)
+        break;
+    }
+    return face_;
+  }
+
+private:
+  void tryNeighbours(const Place& place)
+  {
+    if (place.feature == 1)
+      consider(graph_.across(face_, place.corner));
+    else if (place.feature == 2)
+      for (const int f : facesAround(graph_, graph_.faces(place.corner, face_)))
+        consider(f);
+  }
+
+  void consider(int face)
+  {
+    if (face < 0 || face == face_)
+      return;
+    const Vector3d foot = footOn(graph_, x_, face, point_);
+    const double squared = squaredDistance(face, foot);
+    if (squared < squared_ && areaVector(graph_, x_, face).dot(normal_) >= 0.0) {
+      face_ = face;
+      foot_ = foot;
+      squared_ = squared;
+    }
+  }
+
+  double squaredDistance(int face, const Vector3d& foot) const
+  {
+    Vector3d offset = -point_;
+    for (int k = 0; k < 3; ++k)
+      offset += foot[k] * x_.col(graph_.faces(k, face));
+    return offset.squaredNorm();
+  }
+
+  const MeshGraph& graph_;
+  const Positions& x_;
+  const Vector3d point_, normal_;
+  int face_ = -1;
+  Vector3d foot_;
+  double squared_ = 0;
+};
+} // namespace
+
+DataPoints findCorrespondences(const MeshGraph& graph, const Positions& x, const PointSet& set,
+                               const WorkingFrame& frame, double reach, int threads)
+{
+  const Assigned assigned = assignFaces(graph, x, set, frame, reach, threads);
+  std::vector<int> begin;
+  const std::vector<int> order = sortedByFace(assigned.faces, graph.faceCount(), begin);
+  DataPoints data;
+  const Index count = static_cast<Index>(order.size());
+  data.left_out = set.size() - count;
+  data.points.resize(3, count);
+  data.normals.resize(3, set.hasNormals() ? count : 0);
+  data.face.resize(at(count));
+  parallelFor(count, threads, [&](Index i) {
+    const std::size_t from = at(order[at(i)]);
+    const Index column = assigned.columns[from];
+    data.face[at(i)] = assigned.faces[from];
+    data.points.col(i) =
+        ((set.points.col(column).cast<double>() + set.origin - frame.center) / frame.unit).cast<float>();
+    if (set.hasNormals())
+      data.normals.col(i) = set.normals.col(column).allFinite() ? set.normals.col(column).stableNormalized().eval()
+                                                                : Eigen::Vector3f::Zero().eval();
+  });
+  return data;
+}
+
+void followFaces(const MeshGraph& graph, const Positions& x, DataPoints& data, int threads)
+{
+  parallelFor(data.size(), threads, [&](Index i) {
+    const Vector3d normal = data.hasNormals() ? data.normals.col(i).cast<double>().eval() : Vector3d::Zero().eval();
+    Walk walk(graph, x, data.points.col(i).cast<double>(), normal);
+    data.face[at(i)] = walk.from(data.face[at(i)]);
+  });
+}
+
+FacePoints pointsOfFaces(const DataPoints& data, Index faces)
+{
+  FacePoints lists;
+  lists.order = sortedByFace(data.face, faces, lists.begin);
+  return lists;
+}
+
+Vector3d footOn(const MeshGraph& graph, const Positions& x, Index f, const Vector3d& p)
+{
+  const Vector3d a = x.col(graph.faces(0, f)), b = x.col(graph.faces(1, f)), c = x.col(graph.faces(2, f));
+  const Vector3d normal = (b - a).cross(c - a);
+  const double squared = normal.squaredNorm();
+  const auto onEdge = [&](const Vector3d& from, const Vector3d& to) {
+    const double length2 = (to - from).squaredNorm();
+    return length2 > 0.0 ? std::clamp((p - from).dot(to - from) / length2, 0.0, 1.0) : 0.0;
+  };
+  if (squared > 1e-20) {
+    const double u = normal.dot((c - b).cross(p - b)) / squared, v = normal.dot((a - c).cross(p - c)) / squared,
+                 w = 1.0 - u - v;
+    if (u >= 0.0 && v >= 0.0 && w >= 0.0)
+      return {u, v, w};
+  }
+  const double t_ab = onEdge(a, b), t_bc = onEdge(b, c), t_ca = onEdge(c, a);
+  const double d_ab = (a + t_ab * (b - a) - p).squaredNorm(), d_bc = (b + t_bc * (c - b) - p).squaredNorm(),
+               d_ca = (c + t_ca * (a - c) - p).squaredNorm();
+  if (d_ab <= d_bc && d_ab <= d_ca)
+    return {1.0 - t_ab, t_ab, 0.0};
+  if (d_bc <= d_ca)
+    return {0.0, 1.0 - t_bc, t_bc};
+  return {t_ca, 0.0, 1.0 - t_ca};
+}
+} // namespace fresco::optimization

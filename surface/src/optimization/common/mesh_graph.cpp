@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "optimization/common/mesh_graph.h"
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <fresco/core/parallel.h>
+namespace fresco::optimization {
+namespace {
+std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+
+bool isDegenerate(const Faces& faces, Index f)
+{
+  return faces(0, f) == faces(1, f) || faces(1, f) == faces(2, f) || faces(2, f) == faces(0, f);
+}
+
+void runningSum(std::vector<int>& counts)
+{
+  int sum = 0;
+  for (int& count : counts) {
+    const int own = count;
+    count = sum;
+    sum += own;
+  }
+}
+
+void collectVertexFaces(MeshGraph& graph)
+{
+  const Index faces = graph.faceCount();
+  for (Index f = 0; f < faces; ++f)
+    if (!isDegenerate(graph.faces, f))
+      for (int k = 0; k < 3; ++k)
+        ++graph.face_begin[at(graph.faces(k, f))];
+  runningSum(graph.face_begin);
+  graph.vertex_faces.resize(at(graph.face_begin.back()));
+  std::vector<int> next(graph.face_begin.begin(), graph.face_begin.end() - 1);
+  for (Index f = 0; f < faces; ++f)
+    if (!isDegenerate(graph.faces, f))
+      for (int k = 0; k < 3; ++k)
+        graph.vertex_faces[at(next[at(graph.faces(k, f))]++)] = static_cast<int>(f);
+}
+
+// A side of a face, seen from its vertex with the smaller index.
+struct Side {
+  int other, face, corner;
+  bool operator<(const Side& s) const { return other != s.other ? other < s.other : face < s.face; }
+};
+
+void sidesFrom(const MeshGraph& graph, Index v, std::vector<Side>& sides)
+{
+  sides.clear();
+  for (const int f : facesAround(graph, v))
+    for (int k = 0; k < 3; ++k) {
+      const int a = graph.faces(k, f), b = graph.faces((k + 1) % 3, f);
+      if (std::min(a, b) == v)
+        sides.push_back({std::max(a, b), f, k});
+    }
+  std::sort(sides.begin(), sides.end());
+}
+
+// Number of different edges in `sides`; each is told with its first and last side.
+template <typename Visit>
+int forEachEdge(const std::vector<Side>& sides, const Visit& visit)
+{
+  int count = 0;
+  for (std::size_t i = 0; i < sides.size();) {
+    std::size_t j = i;
+    while (j < sides.size() && sides[j].other == sides[i].other)
+      ++j;
+    visit(count++, i, j);
+    i = j;
+  }
+  return count;
+}
+
+void collectEdges(MeshGraph& graph, int threads)
+{
+  const Index vertices = graph.vertexCount();
+  std::vector<int> first(at(vertices) + 1, 0);
+  parallelRanges(vertices, threads, [&](Index begin, Index end) {
+    std::vector<Side> sides;
+    for (Index v = begin; v < end; ++v) {
+      sidesFrom(graph, v, sides);
+      first[at(v)] = forEachEdge(sides, [](int, std::size_t, std::size_t) {});
+    }
+  });
+  runningSum(first);
+  graph.edges.resize(at(first.back()));
+  graph.edge_faces.assign(graph.edges.size(), {-1, -1});
+  graph.face_edges.setConstant(3, graph.faceCount(), -1);
+  parallelRanges(vertices, threads, [&](Index begin, Index end) {
+    std::vector<Side> sides;
+    for (Index v = begin; v < end; ++v) {
+      sidesFrom(graph, v, sides);
+      forEachEdge(sides, [&](int rank, std::size_t i, std::size_t j) {
+        const int edge = first[at(v)] + rank;
+        graph.edges[at(edge)] = {static_cast<int>(v), sides[i].other};
+        if (j - i <= 2)
+          graph.edge_faces[at(edge)] = {sides[i].face, j - i == 2 ? sides[i + 1].face : -1};
+        for (std::size_t s = i; s < j; ++s)
+          graph.face_edges(sides[s].corner, sides[s].face) = edge;
+      });
+    }
+  });
+}
+
+void collectVertexEdges(MeshGraph& graph)
+{
+  graph.edge_begin.assign(graph.face_begin.size(), 0);
+  for (const auto& edge : graph.edges)
+    for (const int v : edge)
+      ++graph.edge_begin[at(v)];
+  runningSum(graph.edge_begin);
+  graph.vertex_edges.resize(2 * graph.edges.size());
+  std::vector<int> next(graph.edge_begin.begin(), graph.edge_begin.end() - 1);
+  graph.border.assign(at(graph.vertexCount()), 0);
+  for (std::size_t e = 0; e < graph.edges.size(); ++e)
+    for (const int v : graph.edges[e]) {
+      graph.vertex_edges[at(next[at(v)]++)] = static_cast<int>(e);
+      if (graph.edge_faces[e][1] < 0)
+        graph.border[at(v)] = 1;
+    }
+}
+} // namespace
+
+MeshGraph buildGraph(const Faces& faces, Index vertices, int threads)
+{
+  MeshGraph graph;
+  graph.faces = faces;
+  graph.face_begin.assign(at(vertices) + 1, 0);
+  collectVertexFaces(graph);
+  collectEdges(graph, threads);
+  collectVertexEdges(graph);
+  return graph;
+}
+
+Eigen::Matrix3Xd areaVectors(const MeshGraph& graph, const Positions& x, int threads)
+{
+  Eigen::Matrix3Xd vectors(3, graph.faceCount());
+  parallelFor(graph.faceCount(), threads, [&](Index f) {
+    if (graph.face_edges(0, f) < 0) {
+      vectors.col(f).setZero();
+      return;
+    }
+    const Eigen::Vector3d a = x.col(graph.faces(0, f));
+    vectors.col(f) = (x.col(graph.faces(1, f)) - a).cross(x.col(graph.faces(2, f)) - a);
+  });
+  return vectors;
+}
+
+double meanEdgeLength(const MeshGraph& graph, const Positions& x, int threads)
+{
+  const double sum = parallelSum(graph.edgeCount(), threads, 0.0, [&](Index e) {
+    const auto [a, b] = graph.edges[at(e)];
+    return (x.col(a) - x.col(b)).norm();
+  });
+  return sum / static_cast<double>(std::max<Index>(graph.edgeCount(), 1));
+}
+} // namespace fresco::optimization

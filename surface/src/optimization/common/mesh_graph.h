@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include <array>
+#include <fresco/core/mesh.h>
+#include <vector>
+namespace fresco::optimization {
+/// Vertex positions of the optimiser: origin in the middle of the mesh, mean edge length 1.
+using Positions = Eigen::Matrix3Xd;
+
+/// Who touches whom in a mesh. Faces with a repeated index have no edges and touch nobody.
+struct MeshGraph {
+  Faces faces;                                ///< 3xF
+  std::vector<std::array<int, 2>> edges;      ///< the two vertices, ascending; sorted
+  std::vector<std::array<int, 2>> edge_faces; ///< -1: boundary (second), or three faces and more (both)
+  Faces face_edges;                           ///< 3xF, edge k joins corners k and k + 1; -1 for a degenerate face
+  std::vector<int> face_begin, vertex_faces;  ///< faces around vertex v: vertex_faces[face_begin[v] ..]
+  std::vector<int> edge_begin, vertex_edges;  ///< edges around vertex v: vertex_edges[edge_begin[v] ..]
+  std::vector<char> border;                   ///< V, 1 at boundary edges and edges of three faces and more
+
+  Index vertexCount() const { return static_cast<Index>(face_begin.size()) - 1; }
+  Index faceCount() const { return faces.cols(); }
+  Index edgeCount() const { return static_cast<Index>(edges.size()); }
+  int otherVertex(int edge, int vertex) const
+  {
+    const auto& ends = edges[static_cast<std::size_t>(edge)];
+    return ends[0] == vertex ? ends[1] : ends[0];
+  }
+  /// The face across corner k's edge (k, k + 1) of `face`, or -1.
+  int across(int face, int k) const
+  {
+    const int edge = face_edges(k, face);
+    if (edge < 0)
+      return -1;
+    const auto& sides = edge_faces[static_cast<std::size_t>(edge)];
+    return sides[0] == face ? sides[1] : sides[1] == face ? sides[0] : -1;
+  }
+};
+
+/// A contiguous run of a CSR array, for range loops.
+struct IntRange {
+  const int *first, *last;
+  const int* begin() const { return first; }
+  const int* end() const { return last; }
+  Index size() const { return last - first; }
+};
+
+inline IntRange facesAround(const MeshGraph& graph, Index v)
+{
+  return {graph.vertex_faces.data() + graph.face_begin[static_cast<std::size_t>(v)],
+          graph.vertex_faces.data() + graph.face_begin[static_cast<std::size_t>(v) + 1]};
+}
+
+inline IntRange edgesAround(const MeshGraph& graph, Index v)
+{
+  return {graph.vertex_edges.data() + graph.edge_begin[static_cast<std::size_t>(v)],
+          graph.vertex_edges.data() + graph.edge_begin[static_cast<std::size_t>(v) + 1]};
+}
+
+MeshGraph buildGraph(const Faces& faces, Index vertices, int threads);
+
+/// 3xF: cross product of two sides, twice the area long.
+Eigen::Matrix3Xd areaVectors(const MeshGraph& graph, const Positions& x, int threads);
+
+/// Mean over edges.
+double meanEdgeLength(const MeshGraph& graph, const Positions& x, int threads);
+} // namespace fresco::optimization

@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "optimization/energy/terms.h"
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <fresco/core/parallel.h>
+namespace fresco::optimization {
+namespace {
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+
+// Weight that keeps a vertex where it is, in every direction: where nothing else holds it the system stays regular.
+constexpr double proximal = 1e-3;
+// A direction counts as free if the target normals around the vertex have less than this share of their squares in it:
+// two normals 16 degrees apart, weighted alike, are a crease.
+constexpr double free_share = 0.02;
+constexpr double least_noise = 0.01; // mean edge lengths
+constexpr double significant = 4.0;  // mean residuals, squared, above so many times what noise explains are misfits
+constexpr double least_pairs = 0.05; // of the data, for noise from differences
+constexpr double most_urgent = 30.0;
+
+double pointWeight(const DataPoints& data, int i, double residual, const FaceTerm& term, double robust)
+{
+  const double ratio = residual / robust;
+  double weight = 1.0 / ((1.0 + ratio * ratio) * (1.0 + ratio * ratio)); // Geman, McClure 1987
+  if (data.hasNormals())
+    weight *= std::clamp(2.0 * static_cast<double>(data.normals.col(i).dot(term.normal)), 0.0, 1.0);
+  return weight;
+}
+
+void addDatum(FaceTerm& term, const Vector3d& foot, double residual, double weight)
+{
+  for (int k = 0; k < 3; ++k) {
+    term.own[k] += static_cast<float>(weight * foot[k] * foot[k]);
+    term.pair[k] += static_cast<float>(weight * foot[k] * foot[(k + 1) % 3]);
+    term.pull[k] += static_cast<float>(weight * foot[k] * residual);
+  }
+  term.constant += static_cast<float>(weight * residual * residual);
+}
+
+// The squared gradient of a height over the triangle, times its area, is replaced by the squared differences along the
+// sides, scaled to be the same for equilateral triangles: cotangents would let needles dominate.
+double slopeWeight(const OptimizationProblem& problem, Index f)
+{
+  const Vector3d a = problem.x.col(problem.graph.faces(0, f)), b = problem.x.col(problem.graph.faces(1, f)),
+                 c = problem.x.col(problem.graph.faces(2, f));
+  const double squares = (b - a).squaredNorm() + (c - b).squaredNorm() + (a - c).squaredNorm();
+  return squares > 0.0 ? (b - a).cross(c - a).norm() / squares : 0.0;
+}
+
+// Per vertex, how much more the data around it are to count: the square of their mean residual against the square that
+// noise alone would leave on average.
+Eigen::VectorXf urgencyOfMisfits(const OptimizationProblem& problem, const FacePoints& lists,
+                                 const Eigen::VectorXf& residuals, const TermWeights& weights, int threads)
+{
+  Eigen::VectorXf urgencies = Eigen::VectorXf::Ones(problem.graph.vertexCount());
+  const double noise = std::max(least_noise, weights.noise);
+  parallelFor(problem.graph.vertexCount(), threads, [&](Index v) {
+    double sum = 0.0, count = 0.0;
+    for (const int f : facesAround(problem.graph, v))
+      for (int j = lists.begin[at(f)]; j < lists.begin[at(f) + 1]; ++j) {
+        const double e = residuals[lists.order[at(j)]];
+        if (std::abs(e) > weights.robust)
+          continue;
+        sum += e;
+        ++count;
+      }
+    if (count > 0.0)
+      urgencies[v] =
+          static_cast<float>(std::clamp(sum * sum / (count * noise * noise * significant), 1.0, most_urgent));
+  });
+  return urgencies;
+}
+
+FaceTerm faceTerm(const OptimizationProblem& problem, const FacePoints& lists, const Eigen::VectorXf& residuals,
+                  const Eigen::VectorXf& urgencies, const TermWeights& weights, Index f, FaceTerm term)
+{
+  term.slope = static_cast<float>(weights.slope * slopeWeight(problem, f));
+  double urgency = 0.0;
+  for (int k = 0; k < 3; ++k)
+    urgency += urgencies[problem.graph.faces(k, f)] / 3.0;
+  for (int j = lists.begin[at(f)]; j < lists.begin[at(f) + 1]; ++j) {
+    const int i = lists.order[at(j)];
+    const Vector3d foot = footOn(problem.graph, problem.x, f, problem.data.points.col(i).cast<double>());
+    const double weight =
+        urgency * problem.support.point_weight[i] * pointWeight(problem.data, i, residuals[i], term, weights.robust);
+    addDatum(term, foot, residuals[i], weight);
+  }
+  return term;
+}
+
+// Projection on the directions in which no face around v says where it should be: a plane, a crease's line, nothing.
+Matrix3d freeDirections(const OptimizationProblem& problem, const std::vector<FaceTerm>& faces, Index v)
+{
+  Matrix3d spread = Matrix3d::Zero();
+  for (const int f : facesAround(problem.graph, v)) {
+    const Vector3d n = faces[at(f)].normal.cast<double>();
+    spread += n * n.transpose();
+  }
+  const double trace = spread.trace();
+  if (!(trace > 0.0))
+    return Matrix3d::Zero();
+  Eigen::SelfAdjointEigenSolver<Matrix3d> axes;
+  axes.computeDirect(spread / trace);
+  Matrix3d directions = Matrix3d::Zero();
+  for (int k = 0; k < 3; ++k)
+    if (axes.eigenvalues()[k] < free_share)
+      directions += axes.eigenvectors().col(k) * axes.eigenvectors().col(k).transpose();
+  return directions;
+}
+
+VertexTerm vertexTerm(const OptimizationProblem& problem, const std::vector<FaceTerm>& faces,
+                      const TermWeights& weights, Index v)
+{
+  const Matrix3d directions = freeDirections(problem, faces, v);
+  const IntRange edges = edgesAround(problem.graph, v);
+  VertexTerm term;
+  term.slide = (weights.slide * directions + proximal * Matrix3d::Identity()).cast<float>();
+  if (problem.graph.border[at(v)] || edges.size() == 0)
+    return term;
+  Vector3d middle = Vector3d::Zero();
+  for (const int e : edges)
+    middle += problem.x.col(problem.graph.otherVertex(e, static_cast<int>(v)));
+  middle /= static_cast<double>(edges.size());
+  term.target = (directions * (middle - problem.x.col(v))).cast<float>();
+  return term;
+}
+} // namespace
+
+Eigen::VectorXf dataResiduals(const OptimizationProblem& problem, const Eigen::Matrix3Xf& normals, int threads)
+{
+  const DataPoints& data = problem.data;
+  Eigen::VectorXf residuals(data.size());
+  parallelFor(data.size(), threads, [&](Index i) {
+    const int f = data.face[at(i)];
+    const Vector3d p = data.points.col(i).cast<double>(), foot = footOn(problem.graph, problem.x, f, p);
+    Vector3d offset = p;
+    for (int k = 0; k < 3; ++k)
+      offset -= foot[k] * problem.x.col(problem.graph.faces(k, f));
+    residuals[i] = static_cast<float>(normals.col(f).cast<double>().dot(offset));
+  });
+  return residuals;
+}
+
+double noiseOf(const FacePoints& lists, const Eigen::VectorXf& residuals)
+{
+  std::vector<float> magnitudes;
+  for (std::size_t f = 0; f + 1 < lists.begin.size(); ++f)
+    for (int j = lists.begin[f] + 1; j < lists.begin[f + 1]; j += 2)
+      magnitudes.push_back(std::abs(residuals[lists.order[at(j)]] - residuals[lists.order[at(j) - 1]]));
+  if (static_cast<double>(magnitudes.size()) > least_pairs * static_cast<double>(residuals.size()))
+    return robustDeviation(magnitudes) / std::sqrt(2.0);
+  magnitudes.resize(at(residuals.size()));
+  for (Index i = 0; i < residuals.size(); ++i)
+    magnitudes[at(i)] = std::abs(residuals[i]);
+  return robustDeviation(magnitudes);
+}
+
+Eigen::Matrix3Xf dataNormals(const OptimizationProblem& problem, const Eigen::Matrix3Xd& areas, const FacePoints& lists,
+                             double trust, int threads)
+{
+  const DataPoints& data = problem.data;
+  Eigen::Matrix3Xf given = Eigen::Matrix3Xf::Zero(3, problem.graph.faceCount());
+  if (!data.hasNormals() || !(trust > 0.0))
+    return given;
+  parallelFor(problem.graph.faceCount(), threads, [&](Index f) {
+    for (int j = lists.begin[at(f)]; j < lists.begin[at(f) + 1]; ++j) {
+      const auto normal = data.normals.col(lists.order[at(j)]);
+      if (normal.cast<double>().dot(areas.col(f)) > 0.0)
+        given.col(f) += problem.support.point_weight[lists.order[at(j)]] * normal;
+    }
+    given.col(f) *= static_cast<float>(trust);
+  });
+  return given;
+}
+
+QuadraticEnergy makeEnergy(const OptimizationProblem& problem, const FacePoints& lists, const Eigen::Matrix3Xf& normals,
+                           const Eigen::VectorXf& residuals, const TermWeights& weights, int threads)
+{
+  const Eigen::VectorXf urgencies = urgencyOfMisfits(problem, lists, residuals, weights, threads);
+  QuadraticEnergy energy;
+  energy.free = problem.support.vertex;
+  energy.faces.resize(at(problem.graph.faceCount()));
+  energy.vertices.resize(at(problem.graph.vertexCount()));
+  parallelFor(problem.graph.faceCount(), threads, [&](Index f) {
+    FaceTerm term;
+    term.normal = normals.col(f);
+    if (problem.graph.face_edges(0, f) >= 0)
+      energy.faces[at(f)] = faceTerm(problem, lists, residuals, urgencies, weights, f, term);
+  });
+  parallelFor(problem.graph.vertexCount(), threads, [&](Index v) {
+    if (energy.free[at(v)])
+      energy.vertices[at(v)] = vertexTerm(problem, energy.faces, weights, v);
+  });
+  return energy;
+}
+} // namespace fresco::optimization

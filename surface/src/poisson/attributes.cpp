@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "poisson/attributes.h"
+#include "poisson/octree/splat.h"
+#include "poisson/solver/hat_function.h"
+#include "poisson/solver/transfer.h"
+#include <algorithm>
+namespace fresco::poisson {
+namespace {
+using Channels = Eigen::Matrix<float, 5, 1>; ///< weight, weight times attributes
+constexpr std::size_t channel_count = 5;
+constexpr float least_weight = 1e-4f;
+using Fields = std::array<NodeField, channel_count>;
+
+Channels channelsOf(const Samples& samples, std::uint32_t i)
+{
+  Channels c;
+  c << 1.f, samples.attributes[i];
+  return c * samples.samples[i].area;
+}
+
+class Transfer {
+public:
+  Transfer(const Octree& tree, const Samples& samples, int threads)
+      : tree_(tree), samples_(samples), begin_(sampleRanges(tree.levels.back(), samples.codes, tree.depth, threads)),
+        fields_(tree.levels.size())
+  {
+    for (int d = tree.depth - 1; d >= 2; --d)
+      makeFields(d, threads);
+  }
+
+  void fillRange(const VertexRange& range, const Points& vertices, Eigen::Matrix4Xf& result) const
+  {
+    std::vector<Channels> nodes;
+    if (range.depth == tree_.depth)
+      nodes = finestNodes(range.brick);
+    for (Index v = range.first; v < range.first + range.count; ++v) {
+      Channels sum = Channels::Zero();
+      if (!nodes.empty())
+        sum = interpolate(nodes, toBrick(vertices.col(v), range.depth, range.brick));
+      Index b = range.brick;
+      for (int d = range.depth; sum[0] < least_weight && d >= 2; b = parent(d--, b))
+        if (d < tree_.depth)
+          sum = interpolate(d, b, vertices.col(v));
+      result.col(v) = sum.tail<4>() / std::max(sum[0], 1e-30f);
+    }
+  }
+
+private:
+  Index parent(int d, Index b) const
+  {
+    return tree_.levels[static_cast<std::size_t>(d)].parents[static_cast<std::size_t>(b)];
+  }
+
+  Eigen::Vector3f toBrick(const Eigen::Vector3f& position, int d, Index b) const
+  {
+    return position * std::ldexp(1.f, d - tree_.depth) - tree_.levels[static_cast<std::size_t>(d)].origin(b);
+  }
+
+  void makeFields(int d, int threads)
+  {
+    const BrickLevel& level = tree_.levels[static_cast<std::size_t>(d)];
+    Fields& fields = fields_[static_cast<std::size_t>(d)];
+    const Array<std::uint32_t> begin = sampleRanges(level, samples_.codes, tree_.depth, threads);
+    for (std::size_t c = 0; c < channel_count; ++c) {
+      fields[c] = NodeField(level.size(), threads);
+      if (d < tree_.depth - 1) {
+        const auto finer = static_cast<std::size_t>(d) + 1;
+        restrictLevel(tree_.levels[finer], fields_[finer][c], level, 1.f, fields[c], threads);
+        continue;
+      }
+      splatBricks(level, begin, fields[c], threads, [&](SplatBlock<1>& block, int b) {
+        for (std::uint32_t i = begin[static_cast<std::size_t>(b)]; i < begin[static_cast<std::size_t>(b) + 1]; ++i) {
+          const HatWeights w(toBrick(samples_.samples[i].position, d, b));
+          const float value = channelsOf(samples_, i)[static_cast<Index>(c)];
+          for (int k = 0; k < 8; ++k)
+            block.at(w.x + (k & 1), w.y + (k >> 1 & 1), w.z + (k >> 2)) += value * w.value[k];
+        }
+      });
+      syncFaces(level, fields[c], threads);
+    }
+  }
+
+  std::vector<Channels> finestNodes(Index brick) const
+  {
+    std::vector<Channels> nodes(brick_nodes * brick_nodes * brick_nodes, Channels::Zero());
+    const BrickLevel& level = tree_.levels.back();
+    for (const int n : level.neighbors[static_cast<std::size_t>(brick)]) {
+      if (n < 0)
+        continue;
+      for (std::uint32_t i = begin_[static_cast<std::size_t>(n)]; i < begin_[static_cast<std::size_t>(n) + 1]; ++i) {
+        const Eigen::Vector3f p = toBrick(samples_.samples[i].position, tree_.depth, brick);
+        if (p.minCoeff() <= -1.f || p.maxCoeff() >= static_cast<float>(brick_nodes))
+          continue;
+        const HatWeights w(p);
+        for (int k = 0; k < 8; ++k) {
+          const int x = w.x + (k & 1), y = w.y + (k >> 1 & 1), z = w.z + (k >> 2);
+          if (std::min({x, y, z}) >= 0 && std::max({x, y, z}) < brick_nodes)
+            nodes[static_cast<std::size_t>(nodeIndex(x, y, z))] += w.value[k] * channelsOf(samples_, i);
+        }
+      }
+    }
+    return nodes;
+  }
+
+  static Channels interpolate(const std::vector<Channels>& nodes, const Eigen::Vector3f& position)
+  {
+    const HatWeights w = HatWeights::inBrick(position);
+    Channels sum = Channels::Zero();
+    for (int k = 0; k < 8; ++k)
+      sum += w.value[k] * nodes[static_cast<std::size_t>(w.nodeOf(k))];
+    return sum;
+  }
+
+  Channels interpolate(int d, Index b, const Eigen::Vector3f& position) const
+  {
+    const HatWeights w = HatWeights::inBrick(toBrick(position, d, b));
+    Channels sum;
+    for (std::size_t c = 0; c < channel_count; ++c)
+      sum[static_cast<Index>(c)] = w.interpolate(fields_[static_cast<std::size_t>(d)][c].brick(b));
+    return sum;
+  }
+
+  const Octree& tree_;
+  const Samples& samples_;
+  Array<std::uint32_t> begin_;
+  std::vector<Fields> fields_; ///< by depth, coarser than the finest
+};
+} // namespace
+
+Eigen::Matrix4Xf vertexAttributes(const Octree& tree, const Samples& samples, const IsoSurface& surface, int threads)
+{
+  Eigen::Matrix4Xf result(4, surface.vertices.cols());
+  const Transfer transfer(tree, samples, threads);
+  parallelFor(static_cast<Index>(surface.ranges.size()), threads, [&](Index r) {
+    transfer.fillRange(surface.ranges[static_cast<std::size_t>(r)], surface.vertices, result);
+  });
+  return result;
+}
+} // namespace fresco::poisson

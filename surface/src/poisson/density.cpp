@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "poisson/density.h"
+#include "poisson/octree/splat.h"
+#include <algorithm>
+namespace fresco::poisson {
+namespace {
+/// Weight that the kernel (quadratic B-spline convolved with itself) gathers on
+/// a plane with one sample per face of a cell.
+constexpr float plane_weight = 0.55f;
+/// Least weight that counts as an estimate; about twenty samples within the
+/// kernel.
+constexpr float least_weight = 2.f;
+/// Weight below which there are as good as no samples.
+constexpr float negligible_weight = 0.02f;
+
+void splatWeights(const BrickLevel& level, const SampleLevel& samples, int finest, NodeField& field, int threads)
+{
+  const Array<std::uint32_t> begin = sampleRanges(level, samples.codes, samples.depth, threads);
+  const float scale = std::ldexp(1.f, level.depth - finest);
+  splatBricks(level, begin, field, threads, [&](SplatBlock<1>& block, int b) {
+    const std::array<int, 3> corner = level.corner(b);
+    for (std::uint32_t i = begin[static_cast<std::size_t>(b)]; i < begin[static_cast<std::size_t>(b) + 1]; ++i) {
+      const CoarseSample& s = samples.samples[i];
+      const QuadraticWeights x(s.position.x() * scale - static_cast<float>(corner[0]));
+      const QuadraticWeights y(s.position.y() * scale - static_cast<float>(corner[1]));
+      const QuadraticWeights z(s.position.z() * scale - static_cast<float>(corner[2]));
+      for (int c = 0; c < 3; ++c)
+        for (int r = 0; r < 3; ++r) {
+          const float w = s.area * z.value[static_cast<std::size_t>(c)] * y.value[static_cast<std::size_t>(r)];
+          for (int q = 0; q < 3; ++q)
+            block.at(x.first + q, y.first + r, z.first + c) += w * x.value[static_cast<std::size_t>(q)];
+        }
+    }
+  });
+}
+} // namespace
+
+Density::Density(const Octree& tree, const Samples& samples, int threads) : tree_(&tree)
+{
+  fields_.resize(tree.levels.size());
+  SampleLevel level = finestLevel(samples, threads);
+  total_weight_ = parallelSum(static_cast<Index>(level.samples.size()), threads, 0.f,
+                              [&](Index i) { return level.samples[static_cast<std::size_t>(i)].area; });
+  for (int d = std::max(2, tree.depth - 1); d >= 2; --d) {
+    const BrickLevel& bricks = tree.levels[static_cast<std::size_t>(d)];
+    NodeField& field = fields_[static_cast<std::size_t>(d)];
+    field = NodeField(bricks.size(), threads);
+    splatWeights(bricks, level, tree.depth, field, threads);
+    level = coarsen(level, threads);
+  }
+}
+
+float Density::weightAt(int depth, Index brick, const Eigen::Vector3f& position) const
+{
+  const BrickLevel& level = tree_->levels[static_cast<std::size_t>(depth)];
+  const NodeField& field = fields_[static_cast<std::size_t>(depth)];
+  const float scale = std::ldexp(1.f, depth - tree_->depth);
+  const std::array<int, 3> corner = level.corner(brick);
+  const QuadraticWeights x(position.x() * scale - static_cast<float>(corner[0]));
+  const QuadraticWeights y(position.y() * scale - static_cast<float>(corner[1]));
+  const QuadraticWeights z(position.z() * scale - static_cast<float>(corner[2]));
+  float sum = 0;
+  for (int c = 0; c < 3; ++c)
+    for (int r = 0; r < 3; ++r)
+      for (int q = 0; q < 3; ++q) {
+        const NodePlace place = findNode(level, brick, x.first + q, y.first + r, z.first + c);
+        if (place.brick >= 0)
+          sum += field.brick(place.brick)[place.index] * x.value[static_cast<std::size_t>(q)] *
+                 y.value[static_cast<std::size_t>(r)] * z.value[static_cast<std::size_t>(c)];
+      }
+  return sum;
+}
+
+Density::Estimate Density::at(int depth, Index brick, const Eigen::Vector3f& position) const
+{
+  float weight = 0, finer_weight = 0;
+  int d = depth;
+  for (;; --d) {
+    if (fields_[static_cast<std::size_t>(d)].size() > 0) {
+      finer_weight = weight;
+      weight = weightAt(d, brick, position);
+      if (weight >= least_weight || d == 2)
+        break;
+    }
+    brick = tree_->levels[static_cast<std::size_t>(d)].parents[static_cast<std::size_t>(brick)];
+  }
+  weight = std::max(weight, 1e-6f * total_weight_);
+  const float per_face = weight / plane_weight; // samples per face of a cell of depth d
+  Estimate estimate;
+  estimate.depth = static_cast<float>(d) + 0.5f * std::log2(per_face);
+  estimate.area = std::ldexp(1.f, 2 * (tree_->depth - d)) / per_face;
+  const float finer_per_face = std::max(finer_weight, negligible_weight) / plane_weight;
+  estimate.support = estimate.depth;
+  if (d < std::max(2, tree_->depth - 1))
+    estimate.support = std::min(estimate.depth, static_cast<float>(d + 1) + 0.5f * std::log2(finer_per_face));
+  return estimate;
+}
+
+void estimateDensity(const Octree& tree, const Density& density, float samples_per_node, Samples& samples, int threads)
+{
+  const BrickLevel& finest = tree.levels.back();
+  const Array<std::uint32_t> begin = sampleRanges(finest, samples.codes, tree.depth, threads);
+  const float shift = 0.5f * std::log2(samples_per_node);
+  parallelFor(finest.size(), threads, [&](Index b) {
+    for (std::uint32_t i = begin[static_cast<std::size_t>(b)]; i < begin[static_cast<std::size_t>(b) + 1]; ++i) {
+      Sample& s = samples.samples[i];
+      const Density::Estimate estimate = density.at(tree.depth, b, s.position);
+      s.depth = estimate.depth - shift;
+      s.area *= estimate.area;
+    }
+  });
+}
+} // namespace fresco::poisson

@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "poisson/isosurface/edges.h"
+#include <algorithm>
+#include <cmath>
+#include <fresco/core/parallel.h>
+namespace fresco::poisson {
+namespace {
+/// Vertices keep this distance from the ends of their edge (edge length 1), so
+/// that no two of them coincide.
+constexpr float end_margin = 1e-3f;
+
+/// Without the processor's instruction, which not every x86-64 has, this is faster than std::bitset.
+int countBits(std::uint64_t v)
+{
+  v -= v >> 1 & 0x5555555555555555;
+  v = (v & 0x3333333333333333) + (v >> 2 & 0x3333333333333333);
+  return static_cast<int>(((v + (v >> 4)) & 0x0f0f0f0f0f0f0f0f) * 0x0101010101010101 >> 56);
+}
+} // namespace
+
+bool LevelSet::hasLeaves(int depth, Index brick) const
+{
+  if ((*chi)[static_cast<std::size_t>(depth)].size() == 0)
+    return false;
+  const auto& children = tree->levels[static_cast<std::size_t>(depth)].children[static_cast<std::size_t>(brick)];
+  return *std::min_element(children.begin(), children.end()) < 0;
+}
+
+CellPlace normalized(const Octree& tree, CellPlace c)
+{
+  const int o = offsetIndex(c.x >> 2, c.y >> 2, c.z >> 2);
+  if (o != offset_self)
+    c.brick = tree.levels[static_cast<std::size_t>(c.depth)]
+                  .neighbors[static_cast<std::size_t>(c.brick)][static_cast<std::size_t>(o)];
+  c.x &= 3;
+  c.y &= 3;
+  c.z &= 3;
+  return c;
+}
+
+int childBrick(const Octree& tree, const CellPlace& c)
+{
+  return tree.levels[static_cast<std::size_t>(c.depth)]
+      .children[static_cast<std::size_t>(c.brick)][static_cast<std::size_t>(octantOf(c.x, c.y, c.z))];
+}
+
+int CrossedEdges::BrickEdges::count() const
+{
+  int n = 0;
+  for (const std::uint64_t word : bits)
+    n += countBits(word);
+  return n;
+}
+
+int CrossedEdges::BrickEdges::rank(int axis, int node) const
+{
+  const int last = axis * 2 + node / 64;
+  int n = 0;
+  for (int w = 0; w < last; ++w)
+    n += countBits(bits[w]);
+  return n + countBits(bits[last] & ((std::uint64_t(1) << (node & 63)) - 1));
+}
+
+CrossedEdges::CrossedEdges(const LevelSet& surface, int threads) : surface_(&surface)
+{
+  const Octree& tree = *surface.tree;
+  bricks_.resize(tree.levels.size());
+  for (int d = 2; d <= tree.depth; ++d) {
+    const auto i = static_cast<std::size_t>(d);
+    if ((*surface.chi)[i].size() == 0)
+      continue;
+    bricks_[i].resize(tree.levels[i].codes.size());
+    parallelFor(tree.levels[i].size(), threads, [&](Index b) { findCrossings(d, b); });
+    for (BrickEdges& edges : bricks_[i]) {
+      edges.first = static_cast<int>(count_);
+      count_ += edges.count();
+    }
+  }
+}
+
+void CrossedEdges::findCrossings(int depth, Index brick)
+{
+  if (!surface_->hasLeaves(depth, brick))
+    return;
+  const float* chi = (*surface_->chi)[static_cast<std::size_t>(depth)].brick(brick);
+  bool inside[brick_nodes * brick_nodes * brick_nodes];
+  int count = 0;
+  for (int i = 0; i < brick_nodes * brick_nodes * brick_nodes; ++i)
+    count += inside[i] = surface_->inside(chi[i]);
+  if (count == 0 || count == brick_nodes * brick_nodes * brick_nodes)
+    return;
+  const int steps[3] = {1, brick_nodes, brick_nodes * brick_nodes};
+  for (int axis = 0; axis < 3; ++axis)
+    for (int z = 0; z < brick_nodes - (axis == 2); ++z)
+      for (int y = 0; y < brick_nodes - (axis == 1); ++y)
+        for (int x = 0; x < brick_nodes - (axis == 0); ++x) {
+          const int node = nodeIndex(x, y, z);
+          if (inside[node] == inside[node + steps[axis]])
+            continue;
+          const EdgePlace edge{depth, static_cast<int>(brick), axis, x, y, z};
+          if (ownerOf(edge).brick == edge.brick && !isSubdivided(edge))
+            bricks_[static_cast<std::size_t>(depth)][static_cast<std::size_t>(brick)].set(axis, node);
+        }
+}
+
+bool CrossedEdges::isSubdivided(const EdgePlace& edge) const
+{
+  const Octree& tree = *surface_->tree;
+  if (edge.depth == tree.depth)
+    return false;
+  for (int k = 0; k < 4; ++k) {
+    const int p = k & 1, q = k >> 1;
+    const CellPlace cell = normalized(tree, {edge.depth, edge.brick, edge.x - (edge.axis == 0 ? 0 : p),
+                                             edge.y - (edge.axis == 1   ? 0
+                                                       : edge.axis == 0 ? p
+                                                                        : q),
+                                             edge.z - (edge.axis == 2 ? 0 : q)});
+    if (cell.brick >= 0 && childBrick(tree, cell) >= 0)
+      return true;
+  }
+  return false;
+}
+
+/// Of the bricks around the edge, the one highest on the first, then on the
+/// second axis across it.
+EdgePlace CrossedEdges::ownerOfFaceEdge(const EdgePlace& edge) const
+{
+  const int first = edge.axis == 0 ? 1 : 0, second = edge.axis == 2 ? 1 : 2;
+  const int at[3] = {edge.x, edge.y, edge.z};
+  const BrickLevel& level = surface_->tree->levels[static_cast<std::size_t>(edge.depth)];
+  const auto& neighbors = level.neighbors[static_cast<std::size_t>(edge.brick)];
+  // Offsets of the upper bricks on both axes; the lower ones are one less where
+  // the edge lies between two bricks.
+  const int up_first = at[first] == brick_cells, up_second = at[second] == brick_cells;
+  const int down_first = up_first - (at[first] % brick_cells == 0),
+            down_second = up_second - (at[second] % brick_cells == 0);
+  for (int p = up_first; p >= down_first; --p)
+    for (int q = up_second; q >= down_second; --q) {
+      int offset[3] = {0, 0, 0};
+      offset[first] = p;
+      offset[second] = q;
+      const int n = neighbors[static_cast<std::size_t>(offsetIndex(offset[0], offset[1], offset[2]))];
+      if (n >= 0)
+        return {edge.depth,
+                n,
+                edge.axis,
+                edge.x - brick_cells * offset[0],
+                edge.y - brick_cells * offset[1],
+                edge.z - brick_cells * offset[2]};
+    }
+  return edge;
+}
+
+/// Replaces a subdivided edge by that half of it which the level set crosses;
+/// false if it is not subdivided.
+bool CrossedEdges::finerHalf(EdgePlace& edge) const
+{
+  const Octree& tree = *surface_->tree;
+  if (edge.depth == tree.depth)
+    return false;
+  for (int k = 0; k < 4; ++k) {
+    const int p = k & 1, q = k >> 1;
+    const int dx = edge.axis == 0 ? 0 : p,
+              dy = edge.axis == 1   ? 0
+                   : edge.axis == 0 ? p
+                                    : q,
+              dz = edge.axis == 2 ? 0 : q;
+    const CellPlace cell = normalized(tree, {edge.depth, edge.brick, edge.x - dx, edge.y - dy, edge.z - dz});
+    const int child = cell.brick < 0 ? -1 : childBrick(tree, cell);
+    if (child < 0)
+      continue;
+    EdgePlace half{edge.depth + 1,       child, edge.axis, 2 * (cell.x % 2 + dx), 2 * (cell.y % 2 + dy),
+                   2 * (cell.z % 2 + dz)};
+    const float* chi = (*surface_->chi)[static_cast<std::size_t>(half.depth)].brick(child);
+    const int node = nodeIndex(half.x, half.y, half.z);
+    const int step = edge.axis == 0 ? 1 : edge.axis == 1 ? brick_nodes : brick_nodes * brick_nodes;
+    if (surface_->inside(chi[node]) == surface_->inside(chi[node + step]))
+      (edge.axis == 0 ? half.x : edge.axis == 1 ? half.y : half.z) += 1;
+    edge = half;
+    return true;
+  }
+  return false;
+}
+
+int CrossedEdges::vertexOn(EdgePlace edge) const
+{
+  while (finerHalf(edge)) {
+  }
+  const EdgePlace owner = ownerOf(edge);
+  const BrickEdges& edges = bricks_[static_cast<std::size_t>(owner.depth)][static_cast<std::size_t>(owner.brick)];
+  return edges.first + edges.rank(owner.axis, nodeIndex(owner.x, owner.y, owner.z));
+}
+
+Eigen::Vector3f CrossedEdges::position(const EdgePlace& edge) const
+{
+  const float* chi = (*surface_->chi)[static_cast<std::size_t>(edge.depth)].brick(edge.brick);
+  const int node = nodeIndex(edge.x, edge.y, edge.z);
+  const int step = edge.axis == 0 ? 1 : edge.axis == 1 ? brick_nodes : brick_nodes * brick_nodes;
+  const float a = chi[node], b = chi[node + step];
+  const float t = std::clamp((surface_->value - a) / (b - a), end_margin, 1.f - end_margin);
+  const auto corner = surface_->tree->levels[static_cast<std::size_t>(edge.depth)].corner(edge.brick);
+  Eigen::Vector3f p(static_cast<float>(corner[0] + edge.x), static_cast<float>(corner[1] + edge.y),
+                    static_cast<float>(corner[2] + edge.z));
+  p[edge.axis] += t;
+  return p * std::ldexp(1.f, surface_->tree->depth - edge.depth);
+}
+
+Points CrossedEdges::positions(int threads) const
+{
+  Points points(3, count_);
+  for (std::size_t d = 0; d < bricks_.size(); ++d)
+    parallelFor(static_cast<Index>(bricks_[d].size()), threads, [&](Index b) {
+      const BrickEdges& edges = bricks_[d][static_cast<std::size_t>(b)];
+      Index at = edges.first;
+      for (int w = 0; w < 6; ++w)
+        for (int bit = 0; edges.bits[w] >> bit != 0; ++bit) {
+          if (edges.bits[w] >> bit & 1) {
+            const int node = (w & 1) * 64 + bit;
+            points.col(at++) =
+                position({static_cast<int>(d), static_cast<int>(b), w / 2, node % 5, node / 5 % 5, node / 25});
+          }
+          if (bit == 63)
+            break;
+        }
+    });
+  return points;
+}
+} // namespace fresco::poisson

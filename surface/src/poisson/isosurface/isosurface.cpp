@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "poisson/isosurface/isosurface.h"
+#include "poisson/isosurface/polygon.h"
+#include <fresco/core/parallel.h>
+namespace fresco::poisson {
+namespace {
+constexpr Index bricks_per_part = 128;
+
+/// What one range of bricks yields; vertices < 0 are -1 - index into `extra`.
+struct Part {
+  std::vector<int> faces;
+  std::vector<Eigen::Vector3f> extra;
+  std::vector<VertexRange> extra_ranges; ///< `first` counts within `extra`
+};
+
+class CellMarcher {
+public:
+  CellMarcher(const LevelSet& surface, const CrossedEdges& edges, const Points& positions)
+      : surface_(surface), tree_(*surface.tree), edges_(edges), positions_(positions)
+  {}
+
+  void marchBrick(int depth, Index brick, Part& part)
+  {
+    const std::size_t extra_before = part.extra.size();
+    const auto b = static_cast<int>(brick);
+    for (int z = 0; z < brick_cells; ++z)
+      for (int y = 0; y < brick_cells; ++y)
+        for (int x = 0; x < brick_cells; ++x)
+          if (const CellPlace cell{depth, b, x, y, z}; isCrossed(cell) && childBrick(tree_, cell) < 0)
+            marchCell(cell, part);
+    if (const std::size_t n = part.extra.size() - extra_before; n > 0)
+      part.extra_ranges.push_back({depth, brick, static_cast<Index>(extra_before), static_cast<Index>(n)});
+  }
+
+private:
+  const float* values(const CellPlace& c) const
+  {
+    return (*surface_.chi)[static_cast<std::size_t>(c.depth)].brick(c.brick) + nodeIndex(c.x, c.y, c.z);
+  }
+
+  static int cornerStep(int corner) { return nodeIndex(corner & 1, corner >> 1 & 1, corner >> 2); }
+
+  bool isCrossed(const CellPlace& cell) const
+  {
+    const float* v = values(cell);
+    int inside = 0;
+    for (int c = 0; c < 8; ++c)
+      inside += surface_.inside(v[cornerStep(c)]);
+    return inside != 0 && inside != 8;
+  }
+
+  void marchCell(const CellPlace& cell, Part& part)
+  {
+    polygons_.clear();
+    for (int face = 0; face < 6; ++face)
+      if (const CellPlace beyond = refinedBeyond(cell, face); beyond.brick >= 0)
+        addFace(beyond, face ^ 1, face, true);
+      else
+        addLeafFace(cell, face, face, false);
+    polygons_.triangulate(positions_, part.faces, part.extra);
+  }
+
+  /// The neighbour across a face if it is refined, else brick = -1.
+  CellPlace refinedBeyond(const CellPlace& cell, int face) const
+  {
+    CellPlace beyond = cell;
+    beyond.brick = -1;
+    if (cell.depth == tree_.depth)
+      return beyond;
+    beyond.brick = cell.brick;
+    (face < 2 ? beyond.x : face < 4 ? beyond.y : beyond.z) += face & 1 ? 1 : -1;
+    beyond = normalized(tree_, beyond);
+    if (beyond.brick >= 0 && childBrick(tree_, beyond) < 0)
+      beyond.brick = -1;
+    return beyond;
+  }
+
+  /// Segments on a face of a cell or, where it is refined, of its children.
+  /// @param owner_face face of the cell that is marched; `reversed` if that
+  /// lies on the other side
+  void addFace(const CellPlace& cell, int face, int owner_face, bool reversed)
+  {
+    const int child = childBrick(tree_, cell);
+    if (child < 0) {
+      addLeafFace(cell, face, owner_face, reversed);
+      return;
+    }
+    for (int corner : face_corners[face])
+      addFace({cell.depth + 1, child, 2 * (cell.x & 1) + (corner & 1), 2 * (cell.y & 1) + (corner >> 1 & 1),
+               2 * (cell.z & 1) + (corner >> 2)},
+              face, owner_face, reversed);
+  }
+
+  void addLeafFace(const CellPlace& cell, int face, int owner_face, bool reversed)
+  {
+    const float* v = values(cell);
+    float chi[4];
+    for (int k = 0; k < 4; ++k)
+      chi[k] = v[cornerStep(face_corners[face][k])] - surface_.value;
+    const FaceCrossings crossings = crossFace(chi);
+    for (int s = 0; s < crossings.count; ++s) {
+      int from = vertexOnSide(cell, face, crossings.from[s]), to = vertexOnSide(cell, face, crossings.to[s]);
+      if (reversed)
+        std::swap(from, to);
+      polygons_.add({from, to, owner_face});
+    }
+  }
+
+  int vertexOnSide(const CellPlace& cell, int face, int side) const
+  {
+    const int a = face_corners[face][side], b = face_corners[face][(side + 1) & 3];
+    const int lower = a & b, axis = (a ^ b) >> 1;
+    return edges_.vertexOn(
+        {cell.depth, cell.brick, axis, cell.x + (lower & 1), cell.y + (lower >> 1 & 1), cell.z + (lower >> 2)});
+  }
+
+  const LevelSet& surface_;
+  const Octree& tree_;
+  const CrossedEdges& edges_;
+  const Points& positions_;
+  CellPolygons polygons_;
+};
+
+struct BrickPlace {
+  int depth;
+  Index brick;
+};
+
+std::vector<BrickPlace> bricksWithLeaves(const LevelSet& surface)
+{
+  std::vector<BrickPlace> bricks;
+  for (int d = 2; d <= surface.tree->depth; ++d)
+    for (Index b = 0; b < surface.tree->levels[static_cast<std::size_t>(d)].size(); ++b)
+      if (surface.hasLeaves(d, b))
+        bricks.push_back({d, b});
+  return bricks;
+}
+
+void join(const std::vector<Part>& parts, IsoSurface& surface, Index edge_vertices)
+{
+  Index faces = 0, vertices = edge_vertices;
+  for (const Part& part : parts) {
+    faces += static_cast<Index>(part.faces.size()) / 3;
+    vertices += static_cast<Index>(part.extra.size());
+  }
+  surface.vertices.conservativeResize(3, vertices);
+  surface.faces.resize(3, faces);
+  int* to = surface.faces.data();
+  Index at = edge_vertices;
+  for (const Part& part : parts) {
+    for (const int v : part.faces)
+      *to++ = v >= 0 ? v : static_cast<int>(at) - 1 - v;
+    for (VertexRange range : part.extra_ranges) {
+      range.first += at;
+      surface.ranges.push_back(range);
+    }
+    for (const Eigen::Vector3f& p : part.extra)
+      surface.vertices.col(at++) = p;
+  }
+}
+} // namespace
+
+IsoSurface extractIsoSurface(const LevelSet& surface, int threads)
+{
+  IsoSurface result;
+  const CrossedEdges edges(surface, threads);
+  result.vertices = edges.positions(threads);
+  edges.forEachBrick([&](int depth, Index brick, Index first, Index count) {
+    result.ranges.push_back({depth, brick, first, count});
+  });
+  const std::vector<BrickPlace> bricks = bricksWithLeaves(surface);
+  const auto n = static_cast<Index>(bricks.size());
+  std::vector<Part> parts(static_cast<std::size_t>((n + bricks_per_part - 1) / bricks_per_part));
+  parallelRanges(
+      n, threads,
+      [&](Index begin, Index end) {
+        CellMarcher marcher(surface, edges, result.vertices);
+        for (Index i = begin; i < end; ++i)
+          marcher.marchBrick(bricks[static_cast<std::size_t>(i)].depth, bricks[static_cast<std::size_t>(i)].brick,
+                             parts[static_cast<std::size_t>(begin / bricks_per_part)]);
+      },
+      bricks_per_part);
+  join(parts, result, edges.vertexCount());
+  return result;
+}
+} // namespace fresco::poisson

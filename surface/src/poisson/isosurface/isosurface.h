@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include "poisson/isosurface/edges.h"
+namespace fresco::poisson {
+/// Vertices first..first + count - 1 lie on edges of a brick, or in its cells.
+struct VertexRange {
+  int depth;
+  Index brick;
+  Index first, count;
+};
+
+struct IsoSurface {
+  Points vertices; ///< in finest cells, from the cube's corner
+  Faces faces;     ///< counter-clockwise seen from where chi is larger
+  std::vector<VertexRange> ranges;
+};
+
+/// Marching cubes over the leaves of the octree; on the faces of a leaf it
+/// takes the polygons' sides from the finest leaves beyond (Kazhdan, Klein,
+/// Dalal, Hoppe 2007, "Unconstrained Isosurface Extraction on Arbitrary
+/// Octrees"). Closed, 2-manifold and consistently oriented, except where the
+/// level set leaves the cube.
+IsoSurface extractIsoSurface(const LevelSet& surface, int threads);
+} // namespace fresco::poisson

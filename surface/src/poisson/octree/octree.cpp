@@ -1,0 +1,250 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "poisson/octree/octree.h"
+#include "poisson/octree/morton.h"
+#include <algorithm>
+#include <cstring>
+#include <fresco/core/parallel.h>
+namespace fresco::poisson {
+namespace {
+/// A brick with the cells of it that hold samples, in Morton order.
+struct Occupied {
+  std::uint64_t code, cells;
+};
+
+using Masks = std::array<std::uint64_t, 27>;
+
+/// By offsetIndex(): the cells of a brick whose one-cell neighbourhood reaches
+/// the brick at that offset.
+Masks touchMasks()
+{
+  Masks masks{};
+  const auto reaches = [](int cell, int d) { return d == 0 || cell == (d < 0 ? 0 : brick_cells - 1); };
+  for (int o = 0; o < 27; ++o)
+    for (std::uint64_t cell = 0; cell < 64; ++cell) {
+      const auto [x, y, z] = mortonCell(cell);
+      if (reaches(x, o % 3 - 1) && reaches(y, o / 3 % 3 - 1) && reaches(z, o / 9 - 1))
+        masks[static_cast<std::size_t>(o)] |= std::uint64_t(1) << cell;
+    }
+  return masks;
+}
+
+std::vector<Occupied> occupiedBricks(const Array<std::uint64_t>& cell_codes)
+{
+  std::vector<Occupied> bricks;
+  for (const std::uint64_t code : cell_codes) {
+    if (bricks.empty() || bricks.back().code != code >> 6)
+      bricks.push_back({code >> 6, 0});
+    bricks.back().cells |= std::uint64_t(1) << (code & 63);
+  }
+  return bricks;
+}
+
+/// The same one depth coarser.
+std::vector<Occupied> coarsen(const std::vector<Occupied>& fine)
+{
+  std::vector<Occupied> bricks;
+  for (const Occupied& f : fine) {
+    if (bricks.empty() || bricks.back().code != f.code >> 3)
+      bricks.push_back({f.code >> 3, 0});
+    for (int g = 0; g < 8; ++g)
+      if (f.cells >> (8 * g) & 0xff)
+        bricks.back().cells |= std::uint64_t(1) << ((f.code & 7) * 8 + static_cast<std::uint64_t>(g));
+  }
+  return bricks;
+}
+
+/// Sorted codes of all bricks with a cell next to an occupied one.
+std::vector<std::uint64_t> dilate(const std::vector<Occupied>& bricks, int depth)
+{
+  static const Masks masks = touchMasks();
+  const int side = 1 << (depth - 2);
+  std::vector<std::uint64_t> codes;
+  codes.reserve(bricks.size() * 4);
+  for (const Occupied& brick : bricks) {
+    const auto [x, y, z] = mortonCell(brick.code);
+    for (int o = 0; o < 27; ++o) {
+      const int nx = x + o % 3 - 1, ny = y + o / 3 % 3 - 1, nz = z + o / 9 - 1;
+      if ((brick.cells & masks[static_cast<std::size_t>(o)]) != 0 && std::min({nx, ny, nz}) >= 0 &&
+          std::max({nx, ny, nz}) < side)
+        codes.push_back(
+            mortonCode(static_cast<std::uint32_t>(nx), static_cast<std::uint32_t>(ny), static_cast<std::uint32_t>(nz)));
+    }
+  }
+  std::sort(codes.begin(), codes.end());
+  codes.erase(std::unique(codes.begin(), codes.end()), codes.end());
+  codes.shrink_to_fit();
+  return codes;
+}
+
+std::vector<std::uint64_t> allBricks(int depth)
+{
+  std::vector<std::uint64_t> codes(std::size_t(1) << (3 * (depth - 2)));
+  for (std::size_t i = 0; i < codes.size(); ++i)
+    codes[i] = i;
+  return codes;
+}
+
+void linkToParents(BrickLevel& coarse, BrickLevel& fine)
+{
+  fine.parents.resize(fine.codes.size());
+  int parent = 0;
+  for (std::size_t i = 0; i < fine.codes.size(); ++i) {
+    while (coarse.codes[static_cast<std::size_t>(parent)] != fine.codes[i] >> 3)
+      ++parent;
+    fine.parents[i] = parent;
+    coarse.children[static_cast<std::size_t>(parent)][fine.codes[i] & 7] = static_cast<int>(i);
+  }
+}
+
+std::array<int, 27> findNeighbors(const BrickLevel& coarse, int parent, int octant)
+{
+  std::array<int, 27> found;
+  for (int o = 0; o < 27; ++o) {
+    const int x = (octant & 1) + o % 3 - 1, y = (octant >> 1 & 1) + o / 3 % 3 - 1, z = (octant >> 2) + o / 9 - 1;
+    const int at = offsetIndex(x >> 1, y >> 1, z >> 1);
+    const int uncle = coarse.neighbors[static_cast<std::size_t>(parent)][static_cast<std::size_t>(at)];
+    const int child = (x & 1) | (y & 1) << 1 | (z & 1) << 2;
+    found[static_cast<std::size_t>(o)] =
+        uncle < 0 ? -1 : coarse.children[static_cast<std::size_t>(uncle)][static_cast<std::size_t>(child)];
+  }
+  return found;
+}
+
+void linkLevel(Octree& tree, int depth, int threads)
+{
+  BrickLevel& level = tree.levels[static_cast<std::size_t>(depth)];
+  std::array<int, 8> no_children;
+  no_children.fill(-1);
+  level.children.assign(level.codes.size(), no_children);
+  level.neighbors.resize(level.codes.size());
+  for (std::size_t i = 0; i < level.codes.size(); ++i) {
+    std::vector<BrickRun>& runs = level.colors[level.codes[i] >> 6 & 7];
+    if (i == 0 || level.codes[i] >> 6 != level.codes[i - 1] >> 6)
+      runs.push_back({static_cast<int>(i), static_cast<int>(i)});
+    runs.back().end = static_cast<int>(i) + 1;
+  }
+  if (depth == 2) {
+    level.parents.assign(1, -1);
+    level.neighbors[0].fill(-1);
+    level.neighbors[0][offset_self] = 0;
+    return;
+  }
+  BrickLevel& coarse = tree.levels[static_cast<std::size_t>(depth - 1)];
+  linkToParents(coarse, level);
+  parallelFor(level.size(), threads, [&](Index b) {
+    const auto i = static_cast<std::size_t>(b);
+    level.neighbors[i] = findNeighbors(coarse, level.parents[i], static_cast<int>(level.codes[i] & 7));
+  });
+}
+} // namespace
+
+std::array<int, 3> BrickLevel::corner(Index b) const
+{
+  const auto [x, y, z] = mortonCell(codes[static_cast<std::size_t>(b)]);
+  return {x * brick_cells, y * brick_cells, z * brick_cells};
+}
+
+Eigen::Vector3f BrickLevel::origin(Index b) const
+{
+  const std::array<int, 3> c = corner(b);
+  return Eigen::Vector3i(c[0], c[1], c[2]).cast<float>();
+}
+
+Octree linkBricks(std::vector<std::vector<std::uint64_t>> codes, int full_depth, int threads)
+{
+  Octree tree;
+  tree.depth = static_cast<int>(codes.size()) - 1;
+  tree.full_depth = full_depth;
+  tree.levels.resize(codes.size());
+  for (int d = 2; d <= tree.depth; ++d) {
+    tree.levels[static_cast<std::size_t>(d)].depth = d;
+    tree.levels[static_cast<std::size_t>(d)].codes = std::move(codes[static_cast<std::size_t>(d)]);
+    linkLevel(tree, d, threads);
+  }
+  return tree;
+}
+
+Octree buildOctree(const Array<std::uint64_t>& cell_codes, int depth, int full_depth, int threads)
+{
+  std::vector<std::vector<std::uint64_t>> codes(static_cast<std::size_t>(depth) + 1);
+  std::vector<Occupied> occupied = occupiedBricks(cell_codes);
+  for (int d = depth; d >= 2; --d) {
+    codes[static_cast<std::size_t>(d)] = d <= full_depth ? allBricks(d) : dilate(occupied, d);
+    occupied = coarsen(occupied);
+  }
+  return linkBricks(std::move(codes), full_depth, threads);
+}
+
+std::vector<Index> countBricks(const Array<std::uint64_t>& cell_codes, int depth, int full_depth)
+{
+  std::vector<Index> counts(static_cast<std::size_t>(depth) + 1, 0);
+  std::vector<Occupied> occupied = occupiedBricks(cell_codes);
+  for (int d = depth; d >= 2; --d) {
+    counts[static_cast<std::size_t>(d)] =
+        d <= full_depth ? Index(1) << (3 * (d - 2)) : static_cast<Index>(dilate(occupied, d).size());
+    occupied = coarsen(occupied);
+  }
+  return counts;
+}
+
+void NodeField::clear(int threads)
+{
+  parallelRanges(size_, threads, [&](Index begin, Index end) {
+    std::memset(brick(begin), 0, static_cast<std::size_t>(end - begin) * brick_stride * sizeof(float));
+  });
+}
+
+NodePlace findNode(const BrickLevel& level, Index b, int x, int y, int z)
+{
+  const auto& neighbors = level.neighbors[static_cast<std::size_t>(b)];
+  const int ox = x >> 2, oy = y >> 2, oz = z >> 2;
+  const int owner = neighbors[static_cast<std::size_t>(offsetIndex(ox, oy, oz))];
+  if (owner >= 0)
+    return {owner, nodeIndex(x & 3, y & 3, z & 3)};
+  const int mx = std::min(ox, (x - 1) >> 2), my = std::min(oy, (y - 1) >> 2), mz = std::min(oz, (z - 1) >> 2);
+  for (int m = 1; m < 8; ++m) { // the other bricks that touch the node
+    const int px = m & 1 ? mx : ox, py = m & 2 ? my : oy, pz = m & 4 ? mz : oz;
+    if (px < -1 || py < -1 || pz < -1)
+      continue;
+    const int holder = neighbors[static_cast<std::size_t>(offsetIndex(px, py, pz))];
+    if (holder >= 0)
+      return {holder, nodeIndex(x - 4 * px, y - 4 * py, z - 4 * pz)};
+  }
+  return {};
+}
+
+void sumFaces(const BrickLevel& level, NodeField& field, int threads)
+{
+  parallelFor(level.size(), threads, [&](Index b) {
+    const auto& neighbors = level.neighbors[static_cast<std::size_t>(b)];
+    float* own = field.brick(b);
+    for (int o = 0; o < 8; ++o) { // bits: below in x, y, z
+      const int dx = o & 1, dy = o >> 1 & 1, dz = o >> 2;
+      const int n = neighbors[static_cast<std::size_t>(offsetIndex(-dx, -dy, -dz))];
+      if (o == 0 || n < 0)
+        continue;
+      const float* other = field.brick(n);
+      for (int z = 0; z < (dz ? 1 : brick_cells); ++z)
+        for (int y = 0; y < (dy ? 1 : brick_cells); ++y)
+          for (int x = 0; x < (dx ? 1 : brick_cells); ++x)
+            own[nodeIndex(x, y, z)] += other[nodeIndex(x + 4 * dx, y + 4 * dy, z + 4 * dz)];
+    }
+  });
+  syncFaces(level, field, threads);
+}
+
+void syncFaces(const BrickLevel& level, NodeField& field, int threads)
+{
+  parallelFor(level.size(), threads, [&](Index b) {
+    const auto& neighbors = level.neighbors[static_cast<std::size_t>(b)];
+    float* own = field.brick(b);
+    for (int z = 0; z < brick_nodes; ++z)
+      for (int y = 0; y < brick_nodes; ++y)
+        for (int x = (y == 4 || z == 4) ? 0 : 4; x < brick_nodes; ++x) {
+          const int n = neighbors[static_cast<std::size_t>(offsetIndex(x >> 2, y >> 2, z >> 2))];
+          if (n >= 0)
+            own[nodeIndex(x, y, z)] = field.brick(n)[nodeIndex(x & 3, y & 3, z & 3)];
+        }
+  });
+}
+} // namespace fresco::poisson

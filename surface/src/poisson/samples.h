@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include "poisson/octree/array.h"
+#include "poisson/octree/octree.h"
+#include <Eigen/Geometry>
+#include <fresco/core/point_set.h>
+#include <fresco/surface/core/volumetric_reconstruction.h>
+namespace fresco::poisson {
+/// The cube that the octree divides.
+struct Cube {
+  Eigen::Vector3d corner = Eigen::Vector3d::Zero(); ///< lower corner, in the frame of the points
+  double side = 1.0;
+  int depth = 0;
+
+  double cell() const { return side / static_cast<double>(Index(1) << depth); }
+};
+
+/// Mean of the points within one finest cell.
+struct Sample {
+  Eigen::Vector3f position; ///< in cells of the finest depth, from the cube's corner
+  float area;               ///< surface that it stands for, in faces of a finest cell;
+                            ///< its weight (1 = one point) until known
+  Eigen::Vector3f normal;   ///< unit
+  float depth;              ///< octree depth that the data sustain here
+  float noise;              ///< standard deviation of the position across the surface,
+                            ///< in finest cells
+};
+
+/// Colour 0..255 (three numbers) and intensity.
+using Attributes = Eigen::Vector4f;
+
+struct Samples {
+  Cube cube;
+  Array<std::uint64_t> codes;   ///< Morton codes of the finest cells, strictly rising
+  Array<Sample> samples;        ///< by code
+  Array<Attributes> attributes; ///< by code; empty if the points have
+                                ///< neither colour nor intensity
+  Index used_points = 0, left_out_points = 0;
+};
+
+/// Leaves out unusable points and far outliers, fits the cube, sorts along the
+/// Z-order curve and joins the points of a cell.
+/// @throws std::invalid_argument as reconstructVolumetric()
+Samples gatherSamples(const PointSet& points, const VolumetricOptions& options);
+
+/// Samples joined within the cells of a coarser depth.
+struct CoarseSample {
+  Eigen::Vector3f position; ///< in cells of the finest depth
+  float area;
+  float noise; ///< as Sample::noise
+  float depth; ///< as Sample::depth
+};
+
+/// Samples of one octree level and the range [begin[b], begin[b + 1]) that lies
+/// in brick b of a level.
+struct SampleLevel {
+  Array<std::uint64_t> codes; ///< of cells of `depth`
+  Array<CoarseSample> samples;
+  int depth = 0;
+};
+
+SampleLevel finestLevel(const Samples& samples, int threads);
+SampleLevel coarsen(const SampleLevel& fine, int threads);
+
+/// First sample of each brick of `level` among sorted codes of depth `depth` >=
+/// the level's, and their count at the end.
+Array<std::uint32_t> sampleRanges(const BrickLevel& level, const Array<std::uint64_t>& codes, int depth, int threads);
+} // namespace fresco::poisson

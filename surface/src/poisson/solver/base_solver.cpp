@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "poisson/solver/base_solver.h"
+#include "poisson/solver/dense_solver.h"
+#include <algorithm>
+#include <cmath>
+#include <fresco/core/parallel.h>
+namespace fresco::poisson {
+namespace {
+constexpr double tolerance = 1e-5;
+/// Least distance of the boundary values from the level set; chi jumps by 1 at
+/// the surface.
+constexpr double boundary_margin = 0.1;
+
+Eigen::VectorXd gather(const BrickLevel& level, const NodeField& field, const DenseGrid& shape)
+{
+  Eigen::VectorXd values = Eigen::VectorXd::Zero(shape.count());
+  for (Index b = 0; b < level.size(); ++b) {
+    const auto [cx, cy, cz] = level.corner(b);
+    for (int z = 0; z < brick_nodes; ++z)
+      for (int y = 0; y < brick_nodes; ++y)
+        for (int x = 0; x < brick_nodes; ++x)
+          if (holdsNode(level, b, x, y, z))
+            values[shape.at(cx + x, cy + y, cz + z)] += field.brick(b)[nodeIndex(x, y, z)];
+  }
+  return values;
+}
+
+NodeField scatter(const BrickLevel& level, const DenseGrid& grid)
+{
+  NodeField field(level.size());
+  for (Index b = 0; b < level.size(); ++b) {
+    const auto [cx, cy, cz] = level.corner(b);
+    for (int z = 0; z < brick_nodes; ++z)
+      for (int y = 0; y < brick_nodes; ++y)
+        for (int x = 0; x < brick_nodes; ++x)
+          field.brick(b)[nodeIndex(x, y, z)] = static_cast<float>(grid.values[grid.at(cx + x, cy + y, cz + z)]);
+  }
+  return field;
+}
+
+double meanAtSamples(const DenseGrid& grid, const SampleLevel& level, double scale)
+{
+  double sum = 0, area = 0;
+  for (const CoarseSample& s : level.samples) {
+    sum += s.area * interpolate(grid, s.position.cast<double>() * scale);
+    area += s.area;
+  }
+  return sum / area;
+}
+
+template <typename Visit>
+void forEachBoundaryNode(const DenseGrid& grid, const Visit& visit)
+{
+  for (Index z = 0; z < grid.side(); ++z)
+    for (Index y = 0; y < grid.side(); ++y)
+      for (Index x = 0; x < grid.side(); ++x)
+        if (std::min({x, y, z}) == 0 || std::max({x, y, z}) == grid.cells)
+          visit(grid.at(x, y, z));
+}
+
+void closeBoundary(DenseGrid& grid)
+{
+  double sum = 0;
+  forEachBoundaryNode(grid, [&](Index i) { sum += std::clamp(grid.values[i], -0.5, 0.5); });
+  const double sign = sum < 0 ? -1 : 1;
+  forEachBoundaryNode(grid, [&](Index i) { grid.values[i] = sign * std::max(sign * grid.values[i], boundary_margin); });
+}
+} // namespace
+
+NodeField solveBase(const Octree& tree, const std::vector<NodeField>& right, const std::vector<SampleLevel>& levels,
+                    float point_weight, int threads)
+{
+  DenseGrid x(2);
+  for (int d = 2; d <= tree.full_depth; ++d) {
+    const auto i = static_cast<std::size_t>(d);
+    const double scale = std::ldexp(1.0, d - tree.depth);
+    const SampleLevel& samples = levels[std::min(i + 1, levels.size() - 1)];
+    x = refine(x);
+    DenseSystem(x.cells, samples, scale, point_weight)
+        .solve(gather(tree.levels[i], right[i], x), tolerance, threads, x);
+  }
+  const SampleLevel& samples = levels[std::min(static_cast<std::size_t>(tree.full_depth) + 1, levels.size() - 1)];
+  x.values.array() -= meanAtSamples(x, samples, std::ldexp(1.0, tree.full_depth - tree.depth));
+  closeBoundary(x);
+  return scatter(tree.levels[static_cast<std::size_t>(tree.full_depth)], x);
+}
+} // namespace fresco::poisson

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include "poisson/octree/octree.h"
+#include <Eigen/Core>
+#include <cmath>
+namespace fresco::poisson {
+/// The cell that a position lies in and the values of the hat functions of its
+/// corners there (bits of the index: x, y, z).
+struct HatWeights {
+  int x, y, z;
+  float value[8];
+
+  /// @param position in cells
+  explicit HatWeights(const Eigen::Vector3f& position)
+  {
+    const Eigen::Vector3f base = position.array().floor();
+    const Eigen::Vector3f t = position - base;
+    x = static_cast<int>(base.x());
+    y = static_cast<int>(base.y());
+    z = static_cast<int>(base.z());
+    const float wx[2] = {1 - t.x(), t.x()}, wy[2] = {1 - t.y(), t.y()}, wz[2] = {1 - t.z(), t.z()};
+    for (int i = 0; i < 8; ++i)
+      value[i] = wx[i & 1] * wy[i >> 1 & 1] * wz[i >> 2];
+  }
+
+  /// For a position in a brick, in cells from its corner; the upper faces
+  /// belong to it.
+  static HatWeights inBrick(const Eigen::Vector3f& position)
+  {
+    constexpr float last = brick_cells * (1 - 1e-6f);
+    return HatWeights(position.cwiseMax(0.f).cwiseMin(last));
+  }
+
+  int nodeOf(int corner) const { return nodeIndex(x + (corner & 1), y + (corner >> 1 & 1), z + (corner >> 2)); }
+
+  float interpolate(const float* nodes) const
+  {
+    float sum = 0;
+    for (int i = 0; i < 8; ++i)
+      sum += value[i] * nodes[nodeOf(i)];
+    return sum;
+  }
+};
+} // namespace fresco::poisson

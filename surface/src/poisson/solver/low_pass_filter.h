@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include "poisson/octree/octree.h"
+#include "poisson/samples.h"
+#include <vector>
+namespace fresco::poisson {
+/// Takes waves out of chi that the samples do not sustain: those about as short as the cells of a depth, where samples
+/// are sparse against these cells or noisy. chi becomes chi - w (1 - S)^2 chi with S = (1 2 1) / 4 along each axis and
+/// w the strength at the node's brick: quadratic functions stay, so that curved surfaces do not shrink; of a wave that
+/// changes sign from node to node 1 - w is left. Nodes with a missing cell around them keep their values, so chi stays
+/// continuous across depths.
+class WaveFilter {
+public:
+  /// @param samples of the level's depth or finer; `finest` is the depth whose cells are the unit of their positions
+  WaveFilter(const BrickLevel& level, const SampleLevel& samples, int finest, int threads);
+
+  /// @param spare of the same size as `chi`; overwritten
+  void apply(NodeField& chi, NodeField& spare) const;
+
+  /// 0..1, by brick
+  const std::vector<float>& strengths() const { return strengths_; }
+
+private:
+  /// result += factor (1 - S) field
+  void addWaves(Index brick, const NodeField& field, float factor, float* result) const;
+  const BrickLevel& level_;
+  int threads_;
+  std::vector<float> strengths_;
+};
+} // namespace fresco::poisson

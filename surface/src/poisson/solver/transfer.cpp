@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "poisson/solver/transfer.h"
+#include <cstring>
+#include <fresco/core/parallel.h>
+namespace fresco::poisson {
+namespace {
+/// Index of the parent's node at the lower corner of an octant.
+int octantCorner(int octant) { return nodeIndex((octant & 1) * 2, (octant >> 1 & 1) * 2, (octant >> 2) * 2); }
+
+constexpr int step_x = 1, step_y = brick_nodes, step_z = brick_nodes * brick_nodes;
+} // namespace
+
+void interpolateToChild(const float* parent, int octant, float* child)
+{
+  const float* base = parent + octantCorner(octant);
+  for (int z = 0; z < brick_nodes; z += 2)
+    for (int y = 0; y < brick_nodes; y += 2) {
+      const float* from = base + y / 2 * step_y + z / 2 * step_z;
+      float* to = child + nodeIndex(0, y, z);
+      to[0] = from[0];
+      to[1] = 0.5f * (from[0] + from[1]);
+      to[2] = from[1];
+      to[3] = 0.5f * (from[1] + from[2]);
+      to[4] = from[2];
+    }
+  for (int z = 0; z < brick_nodes; z += 2)
+    for (int y = 1; y < brick_nodes; y += 2)
+      for (int x = 0; x < brick_nodes; ++x) {
+        float* to = child + nodeIndex(x, y, z);
+        *to = 0.5f * (to[-step_y] + to[step_y]);
+      }
+  for (int z = 1; z < brick_nodes; z += 2)
+    for (int i = 0; i < step_z; ++i) {
+      float* to = child + z * step_z + i;
+      *to = 0.5f * (to[-step_z] + to[step_z]);
+    }
+}
+
+void restrictToParent(const float* child, int octant, float factor, float* parent)
+{
+  float block[brick_nodes * step_z];
+  std::memcpy(block, child, sizeof(block));
+  for (int z = 1; z < brick_nodes; z += 2)
+    for (int i = 0; i < step_z; ++i) {
+      const float half = 0.5f * block[z * step_z + i];
+      block[(z - 1) * step_z + i] += half;
+      block[(z + 1) * step_z + i] += half;
+    }
+  for (int z = 0; z < brick_nodes; z += 2)
+    for (int y = 1; y < brick_nodes; y += 2)
+      for (int x = 0; x < brick_nodes; ++x) {
+        const float half = 0.5f * block[nodeIndex(x, y, z)];
+        block[nodeIndex(x, y - 1, z)] += half;
+        block[nodeIndex(x, y + 1, z)] += half;
+      }
+  float* base = parent + octantCorner(octant);
+  for (int z = 0; z < brick_nodes; z += 2)
+    for (int y = 0; y < brick_nodes; y += 2) {
+      const float* from = block + nodeIndex(0, y, z);
+      float* to = base + y / 2 * step_y + z / 2 * step_z;
+      to[0] += factor * (from[0] + 0.5f * from[1]);
+      to[1] += factor * (from[2] + 0.5f * (from[1] + from[3]));
+      to[2] += factor * (from[4] + 0.5f * from[3]);
+    }
+}
+
+void restrictLevel(const BrickLevel& fine_level, const NodeField& fine, const BrickLevel& coarse_level, float factor,
+                   NodeField& coarse, int threads)
+{
+  parallelFor(coarse_level.size(), threads, [&](Index p) {
+    float* parent = coarse.brick(p);
+    for (int z = 0; z < brick_nodes; ++z) // copies count once
+      for (int y = 0; y < brick_nodes; ++y)
+        for (int x = 0; x < brick_nodes; ++x)
+          if (!holdsNode(coarse_level, p, x, y, z))
+            parent[nodeIndex(x, y, z)] = 0.f;
+    for (int octant = 0; octant < 8; ++octant) {
+      const int c = coarse_level.children[static_cast<std::size_t>(p)][static_cast<std::size_t>(octant)];
+      if (c < 0)
+        continue;
+      float held[brick_stride];
+      for (int z = 0; z < brick_nodes; ++z)
+        for (int y = 0; y < brick_nodes; ++y)
+          for (int x = 0; x < brick_nodes; ++x)
+            held[nodeIndex(x, y, z)] = holdsNode(fine_level, c, x, y, z) ? fine.brick(c)[nodeIndex(x, y, z)] : 0.f;
+      restrictToParent(held, octant, factor, parent);
+    }
+  });
+  sumFaces(coarse_level, coarse, threads);
+}
+} // namespace fresco::poisson

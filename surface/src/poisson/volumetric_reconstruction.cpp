@@ -1,0 +1,256 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "poisson/attributes.h"
+#include "poisson/density.h"
+#include "poisson/isosurface/isosurface.h"
+#include "poisson/noise.h"
+#include "poisson/small_components.h"
+#include "poisson/solver/base_solver.h"
+#include "poisson/solver/constraints.h"
+#include "poisson/solver/low_pass_filter.h"
+#include "poisson/solver/solver.h"
+#include "poisson/solver/transfer.h"
+#include <algorithm>
+#include <cmath>
+#include <fresco/core/parallel.h>
+#include <fresco/core/require.h>
+#include <fresco/surface/core/mesh_trimming.h>
+#include <fresco/surface/core/volumetric_reconstruction.h>
+namespace fresco {
+namespace {
+using namespace poisson;
+
+/// Gaps and islands of fewer faces of cells of the trimming depth do not count.
+constexpr double trim_patch = 16;
+
+void validate(const PointSet& points, const VolumetricOptions& options)
+{
+  validatePointSet(points);
+  require(points.hasNormals(), "volumetric reconstruction: the points have no normals");
+  validateVolumetricOptions(options);
+}
+
+/// samples joined in the cells of each depth, by depth
+std::vector<SampleLevel> sampleLevels(const Samples& samples, int threads)
+{
+  std::vector<SampleLevel> levels(static_cast<std::size_t>(samples.cube.depth) + 1);
+  levels.back() = finestLevel(samples, threads);
+  for (std::size_t d = levels.size() - 1; d > 2; --d)
+    levels[d - 1] = coarsen(levels[d], threads);
+  return levels;
+}
+
+NodeField interpolateLevel(const BrickLevel& level, const NodeField& coarse, int threads)
+{
+  NodeField x(level.size());
+  parallelFor(level.size(), threads, [&](Index b) {
+    const auto i = static_cast<std::size_t>(b);
+    interpolateToChild(coarse.brick(level.parents[i]), static_cast<int>(level.codes[i] & 7), x.brick(b));
+  });
+  return x;
+}
+
+struct Solution {
+  std::vector<NodeField> chi; ///< by depth, from the complete depth on
+  double residual = 0;
+};
+
+Solution solve(const Octree& tree, Constraints& constraints, const std::vector<SampleLevel>& levels,
+               const VolumetricOptions& options, const Progress& progress)
+{
+  Solution solution;
+  solution.chi.resize(tree.levels.size());
+  for (int d = 2; d <= tree.full_depth; ++d)
+    addCoarser(tree, d, options.threads, constraints);
+  solution.chi[static_cast<std::size_t>(tree.full_depth)] =
+      solveBase(tree, constraints.fine, levels, options.point_weight, options.threads);
+  for (int depth = tree.full_depth + 1; depth <= tree.depth; ++depth) {
+    report(progress, "solve", 0.35 + 0.35 * (depth - tree.full_depth) / (tree.depth - tree.full_depth + 1));
+    const auto d = static_cast<std::size_t>(depth);
+    addCoarser(tree, depth, options.threads, constraints);
+    const BrickLevel& level = tree.levels[d];
+    solution.chi[d] = interpolateLevel(level, solution.chi[d - 1], options.threads);
+    const SampleLevel& joined = levels[std::min(d + 1, levels.size() - 1)];
+    const LevelSystem system(level, joined, tree.depth, options.point_weight, options.threads);
+    system.smooth(constraints.fine[d], options.iterations, solution.chi[d]);
+    if (depth == tree.depth) {
+      const LevelSystem::Norms norms = system.residual(constraints.fine[d], solution.chi[d]);
+      solution.residual = norms.right > 0 ? std::sqrt(norms.residual / norms.right) : 0;
+    } else {
+      system.addPull(solution.chi[d], constraints.own[d]);
+    }
+    WaveFilter(level, joined, tree.depth, options.threads).apply(solution.chi[d], constraints.fine[d]);
+    constraints.fine[d] = NodeField();
+  }
+  return solution;
+}
+
+/// Mean of chi over the samples, weighted by their area.
+float levelSetValue(const Octree& tree, const NodeField& chi, const Samples& samples, int threads)
+{
+  const BrickLevel& level = tree.levels.back();
+  const Array<std::uint32_t> begin = sampleRanges(level, samples.codes, tree.depth, threads);
+  const Eigen::Array2d sums = parallelSum(level.size(), threads, Eigen::Array2d(0, 0), [&](Index b) {
+    Eigen::Array2d sum(0, 0);
+    const Eigen::Vector3f origin = level.origin(b);
+    for (std::uint32_t i = begin[static_cast<std::size_t>(b)]; i < begin[static_cast<std::size_t>(b) + 1]; ++i) {
+      const Sample& s = samples.samples[i];
+      const double value = HatWeights::inBrick(s.position - origin).interpolate(chi.brick(b));
+      sum += Eigen::Array2d(s.area * value, s.area);
+    }
+    return sum;
+  });
+  return static_cast<float>(std::clamp(sums[0] / sums[1], -0.05, 0.05));
+}
+
+Eigen::VectorXf vertexSupport(const Density& density, const IsoSurface& surface, float samples_per_node, int threads)
+{
+  Eigen::VectorXf support(surface.vertices.cols());
+  const float shift = 0.5f * std::log2(samples_per_node);
+  parallelFor(static_cast<Index>(surface.ranges.size()), threads, [&](Index r) {
+    const VertexRange& range = surface.ranges[static_cast<std::size_t>(r)];
+    for (Index v = range.first; v < range.first + range.count; ++v)
+      support[v] = std::max(0.f, density.at(range.depth, range.brick, surface.vertices.col(v)).support - shift);
+  });
+  return support;
+}
+
+/// What is needed of the points after they have been sampled.
+struct Source {
+  Eigen::Vector3d origin;
+  bool colors, intensities;
+};
+
+Source sourceOf(const PointSet& points)
+{
+  return {points.origin, points.colors.cols() > 0, points.intensities.size() > 0};
+}
+
+TriangleMesh toMesh(const Source& source, const Cube& cube, IsoSurface&& surface, int threads)
+{
+  TriangleMesh mesh;
+  mesh.origin = source.origin;
+  mesh.faces = std::move(surface.faces);
+  mesh.vertices = std::move(surface.vertices);
+  parallelFor(mesh.vertices.cols(), threads, [&](Index v) {
+    mesh.vertices.col(v) = (cube.corner + cube.cell() * mesh.vertices.col(v).cast<double>()).cast<float>();
+  });
+  return mesh;
+}
+
+void addAttributes(const Source& source, const Eigen::Matrix4Xf& attributes, TriangleMesh& mesh)
+{
+  if (source.colors)
+    mesh.colors = (attributes.topRows<3>().array() + 0.5f).max(0.f).min(255.f).cast<std::uint8_t>();
+  if (source.intensities)
+    mesh.fields["intensity"] = attributes.row(3).transpose();
+}
+
+/// Depth below which surface is cut away; see VolumetricOptions::trim_levels.
+float trimDepth(Eigen::VectorXf support, int depth, const VolumetricOptions& options)
+{
+  if (options.trim_levels <= 0 || support.size() == 0)
+    return options.trim;
+  float* quartile = support.data() + support.size() * 3 / 4;
+  std::nth_element(support.data(), quartile, support.data() + support.size());
+  return std::max(options.trim, std::min(*quartile, static_cast<float>(depth)) - options.trim_levels);
+}
+
+VolumetricResult reconstruct(Samples&& samples, const Source& source, const VolumetricOptions& options,
+                             const Progress& progress)
+{
+  VolumetricResult result;
+  result.used_points = samples.used_points;
+  result.left_out_points = samples.left_out_points;
+  result.depth = samples.cube.depth;
+  result.cell_size = samples.cube.cell();
+  report(progress, "octree", 0.1);
+  const Octree tree =
+      buildOctree(samples.codes, result.depth, std::min(options.min_depth, result.depth), options.threads);
+  for (const BrickLevel& level : tree.levels)
+    result.cells += level.size() * brick_cells * brick_cells * brick_cells;
+  report(progress, "density", 0.15);
+  const Density density(tree, samples, options.threads);
+  estimateDensity(tree, density, options.samples_per_node, samples, options.threads);
+  estimateNoise(samples, options.threads);
+  report(progress, "normal field", 0.25);
+  Constraints constraints = splatNormals(tree, samples, options.threads);
+  const Solution solution = solve(tree, constraints, sampleLevels(samples, options.threads), options, progress);
+  result.residual = solution.residual;
+  report(progress, "surface", 0.7);
+  const LevelSet level_set{&tree, &solution.chi, levelSetValue(tree, solution.chi.back(), samples, options.threads)};
+  IsoSurface surface = extractIsoSurface(level_set, options.threads);
+  removeSpecks(surface);
+  report(progress, "attributes", 0.9);
+  const Eigen::VectorXf support = vertexSupport(density, surface, options.samples_per_node, options.threads);
+  Eigen::Matrix4Xf attributes;
+  if (!samples.attributes.empty())
+    attributes = vertexAttributes(tree, samples, surface, options.threads);
+  result.mesh = toMesh(source, samples.cube, std::move(surface), options.threads);
+  result.mesh.fields["support"] = support;
+  if (attributes.cols() > 0)
+    addAttributes(source, attributes, result.mesh);
+  const float trim = trimDepth(support, result.depth, options);
+  if (trim > 0) {
+    result.trim_depth = trim;
+    const double trim_cell = samples.cube.side / std::exp2(result.trim_depth);
+    result.mesh = trimMesh(result.mesh, support, trim, trim_patch * trim_cell * trim_cell);
+  }
+  report(progress, "done", 1.0);
+  return result;
+}
+} // namespace
+
+void validateVolumetricOptions(const VolumetricOptions& options)
+{
+  require(options.depth >= 2 && options.depth <= 16, "volumetric reconstruction: depth ", options.depth,
+          " is not in 2..16");
+  require(options.cell_size >= 0 && std::isfinite(options.cell_size), "volumetric reconstruction: cell size ",
+          options.cell_size, " is negative or not finite");
+  require(options.min_depth >= 2 && options.min_depth <= 8, "volumetric reconstruction: minimum depth ",
+          options.min_depth, " is not in 2..8");
+  require(options.point_weight >= 0 && std::isfinite(options.point_weight), "volumetric reconstruction: point weight ",
+          options.point_weight, " is negative or not finite");
+  require(options.scale >= 1 && options.scale <= 100, "volumetric reconstruction: scale ", options.scale,
+          " is not in 1..100");
+  require(options.samples_per_node > 0 && std::isfinite(options.samples_per_node),
+          "volumetric reconstruction: samples per node ", options.samples_per_node, " is not positive");
+  require(options.trim >= 0 && std::isfinite(options.trim), "volumetric reconstruction: trimming depth ", options.trim,
+          " is negative or not finite");
+  require(options.trim_levels >= 0 && std::isfinite(options.trim_levels),
+          "volumetric reconstruction: ", options.trim_levels, " levels of trimming are negative or not finite");
+  require(options.iterations >= 1 && options.iterations <= 1000, "volumetric reconstruction: ", options.iterations,
+          " iterations are not in 1..1000");
+  threadCount(options.threads);
+}
+
+VolumetricResult reconstructVolumetric(const PointSet& points, const VolumetricOptions& options,
+                                       const Progress& progress)
+{
+  validate(points, options);
+  report(progress, "sort points", 0.0);
+  return reconstruct(gatherSamples(points, options), sourceOf(points), options, progress);
+}
+
+VolumetricResult reconstructVolumetric(PointSet&& points, const VolumetricOptions& options, const Progress& progress)
+{
+  validate(points, options);
+  report(progress, "sort points", 0.0);
+  const Source source = sourceOf(points);
+  Samples samples = gatherSamples(points, options);
+  points = PointSet();
+  return reconstruct(std::move(samples), source, options, progress);
+}
+
+std::size_t estimateMemory(const PointSet& points, const VolumetricOptions& options)
+{
+  validate(points, options);
+  const Samples samples = gatherSamples(points, options);
+  const int depth = samples.cube.depth;
+  std::size_t bricks = 0;
+  for (const Index n : countBricks(samples.codes, depth, std::min(options.min_depth, depth)))
+    bricks += static_cast<std::size_t>(n);
+  constexpr std::size_t bytes_per_brick = 2000, bytes_per_sample = 150, bytes_per_point = 40;
+  return bricks * bytes_per_brick + samples.codes.size() * bytes_per_sample +
+         static_cast<std::size_t>(points.size()) * bytes_per_point;
+}
+} // namespace fresco

@@ -1,9 +1,0 @@
-// SPDX-License-Identifier: BSD-3-Clause
-#pragma once
-#include "volumetric_isosurface.h"
-namespace fresco::volumetric {
-/// Removes the components that are too small to be more than a ripple of chi
-/// around single samples: of fewer faces than a ball four cells across, and far
-/// smaller than the largest component. Ranges and vertex order are kept.
-void removeSpecks(IsoSurface& surface);
-} // namespace fresco::volumetric

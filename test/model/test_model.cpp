@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "fusion.h"
+#include "optimization_stage.h"
+#include "pipeline.h"
+#include "report.h"
+#include "test_data.h"
+#include <fresco/core/require.h>
+#include <fresco/io/file.h>
+#include <fresco/io/image_io.h>
+#include <fresco/io/mesh_io.h>
+#include <fstream>
+namespace {
+using namespace fresco;
+using namespace fresco::model;
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+constexpr CameraModel camera{160, 120, 146.25, 146.25, 80.5, 60.5, 0, 0, 0, 0};
+
+/// Depth image of the plane n . p = d in front of the camera.
+Image16 planeDepth(const Eigen::Vector3d& n, double d)
+{
+  Image16 image{camera.width, camera.height, {}};
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x)
+      image.data.push_back(
+          static_cast<std::uint16_t>(std::lround(1000 * d / n.dot(unproject(camera, {x + 0.5, y + 0.5})))));
+  return image;
+}
+
+TEST(DepthImage, PlaneGivesItsPointsAndNormal)
+{
+  const Eigen::Vector3d n = Eigen::Vector3d(0.2, -0.3, 1.0).normalized();
+  const PointSet set = depthPoints(planeDepth(n, 2.0), camera, {}, 1);
+  ASSERT_GT(set.size(), 80 * 60 / 2);
+  const Eigen::VectorXf off = (n.cast<float>().transpose() * set.points).transpose().array() - 2.f;
+  EXPECT_LT(off.cwiseAbs().maxCoeff(), 2e-3f); // depth is rounded to millimetres
+  EXPECT_LT((set.normals.colwise() + n.cast<float>()).colwise().norm().maxCoeff(), 0.05f);
+  EXPECT_EQ(set.points, depthPoints(planeDepth(n, 2.0), camera, {}, 4).points);
+}
+
+TEST(DepthImage, NoPointsAcrossJumpsAndWhereDepthIsMissing)
+{
+  Image16 image = planeDepth(Eigen::Vector3d::UnitZ(), 2.0);
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x) {
+      std::uint16_t& depth = image.data[static_cast<std::size_t>(y * image.width + x)];
+      depth = x < 40 ? 0 : x > 120 ? 65535 : x < 80 ? 1500 : depth;
+    }
+  const PointSet set = depthPoints(image, camera, {}, 1);
+  ASSERT_GT(set.size(), 500);
+  for (Index i = 0; i < set.size(); ++i) {
+    const float z = set.points(2, i);
+    EXPECT_TRUE(std::abs(z - 1.5f) < 1e-3f || std::abs(z - 2.f) < 1e-3f) << z;
+  }
+}
+
+TEST(Fusion, SamplesOfOneSurfaceBecomeOneAndBothSidesOfASheetStayTwo)
+{
+  PointSet set;
+  set.points = 0.3f * (Points::Random(3, 20000).array() + 1.f).matrix();
+  set.points.row(2) = 0.0015f * Eigen::RowVectorXf::Random(20000).array() + 0.005f;
+  set.normals = Points::Zero(3, 20000);
+  set.normals.row(2).setOnes();
+  PointFusion fusion(0.01);
+  fusion.add(set);
+  const PointSet one = fusion.result();
+  EXPECT_LE(one.size(), 61 * 61);
+  EXPECT_NEAR(one.confidences.sum(), 20000.f, 1.f);
+  EXPECT_LT((one.points.row(2).array() - 0.005f).abs().maxCoeff(), 0.0015f);
+  set.normals *= -1.f;
+  fusion.add(set);
+  EXPECT_EQ(fusion.result().size(), 2 * one.size());
+  EXPECT_THROW(PointFusion(0.0), std::invalid_argument);
+}
+
+TEST(Fusion, OptimisationGetsNoMorePointsThanVerticesCanUse)
+{
+  PointSet set; // a square of 0.6 m, cells of 2 cm: about 900 vertices
+  set.points = 0.3f * Points::Random(3, 50000);
+  set.points.row(2) = 0.001f * Eigen::RowVectorXf::Random(50000);
+  set.normals = Points::Zero(3, 50000);
+  set.normals.row(2).setOnes();
+  set.viewpoints = set.points;
+  set.origin = {1000, 2000, 3000};
+  const PointSet same = pointsForVertices(set, 4000, 0.02);
+  EXPECT_EQ(same.points, set.points);
+  const PointSet thinned = pointsForVertices(set, 900, 0.02);
+  EXPECT_LE(thinned.size(), 2 * 92 * 92); // two layers of cells meet at z = 0
+  EXPECT_GT(thinned.size(), 90 * 90);
+  EXPECT_EQ(thinned.origin, set.origin);
+  EXPECT_NEAR(thinned.confidences.sum(), 50000.f, 1.f);
+  EXPECT_NEAR(thinned.points.row(2).mean(), 0.f, 1e-4f);
+}
+
+struct Job {
+  std::string folder;
+  int runs_a = 0, runs_b = 0;
+
+  std::vector<StageRecord> run(const std::string& key, const std::string& option, bool resume)
+  {
+    StageLog log(folder + "/work", key, resume, {});
+    const auto write = [](const std::string& path, int& count) {
+      ++count;
+      OutputFile file(path);
+      file.write("result");
+      file.commit();
+      return Json{{"answer", 42}};
+    };
+    log.run({"a", option, {folder + "/a"}, [&](const Progress&) { return write(folder + "/a", runs_a); }});
+    log.run({"b", "", {folder + "/b"}, [&](const Progress&) { return write(folder + "/b", runs_b); }});
+    return log.records();
+  }
+};
+
+TEST(Stages, ProgramFilesAreTheProgramAndItsLibraries)
+{
+  const std::vector<std::string> files = programFiles();
+  EXPECT_EQ(fs::path(files.at(0)).filename(), "test_model");
+  for (const std::string& file : files)
+    EXPECT_TRUE(fs::is_regular_file(file)) << file;
+}
+
+TEST(Stages, ResumeTakesOverOnlyWhatIsStillValid)
+{
+  Job job{test::scratchFolder()};
+  job.run("input", "x", false);
+  EXPECT_EQ(job.runs_a + job.runs_b, 2);
+  const auto records = job.run("input", "x", true);
+  EXPECT_EQ(job.runs_a + job.runs_b, 2);
+  EXPECT_TRUE(records[0].resumed && records[1].resumed);
+  EXPECT_EQ(records[0].figures["answer"], 42);
+  job.run("input", "x", false); // not asked to resume
+  EXPECT_EQ(job.runs_a + job.runs_b, 4);
+  fs::remove(job.folder + "/b");
+  job.run("input", "x", true);
+  EXPECT_EQ(job.runs_a, 2);
+  EXPECT_EQ(job.runs_b, 3);
+  job.run("input", "y", true); // another option of a: b depends on it
+  EXPECT_EQ(job.runs_a, 3);
+  EXPECT_EQ(job.runs_b, 4);
+  job.run("other input", "y", true);
+  EXPECT_EQ(job.runs_a, 4);
+  std::ofstream(job.folder + "/work/a.json") << "{ broken";
+  job.run("other input", "y", true);
+  EXPECT_EQ(job.runs_a, 5);
+}
+
+TEST(Report, SummaryOfAStageIsOneLineForPeople)
+{
+  StageRecord stage;
+  stage.name = "surface";
+  stage.seconds = 1.25;
+  stage.cpu_seconds = 2.5;
+  stage.peak_megabytes = 300.2;
+  stage.resumed = true;
+  stage.figures = {{"vertices", 85709}, {"cell", 0.0200004}, {"seconds", {{"solve", 1.0}}}, {"up", {0, 0, 1}}};
+  EXPECT_EQ(stageSummary(stage), "surface (earlier run): 1.2 s, 2.5 s of CPU, 300 MB, vertices 85709, cell 0.02");
+}
+
+TEST(Report, IsWholeAndEscaped)
+{
+  const ModelFiles files(test::scratchFolder());
+  makeFolder(files.snapshots);
+  writeImage(files.snapshots + "/p.png", Image(8, 8));
+  StageRecord stage;
+  stage.name = "texture";
+  stage.figures = {{"coverage", 0.5}, {"note", "<b>"}};
+  makeFolder(files.work);
+  TexturedMesh model;
+  model.mesh.vertices = Points::Identity(3, 3);
+  model.mesh.faces = Faces(3, 1);
+  model.mesh.faces << 0, 1, 2;
+  model.texcoord_faces = Faces::Constant(3, 1, -1);
+  model.face_atlas = Eigen::VectorXi::Constant(1, -1);
+  writeTexturedMesh(files.viewer_glb, model);
+  ModelReport content;
+  content.input = "a<b>";
+  content.stages = {stage};
+  content.pictures = {{"snapshots/p.png", "title"}};
+  content.seconds = 1.5;
+  writeReport(content, files);
+  const std::string html = readFile(files.report_html);
+  EXPECT_NE(html.find("data:image/png;base64,iVBORw0KGgo"), std::string::npos);
+  EXPECT_NE(html.find("a&lt;b&gt;"), std::string::npos);
+  EXPECT_EQ(html.find("<b>\""), std::string::npos);
+  EXPECT_NE(html.find("fresco-viewer"), std::string::npos);
+  const Json json = Json::parse(readFile(files.report_json));
+  EXPECT_EQ(json["stages"][0]["figures"]["coverage"], 0.5);
+  EXPECT_EQ(json["pictures"][0]["file"], "snapshots/p.png");
+}
+
+TEST(RgbdFolder, RealRoomIsRead)
+{
+  FRESCO_NEED_DATA("room7");
+  const RgbdFolder room = readRgbdFolder(test::dataFolder() + "/room7");
+  EXPECT_EQ(room.frames.size(), 100U);
+  EXPECT_EQ(room.camera.width, 640);
+  EXPECT_EQ(room.camera.fx, 585.0);
+  const PointSet points = depthPoints(readImage16(room.frames[50].depth), room.camera, {}, 0);
+  EXPECT_GT(points.size(), 10000);
+  for (Index i = 0; i < points.size(); ++i)
+    EXPECT_LT(points.normals.col(i).dot(points.points.col(i)), 0.f);
+}
+} // namespace

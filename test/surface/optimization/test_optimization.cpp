@@ -1,0 +1,274 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "common/shapes.h"
+#include "surface/optimization/optimization_shapes.h"
+#include "test_data.h"
+#include <Eigen/Geometry>
+#include <fresco/io/mesh_io.h>
+#include <fresco/surface/core/mesh_distance.h>
+#include <gtest/gtest.h>
+#include <limits>
+#include <random>
+namespace fresco {
+namespace {
+constexpr double cell = 2.0 / 20;
+
+TriangleMesh rounded() { return test::roundedCube(20, 0.15); }
+
+SurfaceOptimizationOptions inMode(OptimizationMode mode)
+{
+  SurfaceOptimizationOptions options;
+  options.mode = mode;
+  options.iterations = mode == OptimizationMode::best ? 10 : 15;
+  return options;
+}
+
+class BothModes : public testing::TestWithParam<OptimizationMode> {
+protected:
+  SurfaceOptimizationOptions options() const { return inMode(GetParam()); }
+};
+INSTANTIATE_TEST_SUITE_P(Optimization, BothModes, testing::Values(OptimizationMode::best, OptimizationMode::faithful),
+                         [](const auto& mode) {
+                           return mode.param == OptimizationMode::best ? std::string("best") : std::string("faithful");
+                         });
+
+TEST_P(BothModes, EnergyNeverRises)
+{
+  const SurfaceOptimizationResult result = optimizeSurface(rounded(), test::cubePoints(8000, 0.01), options());
+  ASSERT_FALSE(result.steps.empty());
+  for (const OptimizationStep& step : result.steps)
+    EXPECT_LE(step.after, step.before * (1 + 1e-12));
+  if (GetParam() == OptimizationMode::best)
+    return;
+  // One energy throughout: new correspondences and a smaller kappa_2 only lower it.
+  for (std::size_t i = 1; i < result.steps.size(); ++i)
+    EXPECT_LE(result.steps[i].before, result.steps[i - 1].after * (1 + 1e-6));
+}
+
+TEST_P(BothModes, FitsBetterAndStaysWatertight)
+{
+  const TriangleMesh before = rounded();
+  const TriangleMesh after = optimizeSurface(before, test::cubePoints(8000, 0.01), options()).mesh;
+  EXPECT_LT(test::cubeErrors(after).first, test::cubeErrors(before).first);
+  EXPECT_TRUE(meshTopology(after).watertight);
+  EXPECT_EQ(after.faces, before.faces);
+}
+
+TEST_P(BothModes, SameBitsForAnyNumberOfThreads)
+{
+  SurfaceOptimizationOptions one = options();
+  one.iterations = 4;
+  one.flip = true;
+  one.threads = 1;
+  SurfaceOptimizationOptions four = one;
+  four.threads = 4;
+  const PointSet points = test::cubePoints(10000, 0.01);
+  const TriangleMesh a = optimizeSurface(rounded(), points, one).mesh,
+                     b = optimizeSurface(rounded(), points, four).mesh;
+  EXPECT_EQ(a.vertices, b.vertices);
+  EXPECT_EQ(a.faces, b.faces);
+}
+
+TEST_P(BothModes, NoDamageOnASphere)
+{
+  const TriangleMesh mesh = test::sphere(1.f, 4);
+  PointSet points;
+  points.points = test::sphere(1.f, 5).vertices;
+  points.normals = points.points;
+  const TriangleMesh after = optimizeSurface(mesh, points, options()).mesh;
+  // The sagitta of the triangles of the mesh: nothing is farther off than its flat faces are.
+  double longest = 0;
+  for (Index f = 0; f < mesh.faceCount(); ++f)
+    longest =
+        std::max<double>(longest, (mesh.vertices.col(mesh.faces(0, f)) - mesh.vertices.col(mesh.faces(1, f))).norm());
+  for (Index v = 0; v < after.vertexCount(); ++v)
+    EXPECT_NEAR(after.vertices.col(v).norm(), 1.0, longest * longest / 3);
+  const Points normals = faceNormals(after);
+  for (Index f = 0; f < after.faceCount(); ++f) {
+    const Eigen::Vector3f middle = (after.vertices.col(after.faces(0, f)) + after.vertices.col(after.faces(1, f)) +
+                                    after.vertices.col(after.faces(2, f))) /
+                                   3;
+    EXPECT_GT(normals.col(f).dot(middle.normalized()), std::cos(0.1)) << "a staircase";
+  }
+}
+
+TEST(Optimization, ContradictingDataDrawNoSplinters)
+{
+  const TriangleMesh mesh = test::sphere(1.f, 3);
+  PointSet points;
+  points.points = test::sphere(1.f, 5).vertices;
+  std::mt19937 random(5);
+  for (Index i = 0; i < points.points.size(); ++i) // noise as large as an edge
+    points.points.data()[i] += 0.15f * (static_cast<float>(random() % 2000) / 1000.f - 1.f) * 1.7f;
+  const SurfaceOptimizationResult result = optimizeSurface(mesh, points);
+  const double farthest = (result.mesh.vertices - mesh.vertices).colwise().norm().maxCoeff();
+  EXPECT_LE(farthest, 4 * result.edge_length); // three, and what the mending of folds may add
+  EXPECT_LT(result.steps.size(), 15U);         // nothing to converge to: no steps are wasted
+  EXPECT_FALSE(result.converged);
+}
+
+TEST(Optimization, CreasesAreSharpAndFlatPartsFlat)
+{
+  for (const double noise : {0.0, 0.01}) {
+    const TriangleMesh before = rounded();
+    const SurfaceOptimizationResult result = optimizeSurface(before, test::cubePoints(20000, noise));
+    EXPECT_LT(test::bentShare(result.mesh), 0.2 * test::bentShare(before)) << noise;
+    EXPECT_LT(test::cubeErrors(result.mesh).first, 0.25 * noise + 0.02 * cell) << noise; // many data averaged
+    EXPECT_LT(test::cubeErrors(result.mesh).second, noise + 0.5 * cell) << noise;
+    EXPECT_NEAR(result.noise, noise, 0.3 * noise + 0.02 * cell);
+  }
+}
+
+TEST(Optimization, ReachesEdgesAndCorners)
+{
+  const TriangleMesh after = optimizeSurface(rounded(), test::cubePoints(20000, 0.0)).mesh;
+  const MeshDistanceResult distance = measureMeshDistance(after, [] {
+    TriangleMesh cube = test::box(Eigen::Vector3f::Constant(2));
+    cube.vertices.array() -= 1.f;
+    return cube;
+  }());
+  const double rounding = 0.15 * (std::sqrt(3.0) - 1); // how far the corners were off
+  EXPECT_LT(distance.vertices.symmetric.max, 0.4 * rounding);
+  EXPECT_LT(distance.normals_to_reference.mean, 2.0);
+}
+
+TEST(Optimization, WithoutDataVerticesStay)
+{
+  const TriangleMesh mesh = rounded();
+  PointSet half = test::cubePoints(20000, 0.0);
+  std::vector<Index> kept;
+  for (Index i = 0; i < half.size(); ++i)
+    if (half.points(0, i) > 0.f)
+      kept.push_back(i);
+  const SurfaceOptimizationResult result = optimizeSurface(mesh, selectPoints(half, kept));
+  EXPECT_LT(result.supported_vertices, mesh.vertexCount() * 2 / 3);
+  for (Index v = 0; v < mesh.vertexCount(); ++v)
+    if (mesh.vertices(0, v) < -0.3f) {
+      EXPECT_EQ(mesh.vertices.col(v), result.mesh.vertices.col(v));
+    }
+}
+
+TEST(Optimization, AttributesPassThrough)
+{
+  TriangleMesh mesh = rounded();
+  mesh.colors.setRandom(3, mesh.vertexCount());
+  mesh.fields["support"] = Eigen::VectorXf::LinSpaced(mesh.vertexCount(), 0, 1);
+  mesh.normals = vertexNormals(mesh);
+  mesh.origin = {5e6, -3e6, 100};
+  PointSet points = test::cubePoints(5000, 0.0);
+  points.origin = mesh.origin + Eigen::Vector3d(1, 2, 3);
+  points.points.colwise() -= Eigen::Vector3f(1, 2, 3);
+  const TriangleMesh after = optimizeSurface(mesh, points).mesh;
+  EXPECT_EQ(after.colors, mesh.colors);
+  EXPECT_EQ(after.fields.at("support"), mesh.fields.at("support"));
+  EXPECT_EQ(after.origin, mesh.origin);
+  EXPECT_EQ(after.normals, vertexNormals(after));
+  EXPECT_LT(test::cubeErrors(after).first, 0.02 * cell);
+}
+
+TEST(Optimization, MovesAndScalesWithItsInput)
+{
+  const TriangleMesh mesh = test::roundedCube(12, 0.3);
+  const PointSet points = test::cubePoints(5000, 0.01);
+  const Eigen::Matrix3f R = Eigen::AngleAxisf(0.7f, Eigen::Vector3f(1, 2, 3).normalized()).toRotationMatrix();
+  const Eigen::Vector3f t(3, -4, 5);
+  const float s = 0.01f;
+  TriangleMesh other = mesh;
+  other.vertices = (s * R * mesh.vertices).colwise() + t * s;
+  PointSet others = points;
+  others.points = (s * R * points.points).colwise() + t * s;
+  others.normals = R * points.normals;
+  SurfaceOptimizationOptions options;
+  options.iterations = 3;
+  const Points expected = (s * R * optimizeSurface(mesh, points, options).mesh.vertices).colwise() + t * s;
+  const Points found = optimizeSurface(other, others, options).mesh.vertices;
+  EXPECT_LT((found - expected).cwiseAbs().mean(), 1e-3 * s);
+}
+
+TEST(Optimization, FlipsKeepTheTopology)
+{
+  SurfaceOptimizationOptions options;
+  options.flip = true;
+  const TriangleMesh mesh = rounded();
+  const SurfaceOptimizationResult result = optimizeSurface(mesh, test::cubePoints(20000, 0.005), options);
+  const MeshTopology topology = meshTopology(result.mesh);
+  EXPECT_TRUE(topology.watertight);
+  EXPECT_EQ(topology.euler, 2);
+  EXPECT_LT(test::bentShare(result.mesh), 0.2 * test::bentShare(mesh));
+}
+
+TEST(Optimization, StrangeMeshesAreKept)
+{
+  TriangleMesh mesh = test::roundedCube(10, 0.3);
+  const Index faces = mesh.faceCount(), vertices = mesh.vertexCount();
+  mesh.faces.conservativeResize(3, faces + 3);
+  mesh.faces.col(faces) << 5, 5, 6;                                                   // degenerate
+  mesh.faces.col(faces + 1) << 5, 6, 5;                                               // degenerate
+  mesh.faces.col(faces + 2) << mesh.faces(0, 0), mesh.faces(1, 0), mesh.faces(2, 50); // third face at an edge
+  mesh.vertices.conservativeResize(3, vertices + 1);
+  mesh.vertices.col(vertices).setConstant(std::numeric_limits<float>::quiet_NaN()); // nobody names it
+  PointSet points = test::cubePoints(4000, 0.0);
+  points.points.col(3).setConstant(std::numeric_limits<float>::infinity());
+  points.normals.col(5).setConstant(std::numeric_limits<float>::quiet_NaN());
+  for (const bool flip : {false, true}) {
+    SurfaceOptimizationOptions options;
+    options.flip = flip;
+    const SurfaceOptimizationResult result = optimizeSurface(mesh, points, options);
+    EXPECT_TRUE(result.mesh.vertices.leftCols(vertices).allFinite());
+    EXPECT_GE(result.left_out_points, 1);
+    EXPECT_LE(meshTopology(result.mesh).nonmanifold_edges, meshTopology(mesh).nonmanifold_edges);
+  }
+}
+
+TEST(Optimization, BadInputIsAnError)
+{
+  const TriangleMesh mesh = test::sphere(1.f, 2);
+  const PointSet points = test::cubePoints(100, 0.0);
+  PointSet far = points, none, broken = points;
+  far.points.array() += 1000.f;
+  broken.points.setConstant(std::numeric_limits<float>::quiet_NaN());
+  EXPECT_THROW(optimizeSurface(mesh, far), std::invalid_argument);
+  EXPECT_THROW(optimizeSurface(mesh, none), std::invalid_argument);
+  EXPECT_THROW(optimizeSurface(mesh, broken), std::invalid_argument);
+  EXPECT_THROW(optimizeSurface(TriangleMesh(), points), std::invalid_argument);
+  TriangleMesh bad = mesh;
+  bad.vertices(0, 3) = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_THROW(optimizeSurface(bad, points), std::invalid_argument);
+  bad = mesh;
+  bad.faces(0, 0) = 100000;
+  EXPECT_THROW(optimizeSurface(bad, points), std::invalid_argument);
+  bad = mesh;
+  bad.vertices.setZero();
+  EXPECT_THROW(optimizeSurface(bad, points), std::invalid_argument);
+  for (const auto& change : std::vector<std::function<void(SurfaceOptimizationOptions&)>>{
+           [](auto& o) { o.iterations = -1; }, [](auto& o) { o.kappa1 = NAN; }, [](auto& o) { o.kappa2 = INFINITY; },
+           [](auto& o) { o.tolerance = -1; }, [](auto& o) { o.threads = -1; }}) {
+    SurfaceOptimizationOptions options;
+    change(options);
+    EXPECT_THROW(optimizeSurface(mesh, points, options), std::invalid_argument);
+  }
+  EXPECT_THROW(optimizeSurface(mesh, points, {}, [](auto, double) { return false; }), Cancelled);
+}
+
+TEST(Optimization, FandiskGetsItsEdgesBack)
+{
+  FRESCO_NEED_DATA("fandisk.obj");
+  const TriangleMesh model = readMesh(test::dataFolder() + "/fandisk.obj");
+  PointSet points;
+  points.points = model.vertices;
+  points.normals = vertexNormals(model);
+  points.origin = model.origin;
+  const TriangleMesh before = reconstructVolumetric(points,
+                                                    [] {
+                                                      VolumetricOptions options;
+                                                      options.depth = 6;
+                                                      return options;
+                                                    }())
+                                  .mesh;
+  const TriangleMesh after = optimizeSurface(before, points).mesh;
+  const MeshDistanceResult a = measureMeshDistance(before, model), b = measureMeshDistance(after, model);
+  EXPECT_LT(b.vertices.symmetric.rms, 0.6 * a.vertices.symmetric.rms);
+  EXPECT_LT(b.normals_to_reference.mean, 0.6 * a.normals_to_reference.mean);
+  EXPECT_TRUE(b.mesh_topology.watertight);
+}
+} // namespace
+} // namespace fresco

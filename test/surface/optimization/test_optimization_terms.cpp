@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The parts of the optimiser: gradients, solver, line search, folds, flips.
+#include "common/shapes.h"
+#include "optimization/common/edge_flips.h"
+#include "optimization/common/inversion_guard.h"
+#include "optimization/common/sparse_solver.h"
+#include "optimization/energy/energy.h"
+#include "optimization/energy/line_search.h"
+#include "optimization/energy/terms.h"
+#include "surface/optimization/optimization_shapes.h"
+#include <gtest/gtest.h>
+using namespace fresco::optimization;
+namespace fresco {
+namespace {
+OptimizationProblem problemOf(const TriangleMesh& mesh, const PointSet& points)
+{
+  OptimizationProblem problem;
+  problem.graph = buildGraph(mesh.faces, mesh.vertexCount(), 1);
+  problem.x = mesh.vertices.cast<double>();
+  problem.frame.unit = meanEdgeLength(problem.graph, problem.x, 1);
+  problem.x /= problem.frame.unit;
+  problem.start = problem.x;
+  problem.data = findCorrespondences(problem.graph, problem.x, points, problem.frame, 6, 1);
+  problem.support =
+      findSupport(problem.graph, problem.x, problem.data, pointsOfFaces(problem.data, problem.graph.faceCount()), 1);
+  return problem;
+}
+
+Positions randomMove(Index vertices, double size, unsigned seed)
+{
+  std::mt19937 random(seed);
+  std::normal_distribution<double> normal(0.0, size);
+  Positions move(3, vertices);
+  for (Index i = 0; i < move.size(); ++i)
+    move.data()[i] = normal(random);
+  return move;
+}
+
+struct Kappas {
+  double fit, smooth, topology;
+};
+
+// Largest difference between the gradient and central differences along random directions, relative to the gradient.
+double gradientError(const OptimizationProblem& problem, const Kappas& kappas)
+{
+  OptimizationProblem scaled = problem;
+  scaled.support.point_weight *= static_cast<float>(kappas.fit);
+  FaithfulEnergy energy{scaled,
+                        pointsOfFaces(scaled.data, scaled.graph.faceCount()),
+                        oneRings(scaled.graph, scaled.start, 1),
+                        kappas.smooth,
+                        kappas.topology,
+                        3.0,
+                        1};
+  const Positions x = scaled.start + randomMove(scaled.start.cols(), 0.1, 5);
+  Positions gradient(3, x.cols());
+  evaluate(energy, x, &gradient);
+  double worst = 0.0;
+  for (unsigned seed = 10; seed < 14; ++seed) {
+    const Positions direction = randomMove(x.cols(), 1.0, seed);
+    const double h = 1e-5;
+    const double numeric = (evaluate(energy, x + h * direction, nullptr).sum(energy) -
+                            evaluate(energy, x - h * direction, nullptr).sum(energy)) /
+                           (2 * h);
+    worst = std::max(worst, std::abs(numeric - gradient.cwiseProduct(direction).sum()));
+  }
+  return worst / gradient.norm();
+}
+
+TEST(OptimizationTerms, GradientsEqualFiniteDifferences)
+{
+  const OptimizationProblem problem = problemOf(test::roundedCube(8, 0.3), test::cubePoints(1500, 0.02));
+  EXPECT_LT(gradientError(problem, {1, 0, 0}), 1e-4) << "fit";
+  EXPECT_LT(gradientError(problem, {0, 1, 0}), 1e-5) << "smooth";
+  EXPECT_LT(gradientError(problem, {0, 0, 1}), 1e-6) << "topology";
+  EXPECT_LT(gradientError(problem, {1, 0.3, 0.7}), 1e-4) << "all";
+}
+
+TEST(OptimizationTerms, SmoothnessPrefersOneSharpBendToManySmallOnes)
+{
+  EXPECT_EQ(bendPotential(0.0), 0.0);
+  EXPECT_LT(bendPotential(1.0), 5 * bendPotential(0.2));
+  EXPECT_GT(bendPotential(0.5), bendPotential(0.4));
+}
+
+TEST(OptimizationTerms, FollowingFindsTheClosestFaceAgain)
+{
+  const PointSet points = [] {
+    PointSet set;
+    set.points = test::sphere(1.05f, 4).vertices;
+    return set;
+  }();
+  const OptimizationProblem problem = problemOf(test::sphere(1.f, 3), points);
+  const Positions moved = problem.x + randomMove(problem.x.cols(), 0.1, 2);
+  DataPoints followed = problem.data;
+  followFaces(problem.graph, moved, followed, 1);
+  const auto distance = [&](Index i, int f) {
+    const Eigen::Vector3d p = followed.points.col(i).cast<double>(), foot = footOn(problem.graph, moved, f, p);
+    Eigen::Vector3d offset = -p;
+    for (int k = 0; k < 3; ++k)
+      offset += foot[k] * moved.col(problem.graph.faces(k, f));
+    return offset.norm();
+  };
+  Index missed = 0;
+  for (Index i = 0; i < followed.size(); ++i) {
+    double best = 1e9;
+    for (Index f = 0; f < problem.graph.faceCount(); ++f)
+      best = std::min(best, distance(i, static_cast<int>(f)));
+    const double found = distance(i, followed.face[static_cast<std::size_t>(i)]);
+    missed += found > best + 1e-6 ? 1 : 0;
+    EXPECT_LT(found, 1.3 * best + 0.1);
+  }
+  EXPECT_LT(missed, followed.size() / 10);
+}
+
+TEST(OptimizationTerms, SolverReachesTheMinimum)
+{
+  const OptimizationProblem problem = problemOf(test::roundedCube(6, 0.3), test::cubePoints(1000, 0.02));
+  const FacePoints lists = pointsOfFaces(problem.data, problem.graph.faceCount());
+  Eigen::Matrix3Xf normals = areaVectors(problem.graph, problem.x, 1).cast<float>();
+  normals.colwise().normalize();
+  TermWeights weights;
+  weights.robust = 3;
+  const QuadraticEnergy energy = makeEnergy(problem, lists, normals, dataResiduals(problem, normals, 1), weights, 1);
+  const Positions move = solveMoves(energy, problem.graph, problem.x, 1000, 1);
+  const double least = evaluate(energy, problem.graph, problem.x, move, 1).sum();
+  EXPECT_LT(least, evaluate(energy, problem.graph, problem.x, Positions::Zero(3, move.cols()), 1).sum());
+  for (unsigned seed = 0; seed < 5; ++seed)
+    EXPECT_GE(evaluate(energy, problem.graph, problem.x, move + randomMove(move.cols(), 1e-2, seed), 1).sum(), least);
+}
+
+TEST(OptimizationTerms, LineSearchSatisfiesStrongWolfe)
+{
+  for (const double width : {0.01, 1.0, 100.0}) {
+    const auto at = [&](double step) {
+      const double t = step / width;
+      return LinePoint{step, -t / (t * t + 2), (t * t - 2) / ((t * t + 2) * (t * t + 2)) / width}; // More, Thuente 1994
+    };
+    const LinePoint start = at(0.0), found = lineSearch(start, 0.1, at, {1e-4, 0.1, 40});
+    EXPECT_LE(found.value, start.value + 1e-4 * found.step * start.slope) << width;
+    EXPECT_LE(std::abs(found.slope), 0.1 * std::abs(start.slope)) << width;
+  }
+}
+
+TEST(OptimizationTerms, FoldsAreUndone)
+{
+  const TriangleMesh mesh = test::sphere(1.f, 3);
+  const MeshGraph graph = buildGraph(mesh.faces, mesh.vertexCount(), 1);
+  const Positions start = mesh.vertices.cast<double>() / meanEdgeLength(graph, mesh.vertices.cast<double>(), 1);
+  Positions x = start;
+  const int neighbour = graph.otherVertex(*edgesAround(graph, 7).begin(), 7);
+  x.col(7) += 3 * (x.col(neighbour) - x.col(7)); // beyond its ring: faces turn over
+  const auto folds = [&] {
+    const std::vector<char> folded = foldedFaces(graph, x, 1);
+    return std::count(folded.begin(), folded.end(), char{1});
+  };
+  EXPECT_GT(folds(), 0);
+  unfold(graph, start, std::vector<char>(static_cast<std::size_t>(x.cols()), 1), x, 1);
+  EXPECT_EQ(folds(), 0);
+}
+
+TEST(OptimizationTerms, MovesThatFoldAreShortened)
+{
+  const TriangleMesh mesh = test::sphere(1.f, 3);
+  const MeshGraph graph = buildGraph(mesh.faces, mesh.vertexCount(), 1);
+  const Positions x = mesh.vertices.cast<double>() / meanEdgeLength(graph, mesh.vertices.cast<double>(), 1);
+  Eigen::Matrix3Xf normals = areaVectors(graph, x, 1).cast<float>();
+  normals.colwise().normalize();
+  Positions move = randomMove(x.cols(), 0.7, 1);
+  limitMoves(graph, x, normals, move, 1);
+  const Eigen::Matrix3Xd after = areaVectors(graph, x + move, 1);
+  for (Index f = 0; f < graph.faceCount(); ++f)
+    EXPECT_GT(after.col(f).dot(normals.col(f).cast<double>()), 0.0);
+}
+
+// A roof whose ridge is crossed by the diagonal of two of its faces.
+TEST(OptimizationTerms, FlipsFollowTheCrease)
+{
+  TriangleMesh mesh;
+  std::vector<Eigen::Vector3i> faces;
+  const int n = 8;
+  mesh.vertices.resize(3, (n + 1) * (n + 1));
+  for (int i = 0; i <= n; ++i)
+    for (int j = 0; j <= n; ++j) // a grid turned so that its ridge x = y runs along the wrong diagonal
+      mesh.vertices.col(i * (n + 1) + j) << static_cast<float>(i), static_cast<float>(j),
+          -std::abs(static_cast<float>(i - j));
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < n; ++j) {
+      const int a = i * (n + 1) + j, b = a + n + 1;
+      faces.emplace_back(a, b, a + 1);
+      faces.emplace_back(b, b + 1, a + 1);
+    }
+  mesh.faces.resize(3, static_cast<Index>(faces.size()));
+  for (std::size_t f = 0; f < faces.size(); ++f)
+    mesh.faces.col(static_cast<Index>(f)) = faces[f];
+  PointSet points;
+  points.points = mesh.vertices;
+  OptimizationProblem problem = problemOf(mesh, points);
+  const auto bending = [&] {
+    const Eigen::Matrix3Xd areas = areaVectors(problem.graph, problem.x, 1);
+    double sum = 0;
+    for (const auto& [f, g] : problem.graph.edge_faces)
+      if (g >= 0)
+        sum += std::acos(std::min(1.0, areas.col(f).normalized().dot(areas.col(g).normalized())));
+    return sum;
+  };
+  const double before = bending();
+  Index flips = 0;
+  for (Index found = 1; found > 0; flips += found)
+    found = flipEdges(problem, 0.0, 1);
+  EXPECT_GT(flips, 4);
+  EXPECT_LT(bending(), 0.6 * before);
+  TriangleMesh flipped = mesh;
+  flipped.faces = problem.graph.faces;
+  const MeshTopology topology = meshTopology(flipped);
+  EXPECT_EQ(topology.nonmanifold_edges, 0);
+  EXPECT_EQ(topology.inconsistent_edges, 0);
+  EXPECT_EQ(topology.boundary_edges, 4 * n);
+}
+} // namespace
+} // namespace fresco

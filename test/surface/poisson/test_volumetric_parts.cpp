@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "poisson/isosurface/isosurface.h"
+#include "poisson/isosurface/polygon.h"
+#include "poisson/octree/morton.h"
+#include "poisson/octree/radix_sort.h"
+#include "poisson/solver/transfer.h"
+#include <algorithm>
+#include <fresco/core/mesh.h>
+#include <gtest/gtest.h>
+#include <random>
+#include <set>
+using namespace fresco::poisson;
+namespace fresco::poisson {
+namespace {
+TEST(VolumetricParts, MortonCodesRoundTrip)
+{
+  std::mt19937 random(1);
+  for (int i = 0; i < 1000; ++i) {
+    const std::uint32_t x = random() & 0x1fffff, y = random() & 0x1fffff, z = random() & 0x1fffff;
+    const std::array<int, 3> cell = mortonCell(mortonCode(x, y, z));
+    EXPECT_EQ(cell, (std::array<int, 3>{static_cast<int>(x), static_cast<int>(y), static_cast<int>(z)}));
+  }
+}
+
+TEST(VolumetricParts, RadixSortIsStable)
+{
+  std::mt19937_64 random(2);
+  Array<std::uint64_t> items(100000);
+  for (std::uint64_t i = 0; i < items.size(); ++i)
+    items[i] = (random() & 0x3fffff) << 20 | i;
+  Array<std::uint64_t> expected = items;
+  std::stable_sort(expected.begin(), expected.end(),
+                   [](std::uint64_t a, std::uint64_t b) { return a >> 20 < b >> 20; });
+  sortBits(items, 20, 22, 3);
+  EXPECT_EQ(items, expected);
+}
+
+TEST(VolumetricParts, InterpolationIsExactForLinearFunctionsAndRestrictionItsTranspose)
+{
+  std::mt19937 random(3);
+  std::uniform_real_distribution<float> unit(-1, 1);
+  for (int octant = 0; octant < 8; ++octant) {
+    float parent[125], child[125], back[125] = {}, weights[125];
+    const auto f = [](float x, float y, float z) { return 1 + 2 * x - 3 * y + 0.5f * z; };
+    for (int i = 0; i < 125; ++i)
+      parent[i] = f(static_cast<float>(i % 5), static_cast<float>(i / 5 % 5), static_cast<float>(i / 25));
+    interpolateToChild(parent, octant, child);
+    for (int i = 0; i < 125; ++i)
+      EXPECT_NEAR(child[i],
+                  f(static_cast<float>((octant & 1) * 2) + 0.5f * static_cast<float>(i % 5),
+                    static_cast<float>((octant >> 1 & 1) * 2) + 0.5f * static_cast<float>(i / 5 % 5),
+                    static_cast<float>((octant >> 2) * 2) + 0.5f * static_cast<float>(i / 25)),
+                  1e-5f);
+    double a = 0, b = 0;
+    for (int i = 0; i < 125; ++i) {
+      weights[i] = unit(random);
+      a += weights[i] * child[i];
+    }
+    restrictToParent(weights, octant, 1.f, back);
+    for (int i = 0; i < 125; ++i)
+      b += back[i] * parent[i];
+    EXPECT_NEAR(a, b, 1e-3);
+  }
+}
+
+TEST(VolumetricParts, BothSidesOfAFaceSeeTheSameSegments)
+{
+  std::mt19937 random(4);
+  std::uniform_real_distribution<float> unit(-1, 1);
+  for (int i = 0; i < 2000; ++i) {
+    float chi[4], mirrored[4];
+    for (int k = 0; k < 4; ++k)
+      chi[k] = unit(random);
+    for (int k = 0; k < 4; ++k)
+      mirrored[k] = chi[3 - k]; // corner order of the cell beyond; its side k is side 2 - k here
+    const FaceCrossings a = crossFace(chi), b = crossFace(mirrored);
+    std::set<std::pair<int, int>> from_here, from_there;
+    for (int s = 0; s < a.count; ++s)
+      from_here.insert({a.from[s], a.to[s]});
+    for (int s = 0; s < b.count; ++s)
+      from_there.insert({(6 - b.to[s]) % 4, (6 - b.from[s]) % 4});
+    EXPECT_EQ(from_here, from_there);
+  }
+}
+
+/// A tree that refines octants at random, with jumps of any size between neighbours.
+Octree randomTree(int depth, double probability, std::mt19937& random)
+{
+  std::uniform_real_distribution<double> unit(0, 1);
+  std::vector<std::vector<std::uint64_t>> codes(static_cast<std::size_t>(depth) + 1);
+  codes[2] = {0};
+  for (int d = 3; d <= depth; ++d)
+    for (const std::uint64_t parent : codes[static_cast<std::size_t>(d) - 1])
+      for (std::uint64_t octant = 0; octant < 8; ++octant)
+        if (d == 3 || unit(random) < probability)
+          codes[static_cast<std::size_t>(d)].push_back(parent << 3 | octant);
+  return linkBricks(std::move(codes), 3, 1);
+}
+
+bool isFree(const Octree& tree, int depth, int brick, int x, int y, int z)
+{
+  for (int k = 0; k < 8; ++k)
+    if (normalized(tree, {depth, brick, x - (k & 1), y - (k >> 1 & 1), z - (k >> 2)}).brick < 0)
+      return false;
+  return true;
+}
+
+/// Random values, continuous across leaves of different size, of one sign on the cube's boundary.
+std::vector<NodeField> randomValues(const Octree& tree, std::mt19937& random)
+{
+  std::uniform_real_distribution<float> unit(-1, 1);
+  std::vector<NodeField> chi(tree.levels.size());
+  for (int d = tree.full_depth; d <= tree.depth; ++d) {
+    const auto i = static_cast<std::size_t>(d);
+    const BrickLevel& level = tree.levels[i];
+    chi[i] = NodeField(level.size(), 1);
+    for (Index b = 0; b < level.size(); ++b) {
+      if (d > tree.full_depth)
+        interpolateToChild(chi[i - 1].brick(level.parents[static_cast<std::size_t>(b)]),
+                           static_cast<int>(level.codes[static_cast<std::size_t>(b)] & 7), chi[i].brick(b));
+      else
+        std::fill_n(chi[i].brick(b), 125, 1.f);
+    }
+    for (Index b = 0; b < level.size(); ++b)
+      for (int n = 0; n < 125; ++n)
+        if (n % 5 < 4 && n / 5 % 5 < 4 && n / 25 < 4 && isFree(tree, d, static_cast<int>(b), n % 5, n / 5 % 5, n / 25))
+          chi[i].brick(b)[n] = unit(random);
+    syncFaces(level, chi[i], 1);
+  }
+  return chi;
+}
+
+TEST(VolumetricParts, LevelSetIsClosedAndManifoldOnRandomTrees)
+{
+  std::mt19937 random(5);
+  Index faces = 0;
+  for (const int depth : {3, 4, 5, 6})
+    for (const double probability : {0.2, 0.5, 0.8, 1.0}) {
+      if (depth == 6 && probability > 0.7)
+        continue;
+      const Octree tree = randomTree(depth, probability, random);
+      const std::vector<NodeField> chi = randomValues(tree, random);
+      const IsoSurface surface = extractIsoSurface({&tree, &chi, 0.05f}, 2);
+      TriangleMesh mesh;
+      mesh.vertices = surface.vertices;
+      mesh.faces = surface.faces;
+      const MeshTopology topology = meshTopology(mesh);
+      EXPECT_TRUE(topology.watertight) << depth << ' ' << probability << ": " << topology.boundary_edges
+                                       << " boundary, " << topology.nonmanifold_edges << " non-manifold, "
+                                       << topology.nonmanifold_vertices;
+      EXPECT_EQ(topology.referenced_vertices, mesh.vertexCount());
+      EXPECT_GT(signedVolume(mesh), 0);
+      faces += mesh.faceCount();
+    }
+  EXPECT_GT(faces, 10000);
+}
+} // namespace
+} // namespace fresco::poisson

@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "support/args.h"
+#include "support/tool.h"
+#include "test_data.h"
+#include <chrono>
+#include <csignal>
+#include <fresco/io/file.h>
+#include <thread>
+#include <unistd.h>
+namespace {
+using namespace fresco;
+
+struct Line {
+  explicit Line(std::vector<std::string> given) : words(std::move(given))
+  {
+    words.insert(words.begin(), "tool");
+    for (std::string& word : words)
+      pointers.push_back(word.data());
+  }
+  std::vector<std::string> words;
+  std::vector<char*> pointers;
+};
+
+struct Values {
+  int depth = 8;
+  double eye_x = 0, eye_z = 0;
+  float weight = 4.f;
+  std::string name = "none";
+  bool flip = false;
+  std::vector<std::string> files;
+};
+
+Values parse(const std::vector<std::string>& words, std::size_t least = 2, std::size_t most = 2)
+{
+  Values v;
+  Args args("tool IN OUT", "For tests.");
+  args.option("depth", v.depth, "depth, 2..16");
+  args.option("weight", v.weight, "weight");
+  args.option("name", v.name, "name");
+  args.flag("flip", v.flip, "flip");
+  args.values("eye", "X Y Z", "eye", [&](const auto& given) {
+    v.eye_x = Args::number("eye", given[0]);
+    v.eye_z = Args::number("eye", given[2]);
+  });
+  Line line(words);
+  v.files = args.parse(static_cast<int>(line.pointers.size()), line.pointers.data(), least, most);
+  return v;
+}
+
+TEST(Args, FilesAndOptionsInAnyOrder)
+{
+  const Values v =
+      parse({"-depth", "10", "in.ply", "-eye", "1", "-2.5", "-.5", "--flip", "out.ply", "-weight", "1e-3"});
+  EXPECT_EQ(v.files, (std::vector<std::string>{"in.ply", "out.ply"}));
+  EXPECT_EQ(v.depth, 10);
+  EXPECT_EQ(v.eye_x, 1);
+  EXPECT_EQ(v.eye_z, -0.5);
+  EXPECT_FLOAT_EQ(v.weight, 1e-3f);
+  EXPECT_TRUE(v.flip);
+  EXPECT_EQ(parse({"a", "b"}).depth, 8);
+}
+
+TEST(Args, WrongUsageIsNamed)
+{
+  const std::vector<std::vector<std::string>> lines = {{"a"},
+                                                       {"a", "b", "c"},
+                                                       {"a", "b", "-depht", "9"},
+                                                       {"a", "b", "-depth"},
+                                                       {"a", "b", "-depth", "nine"},
+                                                       {"a", "b", "-depth", "9.5"},
+                                                       {"a", "b", "-depth", "99999999999"},
+                                                       {"a", "b", "-weight", "nan"},
+                                                       {"a", "b", "-weight", ""},
+                                                       {"a", "b", "-eye", "1", "2"},
+                                                       {"a", "b", "-eye", "1", "-flip", "3"}};
+  for (const auto& line : lines)
+    EXPECT_THROW(parse(line), UsageError) << line.back();
+}
+
+TEST(Args, HelpShowsEveryOptionWithItsDefault)
+{
+  testing::internal::CaptureStdout();
+  EXPECT_THROW(parse({"a", "-h"}), HelpShown);
+  const std::string help = testing::internal::GetCapturedStdout();
+  for (const char* part : {"usage: tool IN OUT", "-depth N", "default 8", "-eye X Y Z", "-flip", "default none", "-h"})
+    EXPECT_NE(help.find(part), std::string::npos) << part << "\n" << help;
+}
+
+TEST(Tool, ExitStatusAndOneLine)
+{
+  const auto status = [](const std::function<void()>& body, std::string& said) {
+    testing::internal::CaptureStderr();
+    const int result = runTool("tool", body);
+    said = testing::internal::GetCapturedStderr();
+    return result;
+  };
+  std::string said;
+  EXPECT_EQ(status([] {}, said), 0);
+  EXPECT_EQ(said, "");
+  EXPECT_EQ(status([] { throw std::runtime_error("in.ply: the file\nis empty"); }, said), 1);
+  EXPECT_EQ(said, "tool: in.ply: the file is empty\n");
+  EXPECT_EQ(status([] { throw UsageError("unknown option -x"); }, said), 2);
+  EXPECT_EQ(std::count(said.begin(), said.end(), '\n'), 1);
+  EXPECT_EQ(status([] { throw std::bad_alloc(); }, said), 1);
+}
+
+/// Ends the process by the way that a tool ends when `body` is at work.
+void runAndExit(const std::function<void()>& body) { _exit(runTool("tool", body)); }
+
+TEST(Tool, ExceptionOfAnotherThreadIsOneLine)
+{
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  const std::string folder = test::scratchFolder();
+  EXPECT_EXIT(runAndExit([&] {
+                OutputFile file(folder + "/half");
+                std::thread([] { throw std::bad_alloc(); }).join();
+              }),
+              testing::ExitedWithCode(1), "^tool: not enough memory\n$");
+  EXPECT_EXIT(runAndExit([] { std::thread([] { throw std::runtime_error("a\nb"); }).join(); }),
+              testing::ExitedWithCode(1), "^tool: a b\n$");
+  EXPECT_TRUE(std::filesystem::is_empty(folder));
+}
+
+TEST(Tool, StopsWhileAStepGoesOn)
+{
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  const auto start = std::chrono::steady_clock::now();
+  const std::string folder = test::scratchFolder();
+  for (const int stop : {SIGINT, SIGTERM, SIGHUP})
+    EXPECT_EXIT(runAndExit([&] {
+                  OutputFile file(folder + "/half");
+                  file.write("half");
+                  std::raise(stop);
+                  std::this_thread::sleep_for(std::chrono::minutes(5)); // a step that asks nobody
+                }),
+                testing::ExitedWithCode(1), "^tool: cancelled\n$");
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(60));
+  EXPECT_TRUE(std::filesystem::is_empty(folder));
+}
+
+TEST(Tool, QuietProgressPrintsNothing)
+{
+  testing::internal::CaptureStderr();
+  EXPECT_TRUE(printProgress(true)("step", 0.5));
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+  testing::internal::CaptureStderr();
+  const Progress progress = printProgress(false);
+  progress("solve", 0.25);
+  progress("solve", 0.5);
+  EXPECT_NE(testing::internal::GetCapturedStderr().find("solve (25 %)\n"), std::string::npos);
+}
+} // namespace

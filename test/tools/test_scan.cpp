@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "simulation/scene/scene_builder.h"
+#include "simulation/sensors/dataset.h"
+#include "test_data.h"
+#include <fresco/io/colmap.h>
+#include <fresco/io/file.h>
+#include <fresco/io/image_io.h>
+#include <fresco/io/mesh_io.h>
+#include <fresco/io/point_io.h>
+#include <fresco/io/pose_file.h>
+#include <map>
+using namespace fresco;
+using namespace fresco::simulation;
+namespace fs = std::filesystem;
+
+namespace {
+/// A box with a column, seen from inside, as a mesh file: quick to scan.
+std::string boxFile(const std::string& folder)
+{
+  SceneBuilder builder("box", 0.5f);
+  const int paint = builder.add({});
+  builder.beginObject("box");
+  builder.boxes({{{-2, -2, 0}, {2, 2, 2.5f}, allSides(paint), false},
+                 {{-0.3f, -0.3f, 0}, {0.3f, 0.3f, 2.5f}, allSides(paint), true}},
+                true);
+  writeMesh(folder + "/box.ply", builder.finish().mesh);
+  return folder + "/box.ply";
+}
+
+DatasetOptions small()
+{
+  DatasetOptions options;
+  options.stations = 2;
+  options.laser.points = 3000;
+  options.views = 4;
+  options.width = 96, options.height = 64;
+  return options;
+}
+
+std::map<std::string, std::string> contents(const std::string& folder)
+{
+  std::map<std::string, std::string> files;
+  for (const auto& entry : fs::recursive_directory_iterator(folder))
+    if (entry.is_regular_file())
+      files[fs::relative(entry.path(), folder).string()] = readFile(entry.path().string());
+  return files;
+}
+
+void writeFile(const std::string& path)
+{
+  OutputFile file(path);
+  file.write("mine");
+  file.commit();
+}
+
+int runScan(const std::string& arguments)
+{
+  const int status =
+      std::system((std::string(FRESCO_BINARY_DIR) + "/bin/fresco_scan " + arguments + " > /dev/null 2>&1").c_str());
+  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+} // namespace
+
+TEST(VirtualDataset, SameSeedSameBytesForAnyNumberOfThreads)
+{
+  const std::string folder = test::scratchFolder(), box = boxFile(folder);
+  DatasetOptions options = small();
+  options.threads = 1;
+  writeDataset(box, folder + "/a", options);
+  options.threads = 4;
+  writeDataset(box, folder + "/b", options);
+  options.seed = 2;
+  writeDataset(box, folder + "/c", options);
+  const auto a = contents(folder + "/a"), b = contents(folder + "/b"), c = contents(folder + "/c");
+  EXPECT_EQ(a.size(), b.size());
+  for (const auto& [name, bytes] : a)
+    EXPECT_EQ(bytes, b.at(name)) << name;
+  EXPECT_NE(a.at("poses.txt"), c.at("poses.txt"));
+  EXPECT_NE(a.at("images/view_000.jpg"), c.at("images/view_000.jpg"));
+}
+
+TEST(VirtualDataset, ReplacesAnEarlierRun)
+{
+  const std::string folder = test::scratchFolder(), box = boxFile(folder);
+  DatasetOptions options = small();
+  options.views = 2;
+  options.stations = 3;
+  writeDataset(box, folder + "/out", options);
+  writeFile(folder + "/out/notes.txt");
+  options.stations = 1;
+  options.views = 1;
+  writeDataset(box, folder + "/out", options);
+  EXPECT_FALSE(fs::exists(folder + "/out/scans/scan_01.pcd"));
+  EXPECT_FALSE(fs::exists(folder + "/out/images/view_001.jpg"));
+  EXPECT_EQ(readPoses(folder + "/out/poses.txt").size(), 1u);
+  EXPECT_TRUE(fs::exists(folder + "/out/notes.txt")) << "files of others stay";
+}
+
+TEST(VirtualDataset, IsCompleteAndConsistent)
+{
+  const std::string folder = test::scratchFolder(), out = folder + "/out";
+  DatasetOptions options = small();
+  options.laser.noise = 0.f;
+  options.laser.veil = false;
+  options.truth_images = true;
+  writeDataset(boxFile(folder), out, options);
+  const auto poses = readPoses(out + "/poses.txt");
+  ASSERT_EQ(poses.size(), 2u);
+  for (int k = 0; k < 2; ++k) {
+    const PointSet scan = readPoints(out + "/scans/scan_0" + std::to_string(k) + ".pcd");
+    EXPECT_NEAR(static_cast<double>(scan.size()), 3000.0, 900.0);
+    EXPECT_EQ(scan.colors.cols(), scan.size());
+    ASSERT_EQ(scan.viewpoints.cols(), 1);
+    EXPECT_EQ(scan.viewpoints.norm(), 0.f);
+    const Eigen::Matrix4d T = *poses[static_cast<std::size_t>(k)];
+    for (Index i = 0; i < scan.size(); ++i) { // each point lies on a wall of the box or of the column
+      const Eigen::Vector3d p = (T * scan.points.col(i).cast<double>().homogeneous()).head<3>();
+      const double wide = std::max(std::fabs(p.x()), std::fabs(p.y()));
+      const double off =
+          std::min({std::fabs(wide - 2), std::fabs(wide - 0.3), std::fabs(p.z()), std::fabs(p.z() - 2.5)});
+      ASSERT_LT(off, 1e-4) << p.transpose();
+    }
+  }
+  const CameraSet set = readColmap(out + "/cameras");
+  ASSERT_EQ(set.views.size(), 4u);
+  EXPECT_NEAR(set.cameras.at(0).fx, 0.9 * 96, 1e-9);
+  for (const View& view : set.views) {
+    const Image image = readImage(out + "/images/" + view.image);
+    EXPECT_EQ(image.width, 96);
+    EXPECT_EQ(image.height, 64);
+    EXPECT_EQ(readImage(out + "/truth_images/" + fs::path(view.image).stem().string() + ".png").width, 96);
+    EXPECT_LT(view.center().head<2>().cwiseAbs().maxCoeff(), 2.0);
+  }
+  const TriangleMesh truth = readMesh(out + "/truth.ply");
+  EXPECT_EQ(truth.colors.cols(), truth.vertexCount());
+  EXPECT_GT(truth.fields.at("returns").sum(), 3000.f);
+  EXPECT_TRUE(fs::exists(out + "/exposures.txt"));
+}
+
+TEST(VirtualDataset, MeshFromOutsideIsSeenFromAllAround)
+{
+  const std::string folder = test::scratchFolder();
+  SceneBuilder builder("ball", 1.f);
+  const int paint = builder.add({});
+  builder.beginObject("ball");
+  builder.cushion({40.f, 40.f, 40.f}, paint); // millimetres, say
+  writeMesh(folder + "/ball.ply", builder.finish().mesh);
+  DatasetOptions options = small();
+  options.stations = 4;
+  writeDataset(folder + "/ball.ply", folder + "/out", options);
+  const TriangleMesh truth = readMesh(folder + "/out/truth.ply");
+  EXPECT_GT((truth.fields.at("returns").array() > 0.f).cast<double>().mean(), 0.8);
+}
+
+TEST(VirtualDataset, RefusesBadOptionsAndFiles)
+{
+  const std::string folder = test::scratchFolder(), box = boxFile(folder);
+  const auto refused = [&](auto change) {
+    DatasetOptions options = small();
+    change(options);
+    EXPECT_THROW(writeDataset(box, folder + "/out", options), std::invalid_argument);
+  };
+  refused([](DatasetOptions& o) { o.stations = 0; });
+  refused([](DatasetOptions& o) { o.views = -1; });
+  refused([](DatasetOptions& o) { o.width = 3; });
+  refused([](DatasetOptions& o) { o.focal = 0.f; });
+  refused([](DatasetOptions& o) { o.exposure_spread = 1.f; });
+  refused([](DatasetOptions& o) { o.sensor_noise = -1.f; });
+  refused([](DatasetOptions& o) { o.jpeg_quality = 0; });
+  EXPECT_FALSE(fs::exists(folder + "/out"));
+  EXPECT_THROW(writeDataset(folder + "/none.ply", folder + "/out", small()), std::runtime_error);
+  EXPECT_THROW(writeDataset(box, "/proc/none/out", small()), std::runtime_error);
+}
+
+TEST(VirtualTool, ExitsAsStated)
+{
+  const std::string folder = test::scratchFolder(), box = boxFile(folder), out = " " + folder + "/out";
+  if (!fs::exists(std::string(FRESCO_BINARY_DIR) + "/bin/fresco_scan"))
+    GTEST_SKIP() << "fresco_scan is not built";
+  EXPECT_EQ(runScan("-h"), 0);
+  EXPECT_EQ(runScan(""), 2);
+  EXPECT_EQ(runScan(box), 2);
+  EXPECT_EQ(runScan(box + out + " -nonsense"), 2);
+  EXPECT_EQ(runScan(box + out + " -images 12"), 2);
+  EXPECT_EQ(runScan(box + out + " -images 0x0"), 2);
+  EXPECT_EQ(runScan(box + out + " -seed -4"), 2);
+  EXPECT_EQ(runScan(folder + "/none.ply" + out), 1);
+  EXPECT_EQ(runScan("kitchen" + out), 1);
+  EXPECT_EQ(runScan(box + " /proc/none/out"), 1);
+  EXPECT_FALSE(fs::exists(folder + "/out"));
+  EXPECT_EQ(runScan(box + out + " -stations 1 -points 500 -no_images -quiet"), 0);
+  EXPECT_TRUE(fs::exists(folder + "/out/poses.txt"));
+  EXPECT_FALSE(fs::exists(folder + "/out/images"));
+}

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "test_data.h"
+#include "texture/texture_scene.h"
+#include <fresco/io/colmap.h>
+#include <fresco/io/file.h>
+#include <fresco/io/image_io.h>
+#include <fresco/io/mesh_io.h>
+#include <sys/wait.h>
+namespace fresco::test {
+namespace {
+/// A cube, its cameras and photographs on disk.
+struct Files {
+  std::string folder = scratchFolder(), mesh = folder + "/cube.ply", cameras = folder + "/cameras",
+              images = folder + "/images", messages = folder + "/messages.txt";
+
+  Files()
+  {
+    const TriangleMesh scene = cube();
+    writeMesh(mesh, scene);
+    makeFolder(images);
+    CameraSet set;
+    set.cameras = {camera()};
+    for (const TextureView& view : photographsAround(scene, waves)) {
+      const std::string name = std::to_string(set.views.size()) + ".png";
+      set.views.push_back({name, 0, view.T_camera_world});
+      writeImage(images + "/" + name, view.image);
+    }
+    writeColmap(cameras, set);
+  }
+
+  int run(const std::string& arguments) const
+  {
+    const std::string tool = std::string(FRESCO_BINARY_DIR) + "/bin/fresco_texture";
+    const int status = std::system((tool + " " + arguments + " > " + messages + " 2>&1").c_str());
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  }
+
+  int texture(const std::string& out, const std::string& options = "") const
+  {
+    return run(mesh + " " + cameras + " " + images + " " + folder + "/" + out + " " + options);
+  }
+
+  bool says(const std::string& text) const { return readFile(messages).find(text) != std::string::npos; }
+};
+
+TEST(TextureTool, WritesObjAndGlb)
+{
+  const Files files;
+  for (const std::string name : {"model.obj", "model.glb"}) {
+    ASSERT_EQ(files.texture(name), 0) << readFile(files.messages);
+    const TexturedMesh model = readTexturedMesh(files.folder + "/" + name);
+    EXPECT_EQ(model.mesh.faceCount(), 12);
+    EXPECT_LT(colorError(model, waves).mean, 2.0) << name;
+  }
+  EXPECT_EQ(readImage(files.folder + "/model_mask.png").width,
+            readTexturedMesh(files.folder + "/model.obj").atlases[0].width);
+}
+
+TEST(TextureTool, HelpAndWrongUsage)
+{
+  const Files files;
+  EXPECT_EQ(files.run("-h"), 0);
+  EXPECT_TRUE(files.says("-texel"));
+  EXPECT_EQ(files.run("one two"), 2);
+  EXPECT_EQ(files.texture("model.obj", "-unknown 3"), 2);
+  EXPECT_EQ(files.texture("model.xyz"), 2);
+}
+
+TEST(TextureTool, BadInputIsNamed)
+{
+  const Files files;
+  std::filesystem::remove(files.images + "/3.png");
+  EXPECT_EQ(files.texture("model.obj"), 1);
+  EXPECT_TRUE(files.says("3.png"));
+  writeImage(files.images + "/3.png", Image(64, 48));
+  EXPECT_EQ(files.texture("model.obj"), 1);
+  EXPECT_TRUE(files.says("3.png") && files.says("64x48") && files.says("200x200"));
+  std::filesystem::remove_all(files.cameras);
+  EXPECT_EQ(files.texture("model.obj"), 1);
+  EXPECT_TRUE(files.says("cameras"));
+  EXPECT_FALSE(std::filesystem::exists(files.folder + "/model.obj"));
+}
+
+TEST(TextureTool, NoPhotographSeesTheMesh)
+{
+  const Files files;
+  TriangleMesh far = cube();
+  far.vertices.colwise() += Eigen::Vector3f(100, 100, 0);
+  writeMesh(files.mesh, far);
+  EXPECT_EQ(files.texture("model.obj"), 1);
+  EXPECT_TRUE(files.says("cube.ply"));
+  EXPECT_FALSE(std::filesystem::exists(files.folder + "/model.obj"));
+}
+
+TEST(TextureTool, UnwritableFolder)
+{
+  const Files files;
+  EXPECT_EQ(files.texture("absent/model.obj"), 1);
+  EXPECT_TRUE(files.says("absent"));
+}
+} // namespace
+} // namespace fresco::test

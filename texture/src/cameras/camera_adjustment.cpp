@@ -1,0 +1,279 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "cameras/camera_adjustment.h"
+#include <Eigen/Cholesky>
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <fresco/core/parallel.h>
+namespace fresco::texture {
+namespace {
+constexpr int shared_count = 11; // mount: 3 turn, 3 shift; focal, cx, cy, k1, k2
+constexpr int pose_count = 6;    // 3 turn, 3 shift
+constexpr int most_steps = 15;
+constexpr double least_gain = 1e-4; // relative, of the cost
+
+using Vector6 = Eigen::Matrix<double, 6, 1>;
+using SharedVector = Eigen::Matrix<double, shared_count, 1>;
+
+Eigen::Matrix3d crossMatrix(const Eigen::Vector3d& v)
+{
+  Eigen::Matrix3d m;
+  m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
+  return m;
+}
+
+Eigen::Isometry3d motion(const Vector6& x)
+{
+  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
+  if (const double angle = x.head<3>().norm(); angle > 0)
+    T.linear() = Eigen::AngleAxisd(angle, x.head<3>() / angle).toRotationMatrix();
+  T.translation() = x.tail<3>();
+  return T;
+}
+
+/// What is estimated: corrections of the initial cameras.
+struct Corrections {
+  std::vector<SharedVector> shared; ///< per camera
+  std::vector<Vector6> pose;        ///< per view
+};
+
+CameraModel corrected(CameraModel camera, const SharedVector& x)
+{
+  camera.fx *= std::exp(x[6]);
+  camera.fy *= std::exp(x[6]);
+  camera.cx += x[7] * camera.width;
+  camera.cy += x[8] * camera.width;
+  camera.k1 += x[9];
+  camera.k2 += x[10];
+  return camera;
+}
+
+/// Turn before shift and mount after pose: T = mount * pose * initial.
+CameraState apply(const CameraState& initial, const Corrections& x)
+{
+  CameraState state = initial;
+  for (std::size_t g = 0; g < x.shared.size(); ++g)
+    state.cameras[g] = corrected(initial.cameras[g], x.shared[g]);
+  for (std::size_t v = 0; v < x.pose.size(); ++v)
+    state.T_camera_mesh[v] = motion(x.shared[state.group[v]].head<6>()) * motion(x.pose[v]) * initial.T_camera_mesh[v];
+  return state;
+}
+
+/// Pixel of a point and its derivatives.
+struct Projection {
+  Eigen::Vector2d pixel;
+  Eigen::Matrix<double, 2, 3> by_point; ///< of the mesh's frame
+  Eigen::Matrix<double, 2, shared_count> by_shared;
+};
+
+Projection projectAll(const CameraModel& camera, const Eigen::Isometry3d& T, const Eigen::Vector3d& point)
+{
+  Projection out;
+  const Eigen::Vector3d q = T * point;
+  out.pixel = project(camera, q);
+  Eigen::Matrix<double, 2, 3> by_camera_point;
+  const double step = 1e-5 * q.z();
+  for (int k = 0; k < 3; ++k)
+    by_camera_point.col(k) =
+        (project(camera, q + step * Eigen::Vector3d::Unit(k)) - project(camera, q - step * Eigen::Vector3d::Unit(k))) /
+        (2 * step);
+  out.by_point = by_camera_point * T.linear();
+  out.by_shared.leftCols<3>() = -by_camera_point * crossMatrix(q);
+  out.by_shared.middleCols<3>(3) = by_camera_point;
+  for (int k = 6; k < shared_count; ++k) {
+    const SharedVector x = 1e-5 * SharedVector::Unit(k);
+    out.by_shared.col(k) = (project(corrected(camera, x), q) - project(corrected(camera, -x), q)) / 2e-5;
+  }
+  return out;
+}
+
+/// Where the ray through a pixel meets the match's plane.
+Eigen::Vector3d onPlane(const PhotoMatch& match, const CameraModel& camera, const Eigen::Isometry3d& T)
+{
+  const Eigen::Vector3d center = T.linear().transpose() * -T.translation(),
+                        ray = T.linear().transpose() * unproject(camera, match.pixel_from);
+  return center + match.normal.dot(match.point - center) / match.normal.dot(ray) * ray;
+}
+
+Eigen::Vector2d residual(const PhotoMatch& match, const CameraState& state)
+{
+  const Eigen::Vector3d point = onPlane(match, state.cameras[state.group[match.from]], state.T_camera_mesh[match.from]);
+  const Eigen::Vector3d q = state.T_camera_mesh[match.to] * point;
+  constexpr double out_of_sight = 1e3; // pixels
+  if (!(q.z() > 1e-6) || !point.allFinite())
+    return Eigen::Vector2d::Constant(out_of_sight);
+  return project(state.cameras[state.group[match.to]], q) - match.pixel_to;
+}
+
+double medianOf(std::vector<double> values)
+{
+  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
+  return values[values.size() / 2];
+}
+
+class Adjustment {
+public:
+  Adjustment(const std::vector<PhotoMatch>& matches, const CameraState& initial, const AdjustmentPrior& prior,
+             int threads)
+      : matches_(matches), initial_(initial), groups_(static_cast<int>(initial.cameras.size())),
+        views_(static_cast<int>(initial.group.size())), threads_(threads)
+  {
+    SharedVector shared;
+    shared << Eigen::Vector3d::Constant(prior.mount_turn), Eigen::Vector3d::Constant(prior.mount_shift), prior.focal,
+        prior.center, prior.center, prior.distortion, 0.5 * prior.distortion;
+    Vector6 pose;
+    pose << Eigen::Vector3d::Constant(prior.pose_turn), Eigen::Vector3d::Constant(prior.pose_shift);
+    sigma_.resize(size());
+    for (int g = 0; g < groups_; ++g)
+      sigma_.segment<shared_count>(g * shared_count) = shared;
+    for (int v = 0; v < views_; ++v)
+      sigma_.segment<pose_count>(poseAt(v)) = pose;
+    x_ = Eigen::VectorXd::Zero(size());
+  }
+
+  /// Each pass judges anew which matches are wrong.
+  CameraState run()
+  {
+    constexpr int passes = 3;
+    CameraState state = stateOf(x_);
+    for (int pass = 0; pass < passes; ++pass) {
+      scale_ = std::max(0.5, 1.5 * medianOf(matchErrors(matches_, state)));
+      descend(state);
+    }
+    return state;
+  }
+
+private:
+  int size() const { return groups_ * shared_count + views_ * pose_count; }
+  int poseAt(int view) const { return groups_ * shared_count + view * pose_count; }
+
+  CameraState stateOf(const Eigen::VectorXd& x) const
+  {
+    Corrections c;
+    for (int g = 0; g < groups_; ++g)
+      c.shared.emplace_back(x.segment<shared_count>(g * shared_count));
+    for (int v = 0; v < views_; ++v)
+      c.pose.emplace_back(x.segment<pose_count>(poseAt(v)));
+    return apply(initial_, c);
+  }
+
+  double costOf(const CameraState& state, const Eigen::VectorXd& x) const
+  {
+    const double square = scale_ * scale_;
+    const double errors = parallelSum(static_cast<Index>(matches_.size()), threads_, 0.0, [&](Index i) {
+      return square * std::log1p(residual(matches_[i], state).squaredNorm() / square);
+    });
+    return errors + x.cwiseQuotient(sigma_).squaredNorm();
+  }
+
+  void descend(CameraState& state)
+  {
+    double damping = 1e-4, cost = costOf(state, x_);
+    for (int step = 0; step < most_steps; ++step) {
+      const double before = cost;
+      linearize(state);
+      while (damping < 1e6 && !tryStep(damping, state, cost))
+        damping *= 10;
+      damping = std::max(1e-8, damping / 10);
+      if (before - cost < least_gain * before)
+        break;
+    }
+  }
+
+  /// @return false, with nothing changed, if the step does not lower the cost
+  bool tryStep(double damping, CameraState& state, double& cost)
+  {
+    Eigen::MatrixXd H = H_;
+    H.diagonal() += damping * H_.diagonal();
+    const Eigen::VectorXd next = x_ - H.ldlt().solve(gradient_);
+    const CameraState next_state = stateOf(next);
+    const double next_cost = costOf(next_state, next);
+    if (!(next_cost < cost))
+      return false;
+    x_ = next;
+    state = next_state;
+    cost = next_cost;
+    return true;
+  }
+
+  /// Derivatives of one match's two errors: mount and lens of the camera it is from and of the one it is found in, then
+  /// the poses of both.
+  struct Row {
+    Eigen::Matrix<double, 2, 2 * (shared_count + pose_count)> J;
+    Eigen::Vector2d r;
+    double weight = 0; ///< 0 = left out
+  };
+
+  void linearize(const CameraState& state)
+  {
+    std::vector<Row> rows(matches_.size());
+    parallelFor(static_cast<Index>(rows.size()), threads_, [&](Index i) { rows[i] = rowOf(matches_[i], state); });
+    H_ = sigma_.cwiseAbs2().cwiseInverse().asDiagonal();
+    gradient_ = x_.cwiseQuotient(sigma_.cwiseAbs2());
+    for (std::size_t i = 0; i < rows.size(); ++i)
+      if (rows[i].weight > 0)
+        addRow(matches_[i], rows[i]);
+  }
+
+  /// The corrections of a pose stand before those of the mount; both are small, so that their derivatives agree to
+  /// first order.
+  Row rowOf(const PhotoMatch& match, const CameraState& state) const
+  {
+    Row row;
+    row.r = residual(match, state);
+    if (!(row.r.norm() < 100))
+      return row;
+    const int from = state.group[match.from], to = state.group[match.to];
+    const Eigen::Vector3d point = onPlane(match, state.cameras[from], state.T_camera_mesh[match.from]);
+    const Projection a = projectAll(state.cameras[from], state.T_camera_mesh[match.from], point),
+                     b = projectAll(state.cameras[to], state.T_camera_mesh[match.to], point);
+    Eigen::Matrix3d M;
+    M << a.by_point, match.normal.transpose();
+    const Eigen::Matrix<double, 2, 3> slide = b.by_point * M.inverse();
+    const Eigen::Matrix<double, 2, shared_count> by_from = -slide.leftCols<2>() * a.by_shared;
+    row.J << by_from, b.by_shared, by_from.leftCols<pose_count>(), b.by_shared.leftCols<pose_count>();
+    row.weight = row.J.allFinite() ? 1 / (1 + row.r.squaredNorm() / (scale_ * scale_)) : 0;
+    return row;
+  }
+
+  void addRow(const PhotoMatch& match, const Row& row)
+  {
+    const int at[4] = {initial_.group[match.from] * shared_count, initial_.group[match.to] * shared_count,
+                       poseAt(match.from), poseAt(match.to)};
+    const int column[4] = {0, shared_count, 2 * shared_count, 2 * shared_count + pose_count};
+    const int count[4] = {shared_count, shared_count, pose_count, pose_count};
+    const Eigen::Matrix<double, 2 * (shared_count + pose_count), 2> weighted = row.weight * row.J.transpose();
+    const Eigen::Matrix<double, 2 * (shared_count + pose_count), 2 * (shared_count + pose_count)> product =
+        weighted * row.J;
+    const Eigen::Matrix<double, 2 * (shared_count + pose_count), 1> slope = weighted * row.r;
+    for (int i = 0; i < 4; ++i) {
+      gradient_.segment(at[i], count[i]) += slope.segment(column[i], count[i]);
+      for (int j = 0; j < 4; ++j)
+        H_.block(at[i], at[j], count[i], count[j]) += product.block(column[i], column[j], count[i], count[j]);
+    }
+  }
+
+  const std::vector<PhotoMatch>& matches_;
+  const CameraState& initial_;
+  int groups_, views_, threads_;
+  double scale_ = 1; ///< pixels: errors beyond count less and less
+  Eigen::VectorXd sigma_, x_, gradient_;
+  Eigen::MatrixXd H_;
+};
+} // namespace
+
+std::vector<double> matchErrors(const std::vector<PhotoMatch>& matches, const CameraState& state)
+{
+  std::vector<double> errors;
+  for (const PhotoMatch& match : matches)
+    errors.push_back(residual(match, state).norm());
+  return errors;
+}
+
+CameraState adjustCameras(const std::vector<PhotoMatch>& matches, const CameraState& initial,
+                          const AdjustmentPrior& prior, int threads)
+{
+  return Adjustment(matches, initial, prior, threads).run();
+}
+} // namespace fresco::texture

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include <Eigen/Core>
+#include <fresco/core/image.h>
+#include <fresco/core/types.h>
+#include <vector>
+namespace fresco::texture {
+/// Grey levels of a photograph, each level half as wide as the one before.
+struct GreyPyramid {
+  std::vector<Image> levels; ///< one channel
+  double scale = 1;          ///< pixels of level 0 per pixel of the photograph: 1, 1/2, 1/4 ...
+};
+
+/// @param most_pixels of level 0
+GreyPyramid buildPyramid(const Image& photo, Index most_pixels, int levels);
+
+/// Grey level at a place in pixels (bilinear); the place lies at least one pixel inside.
+float greyAt(const Image& image, float x, float y);
+
+/// Places where the image changes in every direction, the best of each cell of a grid; pixels of `image`.
+/// Shi & Tomasi 1994, "Good Features to Track".
+std::vector<Eigen::Vector2f> findCorners(const Image& image, int cells);
+} // namespace fresco::texture

@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "cameras/patch_search.h"
+#include <Eigen/LU>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+namespace fresco::texture {
+namespace {
+constexpr int radius = 5, side = 2 * radius + 1, count = side * side; // pixels
+constexpr float coarse_search = 10;                                   // pixels, largest at any level
+constexpr int fine_search = 2;                                        // pixels, from one level to the next
+constexpr float least_correlation = 0.8f;                             // of the last level; 0.7 on the way
+constexpr float least_lead = 0.05f;                                   // over the second best place
+constexpr float least_deviation = 3;                                  // grey levels in the patch
+
+/// Patch with mean 0 and norm 1.
+using Template = std::array<float, count>;
+
+bool takeTemplate(const PatchQuery& query, int level, Template& out)
+{
+  const Image& image = query.from.levels[level];
+  const float scale = 1.f / static_cast<float>(1 << level);
+  float sum = 0, squares = 0;
+  for (int j = 0; j < side; ++j)
+    for (int i = 0; i < side; ++i) {
+      const Eigen::Vector2f p =
+          query.pixel_from * scale + query.T_from_to * Eigen::Vector2f(i - radius, j - radius); // offsets scale alike
+      if (!(p.x() >= 1 && p.y() >= 1 && p.x() < image.width - 1 && p.y() < image.height - 1))
+        return false;
+      const float v = out[j * side + i] = greyAt(image, p.x(), p.y());
+      sum += v;
+      squares += v * v;
+    }
+  const float mean = sum / count, norm = std::sqrt(std::max(0.f, squares - sum * mean));
+  if (!(norm > least_deviation * side))
+    return false;
+  for (float& v : out)
+    v = (v - mean) / norm;
+  return true;
+}
+
+/// Correlation of the template with the patch centred on pixel (x, y); -1 outside the image.
+float correlation(const Template& patch, const Image& image, int x, int y)
+{
+  if (x < radius || y < radius || x >= image.width - radius || y >= image.height - radius)
+    return -1;
+  float product = 0, sum = 0, squares = 0;
+  for (int j = 0; j < side; ++j) {
+    const std::uint8_t* row = image.pixel(x - radius, y - radius + j);
+    const float* wanted = patch.data() + j * side;
+    for (int i = 0; i < side; ++i) {
+      const float v = row[i];
+      product += wanted[i] * v;
+      sum += v;
+      squares += v * v;
+    }
+  }
+  const float spread = squares - sum * sum / count;
+  return spread > 1 ? product / std::sqrt(spread) : -1;
+}
+
+struct Peak {
+  int x = 0, y = 0;
+  float value = -1, second = -1; ///< second: best more than two pixels away
+};
+
+/// Grey levels of a square region with the sums over all its squares from the corner, so that mean and spread of any
+/// patch in it cost nothing.
+class Region {
+public:
+  /// @param low upper left pixel; the region lies inside the image
+  Region(const Image& image, Eigen::Vector2i low, Eigen::Vector2i size)
+      : width_(size.x()), grey_(static_cast<std::size_t>(size.x()) * size.y() + 1, 0.f),
+        sums_(static_cast<std::size_t>(size.x() + 1) * (size.y() + 1), 0), squares_(sums_)
+  {
+    for (int y = 0; y < size.y(); ++y) {
+      const std::uint8_t* row = image.pixel(low.x(), low.y() + y);
+      std::int64_t sum = 0, square = 0;
+      for (int x = 0; x < width_; ++x) {
+        grey_[static_cast<std::size_t>(y) * width_ + x] = row[x];
+        sum += row[x];
+        square += row[x] * row[x];
+        sums_[at(x + 1, y + 1)] = sums_[at(x + 1, y)] + sum;
+        squares_[at(x + 1, y + 1)] = squares_[at(x + 1, y)] + square;
+      }
+    }
+  }
+
+  /// With the patch whose upper left pixel is (x, y) of the region.
+  float correlation(const Template& patch, int x, int y) const
+  {
+    float product = 0;
+    for (int j = 0; j < side; ++j) {
+      const float *row = grey_.data() + static_cast<std::size_t>(y + j) * width_ + x, *wanted = patch.data() + j * side;
+      for (int i = 0; i < side; ++i)
+        product += wanted[i] * row[i];
+    }
+    const float sum = static_cast<float>(box(sums_, x, y));
+    const float spread = static_cast<float>(box(squares_, x, y)) - sum * sum / count;
+    return spread > 1 ? product / std::sqrt(spread) : -1;
+  }
+
+private:
+  std::size_t at(int x, int y) const { return static_cast<std::size_t>(y) * (width_ + 1) + x; }
+  std::int64_t box(const std::vector<std::int64_t>& sums, int x, int y) const
+  {
+    return sums[at(x + side, y + side)] - sums[at(x, y + side)] - sums[at(x + side, y)] + sums[at(x, y)];
+  }
+
+  int width_;
+  std::vector<float> grey_;
+  std::vector<std::int64_t> sums_, squares_;
+};
+
+Peak findPeak(const Template& patch, const Image& image, Eigen::Vector2i at, int reach)
+{
+  Peak peak;
+  const Eigen::Array2i low = (at.array() - reach).max(radius),
+                       high = (at.array() + reach).min(Eigen::Array2i(image.width, image.height) - 1 - radius);
+  if ((low > high).any())
+    return peak;
+  const Region region(image, low - radius, high - low + side);
+  std::vector<float> values;
+  for (int y = low.y(); y <= high.y(); ++y)
+    for (int x = low.x(); x <= high.x(); ++x) {
+      values.push_back(region.correlation(patch, x - low.x(), y - low.y()));
+      if (values.back() > peak.value)
+        peak = {x, y, values.back(), -1};
+    }
+  std::size_t i = 0;
+  for (int y = low.y(); y <= high.y(); ++y)
+    for (int x = low.x(); x <= high.x(); ++x, ++i)
+      if (std::max(std::abs(x - peak.x), std::abs(y - peak.y)) > 2)
+        peak.second = std::max(peak.second, values[i]);
+  return peak;
+}
+
+/// Top of the parabola through three values at -1, 0, 1.
+float parabolaTop(float before, float middle, float after)
+{
+  const float bend = before - 2 * middle + after;
+  return bend < -1e-6f ? std::clamp(0.5f * (before - after) / bend, -0.5f, 0.5f) : 0.f;
+}
+} // namespace
+
+bool findPatch(const PatchQuery& query, Eigen::Vector2f& place)
+{
+  int level = 0;
+  const int levels = static_cast<int>(std::min(query.from.levels.size(), query.to.levels.size()));
+  while (level + 1 < levels && query.search / static_cast<float>(1 << level) > coarse_search)
+    ++level;
+  place = query.pixel_to;
+  for (const int first = level; level >= 0; --level) {
+    Template patch;
+    if (!takeTemplate(query, level, patch))
+      return false;
+    const Image& image = query.to.levels[level];
+    const float scale = 1.f / static_cast<float>(1 << level);
+    const Eigen::Vector2i at = (place * scale).array().floor().cast<int>();
+    const int reach = level == first ? static_cast<int>(std::ceil(query.search * scale)) : fine_search;
+    const Peak peak = findPeak(patch, image, at, reach);
+    if (peak.value < (level == 0 ? least_correlation : 0.7f) ||
+        (level == first && peak.value < peak.second + least_lead))
+      return false;
+    place = Eigen::Vector2f(peak.x + 0.5f, peak.y + 0.5f) / scale;
+    if (level == 0)
+      place += Eigen::Vector2f(parabolaTop(correlation(patch, image, peak.x - 1, peak.y), peak.value,
+                                           correlation(patch, image, peak.x + 1, peak.y)),
+                               parabolaTop(correlation(patch, image, peak.x, peak.y - 1), peak.value,
+                                           correlation(patch, image, peak.x, peak.y + 1)));
+  }
+  return true;
+}
+} // namespace fresco::texture

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include "cameras/grey_pyramid.h"
+#include "views/ray_scene.h"
+namespace fresco::texture {
+/// Cameras that are being refined, in mesh coordinates.
+struct CameraState {
+  std::vector<CameraModel> cameras;             ///< one per group of views that share it
+  std::vector<int> group;                       ///< V
+  std::vector<Eigen::Isometry3d> T_camera_mesh; ///< V
+};
+
+/// One place of the surface in two photographs.
+struct PhotoMatch {
+  int from, to;                         ///< views
+  Eigen::Vector2d pixel_from, pixel_to; ///< of the photographs
+  Eigen::Vector3d point, normal;        ///< plane of the surface there
+};
+
+/// Photographs prepared for matching.
+struct MatchPhoto {
+  GreyPyramid pyramid;
+  std::vector<Eigen::Vector2f> corners; ///< pixels of the pyramid's level 0
+};
+
+struct MatchOptions {
+  double search = 32; ///< pixels of the photograph around the expected place
+  int partners = 8;   ///< views that each view is compared with
+  int threads = 0;
+};
+
+/// Corners of each photograph found again in others that see the same surface, as they look from there.
+std::vector<PhotoMatch> matchPhotos(const RayScene& scene, const std::vector<MatchPhoto>& photos,
+                                    const CameraState& state, const MatchOptions& options);
+} // namespace fresco::texture

@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "charts/chart.h"
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <fresco/core/parallel.h>
+#include <map>
+#include <numeric>
+namespace fresco::texture {
+namespace {
+constexpr int smoothing_rounds = 6;
+constexpr float grow_cosine = 0.5f;        // 60 degrees: a face loses at most half its resolution in one direction
+constexpr float grow_smooth_cosine = 0.7f; // 45 degrees between the surroundings and the axis
+constexpr float merge_cosine = 0.25f;      // 75 degrees: accepted for scraps, of which each would cost a border
+constexpr std::size_t scrap = 64;          // faces
+
+Points smoothed(const FaceGraph& graph, Points values, int threads)
+{
+  for (int round = 0; round < smoothing_rounds; ++round) {
+    Points next(3, values.cols());
+    parallelFor(values.cols(), threads, [&](Index f) {
+      Eigen::Vector3f sum = graph.areas[f] * values.col(f);
+      for (int k = 0; k < 3; ++k)
+        if (const int other = graph.neighbors(k, f); other >= 0)
+          sum += graph.areas[other] * values.col(other);
+      next.col(f) = sum.stableNormalized();
+    });
+    values.swap(next);
+  }
+  return values;
+}
+
+/// Mean cosine between the smooth normal of each face and those of its neighbours' neighbours.
+Eigen::VectorXf flatness(const FaceGraph& graph, int threads)
+{
+  Points mean = graph.smooth_normals;
+  for (int round = 0; round < smoothing_rounds; ++round) {
+    Points next(3, mean.cols());
+    parallelFor(mean.cols(), threads, [&](Index f) {
+      Eigen::Vector3f sum = mean.col(f);
+      float count = 1;
+      for (int k = 0; k < 3; ++k)
+        if (const int other = graph.neighbors(k, f); other >= 0) {
+          sum += mean.col(other);
+          ++count;
+        }
+      next.col(f) = sum / count;
+    });
+    mean.swap(next);
+  }
+  return mean.colwise().norm();
+}
+
+class Segmentation {
+public:
+  Segmentation(const FaceGraph& graph, const std::vector<int>& faces) : graph_(graph), chart_(graph.areas.size(), taken)
+  {
+    for (const int f : faces)
+      chart_[f] = open;
+  }
+
+  std::vector<Chart> run(const std::vector<int>& faces)
+  {
+    for (const int seed : faces)
+      if (chart_[seed] == open)
+        growFrom(seed);
+    mergeScraps();
+    charts_.erase(std::remove_if(charts_.begin(), charts_.end(), [](const Chart& c) { return c.faces.empty(); }),
+                  charts_.end());
+    return std::move(charts_);
+  }
+
+private:
+  enum : int { open = -1, taken = -2 };
+
+  bool fits(int f, const Eigen::Vector3f& axis) const
+  {
+    return chart_[f] == open && graph_.normals.col(f).dot(axis) > grow_cosine &&
+           graph_.smooth_normals.col(f).dot(axis) > grow_smooth_cosine;
+  }
+
+  /// Open faces joined with the seed that fit the axis, breadth first; they become part of chart `id`.
+  std::vector<int> flood(int seed, const Eigen::Vector3f& axis, int id)
+  {
+    std::vector<int> faces{seed};
+    chart_[seed] = id;
+    for (std::size_t i = 0; i < faces.size(); ++i)
+      for (int k = 0; k < 3; ++k)
+        if (const int other = graph_.neighbors(k, faces[i]); other >= 0 && fits(other, axis)) {
+          chart_[other] = id;
+          faces.push_back(other);
+        }
+    return faces;
+  }
+
+  void growFrom(int seed)
+  {
+    const int id = static_cast<int>(charts_.size());
+    const std::vector<int> first = flood(seed, graph_.smooth_normals.col(seed), id);
+    Eigen::Vector3f axis = Eigen::Vector3f::Zero();
+    for (const int f : first)
+      axis += graph_.areas[f] * graph_.normals.col(f);
+    axis.stableNormalize();
+    for (const int f : first)
+      chart_[f] = open;
+    Chart chart;
+    chart.axis = fits(seed, axis) ? axis : Eigen::Vector3f(graph_.normals.col(seed));
+    chart.faces = flood(seed, chart.axis, id);
+    charts_.push_back(std::move(chart));
+  }
+
+  /// The neighbour that shares the longest border and can take all faces of chart c; -1 = none.
+  int hostOf(int c) const
+  {
+    std::map<int, int> shared; // edges per neighbour
+    for (const int f : charts_[c].faces)
+      for (int k = 0; k < 3; ++k)
+        if (const int other = graph_.neighbors(k, f); other >= 0 && chart_[other] >= 0 && chart_[other] != c)
+          ++shared[chart_[other]];
+    int best = -1, most = 0;
+    for (const auto& [host, edges] : shared) {
+      const auto turned = [&, axis = charts_[host].axis](int f) {
+        return graph_.normals.col(f).dot(axis) > merge_cosine;
+      };
+      if (edges > most && std::all_of(charts_[c].faces.begin(), charts_[c].faces.end(), turned)) {
+        best = host;
+        most = edges;
+      }
+    }
+    return best;
+  }
+
+  void mergeScraps()
+  {
+    std::vector<int> order(charts_.size());
+    std::iota(order.begin(), order.end(), 0);
+    std::stable_sort(order.begin(), order.end(),
+                     [&](int a, int b) { return charts_[a].faces.size() < charts_[b].faces.size(); });
+    for (const int c : order) {
+      if (charts_[c].faces.size() > scrap)
+        continue;
+      const int host = hostOf(c);
+      if (host < 0)
+        continue;
+      for (const int f : charts_[c].faces)
+        chart_[f] = host;
+      charts_[host].faces.insert(charts_[host].faces.end(), charts_[c].faces.begin(), charts_[c].faces.end());
+      charts_[c].faces.clear();
+    }
+  }
+
+  const FaceGraph& graph_;
+  std::vector<int> chart_;
+  std::vector<Chart> charts_;
+};
+} // namespace
+
+FaceGraph buildFaceGraph(const TriangleMesh& mesh, int threads)
+{
+  FaceGraph graph;
+  const Index n = mesh.faceCount();
+  graph.normals = faceNormals(mesh, threads);
+  graph.neighbors = faceNeighbors(mesh.faces);
+  graph.areas.resize(n);
+  parallelFor(n, threads, [&](Index f) {
+    const Eigen::Vector3d a = mesh.vertices.col(mesh.faces(0, f)).cast<double>(),
+                          b = mesh.vertices.col(mesh.faces(1, f)).cast<double>(),
+                          c = mesh.vertices.col(mesh.faces(2, f)).cast<double>();
+    graph.areas[f] = static_cast<float>(0.5 * (b - a).cross(c - a).norm());
+  });
+  graph.smooth_normals = smoothed(graph, graph.normals, threads);
+  const Eigen::VectorXf flat = flatness(graph, threads);
+  for (Index f = 0; f < n; ++f)
+    if (graph.areas[f] > 0 && graph.normals.col(f).squaredNorm() > 0)
+      graph.seeds.push_back(static_cast<int>(f));
+  std::stable_sort(graph.seeds.begin(), graph.seeds.end(), [&](int a, int b) { return flat[a] > flat[b]; });
+  return graph;
+}
+
+std::vector<Chart> segmentFaces(const FaceGraph& graph, const std::vector<int>& faces)
+{
+  return Segmentation(graph, faces).run(faces);
+}
+} // namespace fresco::texture

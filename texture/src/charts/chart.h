@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include "charts/texel_spans.h"
+#include "views/patch_mesh.h"
+#include <vector>
+namespace fresco::texture {
+/// Faces projected along one direction into a rectangle of texels.
+struct Chart {
+  std::vector<int> faces; ///< of the mesh, joined by edges, those that decided on the axis first
+  Eigen::Vector3f axis;   ///< unit; every face is turned towards it
+  Eigen::Matrix<double, 2, 3> T_texel =
+      Eigen::Matrix<double, 2, 3>::Zero(); ///< texel = T_texel * vertex + offset; texel i covers i .. i+1
+  Eigen::Vector2d offset = Eigen::Vector2d::Zero();
+  int width = 0, height = 0;    ///< texels, border included
+  OwnedTexels texels;           ///< by the patches that give them their colours
+  int atlas = -1, x = 0, y = 0; ///< place of the upper left texel
+
+  Eigen::Vector2d texel(const Eigen::Vector3f& vertex) const { return T_texel * vertex.cast<double>() + offset; }
+};
+
+/// Faces with what segmentation asks of them.
+struct FaceGraph {
+  Points normals;             ///< 3xF unit; (0,0,0) without area
+  Points smooth_normals;      ///< 3xF, of the surroundings
+  Eigen::VectorXf areas;      ///< F
+  Eigen::Matrix3Xi neighbors; ///< 3xF
+  std::vector<int> seeds;     ///< faces with area, from the flattest surroundings to the roughest
+};
+
+FaceGraph buildFaceGraph(const TriangleMesh& mesh, int threads);
+
+/// Groups `faces` into charts whose faces are all turned towards the chart's axis, large ones first.
+/// @param faces subset of graph.seeds, in that order
+std::vector<Chart> segmentFaces(const FaceGraph& graph, const std::vector<int>& faces);
+} // namespace fresco::texture

@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "charts/chart_raster.h"
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <utility>
+namespace fresco::texture {
+namespace {
+constexpr double inside_margin = 1e-3; // texels: on a shared edge no face is inside another
+
+struct Box {
+  int x0, y0, x1, y1; ///< texels, both ends included
+};
+
+Box boxOf(const Eigen::Matrix<double, 2, 3>& c, const Chart& chart)
+{
+  return {std::max(0, static_cast<int>(std::ceil(c.row(0).minCoeff() - 0.5))),
+          std::max(0, static_cast<int>(std::ceil(c.row(1).minCoeff() - 0.5))),
+          std::min(chart.width - 1, static_cast<int>(std::floor(c.row(0).maxCoeff() - 0.5))),
+          std::min(chart.height - 1, static_cast<int>(std::floor(c.row(1).maxCoeff() - 0.5)))};
+}
+
+/// Distances of texel centres from a patch's sides, positive inside: linear functions of the place. Corners run
+/// clockwise in a frame whose y points down as they run counter-clockwise seen from outside.
+class SideDistances {
+public:
+  explicit SideDistances(const Eigen::Matrix<double, 2, 3>& c)
+  {
+    for (int k = 0; k < 3; ++k) {
+      const Eigen::Vector2d edge =
+          (c.col((k + 1) % 3) - c.col(k)) / std::max((c.col((k + 1) % 3) - c.col(k)).norm(), 1e-12);
+      sides_.row(k) << edge.y(), -edge.x(), edge.x() * c(1, k) - edge.y() * c(0, k);
+    }
+  }
+
+  double least(const Eigen::Vector2d& p) const { return (sides_ * p.homogeneous()).minCoeff(); }
+
+private:
+  Eigen::Matrix3d sides_;
+};
+
+/// visit(texel index, depth inside) for each texel whose centre the patch covers
+template <typename Visit>
+void forTexels(const PatchMesh& patches, const Chart& chart, int patch, const Visit& visit)
+{
+  const Eigen::Matrix<double, 2, 3> c = patchTexels(patches, chart, patch);
+  const Box box = boxOf(c, chart);
+  const SideDistances distances(c);
+  for (int y = box.y0; y <= box.y1; ++y)
+    for (int x = box.x0; x <= box.x1; ++x)
+      if (const double depth = distances.least({x + 0.5, y + 0.5}); depth >= -inside_margin)
+        visit(static_cast<std::size_t>(y) * chart.width + x, depth);
+}
+
+class Raster {
+public:
+  Raster(const PatchMesh& patches, const std::vector<int>& first_patch, const Chart& chart)
+      : patches_(patches), first_(first_patch), chart_(chart),
+        claimed_(static_cast<std::size_t>(chart.width) * chart.height, 0), owner_(claimed_.size(), -1)
+  {}
+
+  /// @return false if the face would cover a texel that is firmly another's; nothing is drawn then
+  bool draw(int face)
+  {
+    bool free = true;
+    covered_.clear();
+    for (int i = first_[face]; i < first_[face + 1] && free; ++i)
+      forTexels(patches_, chart_, i, [&](std::size_t at, double depth) {
+        free = free && !(claimed_[at] && depth > inside_margin && patches_.parent[owner_[at]] != face);
+        covered_.push_back({at, i, depth > inside_margin});
+      });
+    for (std::size_t k = 0; k < covered_.size() && free; ++k) {
+      const auto& [at, patch, firmly] = covered_[k];
+      if (owner_[at] < 0 || firmly)
+        owner_[at] = patch;
+      claimed_[at] = claimed_[at] || firmly;
+    }
+    return free;
+  }
+
+  /// The texel under the middle of a patch that covers no texel's centre, so that it is not left without colour.
+  void drawSpeck(int patch)
+  {
+    const Eigen::Vector2d middle = patchTexels(patches_, chart_, patch).rowwise().mean();
+    const int x = std::clamp(static_cast<int>(middle.x()), 0, chart_.width - 1),
+              y = std::clamp(static_cast<int>(middle.y()), 0, chart_.height - 1);
+    int& owner = owner_[static_cast<std::size_t>(y) * chart_.width + x];
+    if (owner < 0)
+      owner = patch;
+  }
+
+  /// Rows from the top: patch of each texel, -1 = none.
+  std::vector<int> takeOwners() { return std::move(owner_); }
+
+private:
+  struct Covered {
+    std::size_t at; ///< texel
+    int patch;
+    bool firmly; ///< not only by its edge
+  };
+
+  const PatchMesh& patches_;
+  const std::vector<int>& first_;
+  const Chart& chart_;
+  std::vector<Covered> covered_; ///< by the face in work
+  std::vector<char> claimed_;    ///< whether the owner's inside, not only its edge, covers the texel's centre
+  std::vector<int> owner_;
+};
+
+/// Texels without owner take that of a neighbour, round by round; each round looks only around what the last one added.
+void growOwners(int rounds, int width, std::vector<int>& owner)
+{
+  const int offsets[8][2] = {{1, 0}, {0, 1}, {-1, 0}, {0, -1}, {1, 1}, {-1, 1}, {-1, -1}, {1, -1}};
+  const int height = static_cast<int>(owner.size() / static_cast<std::size_t>(width));
+  const auto ownerBeside = [&](std::size_t at) {
+    const int x = static_cast<int>(at % static_cast<std::size_t>(width)),
+              y = static_cast<int>(at / static_cast<std::size_t>(width));
+    for (const auto& [dx, dy] : offsets)
+      if (x + dx >= 0 && y + dy >= 0 && x + dx < width && y + dy < height)
+        if (const int other = owner[static_cast<std::size_t>(y + dy) * width + x + dx]; other >= 0)
+          return other;
+    return -1;
+  };
+  std::vector<std::pair<std::size_t, int>> grown; // texel, patch
+  std::vector<std::size_t> front;
+  for (int round = 0; round < rounds; ++round) {
+    grown.clear();
+    const auto visit = [&](std::size_t at) {
+      if (owner[at] < 0)
+        if (const int patch = ownerBeside(at); patch >= 0)
+          grown.emplace_back(at, patch);
+    };
+    if (round == 0)
+      for (std::size_t at = 0; at < owner.size(); ++at)
+        visit(at);
+    else
+      for (const std::size_t at : front)
+        visit(at);
+    front.clear();
+    for (const auto& [at, patch] : grown) {
+      if (std::exchange(owner[at], patch) >= 0)
+        continue; // was reached from two sides
+      const int x = static_cast<int>(at % static_cast<std::size_t>(width)),
+                y = static_cast<int>(at / static_cast<std::size_t>(width));
+      for (const auto& [dx, dy] : offsets)
+        if (x + dx >= 0 && y + dy >= 0 && x + dx < width && y + dy < height)
+          front.push_back(static_cast<std::size_t>(y + dy) * width + x + dx);
+    }
+  }
+}
+} // namespace
+
+std::vector<int> patchesOfFaces(const PatchMesh& patches, Index faces)
+{
+  std::vector<int> first(static_cast<std::size_t>(faces) + 1, 0);
+  for (Index i = 0; i < patches.size(); ++i)
+    ++first[patches.parent[i] + 1];
+  for (Index f = 0; f < faces; ++f)
+    first[f + 1] += first[f];
+  return first;
+}
+
+Eigen::Matrix<double, 2, 3> patchTexels(const PatchMesh& patches, const Chart& chart, Index patch)
+{
+  Eigen::Matrix<double, 2, 3> out;
+  for (int k = 0; k < 3; ++k)
+    out.col(k) = chart.texel(patches.vertices.col(patches.faces(k, patch)));
+  return out;
+}
+
+Eigen::Vector3d barycentric(const Eigen::Matrix<double, 2, 3>& corners, const Eigen::Vector2d& p)
+{
+  const Eigen::Vector2d u = corners.col(1) - corners.col(0), v = corners.col(2) - corners.col(0),
+                        w = p - corners.col(0);
+  const double det = u.x() * v.y() - u.y() * v.x();
+  if (!(std::abs(det) > 1e-12))
+    return Eigen::Vector3d::Constant(1.0 / 3);
+  const double b = (w.x() * v.y() - w.y() * v.x()) / det, c = (u.x() * w.y() - u.y() * w.x()) / det;
+  return {1 - b - c, b, c};
+}
+
+std::vector<int> rasterizeChart(const PatchMesh& patches, const std::vector<int>& first_patch, int border, Chart& chart)
+{
+  Raster raster(patches, first_patch, chart);
+  std::vector<int> kept, out;
+  for (const int face : chart.faces)
+    (raster.draw(face) ? kept : out).push_back(face);
+  chart.faces = std::move(kept);
+  for (const int face : chart.faces)
+    for (int i = first_patch[face]; i < first_patch[face + 1]; ++i)
+      raster.drawSpeck(i);
+  std::vector<int> owner = raster.takeOwners();
+  growOwners(border, chart.width, owner);
+  chart.texels = OwnedTexels::from(owner, chart.width);
+  return out;
+}
+} // namespace fresco::texture

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "charts/texture_atlas.h"
+#include "charts/atlas_packing.h"
+#include "charts/chart_layout.h"
+#include "views/resolution.h"
+#include <algorithm>
+#include <cmath>
+#include <fresco/core/require.h>
+#include <iomanip>
+namespace fresco::texture {
+namespace {
+constexpr int largest_atlas = 8192;   // every graphics card takes it
+constexpr double most_texels = 200e6; // unless a size is asked for: a gigabyte with the masks and what packing wastes
+
+/// Texture coordinates of every face; a vertex has one per chart.
+void fillTexcoords(const std::vector<Chart>& charts, int side, TexturedMesh& model)
+{
+  const TriangleMesh& mesh = model.mesh;
+  model.texcoord_faces = Eigen::Matrix3Xi::Constant(3, mesh.faceCount(), -1);
+  model.face_atlas = Eigen::VectorXi::Constant(mesh.faceCount(), -1);
+  std::vector<Eigen::Vector2f> coords;
+  std::vector<int> number(mesh.vertexCount(), -1); // of the vertex's coordinate, if not below `begin`
+  for (const Chart& chart : charts) {
+    const int begin = static_cast<int>(coords.size());
+    for (const int f : chart.faces) {
+      model.face_atlas[f] = chart.atlas;
+      for (int k = 0; k < 3; ++k) {
+        const int v = mesh.faces(k, f);
+        if (number[v] < begin) {
+          number[v] = static_cast<int>(coords.size());
+          const Eigen::Vector2d at = (chart.texel(mesh.vertices.col(v)) + Eigen::Vector2d(chart.x, chart.y)) / side;
+          coords.emplace_back(static_cast<float>(at.x()), static_cast<float>(1 - at.y()));
+        }
+        model.texcoord_faces(k, f) = number[v];
+      }
+    }
+  }
+  model.texcoords = Eigen::Map<const Eigen::Matrix2Xf>(coords.front().data(), 2, static_cast<Index>(coords.size()));
+}
+
+double typicalTexel(const std::vector<Chart>& charts, const FaceGraph& graph)
+{
+  std::vector<std::pair<double, double>> sizes; // texel, area
+  double total = 0, sum = 0;
+  for (const Chart& chart : charts) {
+    double area = 0;
+    for (const int f : chart.faces)
+      area += graph.areas[f];
+    sizes.emplace_back(1 / chart.T_texel.row(0).norm(), area);
+    total += area;
+  }
+  std::sort(sizes.begin(), sizes.end());
+  for (const auto& [texel, area] : sizes)
+    if ((sum += area) >= 0.5 * total)
+      return texel;
+  return 0;
+}
+
+/// How much larger texels have to be than wanted.
+double coarsening(const FaceGraph& graph, const Eigen::VectorXf& density)
+{
+  return std::sqrt(graph.areas.cast<double>().dot(density.cast<double>().cwiseAbs2()) / most_texels);
+}
+} // namespace
+
+std::vector<Chart> makeAtlas(const PatchMesh& patches, const Eigen::VectorXf& resolution, const TextureOptions& options,
+                             TextureResult& result)
+{
+  const FaceGraph graph = buildFaceGraph(result.model.mesh, options.threads);
+  Eigen::VectorXf density = wantedDensities(patches, result.model.mesh.faceCount(), resolution, options.texel);
+  if (const double coarser = coarsening(graph, density); options.texel == 0 && coarser > 1) {
+    density /= static_cast<float>(coarser);
+    result.warnings.push_back(concat("texels are ", std::fixed, std::setprecision(2), coarser, std::defaultfloat,
+                                     std::setprecision(6),
+                                     " times as large as the photographs give, so that there are ", most_texels / 1e6,
+                                     " million: a smaller -texel makes more"));
+  }
+  const int side = options.atlas > 0 ? options.atlas : largest_atlas;
+  LayoutOptions layout;
+  layout.border = options.border;
+  layout.largest = side - side / 16; // packing rounds up to its blocks
+  layout.threads = options.threads;
+  std::vector<Chart> charts = layOutCharts(patches, graph, density, layout);
+  const Packing packing = packCharts(charts, options.atlas, largest_atlas);
+  fillTexcoords(charts, packing.side, result.model);
+  result.model.atlases.assign(packing.atlases, Image(packing.side, packing.side, 3, 128));
+  result.masks.assign(packing.atlases, Image(packing.side, packing.side, 1));
+  result.used = packing.used;
+  result.charts = static_cast<Index>(charts.size());
+  result.texel = typicalTexel(charts, graph);
+  return charts;
+}
+
+Eigen::VectorXi chartsOfFaces(const std::vector<Chart>& charts, Index faces)
+{
+  Eigen::VectorXi out = Eigen::VectorXi::Constant(faces, -1);
+  for (std::size_t c = 0; c < charts.size(); ++c)
+    for (const int f : charts[c].faces)
+      out[f] = static_cast<int>(c);
+  return out;
+}
+} // namespace fresco::texture

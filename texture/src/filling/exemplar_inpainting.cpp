@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "filling/exemplar_inpainting.h"
+#include "filling/exemplar_synthesis.h"
+#include <algorithm>
+#include <cmath>
+#include <fresco/core/parallel.h>
+namespace fresco::texture {
+namespace {
+constexpr int least_texels = 300, least_radius = 4; // of a hole: smaller ones have no room for a structure
+constexpr int least_surroundings = 64;              // texels around a hole's box that may serve as examples
+constexpr std::size_t most_texels = 8000000;        // of a hole with its surroundings: a matter of time
+constexpr int smooth_reach = 8;                     // texels: coarser structure is what the smooth colours hold
+
+/// Texels of a chart that are unseen and joined.
+struct Hole {
+  std::size_t chart;
+  Eigen::AlignedBox2i box; ///< in the chart's texels
+  std::vector<int> texels; ///< index into the chart's owners
+};
+
+struct ChartTexels {
+  const Chart& chart;
+  const Image& mask;
+
+  bool isUnseen(int x, int y) const { return *mask.pixel(chart.x + x, chart.y + y) != 0; }
+};
+
+std::vector<Hole> holesOf(const ChartTexels& texels, std::size_t number)
+{
+  const int w = texels.chart.width, h = texels.chart.height;
+  std::vector<char> open(static_cast<std::size_t>(w) * h, 0); // unseen and of no hole yet
+  for (const TexelSpan& span : texels.chart.texels.spans)
+    for (int x = span.x; x < span.x + span.length; ++x)
+      open[static_cast<std::size_t>(span.y) * w + x] = texels.isUnseen(x, span.y);
+  std::vector<Hole> holes;
+  for (int start = 0; start < w * h; ++start) {
+    if (!open[start])
+      continue;
+    Hole hole{number, {}, {start}};
+    open[start] = 0;
+    for (std::size_t k = 0; k < hole.texels.size(); ++k) {
+      const int x = hole.texels[k] % w, y = hole.texels[k] / w;
+      hole.box.extend(Eigen::Vector2i(x, y));
+      for (int j = std::max(0, y - 1); j <= std::min(h - 1, y + 1); ++j)
+        for (int i = std::max(0, x - 1); i <= std::min(w - 1, x + 1); ++i)
+          if (const int at = j * w + i; open[at]) {
+            open[at] = 0;
+            hole.texels.push_back(at);
+          }
+    }
+    if (hole.texels.size() >= least_texels)
+      holes.push_back(std::move(hole));
+  }
+  return holes;
+}
+
+/// The hole's box and as much again to each side, within the chart.
+Eigen::AlignedBox2i surroundingsOf(const Hole& hole, const Chart& chart)
+{
+  const int spare = std::max(least_surroundings, hole.box.sizes().maxCoeff());
+  const Eigen::Vector2i low = (hole.box.min().array() - spare).max(0),
+                        high = (hole.box.max().array() + spare).min(Eigen::Array2i(chart.width - 1, chart.height - 1));
+  return {low, high};
+}
+
+HolePicture pictureOf(const ChartTexels& texels, const Hole& hole, const Eigen::AlignedBox2i& box, const Image& atlas)
+{
+  const Chart& chart = texels.chart;
+  HolePicture out;
+  out.width = box.sizes().x() + 1;
+  out.height = box.sizes().y() + 1;
+  out.color.resize(static_cast<std::size_t>(out.width) * out.height, Eigen::Vector3f::Zero());
+  out.state.resize(out.color.size(), HolePicture::outside);
+  const auto set = [&](int at, std::uint8_t state) { // texels of other holes are not even read: they are being written
+    const int x = at % chart.width, y = at / chart.width;
+    const std::uint8_t* p = atlas.pixel(chart.x + x, chart.y + y);
+    const std::size_t pixel = out.at(x - box.min().x(), y - box.min().y());
+    out.color[pixel] = Eigen::Vector3f(p[0], p[1], p[2]);
+    out.state[pixel] = state;
+  };
+  for (const TexelSpan& span : chart.texels.spans)
+    if (span.y >= box.min().y() && span.y <= box.max().y())
+      for (int x = std::max<int>(span.x, box.min().x()); x <= std::min(span.x + span.length - 1, box.max().x()); ++x)
+        if (!texels.isUnseen(x, span.y))
+          set(span.y * chart.width + x, HolePicture::known);
+  for (const int at : hole.texels)
+    set(at, HolePicture::hole);
+  return out;
+}
+
+/// Mean of each row's pixels within smooth_reach, of those inside the picture; then transposed.
+struct Smoothing {
+  std::vector<Eigen::Vector4f> value; ///< sum of colours, count
+
+  void rows(int width, int height)
+  {
+    std::vector<Eigen::Vector4f> out(value.size());
+    for (int y = 0; y < height; ++y) {
+      Eigen::Vector4f sum = Eigen::Vector4f::Zero();
+      const Eigen::Vector4f* row = value.data() + static_cast<std::size_t>(y) * width;
+      for (int x = -smooth_reach; x < width; ++x) {
+        if (x + smooth_reach < width)
+          sum += row[x + smooth_reach];
+        if (x - smooth_reach - 1 >= 0)
+          sum -= row[x - smooth_reach - 1];
+        if (x >= 0)
+          out[static_cast<std::size_t>(x) * height + y] = sum;
+      }
+    }
+    value.swap(out);
+  }
+};
+
+/// The picture without its fine structure.
+std::vector<Eigen::Vector3f> smoothed(const HolePicture& picture)
+{
+  Smoothing s;
+  for (std::size_t i = 0; i < picture.color.size(); ++i)
+    s.value.push_back(picture.state[i] == HolePicture::outside ? Eigen::Vector4f::Zero()
+                                                               : Eigen::Vector4f(picture.color[i].homogeneous()));
+  for (int round = 0; round < 2; ++round) { // box over box: nearly a Gaussian
+    s.rows(picture.width, picture.height);
+    s.rows(picture.height, picture.width);
+    for (Eigen::Vector4f& v : s.value)
+      v = v.w() > 0.5f ? Eigen::Vector4f(v / v.w()) : Eigen::Vector4f::Zero();
+  }
+  std::vector<Eigen::Vector3f> out;
+  for (const Eigen::Vector4f& v : s.value)
+    out.push_back(v.head<3>());
+  return out;
+}
+
+bool fill(const ChartTexels& texels, const Hole& hole, Image& atlas)
+{
+  const Eigen::AlignedBox2i box = surroundingsOf(hole, texels.chart);
+  if ((box.sizes().cast<double>().array() + 1).prod() > most_texels)
+    return false;
+  HolePicture picture = pictureOf(texels, hole, box, atlas);
+  if (holeRadius(picture) < least_radius)
+    return false;
+  const std::vector<Eigen::Vector3f> base = smoothed(picture);
+  for (std::size_t i = 0; i < base.size(); ++i)
+    picture.color[i] =
+        picture.state[i] == HolePicture::known ? Eigen::Vector3f(picture.color[i] - base[i]) : Eigen::Vector3f::Zero();
+  if (!synthesizeHole(picture, hole.chart * 1000003 + static_cast<std::size_t>(hole.texels.front())))
+    return false;
+  for (const int at : hole.texels) {
+    const int x = at % texels.chart.width, y = at / texels.chart.width;
+    const std::size_t i = picture.at(x - box.min().x(), y - box.min().y());
+    std::uint8_t* p = atlas.pixel(texels.chart.x + x, texels.chart.y + y);
+    for (int c = 0; c < 3; ++c)
+      p[c] = static_cast<std::uint8_t>(std::lround(std::clamp(base[i][c] + picture.color[i][c], 0.f, 255.f)));
+  }
+  return true;
+}
+} // namespace
+
+Index inpaintByExample(const PaintScene& scene, const std::vector<Image>& masks, std::vector<Image>& atlases)
+{
+  const auto texelsOf = [&](std::size_t c) { return ChartTexels{scene.charts[c], masks[scene.charts[c].atlas]}; };
+  std::vector<std::vector<Hole>> by_chart(scene.charts.size());
+  parallelFor(
+      static_cast<Index>(scene.charts.size()), scene.threads,
+      [&](Index c) { by_chart[c] = holesOf(texelsOf(static_cast<std::size_t>(c)), static_cast<std::size_t>(c)); }, 1);
+  std::vector<Hole> holes;
+  for (auto& list : by_chart)
+    std::move(list.begin(), list.end(), std::back_inserter(holes));
+  // large ones first, so that no thread is left with one at the end; holes do not read each other's texels
+  std::stable_sort(holes.begin(), holes.end(),
+                   [](const Hole& a, const Hole& b) { return a.texels.size() > b.texels.size(); });
+  std::vector<Index> filled(holes.size(), 0);
+  parallelFor(
+      static_cast<Index>(holes.size()), scene.threads,
+      [&](Index h) {
+        if (fill(texelsOf(holes[h].chart), holes[h], atlases[scene.charts[holes[h].chart].atlas]))
+          filled[h] = static_cast<Index>(holes[h].texels.size());
+      },
+      1);
+  Index total = 0;
+  for (const Index count : filled)
+    total += count;
+  return total;
+}
+} // namespace fresco::texture

@@ -1,0 +1,313 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "filling/exemplar_synthesis.h"
+#include <algorithm>
+#include <cmath>
+#include <limits>
+namespace fresco::texture {
+namespace {
+constexpr int reach = 3;                   // of a window to each side
+constexpr std::size_t least_windows = 300; // that are wholly known, for a picture to serve as its own example
+constexpr int coarsest_radius = 4;         // of the hole, pixels: about a window
+constexpr int most_levels = 6;
+constexpr std::size_t many_windows =
+    300000; // beyond, the finest level gets one round: its matches are given by the coarser one
+
+using Place = Eigen::Vector2i;
+
+/// Numbers of Marsaglia 2003, "Xorshift RNGs".
+class Random {
+public:
+  explicit Random(std::uint64_t seed) : state_(seed * 0x9E3779B97F4A7C15ULL + 0x2545F4914F6CDD1DULL) {}
+  /// 0 .. n - 1
+  int below(int n)
+  {
+    state_ ^= state_ << 13;
+    state_ ^= state_ >> 7;
+    state_ ^= state_ << 17;
+    return static_cast<int>((state_ >> 33) % static_cast<std::uint64_t>(n));
+  }
+
+private:
+  std::uint64_t state_;
+};
+
+/// Half as wide and high. A pixel is known where all four are, hole where one is.
+HolePicture halved(const HolePicture& in)
+{
+  HolePicture out;
+  out.width = in.width / 2;
+  out.height = in.height / 2;
+  out.color.resize(static_cast<std::size_t>(out.width) * out.height, Eigen::Vector3f::Zero());
+  out.state.resize(out.color.size(), HolePicture::outside);
+  for (int y = 0; y < out.height; ++y)
+    for (int x = 0; x < out.width; ++x) {
+      int known = 0, hole = 0;
+      Eigen::Vector3f sum = Eigen::Vector3f::Zero();
+      for (int k = 0; k < 4; ++k) {
+        const std::size_t i = in.at(2 * x + k % 2, 2 * y + k / 2);
+        known += in.state[i] == HolePicture::known;
+        hole += in.state[i] == HolePicture::hole;
+        sum += in.color[i];
+      }
+      out.state[out.at(x, y)] = hole > 0 ? HolePicture::hole : known == 4 ? HolePicture::known : HolePicture::outside;
+      out.color[out.at(x, y)] = 0.25f * sum;
+    }
+  return out;
+}
+
+/// Windows of one level and which known window each resembles.
+class Matching {
+public:
+  Matching(HolePicture& picture, Random& random) : picture_(picture), random_(random)
+  {
+    const std::size_t n = picture.state.size();
+    std::vector<std::uint8_t> hole(n), other(n);
+    for (std::size_t i = 0; i < n; ++i) {
+      hole[i] = picture.state[i] == HolePicture::hole;
+      other[i] = picture.state[i] != HolePicture::known;
+    }
+    spread(hole);
+    spread(other);
+    usable_.assign(n, 0);
+    slot_.assign(n, -1);
+    for (int y = reach; y < picture.height - reach; ++y)
+      for (int x = reach; x < picture.width - reach; ++x)
+        if (!other[picture.at(x, y)]) {
+          usable_[picture.at(x, y)] = 1;
+          sources_.emplace_back(x, y);
+        }
+    for (int y = 0; y < picture.height; ++y)
+      for (int x = 0; x < picture.width; ++x)
+        if (hole[picture.at(x, y)] && picture.state[picture.at(x, y)] != HolePicture::outside) {
+          slot_[picture.at(x, y)] = static_cast<int>(targets_.size());
+          targets_.emplace_back(x, y);
+        }
+    match_.resize(targets_.size());
+    error_.resize(targets_.size());
+  }
+
+  std::size_t sources() const { return sources_.size(); }
+  std::size_t targets() const { return targets_.size(); }
+
+  void start()
+  {
+    for (Place& match : match_)
+      match = sources_[random_.below(static_cast<int>(sources_.size()))];
+    vote(false);
+  }
+
+  void startFrom(const Matching& coarse)
+  {
+    for (std::size_t t = 0; t < targets_.size(); ++t) {
+      const Place p = targets_[t],
+                  half(std::min(p.x() / 2, coarse.picture_.width - 1), std::min(p.y() / 2, coarse.picture_.height - 1));
+      const int slot = coarse.slot_[coarse.picture_.at(half.x(), half.y())];
+      match_[t] = sources_[random_.below(static_cast<int>(sources_.size()))];
+      if (slot < 0)
+        continue;
+      const Place at = 2 * coarse.match_[slot] + (p - 2 * half);
+      if (isUsable(at))
+        match_[t] = at;
+    }
+    vote(false);
+  }
+
+  void refine(int rounds, int passes)
+  {
+    for (int round = 0; round < rounds; ++round) {
+      search(passes);
+      vote(false);
+    }
+  }
+
+  /// Each hole pixel as its own window has it: no mean, so nothing is smoothed away.
+  void finish(int passes)
+  {
+    search(passes);
+    vote(true);
+  }
+
+private:
+  /// Maximum over the window around each pixel, in place.
+  void spread(std::vector<std::uint8_t>& flags) const
+  {
+    const int w = picture_.width, h = picture_.height;
+    std::vector<std::uint8_t> rows(flags.size(), 0);
+    for (int y = 0; y < h; ++y)
+      for (int x = 0; x < w; ++x)
+        for (int i = std::max(0, x - reach); i <= std::min(w - 1, x + reach); ++i)
+          rows[picture_.at(x, y)] |= flags[picture_.at(i, y)];
+    for (int y = 0; y < h; ++y)
+      for (int x = 0; x < w; ++x) {
+        std::uint8_t any = 0;
+        for (int j = std::max(0, y - reach); j <= std::min(h - 1, y + reach); ++j)
+          any |= rows[picture_.at(x, j)];
+        flags[picture_.at(x, y)] = any;
+      }
+  }
+
+  bool isUsable(const Place& p) const
+  {
+    return p.x() >= 0 && p.y() >= 0 && p.x() < picture_.width && p.y() < picture_.height &&
+           usable_[picture_.at(p.x(), p.y())];
+  }
+
+  /// Mean squared difference over what of the target's window is in the picture; given up beyond `most`.
+  float difference(const Place& target, const Place& source, float most) const
+  {
+    float sum = 0;
+    int count = 0;
+    for (int j = -reach; j <= reach; ++j) {
+      const int y = target.y() + j;
+      if (y < 0 || y >= picture_.height)
+        continue;
+      for (int i = std::max(-reach, -target.x()); i <= std::min(reach, picture_.width - 1 - target.x()); ++i) {
+        const std::size_t at = picture_.at(target.x() + i, y);
+        if (picture_.state[at] == HolePicture::outside)
+          continue;
+        sum += (picture_.color[at] - picture_.color[picture_.at(source.x() + i, source.y() + j)]).squaredNorm();
+        ++count;
+      }
+      if (sum > most * (2 * reach + 1) * (2 * reach + 1))
+        return std::numeric_limits<float>::infinity();
+    }
+    return count > 0 ? sum / static_cast<float>(count) : 0.f;
+  }
+
+  void attempt(std::size_t t, const Place& source)
+  {
+    if (!isUsable(source) || source == match_[t])
+      return;
+    const float error = difference(targets_[t], source, error_[t]);
+    if (error < error_[t]) {
+      error_[t] = error;
+      match_[t] = source;
+    }
+  }
+
+  /// Passes in alternating order: what fits the neighbour, moved along, and places at shrinking distance.
+  void search(int passes)
+  {
+    for (std::size_t t = 0; t < targets_.size(); ++t)
+      error_[t] = difference(targets_[t], match_[t], std::numeric_limits<float>::infinity());
+    for (int pass = 0; pass < passes; ++pass) {
+      const int step = pass % 2 == 0 ? -1 : 1;
+      for (std::size_t k = 0; k < targets_.size(); ++k) {
+        const std::size_t t = step < 0 ? k : targets_.size() - 1 - k;
+        const Place p = targets_[t];
+        for (const Place& aside : {Place(step, 0), Place(0, step)}) {
+          const Place q = p + aside;
+          if (q.x() < 0 || q.y() < 0 || q.x() >= picture_.width || q.y() >= picture_.height)
+            continue;
+          if (const int slot = slot_[picture_.at(q.x(), q.y())]; slot >= 0)
+            attempt(t, match_[slot] - aside);
+        }
+        for (int radius = std::max(picture_.width, picture_.height); radius >= 1; radius /= 3)
+          attempt(t, match_[t] + Place(random_.below(2 * radius + 1) - radius, random_.below(2 * radius + 1) - radius));
+      }
+    }
+  }
+
+  /// Colours of the hole from the windows' matches.
+  void vote(bool own_only)
+  {
+    float scale = 1e-3f;
+    if (!own_only && !error_.empty()) { // the error that a quarter of the windows exceed
+      std::vector<float> errors = error_;
+      const auto at = errors.begin() + static_cast<std::ptrdiff_t>(errors.size() * 3 / 4);
+      std::nth_element(errors.begin(), at, errors.end());
+      scale = std::max(scale, *at);
+    }
+    std::vector<Eigen::Vector3f> result(targets_.size());
+    for (std::size_t t = 0; t < targets_.size(); ++t)
+      result[t] = own_only ? picture_.color[picture_.at(match_[t].x(), match_[t].y())] : meanAt(targets_[t], scale);
+    for (std::size_t t = 0; t < targets_.size(); ++t)
+      if (const std::size_t at = picture_.at(targets_[t].x(), targets_[t].y()); picture_.state[at] == HolePicture::hole)
+        picture_.color[at] = result[t];
+  }
+
+  Eigen::Vector3f meanAt(const Place& p, float scale) const
+  {
+    Eigen::Vector3f sum = Eigen::Vector3f::Zero();
+    float weights = 0;
+    for (int j = -reach; j <= reach; ++j)
+      for (int i = -reach; i <= reach; ++i) {
+        const int x = p.x() - i, y = p.y() - j;
+        if (x < 0 || y < 0 || x >= picture_.width || y >= picture_.height)
+          continue;
+        const int slot = slot_[picture_.at(x, y)];
+        if (slot < 0)
+          continue;
+        const float weight = std::exp(-error_[slot] / (2 * scale)) + 1e-6f;
+        sum += weight * picture_.color[picture_.at(match_[slot].x() + i, match_[slot].y() + j)];
+        weights += weight;
+      }
+    return sum / weights;
+  }
+
+  HolePicture& picture_;
+  Random& random_;
+  std::vector<char> usable_; ///< per pixel: middle of a known window
+  std::vector<int> slot_;    ///< per pixel: its number among the targets, -1 = none
+  std::vector<Place> sources_, targets_, match_;
+  std::vector<float> error_;
+};
+} // namespace
+
+int holeRadius(const HolePicture& picture)
+{
+  const int w = picture.width, h = picture.height;
+  std::vector<int> distance(picture.state.size(), 0);
+  /// One more than the least of the four neighbours that lie behind in the order of the pass.
+  const auto next = [&](int x, int y, int step) {
+    int least = 1 << 28;
+    for (const Place& aside : {Place(-step, 0), Place(-1, -step), Place(0, -step), Place(1, -step)}) {
+      const int i = x + aside.x(), j = y + aside.y();
+      least = std::min(least, i < 0 || j < 0 || i >= w || j >= h ? 0 : distance[picture.at(i, j)]);
+    }
+    return least + 1;
+  };
+  for (int y = 0; y < h; ++y)
+    for (int x = 0; x < w; ++x)
+      if (picture.state[picture.at(x, y)] == HolePicture::hole)
+        distance[picture.at(x, y)] = next(x, y, 1);
+  int largest = 0;
+  for (int y = h - 1; y >= 0; --y)
+    for (int x = w - 1; x >= 0; --x)
+      if (int& d = distance[picture.at(x, y)]; d > 0) {
+        d = std::min(d, next(x, y, -1));
+        largest = std::max(largest, d);
+      }
+  return largest;
+}
+
+bool synthesizeHole(HolePicture& picture, std::uint64_t seed)
+{
+  Random random(seed);
+  std::vector<HolePicture> levels{picture};
+  int radius = holeRadius(picture);
+  while (static_cast<int>(levels.size()) < most_levels && radius > coarsest_radius) {
+    HolePicture next = halved(levels.back());
+    if (Matching(next, random).sources() < least_windows)
+      break;
+    levels.push_back(std::move(next));
+    radius /= 2;
+  }
+  std::vector<Matching> matchings;
+  matchings.reserve(levels.size());
+  for (HolePicture& level : levels)
+    matchings.emplace_back(level, random);
+  if (matchings.front().sources() < least_windows)
+    return false;
+  constexpr int rounds = 6, passes = 2;
+  matchings.back().start();
+  matchings.back().refine(2 * rounds, passes);
+  for (std::size_t l = levels.size() - 1; l-- > 0;) {
+    matchings[l].startFrom(matchings[l + 1]);
+    matchings[l].refine(matchings[l].targets() > many_windows ? 1 : std::max(2, rounds - 2), passes);
+  }
+  matchings.front().finish(matchings.front().targets() > many_windows ? 0 : passes);
+  picture.color = std::move(levels.front().color);
+  return true;
+}
+} // namespace fresco::texture

@@ -1,0 +1,232 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "painting/atlas_paint.h"
+#include "charts/patch_frame.h"
+#include <algorithm>
+#include <cmath>
+#include <fresco/core/parallel.h>
+namespace fresco::texture {
+namespace {
+void store(const Eigen::Vector3f& color, std::uint8_t* pixel)
+{
+  for (int c = 0; c < 3; ++c)
+    pixel[c] = static_cast<std::uint8_t>(std::clamp(color[c], 0.f, 255.f) + 0.5f);
+}
+
+/// Colours of a patch's texels in one photograph.
+class PatchSampler {
+public:
+  /// @param map that looks at the photograph
+  PatchSampler(const PaintScene& scene, const PatchMap& map, const Image& photo, Index patch) : map_(map), photo_(photo)
+  {
+    for (int k = 0; k < 3; ++k)
+      least_[k] = goesOn(scene, patch, (k + 1) % 3) ? -far_beyond : inset(k);
+    const Eigen::Vector2f middle = map.place(Eigen::Vector3f::Constant(1.f / 3));
+    constexpr float most = 16;
+    const float pixels_per_texel = map.steps(middle.x(), middle.y()).colwise().norm().maxCoeff();
+    steps_ =
+        std::isfinite(pixels_per_texel) ? static_cast<int>(std::lround(std::clamp(pixels_per_texel, 1.f, most))) : 1;
+  }
+
+  /// Mean over the texel.
+  Eigen::Vector3f operator()(const Eigen::Vector2f& center) const
+  {
+    if (steps_ == 1) {
+      const Eigen::Vector2f p = pixel(center);
+      return samplePhoto(photo_, p.x(), p.y());
+    }
+    Eigen::Vector3f sum = Eigen::Vector3f::Zero();
+    const float step = 1.f / static_cast<float>(steps_);
+    for (int j = 0; j < steps_; ++j)
+      for (int i = 0; i < steps_; ++i) {
+        const Eigen::Vector2f p = pixel(center + Eigen::Vector2f((static_cast<float>(i) + 0.5f) * step - 0.5f,
+                                                                 (static_cast<float>(j) + 0.5f) * step - 0.5f));
+        sum += samplePhoto(photo_, p.x(), p.y());
+      }
+    return sum * (step * step);
+  }
+
+private:
+  static constexpr float far_beyond = 1e3f;
+
+  /// Weight of corner k at edge_pixels from the side opposite of it: nearer to an edge, pixels mix with what is beyond.
+  float inset(int k) const
+  {
+    constexpr float edge_pixels = 0.75f, most = 0.2f; // a patch of few pixels keeps its middle
+    Eigen::Matrix<float, 2, 3> c;
+    for (int i = 0; i < 3; ++i) {
+      const Eigen::Vector2f at = map_.place(Eigen::Vector3f::Unit(i));
+      c.col(i) = map_.pixel(at.x(), at.y());
+    }
+    const Eigen::Vector2f side = c.col((k + 2) % 3) - c.col((k + 1) % 3), to = c.col(k) - c.col((k + 1) % 3);
+    const float height = std::abs(side.x() * to.y() - side.y() * to.x()) / std::max(side.norm(), 1e-6f);
+    return std::min(most, edge_pixels / std::max(height, 1e-6f));
+  }
+
+  Eigen::Vector2f pixel(const Eigen::Vector2f& texel) const
+  {
+    const Eigen::Vector3f weights = map_.weights(texel.x(), texel.y());
+    if (!(weights.array() < least_.array()).any())
+      return map_.pixel(texel.x(), texel.y());
+    const Eigen::Vector3f inside = weights.cwiseMax(least_); // what lies beyond may be another surface
+    const Eigen::Vector2f at = map_.place(inside / inside.sum());
+    return map_.pixel(at.x(), at.y());
+  }
+
+  const PatchMap& map_;
+  const Image& photo_;
+  Eigen::Vector3f least_; ///< of the corners' weights: below 0 where the surface goes on straight and is seen
+  int steps_;
+};
+
+/// A patch's share of one view.
+struct PaintedShare {
+  int patch;
+  bool first; ///< no view before has painted the patch
+  Index share;
+};
+
+/// By view, so that each photograph is read once, however many there are.
+std::vector<std::vector<PaintedShare>> sharesByView(const PaintScene& scene, const PaintSources& sources)
+{
+  std::vector<std::vector<PaintedShare>> out(sources.views.size());
+  for (Index i = 0; i < scene.patches.size(); ++i) {
+    if (!scene.isSeen(i))
+      continue;
+    const Index begin = sources.blend.begin[i], end = sources.blend.begin[i + 1];
+    int lowest = sources.blend.list[begin].view;
+    for (Index s = begin; s < end; ++s)
+      lowest = std::min(lowest, sources.blend.list[s].view);
+    for (Index s = begin; s < end; ++s)
+      out[sources.blend.list[s].view].push_back({static_cast<int>(i), sources.blend.list[s].view == lowest, s});
+  }
+  return out;
+}
+
+void paintShare(const PaintScene& scene, const PaintSources& sources, const PaintedShare& part, const Image& photo,
+                Image& atlas)
+{
+  PatchFrame frame(scene, part.patch);
+  const BlendShare& share = sources.blend.list[part.share];
+  if (part.first)
+    frame.forTexels([&](const Eigen::Vector2f&, int x, int y) {
+      std::fill_n(atlas.pixel(frame.chart.x + x, frame.chart.y + y), 3, 0);
+    });
+  if (!frame.map.look(sources.views[share.view]))
+    return;
+  const PatchSampler sampler(scene, frame.map, photo, part.patch);
+  const Eigen::Vector3f gain = sources.gains.col(share.view);
+  const bool plain = share.weights.minCoeff() == 1 && share.offsets.isZero(0);
+  frame.forTexels([&](const Eigen::Vector2f& center, int x, int y) {
+    std::uint8_t* pixel = atlas.pixel(frame.chart.x + x, frame.chart.y + y);
+    Eigen::Vector3f color(pixel[0], pixel[1], pixel[2]);
+    if (plain) {
+      color += gain.cwiseProduct(sampler(center));
+    } else {
+      const Eigen::Vector3f corners = frame.inside(center);
+      if (const float weight = share.weights.dot(corners); weight > 0)
+        color += weight * (gain.cwiseProduct(sampler(center)) + share.offsets * corners);
+    }
+    store(color, pixel);
+  });
+}
+} // namespace
+
+void paintSeen(const PaintScene& scene, const PaintSources& sources, std::vector<Image>& atlases)
+{
+  std::size_t bytes = 0;
+  for (const Image& atlas : atlases)
+    bytes += atlas.data.size();
+  sources.photos.setAside(bytes);
+  const std::vector<std::vector<PaintedShare>> parts = sharesByView(scene, sources);
+  for (std::size_t v = 0; v < parts.size(); ++v) {
+    if (parts[v].empty())
+      continue;
+    const std::shared_ptr<const Image> photo = sources.photos.get(static_cast<Index>(v));
+    parallelFor(static_cast<Index>(parts[v].size()), scene.threads, [&](Index i) {
+      paintShare(scene, sources, parts[v][i], *photo, atlases[scene.chartOf(parts[v][i].patch)->atlas]);
+    });
+  }
+}
+
+void paintTexels(const PaintScene& scene, const PaintSources& sources,
+                 const std::vector<std::vector<PatchTexel>>& by_view, std::vector<Image>& atlases)
+{
+  for (std::size_t v = 0; v < by_view.size(); ++v) {
+    const std::vector<PatchTexel>& texels = by_view[v];
+    if (texels.empty())
+      continue;
+    std::vector<std::size_t> runs; // first texel of each patch
+    for (std::size_t k = 0; k < texels.size(); ++k)
+      if (k == 0 || texels[k].patch != texels[k - 1].patch)
+        runs.push_back(k);
+    runs.push_back(texels.size());
+    const std::shared_ptr<const Image> photo = sources.photos.get(static_cast<Index>(v));
+    const Eigen::Vector3f gain = sources.gains.col(static_cast<Index>(v));
+    parallelFor(static_cast<Index>(runs.size()) - 1, scene.threads, [&](Index r) {
+      PatchFrame frame(scene, texels[runs[r]].patch);
+      if (!frame.map.look(sources.views[v]))
+        return;
+      const PatchSampler sampler(scene, frame.map, *photo, texels[runs[r]].patch);
+      for (std::size_t k = runs[r]; k < runs[r + 1]; ++k)
+        store(gain.cwiseProduct(sampler(frame.place(texels[k].x, texels[k].y))),
+              atlases[frame.chart.atlas].pixel(frame.chart.x + texels[k].x, frame.chart.y + texels[k].y));
+    });
+  }
+}
+
+Points patchColors(const PaintScene& scene, const std::vector<Image>& atlases)
+{
+  Points colors = Points::Constant(3, scene.patches.size(), -1.f);
+  parallelFor(scene.patches.size(), scene.threads, [&](Index i) {
+    if (!scene.isSeen(i))
+      return;
+    const Chart& chart = *scene.chartOf(i);
+    int sum[3] = {0, 0, 0}, count = 0;
+    chart.texels.forTexels(scene.slots[i], [&](int x, int y) {
+      const std::uint8_t* p = atlases[chart.atlas].pixel(chart.x + x, chart.y + y);
+      for (int c = 0; c < 3; ++c)
+        sum[c] += p[c];
+      ++count;
+    });
+    if (count > 0)
+      colors.col(i) = Eigen::Vector3f(sum[0], sum[1], sum[2]) / static_cast<float>(count);
+  });
+  return colors;
+}
+
+void paintUnseen(const PaintScene& scene, const Points& colors, std::vector<Image>& atlases, std::vector<Image>& masks)
+{
+  parallelFor(scene.patches.size(), scene.threads, [&](Index i) {
+    const Chart* chart = scene.chartOf(i);
+    if (scene.view[i] >= 0 || scene.slots[i] < 0)
+      return;
+    Eigen::Matrix3f corners;
+    for (int k = 0; k < 3; ++k)
+      corners.col(k) = colors.col(scene.patches.faces(k, i));
+    const PatchFrame frame(scene, i);
+    frame.forTexels([&](const Eigen::Vector2f& center, int x, int y) {
+      x += chart->x;
+      y += chart->y;
+      store(corners * frame.inside(center), atlases[chart->atlas].pixel(x, y));
+      *masks[chart->atlas].pixel(x, y) = 255;
+    });
+  });
+}
+
+std::vector<int> texelSlots(const std::vector<Chart>& charts, Index patches)
+{
+  std::vector<int> slots(static_cast<std::size_t>(patches), -1);
+  for (const Chart& chart : charts)
+    for (std::size_t s = 0; s < chart.texels.patches.size(); ++s)
+      slots[chart.texels.patches[s]] = static_cast<int>(s);
+  return slots;
+}
+
+bool goesOn(const PaintScene& scene, Index patch, int side)
+{
+  constexpr float straight = 0.95f; // cosine of 18 degrees
+  const int other = scene.patches.neighbors(side, patch);
+  return other >= 0 && scene.view[other] >= 0 &&
+         scene.patches.normals.col(other).dot(scene.patches.normals.col(patch)) > straight;
+}
+} // namespace fresco::texture

@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "painting/back_projection.h"
+#include "charts/patch_frame.h"
+#include "painting/photo_error.h"
+#include <algorithm>
+#include <cmath>
+#include <fresco/core/parallel.h>
+namespace fresco::texture {
+namespace {
+constexpr float gain = 1.3f; // of the changes: what a pixel differs by is spread over texels that it only partly is
+constexpr float least_say = 0.1f;               // of the best view's: a third of its resolution
+constexpr std::size_t group_bytes = 512u << 20; // of errors held at a time; a choice that results depend on
+
+/// For every view the patches it shows, in their order.
+struct ViewPatches {
+  std::vector<Index> begin;
+  std::vector<int> list;
+};
+
+class BackProjection {
+public:
+  BackProjection(const PaintScene& scene, const BackProjectionSources& sources, std::vector<Image>& atlases)
+      : scene_(scene), sources_(sources), atlases_(atlases), say_(sources.candidates.list.size(), 0.f)
+  {
+    parallelFor(scene.patches.size(), scene.threads, [&](Index i) {
+      if (scene.isSeen(i))
+        shareSay(i);
+    });
+    listPatches();
+  }
+
+  void round()
+  {
+    const Index n = static_cast<Index>(sources_.views.size());
+    for (Index first = 0, last = 0; first < n; first = last) {
+      std::size_t bytes = 0;
+      do
+        bytes += errorBytes(sources_.views[last++].camera());
+      while (last < n && bytes + errorBytes(sources_.views[last].camera()) <= group_bytes);
+      compare(first, last);
+      giveBack(first, last);
+    }
+  }
+
+private:
+  /// Shares of a patch's views in what is corrected: by the square of their quality, which is how many pixels they have
+  /// there.
+  void shareSay(Index patch)
+  {
+    const Candidates& all = sources_.candidates;
+    float best = 0, sum = 0;
+    for (Index c = all.begin[patch]; c < all.begin[patch + 1]; ++c) {
+      const float quality = all.list[c].quality() * std::exp2(-sources_.odd[c]);
+      say_[c] = quality * quality;
+      best = std::max(best, say_[c]);
+    }
+    for (Index c = all.begin[patch]; c < all.begin[patch + 1]; ++c)
+      sum += say_[c] = say_[c] >= least_say * best ? say_[c] : 0.f;
+    for (Index c = all.begin[patch]; c < all.begin[patch + 1] && sum > 0; ++c)
+      say_[c] /= sum;
+  }
+
+  void listPatches()
+  {
+    const Candidates& all = sources_.candidates;
+    shown_.begin.assign(sources_.views.size() + 1, 0);
+    const auto each = [&](const auto& visit) {
+      for (Index i = 0; i < scene_.patches.size(); ++i)
+        for (Index c = all.begin[i]; c < all.begin[i + 1] && scene_.isSeen(i); ++c)
+          visit(i, all.list[c].view);
+    };
+    each([&](Index, int view) { ++shown_.begin[view + 1]; });
+    for (std::size_t v = 1; v < shown_.begin.size(); ++v)
+      shown_.begin[v] += shown_.begin[v - 1];
+    shown_.list.resize(static_cast<std::size_t>(shown_.begin.back()));
+    std::vector<Index> next(shown_.begin.begin(), shown_.begin.end() - 1);
+    each([&](Index i, int view) { shown_.list[static_cast<std::size_t>(next[view]++)] = static_cast<int>(i); });
+  }
+
+  void compare(Index first, Index last)
+  {
+    errors_.clear();
+    errors_.resize(sources_.views.size());
+    parallelFor(
+        last - first, scene_.threads,
+        [&](Index i) {
+          const Index v = first + i;
+          if (shown_.begin[v] == shown_.begin[v + 1])
+            return;
+          const int* list = shown_.list.data();
+          const Prediction prediction{scene_, atlases_, sources_.views[v], list + shown_.begin[v],
+                                      list + shown_.begin[v + 1]};
+          errors_[v] = errorOf(prediction, *sources_.photos.get(v), sources_.gains.col(v));
+        },
+        1);
+  }
+
+  void giveBack(Index first, Index last)
+  {
+    parallelRanges(scene_.patches.size(), scene_.threads, [&](Index begin, Index end) {
+      Sums sums;
+      for (Index i = begin; i < end; ++i)
+        if (scene_.isSeen(i))
+          correct(i, {first, last}, sums);
+    });
+  }
+
+  struct Range {
+    Index first, last;
+  };
+
+  /// Work space: changes of a patch's texels.
+  struct Sums {
+    std::vector<Eigen::Vector4f> values;
+    float say = 0; ///< factor of the view in work
+  };
+
+  /// Adds what one view says of each texel of the patch.
+  void addView(const PatchFrame& frame, const Eigen::Vector3f& least, const PhotoError& error, Sums& sums) const
+  {
+    std::size_t next = 0;
+    const auto add = [&](const Eigen::Vector2f& at) {
+      const Eigen::Vector2f pixel = frame.map.pixel(at.x(), at.y());
+      sums.values[next++] += sums.say * error.at(pixel.x(), pixel.y());
+    };
+    frame.forSpans([&](const TexelSpan& span) {
+      const TexelSpan own = frame.insideOf(span, 0.f);
+      const auto addBeyond = [&](int begin, int end) { // what lies beyond may be another surface
+        for (int x = begin; x < end; ++x) {
+          const Eigen::Vector2f at = frame.place(x, span.y);
+          const Eigen::Vector3f inside = frame.map.weights(at.x(), at.y()).cwiseMax(least);
+          add(frame.map.place(inside / inside.sum()));
+        }
+      };
+      addBeyond(span.x, own.x);
+      Eigen::Vector2f at = frame.place(own.x, span.y);
+      for (int i = 0; i < own.length; ++i, ++at.x())
+        add(at);
+      addBeyond(own.x + own.length, span.x + span.length);
+    });
+  }
+
+  void correct(Index patch, const Range& views, Sums& sums)
+  {
+    PatchFrame frame(scene_, patch);
+    Eigen::Vector3f least; // of the corners' weights
+    for (int k = 0; k < 3; ++k)
+      least[k] = goesOn(scene_, patch, (k + 1) % 3) ? -1e3f : 0.f;
+    sums.values.clear();
+    const Candidates& all = sources_.candidates;
+    for (Index c = all.begin[patch]; c < all.begin[patch + 1]; ++c) {
+      const int view = all.list[c].view;
+      if (!(say_[c] > 0) || view < views.first || view >= views.last || !frame.map.look(sources_.views[view]))
+        continue;
+      if (sums.values.empty())
+        sums.values.assign(frame.texels(), Eigen::Vector4f::Zero());
+      sums.say = gain * say_[c];
+      addView(frame, least, errors_[view], sums);
+    }
+    if (!sums.values.empty())
+      change(frame, sums.values);
+  }
+
+  void change(const PatchFrame& frame, const std::vector<Eigen::Vector4f>& values)
+  {
+    std::size_t next = 0;
+    Image& atlas = atlases_[frame.chart.atlas];
+    frame.forTexels([&](const Eigen::Vector2f&, int x, int y) {
+      std::uint8_t* p = atlas.pixel(frame.chart.x + x, frame.chart.y + y);
+      const Eigen::Vector4f& value = values[next++];
+      for (int c = 0; c < 3; ++c)
+        p[c] = static_cast<std::uint8_t>(std::clamp(p[c] + value[c], 0.f, 255.f) + 0.5f);
+    });
+  }
+
+  const PaintScene& scene_;
+  const BackProjectionSources& sources_;
+  std::vector<Image>& atlases_;
+  std::vector<float> say_; ///< of each candidate, 0..1; those of a patch sum to 1
+  ViewPatches shown_;
+  std::vector<PhotoError> errors_; ///< by view, of those in work
+};
+} // namespace
+
+void backProject(const PaintScene& scene, const BackProjectionSources& sources, int rounds, std::vector<Image>& atlases)
+{
+  if (rounds == 0)
+    return;
+  BackProjection projection(scene, sources, atlases);
+  for (int round = 0; round < rounds; ++round)
+    projection.round();
+}
+} // namespace fresco::texture

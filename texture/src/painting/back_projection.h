@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include "painting/atlas_paint.h"
+namespace fresco::texture {
+/// What texels are compared with.
+struct BackProjectionSources {
+  const std::vector<Projector>& views;
+  const Points& gains; ///< 3xV, factor per view and channel
+  PhotoStore& photos;
+  const Candidates& candidates;
+  const std::vector<float>& odd; ///< octaves by which a candidate is to be trusted less, in the order of the candidates
+};
+
+/// Makes the texture such that all photographs look as taken of it, not only the one that each patch was painted from:
+/// each is predicted from the texels, a pixel as their mean over its area, and what it differs by is given back to the
+/// texels it covers, the better views having more say. Irani & Peleg 1991, "Improving Resolution by Image
+/// Registration". Undoes the blur of interpolation, averages noise, and lets steps between views fade; needs cameras
+/// that agree to a fraction of a pixel.
+/// @param rounds over all photographs, >= 0
+void backProject(const PaintScene& scene, const BackProjectionSources& sources, int rounds,
+                 std::vector<Image>& atlases);
+} // namespace fresco::texture

@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "painting/outline_texels.h"
+#include "charts/patch_frame.h"
+#include <algorithm>
+#include <cmath>
+#include <fresco/core/parallel.h>
+namespace fresco::texture {
+namespace {
+constexpr float least_weight = 0.02f; // of a view in a blended texel: 5 grey levels of 255 at most
+constexpr int as_painted = -2, none = -1;
+
+/// Decides for the texels of one patch.
+class PatchChoice {
+public:
+  PatchChoice(const PaintScene& scene, const OutlineSources& sources, Index patch)
+      : sources_(sources), patch_(patch), frame_(scene, patch)
+  {}
+
+  /// Whether an outline comes near the patch in a view that paints it.
+  bool isNearOutline()
+  {
+    const auto& blend = sources_.blend;
+    for (Index s = blend.begin[patch_]; s < blend.begin[patch_ + 1]; ++s) {
+      const int view = blend.list[s].view;
+      if (!frame_.map.look(sources_.views[view]))
+        continue;
+      Eigen::Matrix<float, 2, 3> corners;
+      for (int k = 0; k < 3; ++k) {
+        const Eigen::Vector2f at = frame_.map.place(Eigen::Vector3f::Unit(k));
+        corners.col(k) = frame_.map.pixel(at.x(), at.y());
+      }
+      constexpr float spare = 3; // pixels: texels of the border
+      if (sources_.masks[view].touches(corners.rowwise().minCoeff().array() - spare,
+                                       corners.rowwise().maxCoeff().array() + spare))
+        return true;
+    }
+    return false;
+  }
+
+  /// View of each texel, `as_painted` or `none`.
+  std::vector<int> run()
+  {
+    std::vector<int> choice(frame_.texels(), as_painted);
+    const auto& blend = sources_.blend;
+    for (Index s = blend.begin[patch_]; s < blend.begin[patch_ + 1]; ++s) {
+      const BlendShare& share = blend.list[s];
+      forMixed(share.view, [&](std::size_t k, const Eigen::Vector2f& center) {
+        if (share.weights.dot(frame_.inside(center)) > least_weight)
+          choice[k] = none;
+      });
+    }
+    if (std::count(choice.begin(), choice.end(), none) > 0)
+      chooseOthers(choice);
+    return choice;
+  }
+
+private:
+  /// visit(number of the texel, its centre) for each texel that the view shows mixed
+  /// @return false if a corner is not in front of the camera
+  template <typename Visit>
+  bool forMixed(int view, const Visit& visit)
+  {
+    if (!frame_.map.look(sources_.views[view]))
+      return false;
+    std::size_t k = 0;
+    frame_.forTexels([&](const Eigen::Vector2f& center, int, int) {
+      if (sources_.masks[view].holds(frame_.map.pixel(center.x(), center.y()),
+                                     frame_.map.inverseDepth(center.x(), center.y())))
+        visit(k, center);
+      ++k;
+    });
+    return true;
+  }
+
+  void chooseOthers(std::vector<int>& choice)
+  {
+    const Candidates& all = sources_.candidates;
+    std::vector<std::pair<float, int>> ranked; // quality, view
+    for (Index c = all.begin[patch_]; c < all.begin[patch_ + 1]; ++c)
+      ranked.emplace_back(all.list[c].quality() * std::exp2(-sources_.odd[c]), all.list[c].view);
+    std::stable_sort(ranked.begin(), ranked.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
+    for (const auto& [quality, view] : ranked) {
+      std::vector<char> mixed(choice.size(), 0);
+      if (!forMixed(view, [&](std::size_t k, const Eigen::Vector2f&) { mixed[k] = 1; }))
+        continue;
+      for (std::size_t k = 0; k < choice.size(); ++k)
+        if (choice[k] == none && !mixed[k])
+          choice[k] = view;
+      if (std::count(choice.begin(), choice.end(), none) == 0)
+        return;
+    }
+  }
+
+  const OutlineSources& sources_;
+  Index patch_;
+  PatchFrame frame_;
+};
+
+void append(const PaintScene& scene, Index patch, const std::vector<int>& choice, OutlineTexels& out)
+{
+  if (std::all_of(choice.begin(), choice.end(), [](int view) { return view == none; })) {
+    out.hidden.push_back(static_cast<int>(patch));
+    return;
+  }
+  std::size_t k = 0;
+  scene.chartOf(patch)->texels.forTexels(scene.slots[patch], [&](int x, int y) {
+    const PatchTexel texel{static_cast<int>(patch), x, y};
+    if (choice[k] >= 0)
+      out.by_view[choice[k]].push_back(texel);
+    else if (choice[k] == none)
+      out.unknown.push_back(texel);
+    ++k;
+  });
+}
+
+/// The unknown texels of one chart.
+class ChartFill {
+public:
+  ChartFill(const PaintScene& scene, const Chart& chart, std::vector<PatchTexel> unknown, Image& atlas)
+      : chart_(chart), atlas_(atlas), unknown_(std::move(unknown)),
+        known_(static_cast<std::size_t>(chart.width) * chart.height, 0)
+  {
+    for (std::size_t s = 0; s < chart.texels.patches.size(); ++s)
+      if (scene.isSeen(chart.texels.patches[s]))
+        chart.texels.forTexels(static_cast<int>(s), [&](int x, int y) { known_[at(x, y)] = 1; });
+    for (const PatchTexel& texel : unknown_)
+      known_[at(texel.x, texel.y)] = 0;
+  }
+
+  /// Round by round, each texel the mean of its neighbours known before.
+  void run()
+  {
+    std::vector<PatchTexel> open = unknown_, next, done;
+    while (!open.empty()) {
+      next.clear();
+      done.clear();
+      for (const PatchTexel& texel : open)
+        (fill(texel) ? done : next).push_back(texel);
+      if (done.empty())
+        return;
+      for (const PatchTexel& texel : done)
+        known_[at(texel.x, texel.y)] = 1;
+      open.swap(next);
+    }
+  }
+
+private:
+  std::size_t at(int x, int y) const { return static_cast<std::size_t>(y) * chart_.width + x; }
+
+  bool fill(const PatchTexel& texel)
+  {
+    int sum[3] = {0, 0, 0}, count = 0;
+    for (int y = std::max(0, texel.y - 1); y <= std::min(chart_.height - 1, texel.y + 1); ++y)
+      for (int x = std::max(0, texel.x - 1); x <= std::min(chart_.width - 1, texel.x + 1); ++x)
+        if (known_[at(x, y)]) {
+          for (int c = 0; c < 3; ++c)
+            sum[c] += atlas_.pixel(chart_.x + x, chart_.y + y)[c];
+          ++count;
+        }
+    for (int c = 0; c < 3 && count > 0; ++c)
+      atlas_.pixel(chart_.x + texel.x, chart_.y + texel.y)[c] = static_cast<std::uint8_t>((sum[c] + count / 2) / count);
+    return count > 0;
+  }
+
+  const Chart& chart_;
+  Image& atlas_;
+  std::vector<PatchTexel> unknown_;
+  std::vector<char> known_;
+};
+} // namespace
+
+OutlineTexels findOutlineTexels(const PaintScene& scene, const OutlineSources& sources)
+{
+  OutlineTexels out;
+  out.by_view.resize(sources.views.size());
+  std::vector<char> near(static_cast<std::size_t>(scene.patches.size()), 0);
+  parallelFor(scene.patches.size(), scene.threads,
+              [&](Index i) { near[i] = scene.isSeen(i) && PatchChoice(scene, sources, i).isNearOutline(); });
+  std::vector<Index> patches;
+  for (Index i = 0; i < scene.patches.size(); ++i)
+    if (near[i])
+      patches.push_back(i);
+  std::vector<std::vector<int>> choices(patches.size());
+  parallelFor(static_cast<Index>(patches.size()), scene.threads,
+              [&](Index k) { choices[k] = PatchChoice(scene, sources, patches[k]).run(); });
+  for (std::size_t k = 0; k < patches.size(); ++k)
+    append(scene, patches[k], choices[k], out);
+  return out;
+}
+
+void fillUnknown(const PaintScene& scene, const std::vector<PatchTexel>& unknown, std::vector<Image>& atlases,
+                 std::vector<Image>& masks)
+{
+  std::vector<std::vector<PatchTexel>> by_chart(scene.charts.size());
+  for (const PatchTexel& texel : unknown) {
+    const Chart& chart = *scene.chartOf(texel.patch);
+    *masks[chart.atlas].pixel(chart.x + texel.x, chart.y + texel.y) = 255;
+    by_chart[scene.face_chart[scene.patches.parent[texel.patch]]].push_back(texel);
+  }
+  parallelFor(
+      static_cast<Index>(by_chart.size()), scene.threads,
+      [&](Index c) {
+        if (!by_chart[c].empty())
+          ChartFill(scene, scene.charts[c], std::move(by_chart[c]), atlases[scene.charts[c].atlas]).run();
+      },
+      1);
+}
+} // namespace fresco::texture

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "painting/photo_error.h"
+#include "charts/patch_frame.h"
+#include <algorithm>
+#include <cmath>
+namespace fresco::texture {
+namespace {
+constexpr float largest_texel = 4;          // pixels: beyond, the photograph shows more than the texture can hold
+constexpr float lookup_width = 1.41421356f; // box as wide as the triangle of linear interpolation, by deviation
+constexpr std::uint8_t overexposed = 254;
+
+/// Adds a texel's value to the pixels under its box, by the area of each in it.
+class Canvas {
+public:
+  /// @param size of the box, pixels
+  Canvas(PhotoError& sums, const Eigen::Vector2f& size) : sums_(sums), small_(size.maxCoeff() <= nearly_pixel)
+  {
+    const Eigen::Vector2f box = small_ ? Eigen::Vector2f(size.cwiseMin(1.f)) : size;
+    half_ = 0.5f * box;
+    per_size_ = box.cwiseInverse();
+  }
+
+  void add(const Eigen::Vector2f& center, const Eigen::Vector4f& value)
+  {
+    const Eigen::Vector2f low = center - half_, high = center + half_;
+    if (!(low.x() >= 0 && low.y() >= 0 && high.x() < static_cast<float>(sums_.width - 1) &&
+          high.y() < static_cast<float>(sums_.height - 1)))
+      return;
+    const int x = static_cast<int>(low.x()), y = static_cast<int>(low.y());
+    if (!small_)
+      return addLarge(low, high, value);
+    const float right = std::max(0.f, high.x() - static_cast<float>(x + 1)) * per_size_.x(),
+                down = std::max(0.f, high.y() - static_cast<float>(y + 1)) * per_size_.y();
+    Eigen::Vector4f *p = sums_.pixels.data() + static_cast<std::size_t>(y) * sums_.width + x, *q = p + sums_.width;
+    const Eigen::Vector4f upper = (1 - down) * value, lower = down * value;
+    p[0] += (1 - right) * upper;
+    p[1] += right * upper;
+    q[0] += (1 - right) * lower;
+    q[1] += right * lower;
+  }
+
+private:
+  static constexpr float nearly_pixel = 1.2f; // taken as one pixel, which touches four at most
+
+  void addLarge(const Eigen::Vector2f& low, const Eigen::Vector2f& high, const Eigen::Vector4f& value)
+  {
+    const Eigen::Vector4f share = value * per_size_.prod();
+    for (int y = static_cast<int>(low.y()); y <= static_cast<int>(high.y()); ++y) {
+      const float down = std::min(high.y(), static_cast<float>(y + 1)) - std::max(low.y(), static_cast<float>(y));
+      Eigen::Vector4f* row = sums_.pixels.data() + static_cast<std::size_t>(y) * sums_.width;
+      for (int x = static_cast<int>(low.x()); x <= static_cast<int>(high.x()); ++x)
+        row[x] +=
+            (down * (std::min(high.x(), static_cast<float>(x + 1)) - std::max(low.x(), static_cast<float>(x)))) * share;
+    }
+  }
+
+  PhotoError& sums_;
+  Eigen::Vector2f half_, per_size_;
+  bool small_;
+};
+
+/// Adds a patch's colours, each texel times the area it covers in the photograph, and the areas.
+void draw(const Prediction& p, Index patch, PhotoError& sums)
+{
+  PatchFrame frame(p.scene, patch);
+  if (!frame.map.look(p.view))
+    return;
+  const Eigen::Vector2f middle = frame.map.place(Eigen::Vector3f::Constant(1.f / 3));
+  const Eigen::Matrix2f steps = frame.map.steps(middle.x(), middle.y());
+  const Eigen::Vector2f size = lookup_width * steps.rowwise().norm();
+  if (!(size.maxCoeff() <= lookup_width * largest_texel && size.minCoeff() > 0))
+    return;
+  constexpr float edge = 1e-3f, least = 0.05f;
+  Canvas canvas(sums, size.cwiseMax(least));
+  const float area = std::abs(steps.determinant());
+  const Image& atlas = p.atlases[frame.chart.atlas];
+  frame.forSpans([&](const TexelSpan& span) {
+    const TexelSpan own = frame.insideOf(span, edge);
+    const std::uint8_t* c = atlas.pixel(frame.chart.x + own.x, frame.chart.y + own.y);
+    Eigen::Vector2f place = frame.place(own.x, own.y);
+    for (int i = 0; i < own.length; ++i, c += 3, ++place.x())
+      canvas.add(frame.map.pixel(place.x(), place.y()), area * Eigen::Vector4f(c[0], c[1], c[2], 1.f));
+  });
+}
+
+/// 0..1 by how much of a pixel is covered.
+float trustOf(float covered)
+{
+  constexpr float none_below = 0.5f, all_from = 0.8f, all_to = 1.3f, none_above = 1.6f;
+  return std::clamp(
+      std::min((covered - none_below) / (all_from - none_below), (none_above - covered) / (none_above - all_to)), 0.f,
+      1.f);
+}
+} // namespace
+
+PhotoError errorOf(const Prediction& prediction, const Image& photo, const Eigen::Vector3f& gain)
+{
+  PhotoError out;
+  out.width = photo.width;
+  out.height = photo.height;
+  out.pixels.assign(static_cast<std::size_t>(photo.width) * photo.height, Eigen::Vector4f::Zero());
+  for (const int* patch = prediction.first; patch != prediction.last; ++patch)
+    draw(prediction, *patch, out);
+  const std::uint8_t* p = photo.data.data();
+  for (Eigen::Vector4f& pixel : out.pixels) {
+    const float trust = std::max({p[0], p[1], p[2]}) < overexposed ? trustOf(pixel.w()) : 0.f;
+    if (trust > 0)
+      pixel.head<3>() = trust * (gain.cwiseProduct(Eigen::Vector3f(p[0], p[1], p[2])) - pixel.head<3>() / pixel.w());
+    else
+      pixel.setZero();
+    pixel.w() = 0;
+    p += 3;
+  }
+  return out;
+}
+
+std::size_t errorBytes(const CameraModel& camera)
+{
+  return static_cast<std::size_t>(camera.width) * camera.height * sizeof(Eigen::Vector4f);
+}
+} // namespace fresco::texture

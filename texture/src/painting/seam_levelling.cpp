@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "painting/seam_levelling.h"
+#include <Eigen/IterativeLinearSolvers>
+#include <Eigen/SparseCore>
+#include <algorithm>
+#include <cmath>
+#include <fresco/core/parallel.h>
+#include <fresco/core/release.h>
+namespace fresco::texture {
+namespace {
+constexpr float slowness = 0.3f;  // weight of a change along an edge against a step between views
+constexpr float anchor = 1e-3f;   // weight of the offset itself: it fades far from seams
+constexpr float implausible = 40; // grey levels: a larger step is rather something that moved or stood in the way
+
+using Sparse = Eigen::SparseMatrix<float, Eigen::RowMajor>;
+using Triplet = Eigen::Triplet<float>;
+
+Eigen::Vector3f colorOf(const Candidate& c, const Points& gains)
+{
+  return Eigen::Vector3f(c.color[0], c.color[1], c.color[2]).cwiseProduct(gains.col(c.view));
+}
+
+class Levelling {
+public:
+  Levelling(const PatchMesh& patches, const SharedVertices& vertices, const LevellingColors& colors)
+      : patches_(patches), around_(vertices.around), shares_(vertices.shares), candidates_(colors.candidates),
+        gains_(colors.gains)
+  {
+    out_.begin.assign(1, 0);
+    for (const auto& list : shares_)
+      out_.begin.push_back(out_.begin.back() + static_cast<int>(list.size()));
+  }
+
+  SeamOffsets run(int threads)
+  {
+    const Index n = out_.begin.back();
+    right_ = Eigen::MatrixXf::Zero(n, 3);
+    diagonal_ = Eigen::VectorXf::Constant(n, anchor);
+    for (std::size_t v = 0; v < shares_.size(); ++v)
+      addSteps(v);
+    addSlowness();
+    const Sparse A = matrix();
+    Eigen::MatrixXf channels(n, 3); // columns, so that threads do not write side by side
+    parallelFor(
+        n > 0 ? 3 : 0, threads,
+        [&](Index c) {
+          Eigen::ConjugateGradient<Sparse, Eigen::Lower> solver;
+          solver.setMaxIterations(300);
+          solver.setTolerance(1e-3); // of a grey level, about
+          solver.compute(A);
+          channels.col(c) = solver.solve(right_.col(c));
+        },
+        1);
+    out_.offsets = channels.transpose();
+    return std::move(out_);
+  }
+
+private:
+  /// Of the normal equations the lower half, which is all that the solver reads.
+  Sparse matrix()
+  {
+    for (Index i = 0; i < diagonal_.size(); ++i)
+      entries_.emplace_back(static_cast<int>(i), static_cast<int>(i), diagonal_[i]);
+    Sparse A(diagonal_.size(), diagonal_.size());
+    A.setFromTriplets(entries_.begin(), entries_.end());
+    releaseMemory(entries_);
+    return A;
+  }
+
+  /// weight * (x_i - x_j - difference)^2
+  void addEquation(int i, int j, float weight, const Eigen::Vector3f& difference)
+  {
+    diagonal_[i] += weight;
+    diagonal_[j] += weight;
+    entries_.emplace_back(std::max(i, j), std::min(i, j), -weight);
+    right_.row(i) += weight * difference.transpose();
+    right_.row(j) -= weight * difference.transpose();
+  }
+
+  void addSteps(std::size_t v)
+  {
+    const auto& list = shares_[v];
+    for (std::size_t a = 0; a < list.size(); ++a)
+      for (std::size_t b = a + 1; b < list.size(); ++b) {
+        Eigen::Vector3f step = Eigen::Vector3f::Zero();
+        float count = 0;
+        for (int k = around_.begin[v]; k < around_.begin[v + 1]; ++k) {
+          const Candidate *ca = candidates_.find(around_.list[k], list[a].view),
+                          *cb = candidates_.find(around_.list[k], list[b].view);
+          if (!ca || !cb)
+            continue;
+          step += colorOf(*cb, gains_) - colorOf(*ca, gains_);
+          ++count;
+        }
+        if (!(count > 0))
+          continue;
+        step /= count;
+        const float trust = 1 / (1 + step.squaredNorm() / (implausible * implausible));
+        addEquation(out_.begin[v] + static_cast<int>(a), out_.begin[v] + static_cast<int>(b),
+                    4 * trust * std::min(list[a].weight, list[b].weight), step);
+      }
+  }
+
+  /// Along every edge, for each view that takes part at both ends.
+  void addSlowness()
+  {
+    entries_.reserve(entries_.size() + static_cast<std::size_t>(4 * patches_.size()) + diagonal_.size());
+    for (Index i = 0; i < patches_.size(); ++i)
+      for (int k = 0; k < 3; ++k) {
+        const int p = patches_.faces(k, i), q = patches_.faces((k + 1) % 3, i);
+        const auto &a = shares_[p], &b = shares_[q];
+        for (std::size_t s = 0, t = 0; s < a.size() && t < b.size();) {
+          if (a[s].view == b[t].view)
+            addEquation(out_.begin[p] + static_cast<int>(s), out_.begin[q] + static_cast<int>(t), slowness,
+                        Eigen::Vector3f::Zero());
+          const bool next_a = a[s].view <= b[t].view, next_b = b[t].view <= a[s].view;
+          s += next_a;
+          t += next_b;
+        }
+      }
+  }
+
+  const PatchMesh& patches_;
+  const VertexPatches& around_;
+  const VertexViews& shares_;
+  const Candidates& candidates_;
+  const Points& gains_;
+  SeamOffsets out_;
+  std::vector<Triplet> entries_; ///< below the diagonal
+  Eigen::VectorXf diagonal_;
+  Eigen::MatrixXf right_;
+};
+} // namespace
+
+SeamOffsets levelSeams(const PatchMesh& patches, const SharedVertices& vertices, const LevellingColors& colors,
+                       int threads)
+{
+  return Levelling(patches, vertices, colors).run(threads);
+}
+} // namespace fresco::texture

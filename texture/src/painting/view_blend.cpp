@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "painting/view_blend.h"
+#include "painting/seam_levelling.h"
+#include "views/vertex_views.h"
+#include <algorithm>
+#include <cmath>
+namespace fresco::texture {
+namespace {
+double meanEdge(const PatchMesh& patches)
+{
+  double sum = 0;
+  for (Index i = 0; i < patches.size(); ++i)
+    sum += (patches.vertices.col(patches.faces(0, i)) - patches.vertices.col(patches.faces(1, i))).norm();
+  return sum / static_cast<double>(patches.size());
+}
+
+/// k rounds of averaging spread a step over about sqrt(k) edges to either side.
+int roundsFor(const PatchMesh& patches, double strip)
+{
+  const double edges = strip / std::max(2 * meanEdge(patches), 1e-30);
+  return static_cast<int>(std::clamp(std::round(edges * edges), 0.0, 8.0));
+}
+
+class Blending {
+public:
+  Blending(const PatchMesh& patches, const Candidates& candidates, const Eigen::VectorXi& view, const Points& gains,
+           const BlendOptions& options)
+      : patches_(patches), candidates_(candidates), view_(view), around_(vertexPatches(patches)),
+        shares_(shareVertices(patches, around_, view, roundsFor(patches, options.strip)))
+  {
+    if (options.level)
+      offsets_ = levelSeams(patches, {around_, shares_}, {candidates, gains}, options.threads);
+  }
+
+  Blend run() const
+  {
+    Blend out;
+    out.begin.assign(1, 0);
+    for (Index i = 0; i < patches_.size(); ++i) {
+      if (view_[i] >= 0)
+        addPatch(i, out.list);
+      out.begin.push_back(static_cast<Index>(out.list.size()));
+    }
+    return out;
+  }
+
+private:
+  void addPatch(Index patch, std::vector<BlendShare>& out) const
+  {
+    std::vector<int> views{view_[patch]};
+    for (int k = 0; k < 3; ++k)
+      for (const VertexShare& s : shares_[patches_.faces(k, patch)])
+        if (std::find(views.begin(), views.end(), s.view) == views.end() && candidates_.find(patch, s.view))
+          views.push_back(s.view);
+    const std::size_t first = out.size();
+    for (const int view : views)
+      out.push_back(shareOf(patch, view));
+    Eigen::Vector3f sum = Eigen::Vector3f::Zero();
+    for (std::size_t s = first; s < out.size(); ++s)
+      sum += out[s].weights;
+    for (int k = 0; k < 3; ++k)
+      if (!(sum[k] > 0))
+        out[first].weights[k] = sum[k] = 1;
+    for (std::size_t s = first; s < out.size(); ++s)
+      out[s].weights = out[s].weights.cwiseQuotient(sum);
+  }
+
+  BlendShare shareOf(Index patch, int view) const
+  {
+    BlendShare share{view, Eigen::Vector3f::Zero(), Eigen::Matrix3f::Zero()};
+    bool known[3] = {false, false, false};
+    Eigen::Vector3f mean = Eigen::Vector3f::Zero();
+    float count = 0;
+    for (int k = 0; k < 3; ++k) {
+      const int v = patches_.faces(k, patch);
+      for (std::size_t s = 0; s < shares_[v].size(); ++s)
+        if (shares_[v][s].view == view) {
+          share.weights[k] = shares_[v][s].weight;
+          if (offsets_.offsets.cols() > 0) {
+            share.offsets.col(k) = offsets_.offsets.col(offsets_.begin[v] + static_cast<int>(s));
+            mean += share.offsets.col(k);
+            known[k] = true;
+            ++count;
+          }
+        }
+    }
+    for (int k = 0; k < 3; ++k)
+      if (!known[k] && count > 0)
+        share.offsets.col(k) = mean / count;
+    return share;
+  }
+
+  const PatchMesh& patches_;
+  const Candidates& candidates_;
+  const Eigen::VectorXi& view_;
+  VertexPatches around_;
+  VertexViews shares_;
+  SeamOffsets offsets_;
+};
+} // namespace
+
+Blend blendViews(const PatchMesh& patches, const Candidates& candidates, const Eigen::VectorXi& view,
+                 const Points& gains, const BlendOptions& options)
+{
+  return Blending(patches, candidates, view, gains, options).run();
+}
+} // namespace fresco::texture

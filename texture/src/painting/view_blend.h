@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include "views/visibility.h"
+namespace fresco::texture {
+/// A view that takes part in a patch's colour.
+struct BlendShare {
+  int view;
+  Eigen::Vector3f weights; ///< at the patch's corners, >= 0; those of all shares of a patch sum to 1 at each corner
+  Eigen::Matrix3f offsets; ///< at the corners (columns), added to the view's colour
+};
+
+/// Shares of every patch; none for unseen patches.
+struct Blend {
+  std::vector<Index> begin; ///< P + 1, into `list`
+  std::vector<BlendShare> list;
+
+  Index count(Index patch) const { return begin[patch + 1] - begin[patch]; }
+};
+
+struct BlendOptions {
+  double strip = 0;  ///< mesh units over which one view passes into the next
+  bool level = true; ///< take away the step between views that is left at their seam, and spread what that changes
+  int threads = 0;
+};
+
+/// What the colours of a patch are made of, near seams from both views.
+/// @param view  P, -1 = unseen
+/// @param gains 3xV
+Blend blendViews(const PatchMesh& patches, const Candidates& candidates, const Eigen::VectorXi& view,
+                 const Points& gains, const BlendOptions& options);
+} // namespace fresco::texture

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "views/exposure.h"
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+namespace fresco::texture {
+namespace {
+constexpr Index most_patches = 40000;
+constexpr std::size_t most_samples = 1000, least_samples = 12; // per pair of views
+constexpr int darkest = 12, brightest = 240;                   // grey levels: beyond, a value says little of the light
+constexpr float trusted = 0.2f;                                // of the best quality, for a view to be heard
+constexpr double outlier = 0.03;                               // of a pair's logarithm: errors beyond count less
+constexpr double anchor = 1e-3;                                // weight that holds views without partners at 1
+
+struct Pair {
+  std::vector<Eigen::Vector3f> ratios; ///< logarithms of first over second
+};
+using Pairs = std::map<std::pair<int, int>, Pair>;
+
+bool isClear(const Candidate& c)
+{
+  return std::all_of(c.color.begin(), c.color.end(), [](int v) { return v >= darkest && v <= brightest; });
+}
+
+Eigen::Vector3f logColor(const Candidate& c)
+{
+  return Eigen::Vector3f(c.color[0], c.color[1], c.color[2]).array().log();
+}
+
+void addPatch(const Candidates& candidates, Index patch, Pairs& pairs)
+{
+  const Candidate* list = candidates.of(patch);
+  float best = 0;
+  for (Index i = 0; i < candidates.count(patch); ++i)
+    best = std::max(best, list[i].quality());
+  for (Index i = 0; i < candidates.count(patch); ++i) {
+    if (list[i].quality() < trusted * best || !isClear(list[i]))
+      continue;
+    for (Index j = i + 1; j < candidates.count(patch); ++j)
+      if (list[j].quality() >= trusted * best && isClear(list[j])) {
+        auto& ratios = pairs[{list[i].view, list[j].view}].ratios;
+        if (ratios.size() < most_samples)
+          ratios.push_back(logColor(list[i]) - logColor(list[j]));
+      }
+  }
+}
+
+/// From patches spread over the whole mesh.
+Pairs collectPairs(const Candidates& candidates)
+{
+  const Index patches = static_cast<Index>(candidates.begin.size()) - 1;
+  const Index taken = std::min(patches, most_patches);
+  Pairs pairs;
+  Index step = static_cast<Index>(0.618 * static_cast<double>(taken)) | 1;
+  while (taken > 1 && std::gcd(step, taken) != 1)
+    step += 2;
+  for (Index k = 0, at = 0; k < taken; ++k, at = (at + step) % taken)
+    addPatch(candidates, at * patches / taken, pairs);
+  return pairs;
+}
+
+float medianOf(const std::vector<Eigen::Vector3f>& values, int channel)
+{
+  std::vector<float> numbers;
+  for (const Eigen::Vector3f& v : values)
+    numbers.push_back(v[channel]);
+  std::nth_element(numbers.begin(), numbers.begin() + static_cast<std::ptrdiff_t>(numbers.size() / 2), numbers.end());
+  return numbers[numbers.size() / 2];
+}
+
+struct Equation {
+  int first, second;
+  double difference, weight;
+};
+
+Eigen::VectorXd solve(const std::vector<Equation>& equations, Index views)
+{
+  constexpr int rounds = 10;
+  Eigen::VectorXd x = Eigen::VectorXd::Zero(views);
+  for (int round = 0; round < rounds; ++round) {
+    Eigen::MatrixXd A = anchor * Eigen::MatrixXd::Identity(views, views);
+    Eigen::VectorXd b = Eigen::VectorXd::Zero(views);
+    for (const Equation& e : equations) {
+      const double error = x[e.first] - x[e.second] - e.difference;
+      const double w = round == 0 ? e.weight : e.weight / (1 + error * error / (outlier * outlier));
+      A(e.first, e.first) += w;
+      A(e.second, e.second) += w;
+      A(e.first, e.second) -= w;
+      A(e.second, e.first) -= w;
+      b[e.first] += w * e.difference;
+      b[e.second] -= w * e.difference;
+    }
+    x = A.ldlt().solve(b);
+  }
+  return x;
+}
+} // namespace
+
+Points solveGains(const Candidates& candidates, Index views)
+{
+  const Pairs pairs = collectPairs(candidates);
+  Points gains = Points::Ones(3, views);
+  for (int c = 0; c < 3 && views > 0; ++c) {
+    std::vector<Equation> equations;
+    std::vector<char> known(static_cast<std::size_t>(views), 0);
+    for (const auto& [key, pair] : pairs)
+      if (pair.ratios.size() >= least_samples) {
+        equations.push_back(
+            {key.first, key.second, medianOf(pair.ratios, c), std::sqrt(static_cast<double>(pair.ratios.size()))});
+        known[key.first] = known[key.second] = 1;
+      }
+    const double count = static_cast<double>(std::count(known.begin(), known.end(), 1));
+    if (!(count > 0))
+      break;
+    const Eigen::VectorXd x = solve(equations, views);
+    double mean = 0;
+    for (Index v = 0; v < views; ++v)
+      mean += known[v] ? x[v] / count : 0;
+    for (Index v = 0; v < views; ++v)
+      if (known[v])
+        gains(c, v) = static_cast<float>(std::exp(mean - x[v]));
+  }
+  return gains;
+}
+} // namespace fresco::texture

@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "views/patch_mesh.h"
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cstdint>
+#include <fresco/core/parallel.h>
+#include <unordered_map>
+namespace fresco::texture {
+namespace {
+using EdgeKey = std::uint64_t;
+using Midpoints = std::unordered_map<EdgeKey, int>;
+
+EdgeKey edgeKey(int a, int b)
+{
+  return (static_cast<EdgeKey>(std::min(a, b)) << 32) | static_cast<std::uint32_t>(std::max(a, b));
+}
+
+struct Patches {
+  std::vector<Eigen::Vector3f> vertices;
+  std::vector<Eigen::Vector3f> colors; ///< none, or one per vertex
+  std::vector<Eigen::Vector3i> faces;
+  std::vector<int> parent;
+};
+
+/// Middles of the edges for which want(patch, corner at which the edge begins) holds.
+template <typename Want>
+Midpoints cutEdges(Patches& patches, const Want& want)
+{
+  Midpoints middle;
+  for (std::size_t i = 0; i < patches.faces.size(); ++i)
+    for (int k = 0; k < 3; ++k) {
+      const int a = patches.faces[i][k], b = patches.faces[i][(k + 1) % 3];
+      if (!want(i, k))
+        continue;
+      if (!middle.emplace(edgeKey(a, b), static_cast<int>(patches.vertices.size())).second)
+        continue;
+      patches.vertices.push_back(0.5f * (patches.vertices[a] + patches.vertices[b]));
+      if (!patches.colors.empty())
+        patches.colors.push_back(0.5f * (patches.colors[a] + patches.colors[b]));
+    }
+  return middle;
+}
+
+/// Parts of a face with corners f whose edges k -> k+1 are cut at m[k] (-1 = not cut).
+void appendParts(const Eigen::Vector3i& f, const Eigen::Vector3i& m, std::vector<Eigen::Vector3i>& out)
+{
+  const int cuts = static_cast<int>((m.array() >= 0).count());
+  if (cuts == 0)
+    out.push_back(f);
+  else if (cuts == 3) {
+    for (int k = 0; k < 3; ++k)
+      out.emplace_back(f[k], m[k], m[(k + 2) % 3]);
+    out.push_back(m);
+  } else if (cuts == 1) {
+    const int k = m[0] >= 0 ? 0 : m[1] >= 0 ? 1 : 2;
+    out.emplace_back(f[k], m[k], f[(k + 2) % 3]);
+    out.emplace_back(m[k], f[(k + 1) % 3], f[(k + 2) % 3]);
+  } else {
+    const int k = m[0] < 0 ? 0 : m[1] < 0 ? 1 : 2; // the edge that stays
+    const int a = f[k], b = f[(k + 1) % 3], c = f[(k + 2) % 3], bc = m[(k + 1) % 3], ca = m[(k + 2) % 3];
+    out.emplace_back(a, b, bc);
+    out.emplace_back(a, bc, ca);
+    out.emplace_back(ca, bc, c);
+  }
+}
+
+/// Cuts every patch at the middles that its edges have.
+void cutAt(const Midpoints& middle, Patches& patches)
+{
+  std::vector<Eigen::Vector3i> faces;
+  std::vector<int> parent;
+  for (std::size_t i = 0; i < patches.faces.size(); ++i) {
+    const Eigen::Vector3i f = patches.faces[i];
+    Eigen::Vector3i m(-1, -1, -1);
+    for (int k = 0; k < 3; ++k)
+      if (const auto at = middle.find(edgeKey(f[k], f[(k + 1) % 3])); at != middle.end())
+        m[k] = at->second;
+    appendParts(f, m, faces);
+    parent.resize(faces.size(), patches.parent[i]);
+  }
+  patches.faces = std::move(faces);
+  patches.parent = std::move(parent);
+}
+
+/// @return whether anything was cut
+bool cutLongEdges(Patches& patches, float longest_edge)
+{
+  const Midpoints middle = cutEdges(patches, [&](std::size_t i, int k) {
+    const Eigen::Vector3i& f = patches.faces[i];
+    return (patches.vertices[f[k]] - patches.vertices[f[(k + 1) % 3]]).norm() > longest_edge;
+  });
+  if (!middle.empty())
+    cutAt(middle, patches);
+  return !middle.empty();
+}
+
+Patches copyOf(const TriangleMesh& mesh)
+{
+  Patches patches;
+  patches.vertices.resize(mesh.vertexCount());
+  for (Index v = 0; v < mesh.vertexCount(); ++v)
+    patches.vertices[v] = mesh.vertices.col(v);
+  for (Index v = 0; v < mesh.colors.cols(); ++v)
+    patches.colors.emplace_back(mesh.colors.col(v).cast<float>());
+  for (Index f = 0; f < mesh.faceCount(); ++f) {
+    patches.faces.emplace_back(mesh.faces.col(f));
+    patches.parent.push_back(static_cast<int>(f));
+  }
+  return patches;
+}
+Patches copyOf(const PatchMesh& mesh)
+{
+  Patches patches;
+  for (Index v = 0; v < mesh.vertices.cols(); ++v)
+    patches.vertices.emplace_back(mesh.vertices.col(v));
+  for (Index v = 0; v < mesh.colors.cols(); ++v)
+    patches.colors.emplace_back(mesh.colors.col(v));
+  for (Index i = 0; i < mesh.size(); ++i)
+    patches.faces.emplace_back(mesh.faces.col(i));
+  patches.parent.assign(mesh.parent.data(), mesh.parent.data() + mesh.size());
+  return patches;
+}
+
+PatchMesh finish(const Patches& patches, int threads)
+{
+  PatchMesh out;
+  const Index n = static_cast<Index>(patches.faces.size());
+  const Index corners = static_cast<Index>(patches.vertices.size());
+  out.vertices = Eigen::Map<const Points>(patches.vertices.front().data(), 3, corners);
+  if (!patches.colors.empty())
+    out.colors = Eigen::Map<const Points>(patches.colors.front().data(), 3, corners);
+  out.faces = Eigen::Map<const Faces>(patches.faces.front().data(), 3, n);
+  out.parent = Eigen::Map<const Eigen::VectorXi>(patches.parent.data(), n);
+  out.neighbors = faceNeighbors(out.faces);
+  out.normals.resize(3, n);
+  out.areas.resize(n);
+  parallelFor(n, threads, [&](Index i) {
+    const Eigen::Vector3i f = out.faces.col(i);
+    const Eigen::Vector3d a = out.vertices.col(f[0]).cast<double>(), b = out.vertices.col(f[1]).cast<double>(),
+                          c = out.vertices.col(f[2]).cast<double>(), cross = (b - a).cross(c - a);
+    const double length = cross.norm();
+    out.areas[i] = static_cast<float>(0.5 * length);
+    out.normals.col(i) = (length > 0 ? Eigen::Vector3d(cross / length) : Eigen::Vector3d::Zero()).cast<float>();
+  });
+  return out;
+}
+} // namespace
+
+PatchMesh cutFaces(const TriangleMesh& mesh, float longest_edge, int threads)
+{
+  constexpr int most_rounds = 16; // each halves the longest edge
+  Patches patches = copyOf(mesh);
+  for (int round = 0; round < most_rounds && cutLongEdges(patches, longest_edge); ++round)
+    ;
+  return finish(patches, threads);
+}
+
+PatchMesh cutPatches(const PatchMesh& patches, const std::vector<char>& marked, int threads)
+{
+  Patches parts = copyOf(patches);
+  const Midpoints middle = cutEdges(parts, [&](std::size_t i, int) { return marked[i] != 0; });
+  if (middle.empty())
+    return patches;
+  cutAt(middle, parts);
+  return finish(parts, threads);
+}
+
+Eigen::Matrix3Xi faceNeighbors(const Faces& faces)
+{
+  struct Side {
+    EdgeKey key;
+    int slot; ///< 3 * face + corner
+  };
+  std::vector<Side> sides;
+  sides.reserve(static_cast<std::size_t>(faces.size()));
+  for (Index f = 0; f < faces.cols(); ++f)
+    for (int k = 0; k < 3; ++k)
+      if (faces(k, f) != faces((k + 1) % 3, f))
+        sides.push_back({edgeKey(faces(k, f), faces((k + 1) % 3, f)), static_cast<int>(3 * f + k)});
+  std::sort(sides.begin(), sides.end(),
+            [](const Side& a, const Side& b) { return a.key != b.key ? a.key < b.key : a.slot < b.slot; });
+  Eigen::Matrix3Xi neighbors = Eigen::Matrix3Xi::Constant(3, faces.cols(), -1);
+  for (std::size_t i = 0, end = 0; i < sides.size(); i = end) {
+    for (end = i; end < sides.size() && sides[end].key == sides[i].key; ++end)
+      ;
+    if (end - i != 2)
+      continue;
+    neighbors.data()[sides[i].slot] = sides[i + 1].slot / 3;
+    neighbors.data()[sides[i + 1].slot] = sides[i].slot / 3;
+  }
+  return neighbors;
+}
+} // namespace fresco::texture

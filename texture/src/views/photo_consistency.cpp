@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "views/photo_consistency.h"
+#include <algorithm>
+#include <fresco/core/parallel.h>
+namespace fresco::texture {
+namespace {
+constexpr Index least_views = 3;  // for a majority
+constexpr float trusted = 0.1f;   // of the best quality, for a view to have a vote
+constexpr float one_octave = 20;  // grey levels of difference that cost an octave
+constexpr float most_octaves = 5; // by difference
+constexpr float overexposed_octaves = 1;
+constexpr int overexposed = 252; // grey level
+constexpr int smoothing_rounds =
+    2; // oddness is a matter of regions; single patches differ by small errors of alignment
+
+Eigen::Vector3f colorOf(const Candidate& c, const Points& gains)
+{
+  return Eigen::Vector3f(c.color[0], c.color[1], c.color[2]).cwiseProduct(gains.col(c.view));
+}
+
+/// Median per channel over the views with a vote; false if they are too few.
+bool consensus(const Candidates& candidates, Index patch, const Points& gains, Eigen::Vector3f& color)
+{
+  const Candidate* list = candidates.of(patch);
+  const Index n = candidates.count(patch);
+  float best = 0;
+  for (Index i = 0; i < n; ++i)
+    best = std::max(best, list[i].quality());
+  std::vector<float> values[3];
+  for (Index i = 0; i < n; ++i)
+    if (list[i].quality() >= trusted * best)
+      for (int c = 0; c < 3; ++c)
+        values[c].push_back(colorOf(list[i], gains)[c]);
+  if (static_cast<Index>(values[0].size()) < least_views)
+    return false;
+  for (int c = 0; c < 3; ++c) {
+    const auto middle = values[c].begin() + static_cast<std::ptrdiff_t>(values[c].size() / 2);
+    std::nth_element(values[c].begin(), middle, values[c].end());
+    color[c] = *middle;
+  }
+  return true;
+}
+
+/// Mean with the same view's values on neighbouring patches.
+std::vector<float> smoothed(const PatchMesh& patches, const Candidates& candidates, const std::vector<float>& value,
+                            int threads)
+{
+  std::vector<float> out(value.size());
+  parallelFor(patches.size(), threads, [&](Index i) {
+    for (Index c = candidates.begin[i]; c < candidates.begin[i + 1]; ++c) {
+      float sum = value[c], count = 1;
+      for (int side = 0; side < 3; ++side)
+        if (const int other = patches.neighbors(side, i); other >= 0)
+          if (const Candidate* same = candidates.find(other, candidates.list[c].view)) {
+            sum += value[same - candidates.list.data()];
+            ++count;
+          }
+      out[c] = sum / count;
+    }
+  });
+  return out;
+}
+} // namespace
+
+std::vector<float> oddityCosts(const PatchMesh& patches, const Candidates& candidates, const Points& gains, int threads)
+{
+  std::vector<float> difference(candidates.list.size(), 0.f);
+  parallelFor(patches.size(), threads, [&](Index i) {
+    Eigen::Vector3f usual;
+    if (!consensus(candidates, i, gains, usual))
+      return;
+    for (Index c = candidates.begin[i]; c < candidates.begin[i + 1]; ++c)
+      difference[c] = (colorOf(candidates.list[c], gains) - usual).cwiseAbs().maxCoeff();
+  });
+  for (int round = 0; round < smoothing_rounds; ++round)
+    difference = smoothed(patches, candidates, difference, threads);
+  std::vector<float> cost(difference.size());
+  parallelFor(static_cast<Index>(cost.size()), threads, [&](Index c) {
+    const auto& color = candidates.list[c].color;
+    const float octaves = difference[c] / one_octave;
+    cost[c] = std::min(octaves * octaves, most_octaves) +
+              (*std::max_element(color.begin(), color.end()) >= overexposed ? overexposed_octaves : 0.f);
+  });
+  return cost;
+}
+} // namespace fresco::texture

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include <fresco/texture/core/texture_reconstruction.h>
+#include <list>
+#include <memory>
+#include <mutex>
+namespace fresco::texture {
+/// Photographs as 8-bit RGB, read when first asked for; the ones asked for last are kept within a limit of memory. May
+/// be used by several threads at a time.
+class PhotoStore {
+public:
+  PhotoStore(const std::vector<TextureView>& views, std::size_t most_bytes);
+
+  /// @throws std::runtime_error naming the photograph if it cannot be read or is of another size than its camera
+  std::shared_ptr<const Image> get(Index view);
+
+  std::size_t mostBytes() const { return most_bytes_; }
+  /// Keeps so much less while something else made of the photographs needs memory.
+  void setAside(std::size_t bytes);
+  /// Forgets all photographs unless every one is kept: the next pass in the same order would find none in time.
+  void dropUnlessAll();
+
+private:
+  void drop();
+  void dropOldest();
+  std::shared_ptr<const Image> load(Index view) const;
+  void keep(Index view, std::shared_ptr<const Image> image);
+
+  struct Slot {
+    std::shared_ptr<const Image> image;
+    std::list<Index>::iterator recent;
+  };
+  const std::vector<TextureView>& views_;
+  std::size_t most_bytes_, aside_ = 0, bytes_ = 0;
+  std::vector<Slot> slots_;
+  std::list<Index> recent_; ///< kept views, the one asked for last in front
+  std::mutex mutex_;
+};
+
+/// Colour at a place in pixels, 0..255, by Catmull-Rom interpolation; places outside are moved to the border.
+Eigen::Vector3f samplePhoto(const Image& photo, float x, float y);
+
+/// The same by bilinear interpolation.
+Eigen::Vector3f samplePhotoQuickly(const Image& photo, float x, float y);
+} // namespace fresco::texture

@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "views/visibility.h"
+#include "views/patch_visibility.h"
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <fresco/core/parallel.h>
+#include <limits>
+namespace fresco::texture {
+namespace {
+constexpr float outline_doubt = 5; // octaves, near the outline of what stands before: taken where nothing else shows it
+constexpr float rim_doubt = 2;     // octaves, at its own outline, where pixels mix with what lies behind
+constexpr float beside_doubt = 1;  // octaves, where a pixel next to it shows something a little nearer
+constexpr float rim_pixels = 2;    // reach of cubic interpolation
+constexpr float outline_step = 3.f; // an outline: depth jumps by this many tolerances
+
+struct Seen {
+  int patch;
+  std::array<std::uint8_t, 3> color;
+  std::uint8_t doubt;
+  float resolution;
+};
+
+/// @param step length by which depth jumps at an outline
+bool isNearOutline(const Footprint& patch, const DepthMap& nearest, float radius, float step)
+{
+  const Eigen::Vector2f center = patch.corners.rowwise().mean();
+  const int x = std::clamp(static_cast<int>(center.x()), 0, nearest.width - 1),
+            y = std::clamp(static_cast<int>(center.y()), 0, nearest.height - 1);
+  const float slope = patch.inverse_depth.head<2>().norm(), depth = patch.farthest;
+  return nearest.at(x, y) < depth - step - depth * depth * slope * (1.5f * radius + 1);
+}
+
+/// Whether the surface ends near one of the patch's corners or its middle.
+bool isAtRim(const Footprint& patch, const DepthMap& farthest, float radius, float step)
+{
+  const float slope = patch.inverse_depth.head<2>().norm(), depth = patch.farthest;
+  const float beyond = depth + step + depth * depth * slope * (1.5f * radius + 1);
+  for (int k = 0; k < 4; ++k) {
+    const Eigen::Vector2f p =
+        k < 3 ? Eigen::Vector2f(patch.corners.col(k)) : Eigen::Vector2f(patch.corners.rowwise().mean());
+    const int x = std::clamp(static_cast<int>(p.x()), 0, farthest.width - 1),
+              y = std::clamp(static_cast<int>(p.y()), 0, farthest.height - 1);
+    if (farthest.at(x, y) > beyond)
+      return true;
+  }
+  return false;
+}
+
+/// Octaves, 0 inside the image, rising to 1 at its border: there lenses are worst and a better view is likely.
+float borderDoubt(const CameraModel& camera, const Eigen::Vector2f& pixel)
+{
+  const float away = std::min({pixel.x(), pixel.y(), camera.width - pixel.x(), camera.height - pixel.y()});
+  return 1 - std::clamp(away / (0.05f * std::min(camera.width, camera.height)), 0.f, 1.f);
+}
+
+class ViewTest {
+public:
+  ViewTest(const PatchMesh& patches, const Projector& view, const SightLimits& limits)
+      : patches_(patches), view_(view), limits_(limits), outline_(outline_step * limits.tolerance),
+        pixels_(3, patches.vertices.cols())
+  {
+    for (Index v = 0; v < pixels_.cols(); ++v)
+      pixels_.col(v) = pixelWithin(view, patches.vertices.col(v));
+  }
+
+  std::vector<Seen> run(const RayScene& scene, const Image& photo) const
+  {
+    std::vector<Seen> seen;
+    if (!(pixels_.row(2).array() > 0).any())
+      return seen;
+    const DepthMap map = scene.depthMap(view_, most_cells);
+    const float radius = limits_.margin / map.step;
+    const float rim = rim_pixels / map.step;
+    const DepthMap nearest = nearestWithin(map, static_cast<int>(std::ceil(radius))),
+                   farthest = farthestWithin(map, static_cast<int>(std::ceil(rim)));
+    for (Index i = 0; i < patches_.size(); ++i)
+      if (const float cosine = cosineOf(i); cosine >= least_cosine) {
+        const Footprint patch = footprintOf(corners(i), map.step);
+        const Sight sight = sightOf(patch, map, limits_.tolerance);
+        if (sight == Sight::hidden)
+          continue;
+        float doubt = borderDoubt(view_.camera(), patch.corners.rowwise().mean() * map.step);
+        if (sight == Sight::beside)
+          doubt += limits_.doubt * beside_doubt;
+        if (isNearOutline(patch, nearest, radius, outline_))
+          doubt += limits_.doubt * outline_doubt;
+        else if (isAtRim(patch, farthest, rim, outline_))
+          doubt += limits_.doubt * rim_doubt;
+        const float resolution = view_.focal() * cosine / (0.5f * (patch.nearest + patch.farthest));
+        seen.push_back({static_cast<int>(i), meanColor(photo, i), static_cast<std::uint8_t>(16 * doubt), resolution});
+      }
+    return seen;
+  }
+
+private:
+  Eigen::Matrix3f corners(Index i) const
+  {
+    Eigen::Matrix3f out;
+    for (int k = 0; k < 3; ++k)
+      out.col(k) = pixels_.col(patches_.faces(k, i));
+    return out;
+  }
+
+  /// Cosine between the patch's normal and the direction to the camera; 0 where a corner is out of the image.
+  float cosineOf(Index i) const
+  {
+    for (int k = 0; k < 3; ++k)
+      if (!(pixels_(2, patches_.faces(k, i)) > 0))
+        return 0;
+    return cosineTowards(patches_, i, view_);
+  }
+
+  /// From the middle and halfway to the corners.
+  std::array<std::uint8_t, 3> meanColor(const Image& photo, Index i) const
+  {
+    const Eigen::Matrix3f at = corners(i);
+    const Eigen::Vector2f middle = at.topRows<2>().rowwise().mean();
+    Eigen::Vector3f sum = samplePhotoQuickly(photo, middle.x(), middle.y());
+    for (int k = 0; k < 3; ++k) {
+      const Eigen::Vector2f p = 0.5f * (middle + at.col(k).head<2>());
+      sum += samplePhotoQuickly(photo, p.x(), p.y());
+    }
+    const Eigen::Vector3f mean = sum / 4 + Eigen::Vector3f::Constant(0.5f);
+    return {static_cast<std::uint8_t>(mean[0]), static_cast<std::uint8_t>(mean[1]), static_cast<std::uint8_t>(mean[2])};
+  }
+
+  const PatchMesh& patches_;
+  const Projector& view_;
+  SightLimits limits_;
+  float outline_;
+  Points pixels_; ///< x, y, depth per vertex; depth 0 where out of the image
+};
+} // namespace
+
+CandidateTable::CandidateTable(Index patches, Index most) : most_(most), counts_(patches, 0), slots_(patches * most) {}
+
+Index CandidateTable::mostPerPatch(Index patches, Index views)
+{
+  constexpr Index most = 16'000'000; // of 12 bytes, in all
+  constexpr Index least = 8;         // per patch, however many patches there are
+  return std::clamp(most / std::max<Index>(patches, 1), least, std::max(views, least));
+}
+
+void CandidateTable::add(Index patch, const Candidate& candidate)
+{
+  Candidate *first = slots_.data() + patch * most_, *last = first + counts_[patch];
+  if (counts_[patch] == most_) {
+    Candidate* worst = first; // of equal ones the last
+    for (Candidate* c = first + 1; c < last; ++c)
+      if (!(c->quality() > worst->quality()))
+        worst = c;
+    if (!(candidate.quality() > worst->quality()))
+      return;
+    std::move(worst + 1, last, worst);
+    --last;
+  } else {
+    ++counts_[patch];
+  }
+  *last = candidate;
+}
+
+Candidates CandidateTable::take()
+{
+  Candidates out;
+  out.begin.assign(counts_.size() + 1, 0);
+  for (std::size_t i = 0; i < counts_.size(); ++i) {
+    const Index from = static_cast<Index>(i) * most_;
+    for (int k = 0; k < counts_[i]; ++k)
+      slots_[out.begin[i] + k] = slots_[from + k]; // never to behind where it was
+    out.begin[i + 1] = out.begin[i] + counts_[i];
+  }
+  slots_.resize(out.begin.back());
+  slots_.shrink_to_fit();
+  out.list = std::move(slots_);
+  return out;
+}
+
+const Candidate* Candidates::find(Index patch, int view) const
+{
+  const Candidate *first = of(patch), *last = first + count(patch);
+  const Candidate* at = std::lower_bound(first, last, view, [](const Candidate& c, int v) { return c.view < v; });
+  return at != last && at->view == view ? at : nullptr;
+}
+
+Candidates findCandidates(const PatchMesh& patches, const RayScene& scene, const ViewList& views,
+                          const TextureOptions& options, const Progress& progress)
+{
+  constexpr Index batch = 16; // views between two reports
+  const Index n = static_cast<Index>(views.used.size());
+  CandidateTable table(patches.size(), CandidateTable::mostPerPatch(patches.size(), n));
+  std::vector<std::vector<Seen>> seen(batch);
+  const SightLimits limits = limitsFor(patches, views, options);
+  for (Index first = 0; first < n; first += batch) {
+    report(progress, "visibility", static_cast<double>(first) / static_cast<double>(n));
+    const Index count = std::min(batch, n - first);
+    parallelFor(
+        count, options.threads,
+        [&](Index i) {
+          seen[i].clear();
+          if (views.used[first + i])
+            seen[i] = ViewTest(patches, views.projectors[first + i], limits).run(scene, *views.photos.get(first + i));
+        },
+        1);
+    for (Index i = 0; i < count; ++i)
+      for (const Seen& s : seen[i])
+        table.add(s.patch, {static_cast<int>(first + i), s.color, s.doubt, s.resolution});
+  }
+  views.photos.dropUnlessAll();
+  return table.take();
+}
+} // namespace fresco::texture

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include "cameras/projector.h"
+#include "views/patch_mesh.h"
+#include "views/photo_store.h"
+#include "views/ray_scene.h"
+#include <array>
+#include <cmath>
+#include <fresco/core/progress.h>
+#include <fresco/texture/core/texture_reconstruction.h>
+namespace fresco::texture {
+/// A view that shows a patch.
+struct Candidate {
+  int view;
+  std::array<std::uint8_t, 3> color; ///< mean over the patch in the photograph
+  std::uint8_t doubt; ///< octaves / 16 by which the view is to be trusted less: outlines, the image's border
+  float resolution;   ///< pixels per mesh unit in the direction seen most obliquely
+
+  float quality() const { return resolution * std::exp2(doubt * (-1 / 16.f)); }
+};
+
+/// For each patch the views that show the whole of it, by view number.
+struct Candidates {
+  std::vector<Index> begin; ///< P + 1, into `list`
+  std::vector<Candidate> list;
+
+  Index count(Index patch) const { return begin[patch + 1] - begin[patch]; }
+  const Candidate* of(Index patch) const { return list.data() + begin[patch]; }
+  /// The candidate of that view, or null.
+  const Candidate* find(Index patch, int view) const;
+};
+
+/// Collects candidates view by view and keeps the best ones of each patch.
+class CandidateTable {
+public:
+  /// @param most candidates kept per patch, > 0
+  CandidateTable(Index patches, Index most);
+  /// How many are to be kept: all, unless patches and views are so many that this would need much memory.
+  static Index mostPerPatch(Index patches, Index views);
+  /// @param candidate of a later view than any that was added for this patch; of equal ones the earlier view stays
+  void add(Index patch, const Candidate& candidate);
+  /// Everything that was kept; the table is of no use afterwards.
+  Candidates take();
+
+private:
+  Index most_;
+  std::vector<int> counts_;      ///< per patch
+  std::vector<Candidate> slots_; ///< most_ per patch
+};
+
+struct ViewList {
+  const std::vector<Projector>& projectors;
+  PhotoStore& photos;
+  std::vector<char> used; ///< views that may become candidates
+  double doubt = 1; ///< how far outlines are to be distrusted: 1 = by some pixels and centimetres, 0 = all is exact
+};
+
+/// A patch counts as seen by a view where all of it lies in the image, turned towards the camera, and no ray through
+/// the pixels that it covers ends clearly before it.
+Candidates findCandidates(const PatchMesh& patches, const RayScene& scene, const ViewList& views,
+                          const TextureOptions& options, const Progress& progress);
+} // namespace fresco::texture

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "rendering/canvas.h"
+#include <algorithm>
+#include <cmath>
+#include <fresco/core/require.h>
+#include <stdexcept>
+#include <vtkCamera.h>
+#include <vtkLight.h>
+#include <vtkUnsignedCharArray.h>
+namespace fresco::rendering {
+namespace {
+/// Distant white light; where it comes from in camera axes (x right, y up, z to the eye).
+struct StudioLight {
+  double from[3];
+  double intensity;
+};
+
+// The key light makes shapes readable, the others keep its shadow side and ceilings from going black, and a lamp at the
+// eye lights every face that is seen, also those of a room around the eye. A face seen and lit head-on has about its
+// full colour.
+constexpr StudioLight studio[] = {{{-0.45, 0.75, 0.85}, 0.6}, {{0.9, 0.05, 0.5}, 0.34}, {{0.15, -0.9, 0.35}, 0.28}};
+constexpr double eye_lamp = 0.32;
+
+std::mutex& graphicsMutex()
+{
+  static std::mutex mutex;
+  return mutex;
+}
+
+/// Mean of blocks of `factor` x `factor` pixels of `rgba` (rows from below, colours multiplied by alpha), rows from the
+/// top, colours divided by alpha.
+Image resolve(const unsigned char* rgba, int width, int height, int factor)
+{
+  Image image(width, height, 4);
+  const std::size_t row = static_cast<std::size_t>(width) * static_cast<std::size_t>(factor) * 4;
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x) {
+      int sum[4] = {0, 0, 0, 0};
+      for (int j = 0; j < factor; ++j)
+        for (int i = 0; i < factor; ++i)
+          for (int c = 0; c < 4; ++c)
+            sum[c] += rgba[static_cast<std::size_t>((height - 1 - y) * factor + j) * row +
+                           static_cast<std::size_t>((x * factor + i) * 4 + c)];
+      const int samples = factor * factor, alpha = sum[3];
+      for (int c = 0; c < 3; ++c)
+        image.pixel(x, y)[c] =
+            static_cast<std::uint8_t>(alpha > 0 ? std::min(255, (sum[c] * 255 + alpha / 2) / alpha) : 0);
+      image.pixel(x, y)[3] = static_cast<std::uint8_t>((alpha + samples / 2) / samples);
+    }
+  return image;
+}
+
+void setCamera(vtkCamera& camera, const Viewpoint& view, const Eigen::Vector3d& origin)
+{
+  const Eigen::Vector3d eye = view.eye - origin, look = view.look - origin;
+  const Eigen::Vector3d up = cameraAxes(view.eye - view.look, view.up).col(1);
+  camera.SetPosition(eye.data());
+  camera.SetFocalPoint(look.data());
+  camera.SetViewUp(up.data());
+  camera.SetViewAngle(view.angle);
+}
+} // namespace
+
+Canvas::Canvas(int width, int height, int oversampling)
+    : lock_(graphicsMutex()), width_(width), height_(height), oversampling_(oversampling)
+{
+  require(width >= 1 && height >= 1, "picture: size ", width, "x", height, " is not positive");
+  require(oversampling >= 1 && oversampling <= 4, "picture: oversampling ", oversampling, " is not in 1..4");
+  if (window_.samples() < 2)
+    oversampling_ = std::max(oversampling, 2);
+  const int largest = window_.largestPicture() / oversampling_;
+  if (std::max(width, height) > largest)
+    throw std::runtime_error(
+        concat("picture of ", width, "x", height, " pixels: the graphics driver can do ", largest));
+  window_.window().SetSize(width * oversampling_, height * oversampling_);
+  window_.window().AddRenderer(renderer_);
+  setLighting(Lighting::Studio);
+}
+
+Canvas::~Canvas() { window_.window().RemoveRenderer(renderer_); }
+
+void Canvas::setLighting(Lighting lighting)
+{
+  renderer_->RemoveAllLights();
+  renderer_->AutomaticLightCreationOff();
+  if (lighting == Lighting::Headlight) {
+    const vtkNew<vtkLight> light;
+    light->SetLightTypeToHeadlight();
+    renderer_->AddLight(light);
+    return;
+  }
+  for (const StudioLight& lamp : studio) {
+    const vtkNew<vtkLight> light;
+    light->SetLightTypeToCameraLight();
+    light->SetPosition(lamp.from[0], lamp.from[1], lamp.from[2]);
+    light->SetIntensity(lamp.intensity);
+    renderer_->AddLight(light);
+  }
+  const vtkNew<vtkLight> lamp;
+  lamp->SetLightTypeToHeadlight();
+  lamp->PositionalOn();
+  lamp->SetConeAngle(180); // to all sides
+  lamp->SetIntensity(eye_lamp);
+  renderer_->AddLight(lamp);
+}
+
+void Canvas::setBackground(const std::array<std::uint8_t, 3>& color)
+{
+  renderer_->SetBackground(color[0] / 255.0, color[1] / 255.0, color[2] / 255.0);
+  renderer_->SetBackgroundAlpha(1.0);
+}
+
+void Canvas::setTransparentBackground()
+{
+  renderer_->SetBackground(0.0, 0.0, 0.0); // so that colours at the rim come back multiplied by alpha
+  renderer_->SetBackgroundAlpha(0.0);
+}
+
+Image Canvas::draw(const Viewpoint& view, const Eigen::Vector3d& origin)
+{
+  validateViewpoint(view);
+  setCamera(*renderer_->GetActiveCamera(), view, origin);
+  renderer_->ResetCameraClippingRange();
+  vtkRenderWindow& window = window_.window();
+  window.Render();
+  const vtkNew<vtkUnsignedCharArray> pixels;
+  const int width = width_ * oversampling_, height = height_ * oversampling_;
+  window.GetRGBACharPixelData(0, 0, width - 1, height - 1, 0, pixels);
+  messages_.check();
+  if (pixels->GetNumberOfValues() != static_cast<vtkIdType>(width) * height * 4)
+    throw std::runtime_error("the graphics driver returned no picture");
+  return resolve(pixels->GetPointer(0), width_, height_, oversampling_);
+}
+} // namespace fresco::rendering

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "rendering/actor.h"
+#include "rendering/canvas.h"
+#include "rendering/picture.h"
+#include "rendering/picture_parts.h"
+#include "rendering/scale_bar.h"
+#include <algorithm>
+#include <cmath>
+#include <fresco/core/require.h>
+#include <fresco/surface/core/error_colors.h>
+namespace fresco::rendering {
+namespace {
+constexpr int ramp_size = 1024;
+
+/// The next tick of the scale bar.
+double roundUp(double distance)
+{
+  const std::vector<double> ticks = roundTicks(distance);
+  return ticks.back() >= distance * (1 - 1e-6) ? ticks.back() : ticks.back() + ticks[1];
+}
+
+/// Distance that is blue: the one asked for, else a round one such that at most one vertex in a hundred lies above.
+double blueDistance(const Eigen::VectorXf& distances, const PictureOptions& options)
+{
+  if (options.error_limit > 0)
+    return options.error_limit;
+  std::vector<float> sorted(distances.data(), distances.data() + distances.size());
+  const auto at = sorted.begin() + static_cast<std::ptrdiff_t>(0.99 * static_cast<double>(sorted.size() - 1));
+  std::nth_element(sorted.begin(), at, sorted.end());
+  const double usual = *at > 0 ? *at : distances.maxCoeff();
+  return usual > 0 ? roundUp(usual) : 1.0;
+}
+
+/// The colours from 0 to the largest distance as one row of texels.
+Image errorRamp()
+{
+  const Colors colors = errorColors(Eigen::VectorXf::LinSpaced(ramp_size, 0.f, 1.f), 1.f);
+  Image ramp(ramp_size, 1, 3);
+  std::copy_n(colors.data(), colors.size(), ramp.data.data());
+  return ramp;
+}
+
+Eigen::VectorXf drawnDistances(const DrawMesh& drawn, const Eigen::VectorXf& distances)
+{
+  Eigen::VectorXf shown(drawn.vertices.cols());
+  for (Index v = 0; v < shown.size(); ++v)
+    shown[v] = distances[drawn.source[static_cast<std::size_t>(v)]];
+  require(shown.allFinite() && shown.minCoeff() >= 0, "picture: a distance is negative or not finite");
+  return shown;
+}
+
+/// Distances as coordinates into errorRamp(): the colour is looked up per pixel, not mixed between vertices.
+Eigen::Matrix2Xf rampCoordinates(const Eigen::VectorXf& distances, double largest)
+{
+  Eigen::Matrix2Xf texcoords(2, distances.size());
+  for (Index v = 0; v < texcoords.cols(); ++v)
+    texcoords.col(v) << static_cast<float>((0.5 + (ramp_size - 1) * (distances[v] / largest)) / ramp_size), 0.5f;
+  return texcoords;
+}
+
+ScaleBar makeBar(const Eigen::VectorXf& distances, double largest, const PictureOptions& options)
+{
+  ScaleBar bar;
+  bar.largest = largest;
+  bar.open_ended = distances.maxCoeff() > largest * (1 + 1e-6);
+  bar.title = {"distance", "(" + (options.unit.empty() ? "model unit" : options.unit) + ")"};
+  const auto& [red, green, blue] = options.background;
+  const bool dark = !options.transparent && 0.3 * red + 0.59 * green + 0.11 * blue < 110;
+  bar.text_color = dark ? std::array<std::uint8_t, 3>{255, 255, 255} : std::array<std::uint8_t, 3>{0, 0, 0};
+  return bar;
+}
+
+Image drawColored(DrawMesh& drawn, const Viewpoint& view, const Eigen::Vector3d& origin, const PictureOptions& options)
+{
+  const Image ramp = errorRamp();
+  SurfaceLook look;
+  look.color = {1, 1, 1};
+  look.ambient = 0.5;
+  look.texture = &ramp;
+  look.mipmap = false;
+  look.cull_back_faces = options.cull_back_faces;
+  Canvas canvas(options.width, options.height, options.oversampling);
+  canvas.setLighting(Lighting::Headlight);
+  setPictureBackground(canvas, options);
+  canvas.add(makeActor(drawn, look));
+  return canvas.draw(view, origin);
+}
+
+/// The view of a picture that is narrower than the one asked for by the bar: all of what that would show is in it.
+Viewpoint narrowView(const TriangleMesh& mesh, const PictureOptions& part, int whole_width)
+{
+  Viewpoint view = chooseView(mesh, part);
+  constexpr double degree = 3.14159265358979323846 / 180;
+  if (part.view)
+    view.angle = std::min(170.0, 2 / degree * std::atan(std::tan(view.angle * degree / 2) * whole_width / part.width));
+  return view;
+}
+
+/// `picture` with a strip of `width` columns in the background's colour at its right side.
+Image widen(const Image& picture, int width, const PictureOptions& options)
+{
+  Image wide(picture.width + width, picture.height, 4);
+  for (int y = 0; y < wide.height; ++y) {
+    std::copy_n(picture.pixel(0, y), picture.width * 4, wide.pixel(0, y));
+    for (int x = picture.width; x < wide.width; ++x) {
+      std::copy_n(options.background.begin(), 3, wide.pixel(x, y));
+      wide.pixel(x, y)[3] = options.transparent ? 0 : 255;
+    }
+  }
+  return wide;
+}
+} // namespace
+
+Image renderErrorPicture(const TriangleMesh& mesh, const Eigen::VectorXf& distances, const PictureOptions& options)
+{
+  validatePictureOptions(options);
+  validateMesh(mesh);
+  require(options.width >= 160 && options.height >= 120, "picture: an error picture needs at least 160x120 pixels");
+  require(mesh.faceCount() > 0, "picture: the mesh has no face");
+  require(distances.size() == mesh.vertexCount(), "picture: ", mesh.vertexCount(), " vertices, ", distances.size(),
+          " distances");
+  DrawMesh drawn = creasedMesh(mesh, options.crease_angle, options.threads);
+  const Eigen::VectorXf shown = drawnDistances(drawn, distances);
+  const double largest = blueDistance(shown, options);
+  const ScaleBar bar = makeBar(shown, largest, options);
+  PictureOptions part = options;
+  part.width -= scaleBarWidth(bar, options.height);
+  require(part.width >= 16, "picture: ", options.width, " pixels are too few for an error picture of that height");
+  drawn.texcoords = rampCoordinates(shown, largest);
+  Image picture = widen(drawColored(drawn, narrowView(mesh, part, options.width), mesh.origin, part),
+                        options.width - part.width, options);
+  drawScaleBar(picture, bar);
+  return finishPicture(picture, options);
+}
+} // namespace fresco::rendering

@@ -1,0 +1,229 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "rendering/indoor_view.h"
+#include "rendering/room_frame.h"
+#include "rendering/view_rays.h"
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <fresco/core/parallel.h>
+#include <fresco/core/require.h>
+namespace fresco::rendering {
+namespace {
+constexpr double pi = 3.14159265358979323846;
+constexpr double inside_angle = 62; // vertical, degrees: with 4:3 about the 77 degrees across of a wide lens
+constexpr int rays_x = 20, rays_y = 15;
+
+/// A place to stand at and what is around it.
+struct Stand {
+  Eigen::Vector3d eye = Eigen::Vector3d::Zero();
+  double front = 0, back = 0; ///< shares of all directions
+  double clearance = 0;       ///< distance that 3 % of the directions end within
+};
+
+/// A direction to look into.
+struct Look {
+  double score = -1e30;
+  Eigen::Vector3d direction = Eigen::Vector3d::UnitX();
+};
+
+std::vector<Eigen::Vector3d> sphereDirections(int count)
+{
+  std::vector<Eigen::Vector3d> directions;
+  for (int i = 0; i < count; ++i) {
+    const double z = 1 - 2 * (i + 0.5) / count, angle = i * pi * (3 - std::sqrt(5.0)), r = std::sqrt(1 - z * z);
+    directions.emplace_back(r * std::cos(angle), r * std::sin(angle), z);
+  }
+  return directions;
+}
+
+Stand examine(const ViewRays& scene, const Eigen::Vector3d& eye)
+{
+  static const std::vector<Eigen::Vector3d> directions = sphereDirections(200);
+  Stand stand;
+  stand.eye = eye;
+  std::vector<double> distances;
+  for (const Eigen::Vector3d& direction : directions) {
+    const ViewHit hit = scene.trace(eye, direction);
+    stand.front += hit.any() && hit.front;
+    stand.back += hit.any() && !hit.front;
+    distances.push_back(hit.distance);
+  }
+  const auto near = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() * 3 / 100);
+  std::nth_element(distances.begin(), near, distances.end());
+  stand.clearance = *near;
+  stand.front /= static_cast<double>(directions.size());
+  stand.back /= static_cast<double>(directions.size());
+  return stand;
+}
+
+/// Stands on a grid, at 0.6 and 0.75 of the room's height.
+std::vector<Stand> gridOfStands(const ViewRays& scene, const RoomFrame& room, int threads)
+{
+  constexpr int cells = 20;
+  constexpr std::array<double, 2> heights{0.6, 0.75};
+  std::vector<Stand> stands(heights.size() * cells * cells);
+  parallelFor(static_cast<Index>(stands.size()), threads, [&](Index i) {
+    const Index cell = i % (cells * cells);
+    const Eigen::Vector3d share((static_cast<double>(cell % cells) + 0.5) / cells,
+                                (static_cast<double>(cell / cells) + 0.5) / cells,
+                                heights[static_cast<std::size_t>(i / (cells * cells))]);
+    const Eigen::Vector3d coordinates = room.low.array() + share.array() * room.size().array();
+    stands[static_cast<std::size_t>(i)] = examine(scene, room.point(coordinates));
+  });
+  return stands;
+}
+
+/// The stands in free space with the model around them, thinned evenly where there are many.
+std::vector<Stand> freeStands(const std::vector<Stand>& stands, double room_size, bool two_sided)
+{
+  std::vector<Stand> fit;
+  for (const Stand& s : stands) {
+    const double seen = two_sided ? s.front + s.back : s.front;
+    if ((two_sided || s.back <= 0.06) && seen >= 0.3 && s.clearance >= 0.03 * room_size)
+      fit.push_back(s);
+  }
+  constexpr std::size_t most = 200;
+  const std::size_t step = (fit.size() + most - 1) / most;
+  std::vector<Stand> kept;
+  for (std::size_t i = 0; i < fit.size(); i += step)
+    kept.push_back(fit[i]);
+  return kept;
+}
+
+/// Directions through an even grid of the picture's points; columns of `axes`: right, up, backward.
+std::vector<Eigen::Vector3d> pictureRays(const Eigen::Matrix3d& axes, double angle, double aspect)
+{
+  const double half = std::tan(angle * pi / 360);
+  std::vector<Eigen::Vector3d> rays;
+  for (int y = 0; y < rays_y; ++y)
+    for (int x = 0; x < rays_x; ++x) {
+      const Eigen::Vector3d ray(half * aspect * ((2 * x + 1.0) / rays_x - 1), half * ((2 * y + 1.0) / rays_y - 1), -1);
+      rays.push_back(axes * ray);
+    }
+  return rays;
+}
+
+/// Mean step between neighbouring depths, as a ratio, at most a factor of e each: furniture makes steps, bare walls
+/// none.
+double relief(const std::vector<double>& depths)
+{
+  double sum = 0;
+  const auto step = [&](int a, int b) {
+    const double da = depths[static_cast<std::size_t>(a)], db = depths[static_cast<std::size_t>(b)];
+    return std::isfinite(da) && std::isfinite(db) ? std::min(1.0, std::abs(std::log(da / db))) : 0.0;
+  };
+  for (int y = 0; y < rays_y; ++y)
+    for (int x = 1; x < rays_x; ++x)
+      sum += step(y * rays_x + x, y * rays_x + x - 1);
+  for (int y = 1; y < rays_y; ++y)
+    for (int x = 0; x < rays_x; ++x)
+      sum += step(y * rays_x + x, (y - 1) * rays_x + x);
+  return sum / (2 * rays_x * rays_y);
+}
+
+/// Depth in view is good up to a point, steps are good, holes and things right before the eye are bad.
+double scoreInside(const ViewRays& scene, const Stand& stand, const std::vector<Eigen::Vector3d>& rays,
+                   double room_size)
+{
+  const double near = 0.14 * room_size, far = 0.6 * room_size;
+  double sum = 0;
+  std::vector<double> depths;
+  for (const Eigen::Vector3d& ray : rays) {
+    const double depth = std::max(scene.trace(stand.eye, ray).distance, 1e-9 * room_size);
+    depths.push_back(depth);
+    if (!std::isfinite(depth))
+      sum -= 0.4;
+    else
+      sum += std::min(1.0, depth / far) - std::max(0.0, 1 - depth / near);
+  }
+  return sum / static_cast<double>(rays.size()) + 2 * relief(depths);
+}
+
+Look bestLook(const ViewRays& scene, const Stand& stand, const RoomFrame& room, double aspect)
+{
+  constexpr int headings = 24;
+  constexpr double down = 12 * pi / 180;
+  Look best;
+  for (int i = 0; i < headings; ++i) {
+    const double heading = 2 * pi * i / headings;
+    const Eigen::Vector3d level = std::cos(heading) * room.along + std::sin(heading) * room.across;
+    const Eigen::Vector3d direction = std::cos(down) * level - std::sin(down) * room.up;
+    const auto rays = pictureRays(cameraAxes(-direction, room.up), inside_angle, aspect);
+    const double score = scoreInside(scene, stand, rays, room.size().head<2>().norm());
+    if (score > best.score)
+      best = {score, direction};
+  }
+  return best;
+}
+
+double scoreAbove(const ViewRays& scene, const Viewpoint& view, const Eigen::Vector3d& origin, double aspect)
+{
+  const auto rays = pictureRays(cameraAxes(view.eye - view.look, view.up), view.angle, aspect);
+  double hits = 0;
+  std::vector<double> depths;
+  for (const Eigen::Vector3d& ray : rays) {
+    const ViewHit hit = scene.traceFront(view.eye - origin, ray);
+    depths.push_back(hit.distance);
+    hits += hit.any();
+  }
+  return hits / static_cast<double>(rays.size()) + 4 * relief(depths);
+}
+
+void validate(const TriangleMesh& mesh, const IndoorOptions& options)
+{
+  validateMesh(mesh);
+  require(options.aspect > 0 && std::isfinite(options.aspect), "view: aspect ratio ", options.aspect,
+          " is not above 0");
+}
+} // namespace
+
+std::optional<Viewpoint> insideView(const TriangleMesh& mesh, const IndoorOptions& options)
+{
+  validate(mesh, options);
+  const RoomFrame room = findRoomFrame(mesh, options.up);
+  const double room_size = room.size().head<2>().norm();
+  const ViewRays scene(mesh);
+  const std::vector<Stand> grid = gridOfStands(scene, room, options.threads);
+  std::vector<Stand> stands = freeStands(grid, room_size, false);
+  if (stands.empty())
+    stands = freeStands(grid, room_size, true);
+  if (stands.empty())
+    return {};
+  std::vector<Look> looks(stands.size());
+  parallelFor(static_cast<Index>(stands.size()), options.threads, [&](Index i) {
+    const auto at = static_cast<std::size_t>(i);
+    looks[at] = bestLook(scene, stands[at], room, options.aspect);
+  });
+  const auto best =
+      std::max_element(looks.begin(), looks.end(), [](const Look& a, const Look& b) { return a.score < b.score; });
+  const Eigen::Vector3d eye = mesh.origin + stands[static_cast<std::size_t>(best - looks.begin())].eye;
+  return Viewpoint{eye, eye + 0.5 * room_size * best->direction, room.up, inside_angle};
+}
+
+Viewpoint aboveView(const TriangleMesh& mesh, const IndoorOptions& options)
+{
+  validate(mesh, options);
+  const RoomFrame room = findRoomFrame(mesh, options.up);
+  const ViewRays scene(mesh);
+  constexpr std::array<double, 8> headings{30, 60, 120, 150, 210, 240, 300, 330}; // degrees from the walls
+  constexpr double elevation = 52 * pi / 180;
+  Viewpoint best;
+  double best_score = -1;
+  for (const double degrees : headings) {
+    const double heading = degrees * pi / 180;
+    const Eigen::Vector3d level = std::cos(heading) * room.along + std::sin(heading) * room.across;
+    Framing framing;
+    framing.direction = std::cos(elevation) * level + std::sin(elevation) * room.up;
+    framing.up = room.up;
+    framing.aspect = options.aspect;
+    const Viewpoint view = frameView(mesh, framing);
+    const double score = scoreAbove(scene, view, mesh.origin, options.aspect);
+    if (score > best_score) {
+      best_score = score;
+      best = view;
+    }
+  }
+  return best;
+}
+} // namespace fresco::rendering

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include "rendering/canvas.h"
+#include "rendering/picture.h"
+namespace fresco::rendering {
+/// @throws std::invalid_argument naming the option that is out of range
+void validatePictureOptions(const PictureOptions& options);
+
+/// The view asked for, else the whole model from the default direction.
+/// @param model TriangleMesh or PointSet
+template <typename Model>
+Viewpoint chooseView(const Model& model, const PictureOptions& options)
+{
+  if (options.view)
+    return *options.view;
+  Framing framing;
+  framing.aspect = static_cast<double>(options.width) / options.height;
+  return frameView(model, framing);
+}
+
+void setPictureBackground(Canvas& canvas, const PictureOptions& options);
+
+/// RGB, or RGBA if a transparent picture was asked for.
+Image finishPicture(const Image& rgba, const PictureOptions& options);
+} // namespace fresco::rendering

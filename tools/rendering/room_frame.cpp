@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "rendering/room_frame.h"
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <fresco/core/require.h>
+#include <vector>
+namespace fresco::rendering {
+namespace {
+constexpr double pi = 3.14159265358979323846;
+
+/// Some faces of a mesh, evenly picked.
+struct FaceSample {
+  Eigen::Matrix3Xd normals, centers;
+  Eigen::VectorXd areas;
+};
+
+FaceSample sampleFaces(const TriangleMesh& mesh)
+{
+  constexpr Index most = 50000;
+  const Index step = std::max<Index>(1, mesh.faceCount() / most);
+  FaceSample sample;
+  const Index capacity = (mesh.faceCount() + step - 1) / step;
+  sample.normals.resize(3, capacity);
+  sample.centers.resize(3, capacity);
+  sample.areas.resize(capacity);
+  Index count = 0;
+  for (Index f = 0; f < mesh.faceCount(); f += step) {
+    const Eigen::Vector3d a = mesh.vertices.col(mesh.faces(0, f)).cast<double>();
+    const Eigen::Vector3d b = mesh.vertices.col(mesh.faces(1, f)).cast<double>();
+    const Eigen::Vector3d c = mesh.vertices.col(mesh.faces(2, f)).cast<double>();
+    const Eigen::Vector3d normal = (b - a).cross(c - a);
+    if (!(normal.norm() > 0))
+      continue;
+    sample.normals.col(count) = normal.normalized();
+    sample.centers.col(count) = (a + b + c) / 3;
+    sample.areas[count++] = 0.5 * normal.norm();
+  }
+  require(count > 0, "view: the mesh has no face with an area");
+  sample.normals.conservativeResize(3, count);
+  sample.centers.conservativeResize(3, count);
+  sample.areas.conservativeResize(count);
+  return sample;
+}
+
+/// Area whose normal is within 12 degrees of +-`direction`.
+double parallelArea(const FaceSample& sample, const Eigen::Vector3d& direction)
+{
+  static const double cosine = std::cos(12 * pi / 180);
+  double area = 0;
+  for (Index i = 0; i < sample.areas.size(); ++i)
+    if (std::abs(sample.normals.col(i).dot(direction)) > cosine)
+      area += sample.areas[i];
+  return area;
+}
+
+/// Main direction of the normals within 12 degrees of +-`direction`, a few times over.
+Eigen::Vector3d refine(const FaceSample& sample, Eigen::Vector3d direction)
+{
+  static const double cosine = std::cos(12 * pi / 180);
+  for (int round = 0; round < 4; ++round) {
+    Eigen::Matrix3d moment = Eigen::Matrix3d::Zero();
+    for (Index i = 0; i < sample.areas.size(); ++i)
+      if (std::abs(sample.normals.col(i).dot(direction)) > cosine)
+        moment += sample.areas[i] * sample.normals.col(i) * sample.normals.col(i).transpose();
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(moment);
+    const Eigen::Vector3d main = solver.eigenvectors().col(2);
+    direction = main.dot(direction) < 0 ? Eigen::Vector3d(-main) : main;
+  }
+  return direction;
+}
+
+/// Even directions over the upper half of the sphere (Fibonacci lattice).
+std::vector<Eigen::Vector3d> halfSphere(int count)
+{
+  std::vector<Eigen::Vector3d> directions;
+  for (int i = 0; i < count; ++i) {
+    const double z = (i + 0.5) / count, angle = i * pi * (3 - std::sqrt(5.0)), r = std::sqrt(1 - z * z);
+    directions.emplace_back(r * std::cos(angle), r * std::sin(angle), z);
+  }
+  return directions;
+}
+
+/// Value that `share` of the area lies below.
+double areaQuantile(const Eigen::VectorXd& values, const Eigen::VectorXd& areas, double share)
+{
+  std::vector<Index> order(static_cast<std::size_t>(values.size()));
+  for (std::size_t i = 0; i < order.size(); ++i)
+    order[i] = static_cast<Index>(i);
+  std::sort(order.begin(), order.end(), [&](Index a, Index b) { return values[a] < values[b]; });
+  const double wanted = share * areas.sum();
+  double below = 0;
+  for (const Index i : order)
+    if ((below += areas[i]) >= wanted)
+      return values[i];
+  return values[order.back()];
+}
+
+/// Second moments of where the area lies.
+Eigen::Matrix3d spread(const FaceSample& sample)
+{
+  const Eigen::Vector3d mean = sample.centers * sample.areas / sample.areas.sum();
+  const Eigen::Matrix3Xd offsets = sample.centers.colwise() - mean;
+  return offsets * sample.areas.asDiagonal() * offsets.transpose() / sample.areas.sum();
+}
+
+Eigen::Vector3d upright(const FaceSample& sample)
+{
+  static const double near_axis = std::cos(25 * pi / 180);
+  const Eigen::Matrix3d moments = spread(sample);
+  Eigen::Vector3d best = Eigen::Vector3d::UnitZ();
+  double most = -1;
+  for (const Eigen::Vector3d& direction : halfSphere(300)) {
+    const double extent = std::sqrt(direction.dot(moments * direction)) + 1e-6 * std::sqrt(moments.trace());
+    const double custom = std::abs(direction.z()) > near_axis ? 1.6 : 1.0;
+    const double score = custom * parallelArea(sample, direction) / std::sqrt(extent);
+    if (score > most) {
+      most = score;
+      best = direction;
+    }
+  }
+  best = refine(sample, best);
+  if (std::abs(best.z()) > near_axis)
+    return best.z() < 0 ? Eigen::Vector3d(-best) : best;
+  const Eigen::VectorXd heights = (best.transpose() * sample.centers).transpose();
+  const double middle = 0.5 * (areaQuantile(heights, sample.areas, 0.01) + areaQuantile(heights, sample.areas, 0.99));
+  return heights.dot(sample.areas) / sample.areas.sum() > middle ? Eigen::Vector3d(-best) : best;
+}
+
+/// Horizontal direction that most upright surfaces are parallel or orthogonal to: mean of their angles modulo 90
+/// degrees.
+Eigen::Vector3d wallDirection(const FaceSample& sample, const Eigen::Vector3d& up)
+{
+  const Eigen::Vector3d x = up.unitOrthogonal(), y = up.cross(x);
+  std::complex<double> sum = 0;
+  for (Index i = 0; i < sample.areas.size(); ++i) {
+    const Eigen::Vector3d n = sample.normals.col(i);
+    if (std::abs(n.dot(up)) < 0.2)
+      sum += std::polar(sample.areas[i], 4 * std::atan2(n.dot(y), n.dot(x)));
+  }
+  const double angle = std::abs(sum) > 0 ? std::arg(sum) / 4 : 0;
+  return std::cos(angle) * x + std::sin(angle) * y;
+}
+} // namespace
+
+Eigen::Vector3d guessUp(const TriangleMesh& mesh) { return upright(sampleFaces(mesh)); }
+
+RoomFrame findRoomFrame(const TriangleMesh& mesh, const std::optional<Eigen::Vector3d>& up)
+{
+  require(!up || (up->allFinite() && up->norm() > 0), "view: the up direction is zero or not finite");
+  const FaceSample sample = sampleFaces(mesh);
+  RoomFrame frame;
+  frame.up = up ? up->normalized() : upright(sample);
+  frame.along = wallDirection(sample, frame.up);
+  frame.across = frame.up.cross(frame.along);
+  const Eigen::Vector3d axes[] = {frame.along, frame.across, frame.up};
+  for (int k = 0; k < 3; ++k) {
+    const Eigen::VectorXd values = (axes[k].transpose() * sample.centers).transpose();
+    frame.low[k] = areaQuantile(values, sample.areas, 0.01);
+    frame.high[k] = areaQuantile(values, sample.areas, 0.99);
+  }
+  return frame;
+}
+} // namespace fresco::rendering

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include "simulation/scene/artwork.h"
+#include "simulation/scene/drawing.h"
+#include "simulation/sensors/noise.h"
+namespace fresco::simulation {
+/// What the pictures are made of.
+std::string word(CounterRandom& random);
+
+/// A random colour. @param strength 0 grey .. 0.4 vivid  @param value mean brightness
+Eigen::Vector3f hue(CounterRandom& random, float strength, float value);
+
+/// Octaves of noise at picture coordinates.
+float noiseAt(const Eigen::Vector2f& at, std::uint32_t seed, const NoiseSpectrum& spectrum);
+
+/// Sets each pixel to color(u, v), u and v in 0..1.
+template <typename Color>
+void paint(Picture& picture, const Color& color)
+{
+  for (int y = 0; y < picture.height(); ++y)
+    for (int x = 0; x < picture.width(); ++x)
+      picture.pixel(x, y) = color((static_cast<float>(x) + 0.5f) / static_cast<float>(picture.width()),
+                                  (static_cast<float>(y) + 0.5f) / static_cast<float>(picture.height()));
+}
+
+PicturePtr finished(Picture picture);
+
+struct Sheet {
+  Eigen::Vector2f min, max; ///< pixels
+  float height = 10;        ///< of a letter
+};
+
+/// Lines of words, ragged at the right.
+void writeText(Drawing& draw, const Sheet& sheet, const Pen& pen);
+
+/// Axes, bars and a curve.
+void drawChart(Drawing& draw, const Sheet& at, const Pen& pen);
+} // namespace fresco::simulation

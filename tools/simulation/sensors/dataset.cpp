@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "simulation/sensors/dataset.h"
+#include "simulation/scene/labels.h"
+#include "simulation/sensors/views.h"
+#include <cstdio>
+#include <filesystem>
+#include <fresco/core/parallel.h>
+#include <fresco/core/require.h>
+#include <fresco/io/colmap.h>
+#include <fresco/io/file.h>
+#include <fresco/io/image_io.h>
+#include <fresco/io/mesh_io.h>
+#include <fresco/io/point_io.h>
+#include <fresco/io/pose_file.h>
+#include <optional>
+namespace fresco::simulation {
+using Eigen::Vector3f;
+
+namespace {
+void validate(const DatasetOptions& o)
+{
+  require(o.stations >= 1 && o.stations <= 1000, "stations ", o.stations, " is not in 1..1000");
+  require(o.views >= 0 && o.views <= 100000, "views ", o.views, " is not in 0..100000");
+  require(o.width >= 16 && o.width <= 20000 && o.height >= 16 && o.height <= 20000, "image size ", o.width, "x",
+          o.height, " is not in 16..20000");
+  require(o.focal > 0.1 && o.focal < 100.0, "focal length ", o.focal, " is not in 0.1..100 image widths");
+  require(o.exposure_spread >= 0.f && o.exposure_spread <= 0.9f, "exposure spread ", o.exposure_spread,
+          " is not in 0..0.9");
+  require(o.sensor_noise >= 0.f && o.sensor_noise <= 100.f, "sensor noise ", o.sensor_noise, " is not in 0..100");
+  require(o.jpeg_quality >= 1 && o.jpeg_quality <= 100, "JPEG quality ", o.jpeg_quality, " is not in 1..100");
+}
+
+std::string numbered(const char* format, int number)
+{
+  char name[64];
+  std::snprintf(name, sizeof name, format, number);
+  return name;
+}
+
+/// One run: the scene with its light, and where its files go.
+struct Run {
+  const LitScene& lit;
+  std::string folder;
+  const DatasetOptions& options;
+};
+
+/// Scans from all stations; counts returns per face.
+std::vector<Pose> writeScans(const Run& run, const Points& stations, std::vector<int>& returns,
+                             const Progress& progress)
+{
+  const std::string folder = run.folder + "/scans";
+  makeFolder(folder);
+  std::vector<Pose> poses;
+  std::optional<TriangleTree> surfaces;
+  if (run.options.labels)
+    surfaces.emplace(run.lit.scene.mesh, run.options.threads);
+  for (int k = 0; k < static_cast<int>(stations.cols()); ++k) {
+    report(progress, "scan " + std::to_string(k + 1) + " of " + std::to_string(stations.cols()),
+           static_cast<double>(k) / static_cast<double>(stations.cols()));
+    const Eigen::Vector3d station = stations.col(k).cast<double>() + run.lit.scene.mesh.origin;
+    const Eigen::Matrix4d pose = randomPose(station, run.options.seed, k);
+    LaserOptions laser = run.options.laser;
+    laser.seed = run.options.seed;
+    laser.threads = run.options.threads;
+    const LaserScan scan = scanScene(run.lit, pose, laser, k);
+    if (scan.points.size() == 0)
+      throw std::runtime_error("scan " + std::to_string(k) +
+                               " has no point: nothing sends enough light back within the range");
+    for (const int face : scan.faces)
+      ++returns[static_cast<std::size_t>(face)];
+    const std::string file = folder + "/" + numbered("scan_%02d.pcd", k);
+    if (surfaces) {
+      Eigen::Matrix4d T_truth_scan = pose;
+      T_truth_scan.topRightCorner<3, 1>() -= run.lit.scene.mesh.origin;
+      writeLabelledScan(file, scan.points, labelPoints(scan, *surfaces, T_truth_scan));
+    } else {
+      writePoints(file, scan.points);
+    }
+    poses.emplace_back(pose);
+  }
+  return poses;
+}
+
+/// The scene's triangles with mean colours and counts of laser points.
+void writeTruth(const Run& run, const std::vector<int>& returns)
+{
+  const Scene& scene = run.lit.scene;
+  TriangleMesh mesh = scene.mesh;
+  Eigen::Matrix3Xf sum = Eigen::Matrix3Xf::Zero(3, mesh.vertexCount());
+  Eigen::VectorXf weight = Eigen::VectorXf::Zero(mesh.vertexCount()), seen = Eigen::VectorXf::Zero(mesh.vertexCount());
+  for (Index f = 0; f < mesh.faceCount(); ++f)
+    for (int k = 0; k < 3; ++k) {
+      const VirtualHit corner{static_cast<int>(f), 0.f, k == 1 ? 1.f : 0.f, k == 2 ? 1.f : 0.f};
+      sum.col(mesh.faces(k, f)) += surfaceColor(run.lit, corner, 0.02f);
+      weight[mesh.faces(k, f)] += 1.f;
+      seen[mesh.faces(k, f)] += static_cast<float>(returns[static_cast<std::size_t>(f)]);
+    }
+  mesh.colors.resize(3, mesh.vertexCount());
+  for (Index v = 0; v < mesh.vertexCount(); ++v)
+    mesh.colors.col(v) = (255.f * sum.col(v) / std::max(weight[v], 1.f)).array().round().cast<std::uint8_t>();
+  mesh.fields["returns"] = seen;
+  writeMesh(run.folder + "/truth.ply", mesh);
+}
+
+void writePhotographs(const Run& run, const CameraSet& set, const Progress& progress)
+{
+  const DatasetOptions& o = run.options;
+  makeFolder(run.folder + "/images");
+  if (o.truth_images)
+    makeFolder(run.folder + "/truth_images");
+  OutputFile gains(run.folder + "/exposures.txt");
+  gains.write("# image, factors of red, green and blue on the true display values\n");
+  for (std::size_t k = 0; k < set.views.size(); ++k) {
+    report(progress, "photograph " + std::to_string(k + 1) + " of " + std::to_string(set.views.size()),
+           static_cast<double>(k) / static_cast<double>(set.views.size()));
+    const View& view = set.views[k];
+    Exposure exposure = randomExposure(o.seed, k, o.exposure_spread);
+    exposure.noise = o.sensor_noise;
+    writeImage(run.folder + "/images/" + view.image,
+               takePhotograph(run.lit, {set.cameras[0], view, exposure}, o.threads), o.jpeg_quality);
+    if (o.truth_images)
+      writeImage(run.folder + "/truth_images/" + std::filesystem::path(view.image).replace_extension(".png").string(),
+                 takePhotograph(run.lit, {set.cameras[0], view, {}}, o.threads));
+    gains.write(concat(view.image, ' ', exposure.gain[0], ' ', exposure.gain[1], ' ', exposure.gain[2], '\n'));
+  }
+  gains.commit();
+}
+
+/// Takes away what an earlier run wrote, so that no scan or photograph of it is left among the new ones.
+void removeOld(const std::string& folder)
+{
+  namespace fs = std::filesystem;
+  fs::remove(folder + "/poses.txt");
+  for (const char* file : {"cameras.txt", "images.txt", "points3D.txt"})
+    fs::remove(folder + "/cameras/" + file);
+  const std::pair<const char*, const char*> numbered_files[] = {
+      {"scans", "scan_"}, {"images", "view_"}, {"truth_images", "view_"}};
+  for (const auto& [sub, prefix] : numbered_files) {
+    std::vector<fs::path> old;
+    if (fs::is_directory(folder + "/" + sub))
+      for (const auto& entry : fs::directory_iterator(folder + "/" + sub))
+        if (entry.is_regular_file() && entry.path().filename().string().rfind(prefix, 0) == 0)
+          old.push_back(entry.path());
+    for (const fs::path& path : old)
+      fs::remove(path);
+  }
+}
+
+CameraModel pinhole(const DatasetOptions& o)
+{
+  CameraModel camera;
+  camera.width = o.width, camera.height = o.height;
+  camera.fx = camera.fy = o.focal * o.width;
+  camera.cx = 0.5 * o.width, camera.cy = 0.5 * o.height;
+  return camera;
+}
+} // namespace
+
+Scene loadScene(const std::string& scene, float max_edge)
+{
+  if (scene == "conference_room" || scene == "apartment")
+    return makeScene(scene, max_edge);
+  const TriangleMesh mesh = readMesh(scene);
+  try {
+    return meshScene(mesh);
+  } catch (const std::runtime_error& error) {
+    throw std::runtime_error(scene + ": " + error.what());
+  }
+}
+
+void writeDataset(const std::string& name, const std::string& folder, const DatasetOptions& options,
+                  const Progress& progress)
+{
+  validate(options);
+  report(progress, "scene", 0.0);
+  const Scene scene = loadScene(name, options.max_edge);
+  makeFolder(folder);
+  removeOld(folder);
+  const VirtualRays rays(scene.mesh);
+  LightingOptions lighting;
+  lighting.threads = options.threads;
+  report(progress, "light", 0.02);
+  const Lightmap light = bakeLight(scene, rays, lighting, subProgress(progress, 0.02, 0.3));
+  const LitScene lit{scene, rays, light};
+  const Run run{lit, folder, options};
+  const ScenePlaces samples = sampleSurface(scene, 4000, options.seed);
+  const PlanningInput planning{scene, rays, samples, options.seed, options.threads};
+  report(progress, "stations", 0.3);
+  const Points stations = chooseStations(planning, options.stations);
+  std::vector<int> returns(static_cast<std::size_t>(scene.mesh.faceCount()), 0);
+  const std::vector<Pose> poses = writeScans(run, stations, returns, subProgress(progress, 0.32, 0.45));
+  writeTruth(run, returns);
+  if (options.views > 0) {
+    report(progress, "views", 0.45);
+    const CameraSet set = chooseViews(planning, pinhole(options), options.views);
+    writePhotographs(run, set, subProgress(progress, 0.5, 1.0));
+    writeColmap(folder + "/cameras", set);
+  }
+  writePoses(folder + "/poses.txt", poses);
+}
+} // namespace fresco::simulation

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include "simulation/sensors/laser.h"
+#include "simulation/sensors/photograph.h"
+#include <fresco/core/progress.h>
+#include <string>
+namespace fresco::simulation {
+/// What the virtual scanner and camera produce.
+struct DatasetOptions {
+  int stations = 6; ///< laser scans, >= 1
+  LaserOptions laser;
+  int views = 60;                 ///< photographs, >= 1; 0 = none
+  int width = 1280, height = 960; ///< pixels of a photograph, 16..20000
+  bool labels = false;            ///< scans have a field `label`, see PointLabel
+  double focal = 0.9;             ///< focal length / width, > 0.1
+  float exposure_spread = 0.2f;   ///< brightness of photographs is 1 +- this, 0..0.9
+  float sensor_noise = 0.6f;      ///< deviation, grey levels of 0..255, >= 0
+  int jpeg_quality = 95;          ///< 1..100
+  bool truth_images = false;      ///< also the photographs without exposure differences and noise, as PNG
+  float max_edge = 0.1f;          ///< metres, longest side of the faces of rooms, 0.02..10
+  std::uint64_t seed = 1;
+  int threads = 0; ///< 0 = all cores; the result does not depend on it
+};
+
+/// Writes the dataset of `scene` (conference_room, apartment, or a mesh file) into `folder`:
+/// scans/scan_NN.pcd, images/view_NNN.jpg, truth_images/view_NNN.png, truth.ply (vertex colours; field `returns`: laser
+/// points on the faces around a vertex), exposures.txt, cameras/ (COLMAP text), poses.txt. Files appear whole;
+/// poses.txt comes last and is removed first, so a folder that has it is complete.
+/// @throws std::invalid_argument for an option out of range
+/// @throws std::runtime_error "PATH: reason" for a file that cannot be read or written, or a scene without free place
+void writeDataset(const std::string& scene, const std::string& folder, const DatasetOptions& options,
+                  const Progress& progress = {});
+
+/// The scene of that name or file. @throws as writeDataset
+Scene loadScene(const std::string& scene, float max_edge);
+} // namespace fresco::simulation

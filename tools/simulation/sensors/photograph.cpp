@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "simulation/sensors/photograph.h"
+#include "simulation/sensors/random.h"
+#include <algorithm>
+#include <cmath>
+#include <fresco/core/parallel.h>
+#include <fresco/core/require.h>
+namespace fresco::simulation {
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+using Eigen::Vector3f;
+
+namespace {
+constexpr int block = 2; // pixels along the side of a ray packet's square
+constexpr float corners[4][2] = {{0.25f, 0.25f}, {0.75f, 0.25f}, {0.25f, 0.75f}, {0.75f, 0.75f}}; // rays within a pixel
+static_assert(4 * block * block == packet_size);
+const Vector3f background(0.7f, 0.75f, 0.8f);
+
+/// Noise of a pixel, deviation 1: twelve random bits of a hash each, four a channel (Irwin-Hall).
+Vector3f pixelNoise(const Exposure& exposure, std::uint64_t pixel)
+{
+  Vector3f noise;
+  for (int channel = 0; channel < 3; ++channel) {
+    std::uint64_t bits = scramble(scramble(exposure.seed * 0x9e3779b97f4a7c15ull + exposure.number) + 3 * pixel +
+                                  static_cast<std::uint64_t>(channel));
+    float sum = 0.f;
+    for (int k = 0; k < 4; ++k, bits >>= 16)
+      sum += static_cast<float>(bits & 0xffffu) / 65536.f;
+    noise[channel] = (sum - 2.f) * 1.7320508f;
+  }
+  return noise;
+}
+
+void store(Image& image, const Shot& shot, const Eigen::Vector2i& at, const Vector3f& color)
+{
+  Vector3f value = 255.f * color.cwiseProduct(shot.exposure.gain);
+  if (shot.exposure.noise > 0.f)
+    value += shot.exposure.noise *
+             pixelNoise(shot.exposure, static_cast<std::uint64_t>(at.y()) * static_cast<std::uint64_t>(image.width) +
+                                           static_cast<std::uint64_t>(at.x()));
+  for (int channel = 0; channel < 3; ++channel)
+    image.pixel(at.x(), at.y())[channel] = static_cast<std::uint8_t>(std::clamp(value[channel] + 0.5f, 0.f, 255.f));
+}
+
+/// Rays of the pixels at (x, y) .. (x + 1, y + 1), four a pixel.
+RayPacket pixelRays(const Shot& shot, const Vector3f& center, const Eigen::Vector2i& at)
+{
+  const Eigen::Matrix3d R_world_camera = shot.view.T_camera_world.linear().transpose();
+  RayPacket packet;
+  for (int i = 0; i < packet_size; ++i) {
+    const int pixel = i / 4;
+    const Vector2d where(at.x() + pixel % block + corners[i % 4][0], at.y() + pixel / block + corners[i % 4][1]);
+    const Vector3d direction = R_world_camera * unproject(shot.camera, where);
+    packet[static_cast<std::size_t>(i)] = {center, direction.cast<float>()};
+  }
+  return packet;
+}
+
+Vector3f rayColor(const LitScene& lit, const CameraModel& camera, const Ray& ray, const VirtualHit& hit)
+{
+  if (hit.face < 0)
+    return background;
+  const auto v = lit.scene.mesh.faces.col(hit.face);
+  const Vector3f a = lit.scene.mesh.vertices.col(v[0]), b = lit.scene.mesh.vertices.col(v[1]),
+                 c = lit.scene.mesh.vertices.col(v[2]);
+  const float cosine = std::fabs((b - a).cross(c - a).normalized().dot(ray.direction.normalized()));
+  // distance is a depth, for directions have z = 1; of the four rays of a pixel each stands for half its width
+  const float footprint = 0.7f * hit.distance / static_cast<float>(camera.fx) / std::sqrt(std::max(cosine, 0.1f));
+  return surfaceColor(lit, hit, footprint);
+}
+} // namespace
+
+Exposure randomExposure(std::uint64_t seed, std::uint64_t number, float spread)
+{
+  require(spread >= 0.f && spread <= 0.9f, "exposure: spread ", spread, " is not in 0..0.9");
+  CounterRandom random(seed, 61, number);
+  const double brightness = 1.0 + random.uniform(-spread, spread);
+  const double red = 1.0 + random.uniform(-0.25, 0.25) * spread, blue = 1.0 + random.uniform(-0.25, 0.25) * spread;
+  Exposure exposure;
+  exposure.gain = Eigen::Vector3d(brightness * red, brightness, brightness * blue).cast<float>();
+  exposure.seed = seed;
+  exposure.number = number;
+  return exposure;
+}
+
+Image takePhotograph(const LitScene& lit, const Shot& shot, int threads)
+{
+  const CameraModel& camera = shot.camera;
+  require(camera.width > 0 && camera.height > 0 && camera.fx > 0 && camera.fy > 0, "photograph: not a camera");
+  Image image(camera.width, camera.height);
+  const Vector3f center = (shot.view.center() - lit.scene.mesh.origin).cast<float>();
+  const Index rows = (camera.height + block - 1) / block;
+  parallelFor(
+      rows, threads,
+      [&](Index row) {
+        for (int x = 0; x < camera.width; x += block) {
+          const Eigen::Vector2i at(x, static_cast<int>(row) * block);
+          const RayPacket packet = pixelRays(shot, center, at);
+          const HitPacket hits = lit.rays.intersectPacket(packet, true);
+          for (int pixel = 0; pixel < block * block; ++pixel) {
+            const Eigen::Vector2i own = at + Eigen::Vector2i(pixel % block, pixel / block);
+            if (own.x() >= camera.width || own.y() >= camera.height)
+              continue;
+            Vector3f sum = Vector3f::Zero();
+            for (std::size_t k = 0; k < 4; ++k) {
+              const std::size_t i = 4 * static_cast<std::size_t>(pixel) + k;
+              sum += rayColor(lit, camera, packet[i], hits[i]);
+            }
+            store(image, shot, own, 0.25f * sum);
+          }
+        }
+      },
+      4);
+  return image;
+}
+} // namespace fresco::simulation
