@@ -21,8 +21,7 @@ try {
   texture.setInputMesh(mesh);
   const fresco::CameraSet cameras = fresco::readColmap(argv[2]);
   for (const fresco::View& view : cameras.views)
-    texture.addView(cameras.cameras[static_cast<std::size_t>(view.camera)], view.T_camera_world,
-                    images + "/" + view.image);
+    texture.addView(cameras.cameras[view.camera], view.T_camera_world, images + "/" + view.image);
   texture.setProgress([](std::string_view step, double share) {
     std::cout << static_cast<int>(100 * share) << " % " << step << "\n";
     return true; // false would stop

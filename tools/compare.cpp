@@ -13,7 +13,7 @@ struct Options {
   CommonOptions common;
   std::string json, colored;
   float largest = 0.f;
-  int seed = static_cast<int>(MeshDistanceOptions{}.seed);
+  int seed = MeshDistanceOptions{}.seed;
   std::string mesh, reference;
 };
 

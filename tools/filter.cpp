@@ -173,7 +173,7 @@ void filterCloud(CloudFile& file, const std::string& name, const Args& args, con
 {
   const Progress progress = printProgress(quiet);
   Remaining rest{toPointSet(file), {}};
-  rest.columns.resize(static_cast<std::size_t>(rest.set.size()));
+  rest.columns.resize(rest.set.size());
   std::iota(rest.columns.begin(), rest.columns.end(), Index(0));
   std::vector<std::string> lines = {std::to_string(rest.set.size()) + " points"};
   rest.keep(finitePoints(rest.set));

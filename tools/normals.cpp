@@ -122,7 +122,7 @@ bool holds(const pcl::PCLPointCloud2& cloud, const std::array<std::string, 3>& n
   if (values.cols() != static_cast<Index>(cloud.width) * static_cast<Index>(cloud.height))
     return false;
   for (Eigen::Index axis = 0; axis < 3; ++axis) {
-    const auto* field = findField(cloud, names[static_cast<std::size_t>(axis)]);
+    const auto* field = findField(cloud, names[axis]);
     if (!field || field->datatype != pcl::PCLPointField::FLOAT32 || sizeOf(*field) != sizeof(float))
       return false;
     for (Index i = 0; i < values.cols(); ++i)

@@ -152,9 +152,8 @@ void run(int argc, char** argv)
   const std::vector<fresco::Pose> start = startPoses(request);
   fresco::makeFolder(request.folder);
   const fresco::Progress progress = fresco::printProgress(request.common.quiet);
-  const fresco::ScanSource scans{static_cast<fresco::Index>(request.files.size()), [&](fresco::Index i) {
-                                   return fresco::readPoints(request.files[static_cast<std::size_t>(i)]);
-                                 }};
+  const fresco::ScanSource scans{static_cast<fresco::Index>(request.files.size()),
+                                 [&](fresco::Index i) { return fresco::readPoints(request.files[i]); }};
   fresco::report(progress, "read", 0.0);
   const auto result = fresco::registerScans(scans, start, request.options, fresco::subProgress(progress, 0.0, 0.9));
   const auto placed = std::count_if(result.scans.begin(), result.scans.end(), [](const auto& s) { return s.placed; });

@@ -17,7 +17,7 @@ Points principalNormals(const Points& points, const Points& facing, int neighbou
   estimation.compute(found);
   Points normals(3, points.cols());
   for (Index i = 0; i < points.cols(); ++i) {
-    const Eigen::Vector3f normal = found[static_cast<std::size_t>(i)].getNormalVector3fMap();
+    const Eigen::Vector3f normal = found[i].getNormalVector3fMap();
     const Eigen::Vector3f side = facing.col(i);
     if (!normal.allFinite())
       normals.col(i) = side.normalized();

@@ -80,7 +80,7 @@ void count(const LaserScan& scan, const TriangleTree& surfaces, const Eigen::Mat
   const Points& points = scan.points.points;
   std::vector<char> stays(labels.size(), 0);
   for (const Index i : withoutVeil(points, scan.points.viewpoints))
-    stays[static_cast<std::size_t>(i)] = 1;
+    stays[i] = 1;
   const Eigen::Matrix3Xd placed =
       (T_truth_scan.topLeftCorner<3, 3>() * points.cast<double>()).colwise() + T_truth_scan.topRightCorner<3, 1>();
   const std::vector<ClosestPoint> closest = closestPoints(surfaces, placed, 0);

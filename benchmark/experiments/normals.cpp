@@ -24,7 +24,7 @@ struct Errors {
         continue;
       const float cosine = sample.truth.col(i).dot(normals.col(i));
       const double angle = std::isfinite(cosine) ? std::acos(std::clamp(cosine, -1.f, 1.f)) * 57.29578 : 180.0;
-      const int where = sample.place[static_cast<std::size_t>(i)];
+      const int where = sample.place[i];
       sum[where] += angle, above_20[where] += angle > 20, ++count[where];
     }
   }
@@ -65,7 +65,7 @@ Points pclNormals(const NormalSample& sample, int k, int threads)
   estimation.compute(output);
   Points normals(3, points.cols());
   for (Index i = 0; i < points.cols(); ++i) {
-    const Vector3f normal = output[static_cast<std::size_t>(i)].getNormalVector3fMap();
+    const Vector3f normal = output[i].getNormalVector3fMap();
     normals.col(i) = normal.dot(sample.ray(i)) > 0 ? Vector3f(-normal) : normal;
   }
   return normals;

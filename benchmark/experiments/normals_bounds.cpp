@@ -46,8 +46,8 @@ Points forNeighborhoods(const NormalSample& sample, const PointTree& tree, int k
   parallelFor(lists.size(), 0, [&](Index i) {
     std::vector<int> near(lists.first(i), lists.last(i));
     for (int& j : near)
-      j = tree.columns()[static_cast<std::size_t>(j)];
-    const int column = tree.columns()[static_cast<std::size_t>(i)];
+      j = tree.columns()[j];
+    const int column = tree.columns()[i];
     const Vector3f normal = normalOf(column, near);
     normals.col(column) = normal.dot(sample.ray(column)) > 0 ? Vector3f(-normal) : normal;
   });

@@ -55,17 +55,17 @@ NormalSample takeSample(const ScannedRoom& room, const Creases& creases, const V
   sample.deviations = Eigen::VectorXf::Map(scan.deviations.data(), n);
   sample.truth.resize(3, n);
   sample.exact.resize(3, n);
-  sample.place.resize(static_cast<std::size_t>(n));
+  sample.place.resize(n);
   for (Index i = 0; i < n; ++i) {
-    const Vector3f normal = faceNormal(lit.scene.mesh, scan.faces[static_cast<std::size_t>(i)]);
-    sample.truth.col(i) = scan.mixed[static_cast<std::size_t>(i)] ? Vector3f::Constant(NAN) : normal;
-    const Index corner = lit.scene.mesh.faces(0, scan.faces[static_cast<std::size_t>(i)]);
+    const Vector3f normal = faceNormal(lit.scene.mesh, scan.faces[i]);
+    sample.truth.col(i) = scan.mixed[i] ? Vector3f::Constant(NAN) : normal;
+    const Index corner = lit.scene.mesh.faces(0, scan.faces[i]);
     const Vector3f beam = sample.points.col(i), on_face = Vector3f(lit.scene.mesh.vertices.col(corner)) - station;
     sample.exact.col(i) = beam * (normal.dot(on_face) / normal.dot(beam));
     const Vector3f at = beam + station;
-    sample.place[static_cast<std::size_t>(i)] = creases.sharp.nearest(at, creases.edge).index >= 0   ? 0
-                                                : creases.bends.nearest(at, creases.plane).index < 0 ? 1
-                                                                                                     : 2;
+    sample.place[i] = creases.sharp.nearest(at, creases.edge).index >= 0   ? 0
+                      : creases.bends.nearest(at, creases.plane).index < 0 ? 1
+                                                                           : 2;
   }
   return sample;
 }

@@ -40,14 +40,14 @@ struct Builder {
 TriangleMesh extrudeRing(const std::vector<Vector2d>& inner, const std::vector<Vector2d>& outer, double height)
 {
   Builder builder;
-  const int n = static_cast<int>(outer.size());
+  const int n = outer.size();
   const auto index = [](int corner, bool is_outer, bool top) {
     return 4 * corner + 2 * (is_outer ? 1 : 0) + (top ? 1 : 0);
   };
   for (int i = 0; i < n; ++i)
     for (const auto* curve : {&inner, &outer})
       for (const double z : {0.0, height})
-        builder.add((*curve)[static_cast<std::size_t>(i)].x(), (*curve)[static_cast<std::size_t>(i)].y(), z);
+        builder.add((*curve)[i].x(), (*curve)[i].y(), z);
   for (int i = 0; i < n; ++i) {
     const int j = (i + 1) % n;
     builder.quad(index(i, true, false), index(j, true, false), index(j, true, true), index(i, true, true));
@@ -84,7 +84,7 @@ private:
   {
     const auto [place, fresh] = index_.try_emplace({i, j, k}, 0);
     if (fresh)
-      place->second = builder_.add(x_[static_cast<std::size_t>(i)], y_[j], z_[static_cast<std::size_t>(k)]);
+      place->second = builder_.add(x_[i], y_[j], z_[k]);
     return place->second;
   }
   void addCell(int i, int k)

@@ -34,7 +34,7 @@ struct Corners {
 
 Corners cornersOf(const TexturedMesh& model, Index face)
 {
-  const Image& atlas = model.atlases[static_cast<std::size_t>(model.face_atlas[face])];
+  const Image& atlas = model.atlases[model.face_atlas[face]];
   Corners corners;
   for (int k = 0; k < 3; ++k) {
     const Eigen::Vector2d t = model.texcoords.col(model.texcoord_faces(k, face)).cast<double>();
@@ -70,7 +70,7 @@ float footprint(const LitScene& lit, const CameraSet& set, std::size_t view_inde
   const auto [a, b, c] = triangleOf(lit.scene.mesh, face);
   const Eigen::Vector3f middle = (a + b + c) / 3, normal = (b - a).cross(c - a).normalized();
   const View& view = set.views[view_index];
-  const CameraModel& camera = set.cameras[static_cast<std::size_t>(view.camera)];
+  const CameraModel& camera = set.cameras[view.camera];
   const Eigen::Vector3d seen = view.T_camera_world * (middle.cast<double>() + lit.scene.mesh.origin);
   const Eigen::Vector3f from = (view.center() - lit.scene.mesh.origin).cast<float>();
   const float cosine = normal.dot((from - middle).normalized());
@@ -88,7 +88,7 @@ float footprint(const LitScene& lit, const CameraSet& set, std::size_t view_inde
 /// Of each face, metres: what the best of the photographs that are not kept out resolves.
 std::vector<float> finestFootprints(const LitScene& lit, const BoundOptions& options)
 {
-  std::vector<float> finest(static_cast<std::size_t>(lit.scene.mesh.faceCount()), 0.f);
+  std::vector<float> finest(lit.scene.mesh.faceCount(), 0.f);
   if (options.cameras.empty())
     return finest;
   const CameraSet set = readColmap(options.cameras);
@@ -97,7 +97,7 @@ std::vector<float> finestFootprints(const LitScene& lit, const BoundOptions& opt
     for (std::size_t v = 0; v < set.views.size(); ++v)
       if (options.keep_out <= 0 || (v + 1) % static_cast<std::size_t>(options.keep_out) != 0)
         best = std::min(best, footprint(lit, set, v, face));
-    finest[static_cast<std::size_t>(face)] = best;
+    finest[face] = best;
   });
   return finest;
 }
@@ -198,7 +198,7 @@ void run(int argc, char** argv)
   const std::vector<float> finest = finestFootprints(lit, options);
   Painter painter(lit, model);
   for (Index face = 0; face < scene.mesh.faceCount(); ++face)
-    painter.paint(face, options.texels, finest[static_cast<std::size_t>(face)]);
+    painter.paint(face, options.texels, finest[face]);
   writeTexturedMesh(files[2], model);
 }
 } // namespace

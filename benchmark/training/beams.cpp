@@ -62,7 +62,7 @@ struct Choice {
 
 BeamScan beamScan(const LaserScan& scan, const VeilOptions& options)
 {
-  std::vector<Index> columns(static_cast<std::size_t>(scan.points.size()));
+  std::vector<Index> columns(scan.points.size());
   std::iota(columns.begin(), columns.end(), 0);
   BeamScan beams = makeBeamScan(scan.points.points, scan.points.viewpoints.col(0), columns, options);
   beams.noise = measureNoise(beams, options.threads);
@@ -75,7 +75,7 @@ Rows rowsOf(const BeamScan& beams, const std::vector<PointLabel>& labels, const 
   Rows rows;
   std::vector<char> seen(labels.size(), 0);
   std::mutex mutex;
-  const auto columnOf = [&](Index i) { return static_cast<std::size_t>(beams.columns[static_cast<std::size_t>(i)]); };
+  const auto columnOf = [&](Index i) { return static_cast<std::size_t>(beams.columns[i]); };
   const auto leftOut = [&](std::size_t column) {
     return labels[column] == PointLabel::surface && CounterRandom(7, 7, column).uniform() >= choice.part;
   };

@@ -32,12 +32,12 @@ std::vector<Row> rowsOf(const NormalSample& sample, int threads)
   std::vector<Row> rows;
   compareDirections(field, set.viewpoints, field.normals, 1,
                     [&](Index i, const std::vector<DirectionOffer>& offers, DirectionFigures& figures) {
-                      const int column = field.tree->columns()[static_cast<std::size_t>(i)];
+                      const int column = field.tree->columns()[i];
                       if (!sample.truth.col(column).allFinite())
                         return;
                       for (const DirectionOffer& offer : offers) {
                         Row row{static_cast<float>(column),
-                                static_cast<float>(sample.place[static_cast<std::size_t>(column)]),
+                                static_cast<float>(sample.place[column]),
                                 offer.direction.dot(sample.truth.col(column)),
                                 {}};
                         DirectionFigures::Figures::Map(row.figures) = figures.of(offer);

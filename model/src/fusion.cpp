@@ -71,7 +71,7 @@ PointSet PointFusion::result(double least_weight) const
   set.colors.resize(3, colors ? count : 0);
   set.viewpoints.resize(3, viewpoints ? count : 0);
   for (Index i = 0; i < count; ++i) {
-    const Sum& sum = *kept[static_cast<std::size_t>(i)];
+    const Sum& sum = *kept[i];
     set.points.col(i) = (sum.point / sum.weight).cast<float>();
     set.normals.col(i) = sum.normal.normalized().cast<float>();
     set.confidences[i] = static_cast<float>(sum.weight);

@@ -52,7 +52,7 @@ std::vector<Viewpoint> levelViews(const ModelInput& input, const Eigen::Vector3d
 {
   std::vector<Viewpoint> all, level;
   for (const View& view : input.cameras.views)
-    all.push_back(viewOf(input.cameras.cameras[static_cast<std::size_t>(view.camera)], view.T_camera_world.inverse()));
+    all.push_back(viewOf(input.cameras.cameras[view.camera], view.T_camera_world.inverse()));
   if (input.rgbd)
     for (const RgbdFrame& frame : input.rgbd->frames)
       all.push_back(viewOf(input.rgbd->camera, frame.T_world_camera));

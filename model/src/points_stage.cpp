@@ -82,14 +82,13 @@ std::vector<Pose> placeScans(const ModelInput& input, const ModelOptions& option
   ScanRegistrationOptions registration;
   registration.threads = options.threads;
   registration.names = input.scans;
-  const ScanSource scans{static_cast<Index>(input.scans.size()),
-                         [&](Index i) { return readPoints(input.scans[static_cast<std::size_t>(i)]); }};
+  const ScanSource scans{static_cast<Index>(input.scans.size()), [&](Index i) { return readPoints(input.scans[i]); }};
   const ScanRegistrationResult result = registerScans(scans, {}, registration, progress);
   std::vector<Pose> poses = result.poses;
   figures["registration"] = "found";
   figures["registration_rms"] = result.rms;
   Index tie = 0;
-  while (tie < static_cast<Index>(poses.size()) && !poses[static_cast<std::size_t>(tie)])
+  while (tie < static_cast<Index>(poses.size()) && !poses[tie])
     ++tie;
   if (tie == static_cast<Index>(poses.size()))
     throw std::runtime_error(input.folder + ": no scan could be placed");
@@ -113,8 +112,7 @@ Json pointsFromScans(const ModelInput& input, const ModelFiles& files, const Mod
   const auto prepared = [&](Index s) {
     const double begin = 0.4 + step * static_cast<double>(s);
     report(progress, concat("scan ", s + 1, " of ", count), begin);
-    PreparedScan scan =
-        preparedScan(input.scans[static_cast<std::size_t>(s)], options, subProgress(progress, begin, begin + step));
+    PreparedScan scan = preparedScan(input.scans[s], options, subProgress(progress, begin, begin + step));
     raw += scan.read;
     return std::move(scan.points);
   };

@@ -155,7 +155,7 @@ PointSet depthPoints(const Image16& depth, const CameraModel& camera, const Dept
   const DepthField field{depth, camera, options, beamsOf(camera)};
   const int columns = (depth.width + options.stride - 1) / options.stride;
   const int rows = (depth.height + options.stride - 1) / options.stride;
-  const float least_cosine = static_cast<float>(std::cos(options.grazing * EIGEN_PI / 180.0));
+  const float least_cosine = std::cos(options.grazing * EIGEN_PI / 180.0);
   PointSet all;
   all.points.resize(3, Index(columns) * rows);
   all.normals.resize(3, all.size());

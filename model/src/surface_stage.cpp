@@ -17,10 +17,10 @@ std::vector<char> farFromPoints(const TriangleMesh& mesh, const PointSet& points
 {
   const PointTree tree(points.points, options.threads);
   const Eigen::Vector3f shift = (mesh.origin - points.origin).cast<float>();
-  std::vector<char> far(static_cast<std::size_t>(mesh.vertexCount()));
+  std::vector<char> far(mesh.vertexCount());
   parallelFor(mesh.vertexCount(), options.threads, [&](Index v) {
     const Eigen::Vector3f place = mesh.vertices.col(v) + shift;
-    far[static_cast<std::size_t>(v)] = tree.nearest(place, static_cast<float>(options.cell)).index < 0;
+    far[v] = tree.nearest(place, static_cast<float>(options.cell)).index < 0;
   });
   return far;
 }
@@ -55,13 +55,13 @@ std::vector<char> inFreeSpace(const TriangleMesh& mesh, const PointSet& points, 
   std::vector<char> removed = farFromPoints(mesh, points, options);
   std::vector<Index> asked;
   for (Index v = 0; v < mesh.vertexCount(); ++v)
-    if (removed[static_cast<std::size_t>(v)])
+    if (removed[v])
       asked.push_back(v);
   const Points places = (mesh.vertices(Eigen::all, asked).colwise() + mesh.origin.cast<float>()).eval();
   const int least = input.rgbd ? std::max(2, static_cast<int>(input.rgbd->frames.size()) / 30) : 1;
   const std::vector<char> empty = askAllViews(places, input, files, options).empty(least);
   for (std::size_t i = 0; i < asked.size(); ++i)
-    removed[static_cast<std::size_t>(asked[i])] = empty[i];
+    removed[asked[i]] = empty[i];
   return removed;
 }
 } // namespace

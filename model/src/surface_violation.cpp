@@ -67,8 +67,8 @@ void FreeSpace::count(const Judge& judge)
 {
   parallelFor(places_.cols(), threads_, [&](Index i) {
     const Answer answer = judge(places_.col(i));
-    through_[static_cast<std::size_t>(i)] += answer == Answer::Through;
-    there_[static_cast<std::size_t>(i)] += answer == Answer::There;
+    through_[i] += answer == Answer::Through;
+    there_[i] += answer == Answer::There;
   });
 }
 
@@ -141,8 +141,7 @@ TriangleMesh withoutVertices(const TriangleMesh& mesh, std::vector<char> removed
     for (Index f = 0; f < mesh.faceCount(); ++f)
       for (int k = 0; k < 3; ++k)
         for (int other = 1; other < 3; ++other)
-          votes[static_cast<std::size_t>(mesh.faces(k, f))] +=
-              removed[static_cast<std::size_t>(mesh.faces((k + other) % 3, f))] ? 1 : -1;
+          votes[mesh.faces(k, f)] += removed[mesh.faces((k + other) % 3, f)] ? 1 : -1;
     for (std::size_t v = 0; v < removed.size(); ++v)
       removed[v] = votes[v] != 0 ? votes[v] > 0 : removed[v];
   }

@@ -11,7 +11,7 @@ std::vector<TextureView> viewsOf(const ModelInput& input)
   std::vector<TextureView> views;
   for (const View& view : input.cameras.views) {
     TextureView next;
-    next.camera = input.cameras.cameras[static_cast<std::size_t>(view.camera)];
+    next.camera = input.cameras.cameras[view.camera];
     next.T_camera_world = view.T_camera_world;
     next.path = input.images + "/" + view.image;
     views.push_back(std::move(next));

@@ -14,13 +14,13 @@ Groups acceptedGroups(const Placement& placement, std::size_t scan_count)
   std::vector<Index> label(scan_count);
   std::iota(label.begin(), label.end(), Index(0));
   for (const PairResult& pair : placement.pairs) {
-    const Index a = label[static_cast<std::size_t>(pair.a)], b = label[static_cast<std::size_t>(pair.b)];
+    const Index a = label[pair.a], b = label[pair.b];
     if (pair.accepted)
       std::replace(label.begin(), label.end(), std::max(a, b), std::min(a, b));
   }
   Groups groups(scan_count);
   for (const Index scan : placement.members)
-    groups[static_cast<std::size_t>(label[static_cast<std::size_t>(scan)])].push_back(scan);
+    groups[label[scan]].push_back(scan);
   groups.erase(std::remove_if(groups.begin(), groups.end(), [](const auto& g) { return g.empty(); }), groups.end());
   std::stable_sort(groups.begin(), groups.end(), [](const auto& a, const auto& b) { return a.size() > b.size(); });
   return groups;
@@ -64,8 +64,8 @@ public:
   ScanRegistrationResult run(const std::vector<Placement>& placements);
 
 private:
-  ScanResult& scan(Index i) { return result_.scans[static_cast<std::size_t>(i)]; }
-  bool started(Index i) const { return !start_.empty() && start_[static_cast<std::size_t>(i)].has_value(); }
+  ScanResult& scan(Index i) { return result_.scans[i]; }
+  bool started(Index i) const { return !start_.empty() && start_[i].has_value(); }
   void describeScans(const Placement& placement);
   void placeMain(const std::vector<Index>& group);
   void placeOther(const std::vector<Index>& group, const std::vector<Index>& main, bool same_frame);
@@ -81,7 +81,7 @@ void Description::describeScans(const Placement& placement)
 {
   for (std::size_t m = 0; m < placement.members.size(); ++m) {
     const Index i = placement.members[m];
-    const PreparedScan& prepared = scans_[static_cast<std::size_t>(i)];
+    const PreparedScan& prepared = scans_[i];
     scan(i).T_group_scan = (placement.poses[m] * Eigen::Translation3d(-prepared.center)).matrix();
     scan(i).rms = pooledRms(placement.pairs, i);
     const PoseUncertainty uncertainty =
@@ -96,7 +96,7 @@ void Description::placeMain(const std::vector<Index>& group)
 {
   for (const Index i : group) {
     scan(i).placed = true;
-    result_.poses[static_cast<std::size_t>(i)] = scan(i).T_group_scan;
+    result_.poses[i] = scan(i).T_group_scan;
     if (scan(i).free_motion)
       scan(i).problem = "its surfaces leave a motion free: the pose is arbitrary along it";
   }
@@ -111,11 +111,10 @@ void Description::placeOther(const std::vector<Index>& group, const std::vector<
     } else if (same_frame && started(i)) {
       scan(i).placed = true;
       scan(i).problem = "overlaps none of the other placed scans enough: its start pose is kept unconfirmed";
-      result_.poses[static_cast<std::size_t>(i)] = scan(i).T_group_scan;
+      result_.poses[i] = scan(i).T_group_scan;
     } else {
-      scan(i).problem = look_alike_[static_cast<std::size_t>(i)]
-                            ? "fits in several places that look alike, and nothing seen tells which is right"
-                            : "no place among the other scans is certain";
+      scan(i).problem = look_alike_[i] ? "fits in several places that look alike, and nothing seen tells which is right"
+                                       : "no place among the other scans is certain";
     }
   }
 }
@@ -128,7 +127,7 @@ ScanRegistrationResult Description::run(const std::vector<Placement>& placements
     result_.converged = (&placement == &placements.front() || result_.converged) && placement.joint.converged;
     describeScans(placement);
     for (const Index i : placement.members)
-      look_alike_[static_cast<std::size_t>(i)] = placement.look_alike;
+      look_alike_[i] = placement.look_alike;
   }
   std::sort(result_.pairs.begin(), result_.pairs.end(),
             [](const PairResult& x, const PairResult& y) { return std::pair(x.a, x.b) < std::pair(y.a, y.b); });

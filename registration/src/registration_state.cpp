@@ -22,19 +22,18 @@ JointOptions jointOptions(const ScanRegistrationOptions& options)
 std::vector<PairResult> checkPairs(const std::vector<PreparedScan>& scans, const ScanRegistrationOptions& options,
                                    const Placement& placement)
 {
-  const Index n = static_cast<Index>(placement.members.size());
-  std::vector<PairResult> all(static_cast<std::size_t>(n * n));
+  const Index n = placement.members.size();
+  std::vector<PairResult> all(n * n);
   parallelFor(
       n * n, options.threads,
       [&](Index k) {
         const auto a = static_cast<std::size_t>(k / n), b = static_cast<std::size_t>(k % n);
         if (a >= b)
           return;
-        PairResult& pair = all[static_cast<std::size_t>(k)];
+        PairResult& pair = all[k];
         pair.a = placement.members[a];
         pair.b = placement.members[b];
-        const PreparedScan &first = scans[static_cast<std::size_t>(pair.a)],
-                           &second = scans[static_cast<std::size_t>(pair.b)];
+        const PreparedScan &first = scans[pair.a], &second = scans[pair.b];
         const PairCheck check =
             checkPair(first, second, placement.poses[a].inverse() * placement.poses[b], check_level);
         pair.overlap = check.overlap;
@@ -43,7 +42,7 @@ std::vector<PairResult> checkPairs(const std::vector<PreparedScan>& scans, const
       1);
   for (const JointPair& joint : placement.joint.pairs) {
     const Index a = std::min(joint.source, joint.target), b = std::max(joint.source, joint.target);
-    PairResult& pair = all[static_cast<std::size_t>(a * n + b)];
+    PairResult& pair = all[a * n + b];
     pair.rms += static_cast<double>(joint.matches) * joint.rms * joint.rms;
     pair.matches += joint.matches;
   }
@@ -69,7 +68,7 @@ void refinePlacement(const std::vector<PreparedScan>& scans, const ScanRegistrat
 {
   ScanPointers members;
   for (const Index i : placement.members)
-    members.push_back(&scans[static_cast<std::size_t>(i)]);
+    members.push_back(&scans[i]);
   JointOptions joint = jointOptions(options);
   joint.anchors = placement.anchors;
   const IsometryVector start = placement.poses;

@@ -122,7 +122,7 @@ std::vector<ScanCluster> findClusters(std::vector<PreparedScan>& scans, const st
 Placement toPlacement(const ScanCluster& cluster, const std::vector<PreparedScan>& scans,
                       const std::vector<Pose>& start)
 {
-  const auto hasStart = [&](Index i) { return !start.empty() && start[static_cast<std::size_t>(i)].has_value(); };
+  const auto hasStart = [&](Index i) { return !start.empty() && start[i].has_value(); };
   const bool started = std::any_of(cluster.scans.begin(), cluster.scans.end(), hasStart);
   std::vector<std::size_t> order(cluster.scans.size());
   std::iota(order.begin(), order.end(), std::size_t(0));
@@ -144,15 +144,14 @@ Placement toPlacement(const ScanCluster& cluster, const std::vector<PreparedScan
 
 std::string scanName(const ScanRegistrationOptions& options, Index scan)
 {
-  return options.names.empty() ? concat("scan ", scan) : options.names[static_cast<std::size_t>(scan)];
+  return options.names.empty() ? concat("scan ", scan) : options.names[scan];
 }
 
 ScanRegistrationResult registerScans(const std::vector<PointSet>& scans, const std::vector<Pose>& start,
                                      const ScanRegistrationOptions& options, const Progress& progress)
 {
-  return registerScans(
-      ScanSource{static_cast<Index>(scans.size()), [&](Index i) { return scans[static_cast<std::size_t>(i)]; }}, start,
-      options, progress);
+  return registerScans(ScanSource{static_cast<Index>(scans.size()), [&](Index i) { return scans[i]; }}, start, options,
+                       progress);
 }
 
 ScanRegistrationResult registerScans(const ScanSource& scans, const std::vector<Pose>& start,

@@ -32,7 +32,7 @@ inline TriangleMesh sphere(float radius, int rounds)
     const auto middle = [&](int a, int b) {
       const auto [at, fresh] = middles.try_emplace(std::minmax(a, b), static_cast<int>(v.size()));
       if (fresh)
-        v.push_back((v[static_cast<std::size_t>(a)] + v[static_cast<std::size_t>(b)]).normalized());
+        v.push_back((v[a] + v[b]).normalized());
       return at->second;
     };
     std::vector<Eigen::Vector3i> next;

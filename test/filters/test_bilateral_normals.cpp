@@ -29,7 +29,7 @@ Points oneRound(const Points& points, const Points& normals, double sigma_d, dou
   const Eigen::VectorXf by_position = sampleAreas(tree);
   Eigen::VectorXd areas(points.cols());
   for (Index i = 0; i < points.cols(); ++i)
-    areas[tree.columns()[static_cast<std::size_t>(i)]] = by_position[i];
+    areas[tree.columns()[i]] = by_position[i];
   const double s_n = 1 - std::cos(sigma_n * M_PI / 180);
   Points result(3, points.cols());
   for (Index i = 0; i < points.cols(); ++i) {

@@ -14,7 +14,7 @@ using test::nan;
 
 std::vector<Index> allIndices(Index n)
 {
-  std::vector<Index> indices(static_cast<std::size_t>(n));
+  std::vector<Index> indices(n);
   std::iota(indices.begin(), indices.end(), Index(0));
   return indices;
 }
@@ -73,7 +73,7 @@ TEST(VeilPoints, TheVeilGoesAndLegsAndEdgesStay)
   const auto kept = withoutVeil(scan.points, Eigen::Vector3f::Zero());
   std::vector<bool> stays(scan.veil.size(), false);
   for (const Index i : kept)
-    stays[static_cast<std::size_t>(i)] = true;
+    stays[i] = true;
   Index veil = 0, found = 0, wrong = 0, legs = 0, lost_legs = 0;
   for (std::size_t i = 0; i < stays.size(); ++i) {
     veil += scan.veil[i];
@@ -113,7 +113,7 @@ TEST(VeilPoints, BeamsThatOverlapDoNotHideTheVeil)
     for (const int kind : kinds)
       ++all[kind];
     for (const Index i : withoutVeil(cloud, Eigen::Vector3f::Zero()))
-      ++kept[kinds[static_cast<std::size_t>(i)]];
+      ++kept[kinds[i]];
     EXPECT_GT(all[1], 50);
     EXPECT_LT(static_cast<double>(kept[1]), 0.4 * static_cast<double>(all[1])) << step;
     EXPECT_LT(all[0] - kept[0], all[0] / 500) << step;
@@ -146,7 +146,7 @@ TEST(VeilPoints, RampsAlongObliqueBordersGo)
   const Index all = std::count(ramp.begin(), ramp.end(), true);
   Index kept = 0, others = 0;
   for (const Index i : withoutVeil(cloud, Eigen::Vector3f::Zero()))
-    ++(ramp[static_cast<std::size_t>(i)] ? kept : others);
+    ++(ramp[i] ? kept : others);
   EXPECT_GT(all, 30);
   EXPECT_LT(kept, all / 2);
   EXPECT_GT(others, cloud.cols() - all - 20);

@@ -221,7 +221,7 @@ TEST(SurfaceChoice, ClassIsTheCoreWhereAViewpointIsSet)
     filter.filter(output);
     Index count = 0;
     for (Index i = 0; i < scan.set.size(); ++i)
-      count += output[static_cast<std::size_t>(i)].getNormalVector3fMap() != expected.col(i);
+      count += output[i].getNormalVector3fMap() != expected.col(i);
     return count;
   };
   const Points with = smoothNormals(scan.set, raw).normals, without = smoothNormals(scan.set.points, raw).normals;

@@ -216,10 +216,9 @@ TEST(TreeItems, SelectMiddlePutsTheSmallerHalfFirst)
 {
   for (const Index count : {1, 9, 16, 33, 300, 5000})
     for (const int kinds : {1, 3, 100000}) { // different values
-      std::vector<TreeItem> items(static_cast<std::size_t>(count));
+      std::vector<TreeItem> items(count);
       for (Index i = 0; i < count; ++i)
-        items[static_cast<std::size_t>(i)] = {{0, static_cast<float>(i * 7919 % count % kinds), 0},
-                                              static_cast<int>(i)};
+        items[i] = {{0, static_cast<float>(i * 7919 % count % kinds), 0}, static_cast<int>(i)};
       TreeItem *begin = items.data(), *end = begin + count, *middle = begin + count / 2;
       selectMiddle(begin, middle, end, 1);
       const auto less = [](const TreeItem& a, const TreeItem& b) { return a.x[1] < b.x[1]; };
@@ -228,7 +227,7 @@ TEST(TreeItems, SelectMiddlePutsTheSmallerHalfFirst)
       }
       std::vector<bool> seen(items.size());
       for (const TreeItem& item : items)
-        seen[static_cast<std::size_t>(item.column)] = true;
+        seen[item.column] = true;
       EXPECT_EQ(std::count(seen.begin(), seen.end(), true), count);
     }
 }

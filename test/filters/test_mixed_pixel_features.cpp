@@ -28,7 +28,7 @@ Points boardBeforeWall(float deviation, Index beams = 2500)
 
 BeamScan scanOf(const Points& points, const Vector3f& viewpoint)
 {
-  std::vector<Index> columns(static_cast<std::size_t>(points.cols()));
+  std::vector<Index> columns(points.cols());
   std::iota(columns.begin(), columns.end(), 0);
   BeamScan scan = makeBeamScan(points, viewpoint, columns, {});
   scan.noise = measureNoise(scan, 0);
@@ -40,9 +40,8 @@ std::map<Index, VeilFigures> candidatesOf(const BeamScan& scan)
   std::map<Index, VeilFigures> found;
   VeilOptions options;
   options.threads = 1;
-  forVeilCandidates(scan, options, [&](Index i, const BeamSurroundings& around) {
-    found[scan.columns[static_cast<std::size_t>(i)]] = veilFigures(around);
-  });
+  forVeilCandidates(scan, options,
+                    [&](Index i, const BeamSurroundings& around) { found[scan.columns[i]] = veilFigures(around); });
   return found;
 }
 
@@ -52,9 +51,8 @@ std::map<Index, LikelyFigures> likelyOf(const BeamScan& scan, float score)
   VeilOptions options;
   options.threads = 1;
   const std::vector<float> scores(scan.columns.size(), score);
-  forLikelyVeil(scan, options, scores, [&](Index i, const LikelyFigures& figures) {
-    found[scan.columns[static_cast<std::size_t>(i)]] = figures;
-  });
+  forLikelyVeil(scan, options, scores,
+                [&](Index i, const LikelyFigures& figures) { found[scan.columns[i]] = figures; });
   return found;
 }
 

@@ -44,7 +44,7 @@ TEST(DepthImage, NoPointsAcrossJumpsAndWhereDepthIsMissing)
   Image16 image = planeDepth(Eigen::Vector3d::UnitZ(), 2.0);
   for (int y = 0; y < image.height; ++y)
     for (int x = 0; x < image.width; ++x) {
-      std::uint16_t& depth = image.data[static_cast<std::size_t>(y * image.width + x)];
+      std::uint16_t& depth = image.data[y * image.width + x];
       depth = x < 40 ? 0 : x > 120 ? 65535 : x < 80 ? 1500 : depth;
     }
   const PointSet set = depthPoints(image, camera, {}, 1);

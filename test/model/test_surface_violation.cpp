@@ -47,7 +47,7 @@ TEST(FreeSpace, AThingBesideTheBeamKeepsItsSurroundings)
 {
   Image16 image = wallAt(2.0);
   for (int y = 0; y < image.height; ++y)
-    image.data[static_cast<std::size_t>(y * image.width + 82)] = 1000; // a thin pole two pixels beside the middle
+    image.data[y * image.width + 82] = 1000; // a thin pole two pixels beside the middle
   FreeSpace space(places(), 0.02, 1);
   space.ask(image, camera, Eigen::Isometry3d::Identity());
   EXPECT_EQ(space.empty(1)[0], 0);
@@ -109,7 +109,7 @@ TEST(FreeSpace, SpecksStayAndPartsGo)
   EXPECT_EQ(withoutVertices(mesh, removed).faceCount(), mesh.faceCount());
   for (int y = 0; y < 21; ++y)
     for (int x = 11; x < 21; ++x)
-      removed[static_cast<std::size_t>(21 * y + x)] = 1;
+      removed[21 * y + x] = 1;
   removed[10 * 21 + 15] = 0; // an island
   const TriangleMesh half = withoutVertices(mesh, removed);
   EXPECT_GT(half.vertices.row(0).maxCoeff(), 10.f);
@@ -124,7 +124,7 @@ TEST(FreeSpace, BordersHaveNoTeeth)
   std::vector<char> removed(21 * 21, 0);
   for (int y = 0; y < 21; ++y)
     for (int x = 10 + y / 2 % 2; x < 21; ++x)
-      removed[static_cast<std::size_t>(21 * y + x)] = 1;
+      removed[21 * y + x] = 1;
   const TriangleMesh half = withoutVertices(mesh, removed);
   std::set<std::pair<int, int>> directed;
   for (Index f = 0; f < half.faceCount(); ++f)

@@ -44,7 +44,7 @@ inline void paint(PointSet& scan, const Eigen::Isometry3d& T_world_scan, const B
     const auto nearest = std::min_element(boxes.begin(), boxes.end(), [&](const Box& x, const Box& y) {
       return surfaceDistance(x, point) < surfaceDistance(y, point);
     });
-    const unsigned hash = (numbers[static_cast<std::size_t>(nearest - boxes.begin())] + 1u) * 2654435761u;
+    const unsigned hash = (numbers[nearest - boxes.begin()] + 1u) * 2654435761u;
     for (int c = 0; c < 3; ++c)
       scan.colors(c, i) = static_cast<std::uint8_t>(40 + (hash >> (8 * c + 4)) % 176);
   }

@@ -188,7 +188,7 @@ TEST(GlobalRegistration, WallsAreNotForcedTogether)
 TEST(GlobalRegistration, ScansAreReadOneAfterTheOther)
 {
   const ScannedScene scene = test::scanTwoRooms(20000);
-  const ScanSource source{2, [&](Index i) { return scene.scans[static_cast<std::size_t>(i)]; }};
+  const ScanSource source{2, [&](Index i) { return scene.scans[i]; }};
   EXPECT_EQ(registerScans(source).poses, registerScans({scene.scans[0], scene.scans[1]}).poses);
 }
 

@@ -10,7 +10,7 @@ std::vector<Chart> makeCharts(int count)
 {
   std::mt19937 random(7);
   std::uniform_int_distribution<int> length(4, 60);
-  std::vector<Chart> charts(static_cast<std::size_t>(count));
+  std::vector<Chart> charts(count);
   for (std::size_t c = 0; c < charts.size(); ++c) {
     Chart& chart = charts[c];
     chart.width = length(random);
@@ -29,7 +29,7 @@ std::vector<Chart> makeCharts(int count)
 /// How often each texel of each atlas is taken.
 std::vector<std::vector<int>> takenTexels(const std::vector<Chart>& charts, const Packing& packing)
 {
-  std::vector<std::vector<int>> taken(static_cast<std::size_t>(packing.atlases),
+  std::vector<std::vector<int>> taken(packing.atlases,
                                       std::vector<int>(static_cast<std::size_t>(packing.side) * packing.side, 0));
   for (const Chart& chart : charts) {
     EXPECT_TRUE(chart.atlas >= 0 && chart.atlas < packing.atlases);

@@ -160,7 +160,7 @@ TEST(TextureViews, OfManyViewsThoseThatShowAPatchBestAreKept)
   for (int v = 0; v < views; ++v)
     for (Index p = 0; p < patches; ++p)
       if (random() % 2 == 0 && p % 5 != 0) {
-        const float resolution = static_cast<float>(size(random));
+        const float resolution = size(random);
         table.add(p, {v, {}, 0, resolution});
         added[p].emplace_back(-resolution, v);
       }

@@ -112,7 +112,7 @@ TEST(VirtualDataset, IsCompleteAndConsistent)
     EXPECT_EQ(scan.colors.cols(), scan.size());
     ASSERT_EQ(scan.viewpoints.cols(), 1);
     EXPECT_EQ(scan.viewpoints.norm(), 0.f);
-    const Eigen::Matrix4d T = *poses[static_cast<std::size_t>(k)];
+    const Eigen::Matrix4d T = *poses[k];
     for (Index i = 0; i < scan.size(); ++i) { // each point lies on a wall of the box or of the column
       const Eigen::Vector3d p = (T * scan.points.col(i).cast<double>().homogeneous()).head<3>();
       const double wide = std::max(std::fabs(p.x()), std::fabs(p.y()));

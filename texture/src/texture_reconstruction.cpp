@@ -85,7 +85,7 @@ float longestEdge(const TriangleMesh& mesh, const std::vector<Projector>& views)
       if (p.z() > 0 && p.x() >= 0 && p.y() >= 0 && p.x() <= view.camera().width && p.y() <= view.camera().height)
         sizes.push_back(p.z() / view.focal());
     }
-  const float least = static_cast<float>(std::sqrt(surfaceArea(mesh) / (0.43 * most_patches)));
+  const float least = std::sqrt(surfaceArea(mesh) / (0.43 * most_patches));
   if (sizes.empty())
     return static_cast<float>(std::max<double>(least, 0.05 * diagonalOf(mesh)));
   std::nth_element(sizes.begin(), sizes.begin() + sizes.size() / 2, sizes.end());
@@ -204,14 +204,14 @@ void warnOfRotations(const std::vector<TextureView>& views, TextureResult& resul
 void checkPhotos(PhotoStore& photos, const std::vector<TextureView>& views, int threads, TextureResult& result)
 {
   parallelFor(
-      static_cast<Index>(views.size()), threads, [&](Index v) { photos.get(v); }, 1);
+      views.size(), threads, [&](Index v) { photos.get(v); }, 1);
   warnOfRotations(views, result);
 }
 
 void fillFigures(const PatchMesh& patches, const Eigen::VectorXi& view, TextureResult& result)
 {
   double seen = 0;
-  std::vector<char> used(static_cast<std::size_t>(view.maxCoeff() + 1), 0);
+  std::vector<char> used(view.maxCoeff() + 1, 0);
   for (Index i = 0; i < patches.size(); ++i)
     if (view[i] >= 0) {
       seen += patches.areas[i];
@@ -261,7 +261,7 @@ TextureResult reconstructTexture(const TriangleMesh& mesh, const std::vector<Tex
       list.doubt < 1 ? outlineMasks(patches, *rays, list, options) : std::vector<OutlineMask>();
   rays.reset();
   watch.lap("visibility");
-  const Index count = static_cast<Index>(views.size());
+  const Index count = views.size();
   result.gains = options.exposure ? solveGains(candidates, count) : Points(Points::Ones(3, count));
   watch.lap("exposure");
   report(progress, "view selection", 0.4);

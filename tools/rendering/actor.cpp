@@ -103,7 +103,7 @@ void setSurface(vtkProperty& property, const SurfaceLook& look)
   if (look.edge_strength > 0) {
     property.EdgeVisibilityOn();
     property.SetLineWidth(static_cast<float>(look.size));
-    const auto edge = [&](int c) { return (1 - look.edge_strength) * look.color[static_cast<std::size_t>(c)]; };
+    const auto edge = [&](int c) { return (1 - look.edge_strength) * look.color[c]; };
     property.SetEdgeColor(edge(0), edge(1), edge(2));
   }
 }

@@ -10,15 +10,15 @@ namespace {
 /// Vertex of each corner of `faces`, renumbered without gaps in ascending order; `source` gets the old numbers.
 Faces renumber(const Faces& faces, Index vertex_count, std::vector<int>& source)
 {
-  std::vector<int> number(static_cast<std::size_t>(vertex_count), -1);
+  std::vector<int> number(vertex_count, -1);
   for (Index i = 0; i < faces.size(); ++i)
-    number[static_cast<std::size_t>(faces.data()[i])] = 0;
+    number[faces.data()[i]] = 0;
   for (std::size_t v = 0; v < number.size(); ++v)
     if (number[v] == 0) {
       number[v] = static_cast<int>(source.size());
       source.push_back(static_cast<int>(v));
     }
-  return faces.unaryExpr([&](int v) { return number[static_cast<std::size_t>(v)]; });
+  return faces.unaryExpr([&](int v) { return number[v]; });
 }
 
 /// Vertices and colours of `source`.
@@ -28,7 +28,7 @@ void fillVertices(DrawMesh& drawn, const TriangleMesh& mesh)
   drawn.vertices.resize(3, count);
   drawn.colors.resize(3, mesh.colors.cols() > 0 ? count : 0);
   for (Index v = 0; v < count; ++v) {
-    const int from = drawn.source[static_cast<std::size_t>(v)];
+    const int from = drawn.source[v];
     drawn.vertices.col(v) = mesh.vertices.col(from);
     if (drawn.colors.cols() > 0)
       drawn.colors.col(v) = mesh.colors.col(from);
@@ -38,8 +38,8 @@ void fillVertices(DrawMesh& drawn, const TriangleMesh& mesh)
 /// Corners (face * 3 + k) around each vertex, ascending: corners[start[v]] .. corners[start[v + 1]].
 struct VertexCorners {
   std::vector<Index> start, corners;
-  Index count(Index v) const { return start[static_cast<std::size_t>(v) + 1] - start[static_cast<std::size_t>(v)]; }
-  const Index* begin(Index v) const { return corners.data() + start[static_cast<std::size_t>(v)]; }
+  Index count(Index v) const { return start[static_cast<std::size_t>(v) + 1] - start[v]; }
+  const Index* begin(Index v) const { return corners.data() + start[v]; }
 };
 
 VertexCorners cornersOfVertices(const Faces& faces, Index vertex_count)
@@ -50,10 +50,10 @@ VertexCorners cornersOfVertices(const Faces& faces, Index vertex_count)
     ++around.start[static_cast<std::size_t>(faces.data()[i]) + 1];
   for (std::size_t v = 1; v < around.start.size(); ++v)
     around.start[v] += around.start[v - 1];
-  around.corners.resize(static_cast<std::size_t>(faces.size()));
+  around.corners.resize(faces.size());
   std::vector<Index> next(around.start.begin(), around.start.end() - 1);
   for (Index i = 0; i < faces.size(); ++i)
-    around.corners[static_cast<std::size_t>(next[static_cast<std::size_t>(faces.data()[i])]++)] = i;
+    around.corners[next[faces.data()[i]]++] = i;
   return around;
 }
 
@@ -139,8 +139,8 @@ DrawMesh creasedMesh(const TriangleMesh& mesh, double crease_angle, int threads)
   const DrawMesh plain = plainMesh(mesh);
   const CreaseNormals crease(plain, crease_angle, threads);
   const Index count = plain.vertices.cols();
-  std::vector<char> creased(static_cast<std::size_t>(count));
-  parallelFor(count, threads, [&](Index v) { creased[static_cast<std::size_t>(v)] = crease.isCreased(v); });
+  std::vector<char> creased(count);
+  parallelFor(count, threads, [&](Index v) { creased[v] = crease.isCreased(v); });
   std::vector<Index> first(creased.size());
   DrawMesh drawn;
   for (std::size_t v = 0; v < creased.size(); ++v) {
@@ -152,9 +152,9 @@ DrawMesh creasedMesh(const TriangleMesh& mesh, double crease_angle, int threads)
   drawn.faces.resize(3, plain.faces.cols());
   drawn.normals.resize(3, drawn.vertices.cols());
   parallelFor(count, threads, [&](Index v) {
-    const bool split = creased[static_cast<std::size_t>(v)];
+    const bool split = creased[v];
     for (Index i = 0; i < crease.around().count(v); ++i) {
-      const Index to = first[static_cast<std::size_t>(v)] + (split ? i : 0);
+      const Index to = first[v] + (split ? i : 0);
       drawn.faces.data()[crease.around().begin(v)[i]] = static_cast<int>(to);
       if (split || i == 0)
         drawn.normals.col(to) = crease.normal(v, i);
@@ -184,8 +184,8 @@ DrawMesh texturedPart(const TexturedMesh& model, int atlas)
   drawn.faces.resize(3, static_cast<Index>(faces.size()));
   for (Index i = 0; i < drawn.faces.cols(); ++i)
     for (int k = 0; k < 3; ++k) {
-      const int v = model.mesh.faces(k, faces[static_cast<std::size_t>(i)]);
-      const int t = atlas < 0 ? 0 : model.texcoord_faces(k, faces[static_cast<std::size_t>(i)]);
+      const int v = model.mesh.faces(k, faces[i]);
+      const int t = atlas < 0 ? 0 : model.texcoord_faces(k, faces[i]);
       const auto key = static_cast<std::uint64_t>(v) << 32 | static_cast<std::uint32_t>(t);
       const auto [at, added] = number.emplace(key, static_cast<int>(drawn.source.size()));
       if (added) {
@@ -197,7 +197,7 @@ DrawMesh texturedPart(const TexturedMesh& model, int atlas)
   fillVertices(drawn, model.mesh);
   drawn.texcoords.resize(2, atlas < 0 ? 0 : drawn.vertices.cols());
   for (Index v = 0; v < drawn.texcoords.cols(); ++v)
-    drawn.texcoords.col(v) = model.texcoords.col(texcoord[static_cast<std::size_t>(v)]);
+    drawn.texcoords.col(v) = model.texcoords.col(texcoord[v]);
   return drawn;
 }
 } // namespace fresco::rendering

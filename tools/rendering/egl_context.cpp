@@ -38,7 +38,7 @@ EGLDisplay deviceDisplay(PFNEGLGETPLATFORMDISPLAYEXTPROC get_display)
   if (!query || !query(static_cast<EGLint>(devices.size()), devices.data(), &count))
     return EGL_NO_DISPLAY;
   for (EGLint i = 0; i < count; ++i) {
-    const EGLDisplay display = get_display(EGL_PLATFORM_DEVICE_EXT, devices[static_cast<std::size_t>(i)], nullptr);
+    const EGLDisplay display = get_display(EGL_PLATFORM_DEVICE_EXT, devices[i], nullptr);
     if (display != EGL_NO_DISPLAY && eglInitialize(display, nullptr, nullptr))
       return display;
   }

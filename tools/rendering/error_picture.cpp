@@ -44,7 +44,7 @@ Eigen::VectorXf drawnDistances(const DrawMesh& drawn, const Eigen::VectorXf& dis
 {
   Eigen::VectorXf shown(drawn.vertices.cols());
   for (Index v = 0; v < shown.size(); ++v)
-    shown[v] = distances[drawn.source[static_cast<std::size_t>(v)]];
+    shown[v] = distances[drawn.source[v]];
   require(shown.allFinite() && shown.minCoeff() >= 0, "picture: a distance is negative or not finite");
   return shown;
 }

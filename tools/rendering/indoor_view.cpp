@@ -63,13 +63,12 @@ std::vector<Stand> gridOfStands(const ViewRays& scene, const RoomFrame& room, in
   constexpr int cells = 20;
   constexpr std::array<double, 2> heights{0.6, 0.75};
   std::vector<Stand> stands(heights.size() * cells * cells);
-  parallelFor(static_cast<Index>(stands.size()), threads, [&](Index i) {
+  parallelFor(stands.size(), threads, [&](Index i) {
     const Index cell = i % (cells * cells);
     const Eigen::Vector3d share((static_cast<double>(cell % cells) + 0.5) / cells,
-                                (static_cast<double>(cell / cells) + 0.5) / cells,
-                                heights[static_cast<std::size_t>(i / (cells * cells))]);
+                                (static_cast<double>(cell / cells) + 0.5) / cells, heights[i / (cells * cells)]);
     const Eigen::Vector3d coordinates = room.low.array() + share.array() * room.size().array();
-    stands[static_cast<std::size_t>(i)] = examine(scene, room.point(coordinates));
+    stands[i] = examine(scene, room.point(coordinates));
   });
   return stands;
 }
@@ -110,7 +109,7 @@ double relief(const std::vector<double>& depths)
 {
   double sum = 0;
   const auto step = [&](int a, int b) {
-    const double da = depths[static_cast<std::size_t>(a)], db = depths[static_cast<std::size_t>(b)];
+    const double da = depths[a], db = depths[b];
     return std::isfinite(da) && std::isfinite(db) ? std::min(1.0, std::abs(std::log(da / db))) : 0.0;
   };
   for (int y = 0; y < rays_y; ++y)
@@ -191,13 +190,13 @@ std::optional<Viewpoint> insideView(const TriangleMesh& mesh, const IndoorOption
   if (stands.empty())
     return {};
   std::vector<Look> looks(stands.size());
-  parallelFor(static_cast<Index>(stands.size()), options.threads, [&](Index i) {
+  parallelFor(stands.size(), options.threads, [&](Index i) {
     const auto at = static_cast<std::size_t>(i);
     looks[at] = bestLook(scene, stands[at], room, options.aspect);
   });
   const auto best =
       std::max_element(looks.begin(), looks.end(), [](const Look& a, const Look& b) { return a.score < b.score; });
-  const Eigen::Vector3d eye = mesh.origin + stands[static_cast<std::size_t>(best - looks.begin())].eye;
+  const Eigen::Vector3d eye = mesh.origin + stands[best - looks.begin()].eye;
   return Viewpoint{eye, eye + 0.5 * room_size * best->direction, room.up, inside_angle};
 }
 

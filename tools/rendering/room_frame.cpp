@@ -86,7 +86,7 @@ std::vector<Eigen::Vector3d> halfSphere(int count)
 /// Value that `share` of the area lies below.
 double areaQuantile(const Eigen::VectorXd& values, const Eigen::VectorXd& areas, double share)
 {
-  std::vector<Index> order(static_cast<std::size_t>(values.size()));
+  std::vector<Index> order(values.size());
   for (std::size_t i = 0; i < order.size(); ++i)
     order[i] = static_cast<Index>(i);
   std::sort(order.begin(), order.end(), [&](Index a, Index b) { return values[a] < values[b]; });

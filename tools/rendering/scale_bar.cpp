@@ -76,8 +76,7 @@ void paint(Image& image, int x, int y, const Rgb& color, int coverage = 255)
   const int below = image.channels == 4 ? pixel[3] * (255 - coverage) / 255 : 255 - coverage;
   const int alpha = coverage + below;
   for (int c = 0; c < 3; ++c)
-    pixel[c] = static_cast<std::uint8_t>(
-        (color[static_cast<std::size_t>(c)] * coverage + pixel[c] * below + alpha / 2) / alpha);
+    pixel[c] = static_cast<std::uint8_t>((color[c] * coverage + pixel[c] * below + alpha / 2) / alpha);
   if (image.channels == 4)
     pixel[3] = static_cast<std::uint8_t>(alpha);
 }
@@ -127,8 +126,7 @@ void drawScaleBar(Image& image, const ScaleBar& bar)
   paintBar(image, layout, left, bar.text_color);
   for (const Tick& tick : layout.ticks) {
     const double share = std::min(1.0, tick.value / bar.largest);
-    const int y =
-        static_cast<int>(std::lround(layout.bar_bottom - 1 - share * (layout.bar_bottom - 1 - layout.bar_top)));
+    const int y = std::lround(layout.bar_bottom - 1 - share * (layout.bar_bottom - 1 - layout.bar_top));
     for (int x = 0; x < layout.pad; ++x)
       paint(image, left + layout.bar_width + x, y, bar.text_color);
     const int text_left = left + layout.bar_width + layout.pad * 3 / 2;

@@ -46,7 +46,7 @@ std::vector<Part> makeParts(const TexturedMesh& model, int largest_texture)
     if (part.drawn.faces.cols() == 0)
       continue;
     if (atlas >= 0)
-      part.atlas = shrinkTo(model.atlases[static_cast<std::size_t>(atlas)], largest_texture);
+      part.atlas = shrinkTo(model.atlases[atlas], largest_texture);
     parts.push_back(std::move(part));
   }
   return parts;

@@ -91,13 +91,13 @@ Viewpoint frame(const Points& given, const Eigen::Vector3d& origin, const Framin
 
 Points referenced(const TriangleMesh& mesh)
 {
-  std::vector<char> used(static_cast<std::size_t>(mesh.vertexCount()), 0);
+  std::vector<char> used(mesh.vertexCount(), 0);
   for (Index i = 0; i < mesh.faces.size(); ++i)
-    used[static_cast<std::size_t>(mesh.faces.data()[i])] = 1;
+    used[mesh.faces.data()[i]] = 1;
   Points points(3, std::count(used.begin(), used.end(), 1));
   Index next = 0;
   for (Index v = 0; v < mesh.vertexCount(); ++v)
-    if (used[static_cast<std::size_t>(v)])
+    if (used[v])
       points.col(next++) = mesh.vertices.col(v);
   return points;
 }
@@ -116,7 +116,7 @@ Points usualPoints(const Points& points)
       values.push_back(points(axis, i));
     const auto cut = static_cast<std::ptrdiff_t>(values.size() / 200);
     std::nth_element(values.begin(), values.begin() + cut, values.end());
-    const float low = values[static_cast<std::size_t>(cut)];
+    const float low = values[cut];
     std::nth_element(values.begin(), values.end() - 1 - cut, values.end());
     const float high = values[values.size() - 1 - static_cast<std::size_t>(cut)], rim = 0.2f * (high - low);
     kept.erase(

@@ -37,11 +37,11 @@ VertexFaces facesOfVertices(const TriangleMesh& mesh)
     ++around.start[static_cast<std::size_t>(mesh.faces.data()[i]) + 1];
   for (std::size_t v = 1; v < around.start.size(); ++v)
     around.start[v] += around.start[v - 1];
-  around.faces.resize(static_cast<std::size_t>(mesh.faces.size()));
+  around.faces.resize(mesh.faces.size());
   std::vector<Index> next(around.start.begin(), around.start.end() - 1);
   for (Index f = 0; f < mesh.faceCount(); ++f)
     for (int k = 0; k < 3; ++k)
-      around.faces[static_cast<std::size_t>(next[static_cast<std::size_t>(mesh.faces(k, f))]++)] = static_cast<int>(f);
+      around.faces[next[mesh.faces(k, f)]++] = static_cast<int>(f);
   return around;
 }
 } // namespace
@@ -76,8 +76,8 @@ Points vertexNormals(const TriangleMesh& mesh, int threads)
   Points normals(3, mesh.vertexCount());
   parallelFor(mesh.vertexCount(), threads, [&](Index v) {
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-    for (Index i = around.start[static_cast<std::size_t>(v)]; i < around.start[static_cast<std::size_t>(v) + 1]; ++i)
-      sum += areaVector(mesh, around.faces[static_cast<std::size_t>(i)]);
+    for (Index i = around.start[v]; i < around.start[static_cast<std::size_t>(v) + 1]; ++i)
+      sum += areaVector(mesh, around.faces[i]);
     normals.col(v) = unitOrZero(sum);
   });
   return normals;
@@ -101,9 +101,9 @@ double surfaceArea(const TriangleMesh& mesh)
 
 TriangleMesh removeUnreferencedVertices(const TriangleMesh& mesh)
 {
-  std::vector<int> renamed(static_cast<std::size_t>(mesh.vertexCount()), -1);
+  std::vector<int> renamed(mesh.vertexCount(), -1);
   for (Index i = 0; i < mesh.faces.size(); ++i)
-    renamed[static_cast<std::size_t>(mesh.faces.data()[i])] = 0;
+    renamed[mesh.faces.data()[i]] = 0;
   std::vector<Index> kept;
   for (std::size_t v = 0; v < renamed.size(); ++v)
     if (renamed[v] == 0) {
@@ -119,7 +119,7 @@ TriangleMesh removeUnreferencedVertices(const TriangleMesh& mesh)
     result.colors = mesh.colors(Eigen::all, kept);
   for (const auto& [name, values] : mesh.fields)
     result.fields[name] = values(kept);
-  result.faces = mesh.faces.unaryExpr([&](int v) { return renamed[static_cast<std::size_t>(v)]; });
+  result.faces = mesh.faces.unaryExpr([&](int v) { return renamed[v]; });
   return result;
 }
 } // namespace fresco

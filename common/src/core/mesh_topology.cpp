@@ -3,31 +3,10 @@
 #include <cstdint>
 #include <fresco/core/mesh.h>
 #include <fresco/core/require.h>
+#include <fresco/core/union_find.h>
 #include <numeric>
 namespace fresco {
 namespace {
-class DisjointSets {
-public:
-  explicit DisjointSets(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0U); }
-
-  std::uint32_t find(std::uint32_t i)
-  {
-    while (parent_[i] != i)
-      i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-
-  void join(std::uint32_t a, std::uint32_t b)
-  {
-    a = find(a);
-    b = find(b);
-    parent_[std::max(a, b)] = std::min(a, b);
-  }
-
-private:
-  std::vector<std::uint32_t> parent_;
-};
-
 /// One side of a face: the edge from `low` to `high`, or the other way round.
 struct HalfEdge {
   std::uint64_t key;    ///< low vertex in the upper half, high vertex in the lower
@@ -38,7 +17,7 @@ struct HalfEdge {
 std::vector<HalfEdge> sortedHalfEdges(const TriangleMesh& mesh)
 {
   std::vector<HalfEdge> edges;
-  edges.reserve(static_cast<std::size_t>(mesh.faces.size()));
+  edges.reserve(mesh.faces.size());
   for (Index f = 0; f < mesh.faceCount(); ++f) {
     const Eigen::Vector3i face = mesh.faces.col(f);
     if (face[0] == face[1] || face[1] == face[2] || face[2] == face[0])
@@ -63,7 +42,7 @@ std::uint32_t cornerAt(const HalfEdge& edge, bool low)
 }
 
 /// Counts the edges [begin, end) with one key and joins the fans of the two faces of a manifold edge.
-void countEdge(const HalfEdge* begin, const HalfEdge* end, MeshTopology& topology, DisjointSets& fans)
+void countEdge(const HalfEdge* begin, const HalfEdge* end, MeshTopology& topology, UnionFind& fans)
 {
   ++topology.edges;
   if (end - begin == 1) {
@@ -81,10 +60,10 @@ void countEdge(const HalfEdge* begin, const HalfEdge* end, MeshTopology& topolog
 }
 
 /// Corners of one vertex that fall into more than one fan make it non-manifold.
-void countVertices(const TriangleMesh& mesh, MeshTopology& topology, DisjointSets& fans)
+void countVertices(const TriangleMesh& mesh, MeshTopology& topology, UnionFind& fans)
 {
   constexpr std::uint32_t none = 0xffffffffU;
-  std::vector<std::uint32_t> fan(static_cast<std::size_t>(mesh.vertexCount()), none);
+  std::vector<std::uint32_t> fan(mesh.vertexCount(), none);
   std::vector<bool> split(fan.size(), false);
   for (Index f = 0; f < mesh.faceCount(); ++f) {
     const Eigen::Vector3i face = mesh.faces.col(f);
@@ -92,7 +71,7 @@ void countVertices(const TriangleMesh& mesh, MeshTopology& topology, DisjointSet
       continue;
     for (int k = 0; k < 3; ++k) {
       const auto v = static_cast<std::size_t>(face[k]);
-      const std::uint32_t root = fans.find(static_cast<std::uint32_t>(3 * f + k));
+      const std::uint32_t root = fans.root(static_cast<std::uint32_t>(3 * f + k));
       if (fan[v] == none) {
         fan[v] = root;
         ++topology.referenced_vertices;
@@ -106,8 +85,8 @@ void countVertices(const TriangleMesh& mesh, MeshTopology& topology, DisjointSet
 
 Index countComponents(const TriangleMesh& mesh, const std::vector<HalfEdge>& edges)
 {
-  DisjointSets sets(static_cast<std::size_t>(mesh.vertexCount()));
-  std::vector<bool> used(static_cast<std::size_t>(mesh.vertexCount()), false);
+  UnionFind sets(static_cast<std::size_t>(mesh.vertexCount()));
+  std::vector<bool> used(mesh.vertexCount(), false);
   for (const HalfEdge& edge : edges) {
     const auto a = static_cast<std::uint32_t>(edge.key >> 32), b = static_cast<std::uint32_t>(edge.key);
     used[a] = used[b] = true;
@@ -115,7 +94,7 @@ Index countComponents(const TriangleMesh& mesh, const std::vector<HalfEdge>& edg
   }
   Index count = 0;
   for (std::uint32_t v = 0; v < used.size(); ++v)
-    count += used[v] && sets.find(v) == v;
+    count += used[v] && sets.root(v) == v;
   return count;
 }
 } // namespace
@@ -126,7 +105,7 @@ MeshTopology meshTopology(const TriangleMesh& mesh)
           "mesh: a face names a vertex that does not exist");
   const std::vector<HalfEdge> edges = sortedHalfEdges(mesh);
   MeshTopology topology;
-  DisjointSets fans(static_cast<std::size_t>(mesh.faces.size()));
+  UnionFind fans(static_cast<std::size_t>(mesh.faces.size()));
   for (std::size_t begin = 0, end = 0; begin < edges.size(); begin = end) {
     while (end < edges.size() && edges[end].key == edges[begin].key)
       ++end;

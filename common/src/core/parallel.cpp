@@ -28,7 +28,7 @@ void setDefaultThreads(int threads)
 namespace detail {
 void runChunks(Index count, int threads, const std::function<void(Index)>& run)
 {
-  const int workers = static_cast<int>(std::min<Index>(threadCount(threads), count));
+  const int workers = std::min<Index>(threadCount(threads), count);
   if (workers > 1 && !ThreadPool::isAtWork()) {
     ThreadPool::instance().run(count, workers, run);
     return;

@@ -124,9 +124,9 @@ void toPolygonMesh(const TriangleMesh& mesh, pcl::PolygonMesh& polygons)
 {
   validateMesh(mesh);
   polygons.cloud = core::verticesToCloud(mesh, polygons.cloud.header);
-  polygons.polygons.resize(static_cast<std::size_t>(mesh.faceCount()));
+  polygons.polygons.resize(mesh.faceCount());
   for (Index f = 0; f < mesh.faceCount(); ++f)
-    polygons.polygons[static_cast<std::size_t>(f)].vertices = {mesh.faces(0, f), mesh.faces(1, f), mesh.faces(2, f)};
+    polygons.polygons[f].vertices = {mesh.faces(0, f), mesh.faces(1, f), mesh.faces(2, f)};
 }
 
 TriangleMesh toTriangleMesh(const pcl::PolygonMesh& polygons)

@@ -84,7 +84,7 @@ std::optional<std::array<Column, 3>> findTriple(const PointTable& table, NameTri
     const Column* column = table.find(names[i]);
     if (!column || column->count != 1)
       return std::nullopt;
-    triple[static_cast<std::size_t>(i)] = *column;
+    triple[i] = *column;
   }
   return triple;
 }
@@ -188,7 +188,7 @@ CoordinateBounds coordinateBounds(const PointTable& table, const std::array<Colu
     forEachValue(
         table, xyz[axis], 0,
         [&](Index, auto raw) {
-          const double value = static_cast<double>(raw);
+          const double value = raw;
           if (!std::isfinite(value))
             return;
           low = std::min(low, value);

@@ -46,8 +46,8 @@ struct ThreadPool::Job {
       : body(loop), parts(static_cast<std::size_t>(workers))
   {
     for (int i = 0; i < workers; ++i) {
-      parts[static_cast<std::size_t>(i)].next = count * i / workers;
-      parts[static_cast<std::size_t>(i)].end = count * (i + 1) / workers;
+      parts[i].next = count * i / workers;
+      parts[i].end = count * (i + 1) / workers;
     }
   }
 

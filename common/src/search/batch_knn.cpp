@@ -92,7 +92,7 @@ void NearGroup::focus(Index leaf, float reach)
   focus_count_ = kernels_.closeBoxes(boxes_.data(), gathered_, (gathered_ + 7) / 8 * 8,
                                      static_cast<std::size_t>(center), reach * (1 + rounding), focus_.data());
   for (std::size_t l = 0; l < focus_count_; ++l)
-    focus_leaves_[l] = leaves_[static_cast<std::size_t>(focus_[l])];
+    focus_leaves_[l] = leaves_[focus_[l]];
 }
 
 /// Whether at least k points are closer than `bound`, and then the nearest k of them are chosen.
@@ -135,7 +135,7 @@ void NearGroup::nearest(Index i, int k)
   }
   tree_.nearestKeys(tree_.point(i), k, keys_);
   // Distances beyond the range of float are not found; such a point is its own neighbour instead.
-  keys_.resize(static_cast<std::size_t>(k), PointTree::key(0, i));
+  keys_.resize(k, PointTree::key(0, i));
   chooseByKeys(i);
 }
 
@@ -232,7 +232,7 @@ std::size_t NearGroup::keptWithin(Index i, float radius)
   count_ = kernels_.offsets(thin_coordinates_.data(), thin_leaves_.data(), thin_leaves_.size(), tree_.point(i).data(),
                             limit_, points());
   for (std::size_t j = 0; j < count_; ++j)
-    position_[j] = thin_codes_[static_cast<std::size_t>(position_[j])];
+    position_[j] = thin_codes_[position_[j]];
   return count_;
 }
 } // namespace fresco

@@ -52,8 +52,7 @@ std::vector<std::int32_t> mortonOrder(const Eigen::Matrix3Xd& points, int thread
   const double scale = side > 0.0 ? 1024.0 / side : 0.0;
   std::vector<Key> keys(n), other(n);
   parallelFor(points.cols(), threads, [&](Index i) {
-    keys[static_cast<std::size_t>(i)] = {mortonCode((points.col(i).array() - low) * scale),
-                                         static_cast<std::int32_t>(i)};
+    keys[i] = {mortonCode((points.col(i).array() - low) * scale), static_cast<std::int32_t>(i)};
   });
   for (const int shift : {0, 10, 20}) {
     sortByDigit(keys, other, shift);

@@ -38,9 +38,9 @@ NeighborLists joinLists(std::vector<NeighborLists> ranges, int threads)
     for (const auto count : range.begin)
       all.begin.push_back(all.begin.back() + count);
   }
-  all.index.resize(static_cast<std::size_t>(all.begin.back()));
+  all.index.resize(all.begin.back());
   parallelFor(
-      static_cast<Index>(ranges.size()), threads,
+      ranges.size(), threads,
       [&](Index r) {
         std::copy(ranges[r].index.begin(), ranges[r].index.end(), all.index.begin() + first[r]);
         ranges[r] = {}; // frees memory on the way
@@ -54,11 +54,11 @@ template <typename Find>
 NeighborLists gatherLists(Index n, int threads, const Find& find)
 {
   constexpr Index chunk = 2048;
-  std::vector<NeighborLists> ranges(static_cast<std::size_t>((n + chunk - 1) / chunk));
+  std::vector<NeighborLists> ranges((n + chunk - 1) / chunk);
   parallelRanges(
       n, threads,
       [&](Index begin, Index end) {
-        NeighborLists& range = ranges[static_cast<std::size_t>(begin / chunk)];
+        NeighborLists& range = ranges[begin / chunk];
         std::vector<int> found;
         for (Index i = begin; i < end; ++i) {
           found.clear();
@@ -78,7 +78,7 @@ void thinPositions(std::size_t most, int self, std::vector<int>& positions)
     return;
   const double step = static_cast<double>(positions.size()) / static_cast<double>(most);
   for (std::size_t j = 0; j < most; ++j)
-    positions[j] = positions[static_cast<std::size_t>((static_cast<double>(j) + 0.5) * step)];
+    positions[j] = positions[(static_cast<double>(j) + 0.5) * step];
   positions.resize(most);
   const auto place = std::lower_bound(positions.begin(), positions.end(), self);
   if (place == positions.end() || *place != self)
@@ -113,7 +113,7 @@ std::vector<Range> searchRadii(const PointTree& tree, const Eigen::VectorXf& rad
   constexpr Index chunk = 32;
   const std::vector<Index> groups = tree.subtrees(group_leaves);
   const auto count = static_cast<Index>(groups.size()) - 1;
-  std::vector<Range> ranges(static_cast<std::size_t>((count + chunk - 1) / chunk));
+  std::vector<Range> ranges((count + chunk - 1) / chunk);
   const auto search = [&](Index begin, Index end) {
     Range range;
     NearGroup group(tree);
@@ -128,7 +128,7 @@ std::vector<Range> searchRadii(const PointTree& tree, const Eigen::VectorXf& rad
         add(range, i, found);
       }
     }
-    ranges[static_cast<std::size_t>(begin / chunk)] = std::as_const(range); // a copy has no spare memory
+    ranges[begin / chunk] = std::as_const(range); // a copy has no spare memory
   };
   parallelRanges(count, limits.threads, search, chunk);
   return ranges;
@@ -141,7 +141,7 @@ NeighborLists evenLists(Index n, Index k)
   lists.begin.resize(static_cast<std::size_t>(n) + 1);
   for (Index i = 0; i <= n; ++i)
     lists.begin[i] = i * k;
-  lists.index.resize(static_cast<std::size_t>(n * k));
+  lists.index.resize(n * k);
   return lists;
 }
 
@@ -151,7 +151,7 @@ void forNearest(const PointTree& tree, int k, int threads, const std::function<v
   const std::vector<Index> groups = tree.subtrees(group_leaves);
   parallelRanges(static_cast<Index>(groups.size()) - 1, threads, [&](Index begin, Index end) {
     NearGroup group(tree);
-    std::vector<int> found(static_cast<std::size_t>(each));
+    std::vector<int> found(each);
     for (Index g = begin; g < end; ++g) {
       group.enter(groups[g], groups[g + 1]);
       group.gather(reach_margin * group.expectedReach(static_cast<int>(each)), most_leaves);
@@ -202,7 +202,7 @@ NeighborLists imageLists(const Points& points, Index width, int k, int threads)
           points.cols(), " points");
   const Index height = points.cols() / width;
   // A window of twice k pixels holds the k nearest unless the surface is seen at a grazing angle.
-  const Index reach = static_cast<Index>(std::ceil((std::sqrt(2.0 * k) - 1) / 2));
+  const Index reach = std::ceil((std::sqrt(2.0 * k) - 1) / 2);
   return gatherLists(points.cols(), threads, [&](Index i, std::vector<int>& found) {
     thread_local Keys keys;
     keys.clear();

@@ -7,7 +7,7 @@ void Neighborhoods::numberGroups()
 {
   group_of_leaf.clear();
   for (std::size_t g = 0; g < groups.size(); ++g)
-    group_of_leaf.resize(static_cast<std::size_t>((groups[g].end + 7) / 8), static_cast<int>(g));
+    group_of_leaf.resize((groups[g].end + 7) / 8, static_cast<int>(g));
 }
 
 void GroupEncoder::begin(Index begin, Index end)
@@ -28,7 +28,7 @@ void GroupEncoder::add(const int* codes, std::size_t count)
 
 void GroupEncoder::replace(Index i, const int* codes, std::size_t count)
 {
-  std::copy_n(codes, count, codes_.begin() + lists_.starts[static_cast<std::size_t>(i - lists_.begin)]);
+  std::copy_n(codes, count, codes_.begin() + lists_.starts[i - lists_.begin]);
 }
 
 GroupLists GroupEncoder::finish(const std::vector<int>& table, std::uint16_t* codes)
@@ -38,7 +38,7 @@ GroupLists GroupEncoder::finish(const std::vector<int>& table, std::uint16_t* co
   places_.assign(table.size(), unused);
   lists_.leaves.reserve(table.size());
   for (const int code : codes_)
-    places_[static_cast<std::size_t>(code / 8)] = used;
+    places_[code / 8] = used;
   for (Index leaf = first; leaf < last; ++leaf)
     lists_.leaves.push_back(static_cast<int>(leaf));
   for (std::size_t l = 0; l < table.size(); ++l) {
@@ -51,9 +51,8 @@ GroupLists GroupEncoder::finish(const std::vector<int>& table, std::uint16_t* co
   }
   lists_.leaves.shrink_to_fit();
   lists_.codes = codes;
-  std::transform(codes_.begin(), codes_.end(), codes, [&](int code) {
-    return static_cast<std::uint16_t>(8 * places_[static_cast<std::size_t>(code / 8)] + code % 8);
-  });
+  std::transform(codes_.begin(), codes_.end(), codes,
+                 [&](int code) { return static_cast<std::uint16_t>(8 * places_[code / 8] + code % 8); });
   const auto& starts = lists_.starts;
   lists_.length = starts.size() > 1 ? starts[1] : 0;
   bool even = true;
@@ -71,8 +70,8 @@ void encodeLists(const NeighborLists& lists, int threads, Neighborhoods& all)
     longest = std::max(longest, lists.count(i));
   const Index group_size = 8 * Neighborhoods::groupLeaves(longest);
   all.codes.resize(lists.index.size());
-  all.groups.resize(static_cast<std::size_t>((lists.size() + group_size - 1) / group_size));
-  parallelFor(static_cast<Index>(all.groups.size()), threads, [&](Index g) {
+  all.groups.resize((lists.size() + group_size - 1) / group_size);
+  parallelFor(all.groups.size(), threads, [&](Index g) {
     const Index begin = g * group_size, end = std::min(lists.size(), begin + group_size);
     std::vector<int> table, codes;
     for (const int* j = lists.first(begin); j != lists.first(end); ++j)
@@ -89,8 +88,7 @@ void encodeLists(const NeighborLists& lists, int threads, Neighborhoods& all)
       }
       encoder.add(codes.data(), codes.size());
     }
-    all.groups[static_cast<std::size_t>(g)] =
-        encoder.finish(table, all.codes.data() + (lists.begin[begin] - lists.begin[0]));
+    all.groups[g] = encoder.finish(table, all.codes.data() + (lists.begin[begin] - lists.begin[0]));
   });
   all.numberGroups();
 }

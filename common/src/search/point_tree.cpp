@@ -41,15 +41,15 @@ PointTree::PointTree(const Points& points, int threads)
 {
   require(points.cols() < std::numeric_limits<int>::max(), "neighbour search: ", points.cols(), " points are too many");
   std::vector<TreeItem> items;
-  items.reserve(static_cast<std::size_t>(points.cols()));
+  items.reserve(points.cols());
   for (Index i = 0; i < points.cols(); ++i)
     if (points.col(i).allFinite())
       items.push_back({{points(0, i), points(1, i), points(2, i)}, static_cast<int>(i)});
   leaves_ = (static_cast<Index>(items.size()) + leaf_size - 1) / leaf_size;
-  nodes_.resize(static_cast<std::size_t>(std::max<Index>(0, leaves_ - 1)));
+  nodes_.resize(std::max<Index>(0, leaves_ - 1));
   build(items, threads);
   columns_.resize(items.size());
-  coordinates_.assign(static_cast<std::size_t>(leaves_ * 3 * leaf_size), std::numeric_limits<float>::infinity());
+  coordinates_.assign(leaves_ * 3 * leaf_size, std::numeric_limits<float>::infinity());
   parallelFor(size(), threads, [&](Index i) {
     columns_[i] = items[i].column;
     for (int axis = 0; axis < 3; ++axis)
@@ -66,13 +66,13 @@ void PointTree::build(std::vector<TreeItem>& items, int threads)
   for (int level = 0; level < 7 && !parts.empty(); ++level) {
     std::vector<std::vector<OpenPart>> halves(parts.size());
     parallelFor(
-        static_cast<Index>(parts.size()), threads, [&](Index p) { split(items, parts[p], halves[p]); }, 1);
+        parts.size(), threads, [&](Index p) { split(items, parts[p], halves[p]); }, 1);
     parts.clear();
     for (const auto& two : halves)
       parts.insert(parts.end(), two.begin(), two.end());
   }
   parallelFor(
-      static_cast<Index>(parts.size()), threads,
+      parts.size(), threads,
       [&](Index p) {
         std::vector<OpenPart> open = {parts[p]};
         while (!open.empty()) {

@@ -40,7 +40,7 @@ public:
 
   void test(std::int32_t slot)
   {
-    const TreeTriangle& triangle = tree_.triangles[static_cast<std::size_t>(slot)];
+    const TreeTriangle& triangle = tree_.triangles[slot];
     const PointOnTriangle found = closestOnTriangle(query_, cornerOf(triangle, 0), cornerOf(triangle, 1),
                                                     cornerOf(triangle, 2), best_.squared_distance);
     const bool closer = found.squared_distance < best_.squared_distance;
@@ -56,7 +56,7 @@ public:
   {
     visit(0);
     while (size_ > 0) {
-      const Entry entry = stack_[static_cast<std::size_t>(--size_)];
+      const Entry entry = stack_[--size_];
       if (entry.squared_distance > reach_)
         continue;
       for (std::int32_t i = 0; i < entry.count; ++i)
@@ -87,7 +87,7 @@ private:
   // Puts the children within reach on the stack, the closest on top.
   void visit(std::int32_t index)
   {
-    const TreeNode& node = tree_.nodes[static_cast<std::size_t>(index)];
+    const TreeNode& node = tree_.nodes[index];
     Eigen::Array4f distance2 = Eigen::Array4f::Zero();
     for (int axis = 0; axis < 3; ++axis) {
       const Eigen::Array4f outside = (node.low[axis] - rounded_[axis]).max(rounded_[axis] - node.high[axis]).max(0.f);
@@ -99,9 +99,9 @@ private:
         continue;
       const Entry entry{distance2[slot], node.child[slot], node.count[slot]};
       int at = size_++;
-      for (; at > first && stack_[static_cast<std::size_t>(at - 1)].squared_distance < entry.squared_distance; --at)
-        stack_[static_cast<std::size_t>(at)] = stack_[static_cast<std::size_t>(at - 1)];
-      stack_[static_cast<std::size_t>(at)] = entry;
+      for (; at > first && stack_[at - 1].squared_distance < entry.squared_distance; --at)
+        stack_[at] = stack_[at - 1];
+      stack_[at] = entry;
     }
   }
 
@@ -143,9 +143,9 @@ void requireQuery(const Vector3d& query)
 // Triangles of `faces`, corner by corner; face f is column f.
 std::vector<TreeTriangle> trianglesOf(const Points& vertices, const Faces& faces, int threads)
 {
-  std::vector<TreeTriangle> triangles(static_cast<std::size_t>(faces.cols()));
+  std::vector<TreeTriangle> triangles(faces.cols());
   parallelFor(faces.cols(), threads, [&](Index f) {
-    TreeTriangle& triangle = triangles[static_cast<std::size_t>(f)];
+    TreeTriangle& triangle = triangles[f];
     triangle.face = static_cast<std::int32_t>(f);
     for (int corner = 0; corner < 3; ++corner)
       for (int axis = 0; axis < 3; ++axis)
@@ -202,13 +202,13 @@ std::vector<ClosestPoint> closestPoints(const TriangleTree& tree, const Eigen::M
   parallelRanges(queries.cols(), threads, [&](Index begin, Index end) {
     std::int32_t last = -1; // the previous answer bounds the next one
     for (Index i = begin; i < end; ++i) {
-      const std::int32_t column = order[static_cast<std::size_t>(i)];
+      const std::int32_t column = order[i];
       Search search(*tree.data_, queries.col(column));
       if (last >= 0)
         search.test(last);
       const Best best = search.run();
       last = best.triangle;
-      answers[static_cast<std::size_t>(column)] = answer(best);
+      answers[column] = answer(best);
     }
   });
   return answers;

@@ -81,7 +81,7 @@ Box centerBox(const std::vector<Primitive>& primitives, Index begin, Index end)
 {
   Box box;
   for (Index i = begin; i < end; ++i) {
-    const Vector center = primitives[static_cast<std::size_t>(i)].center();
+    const Vector center = primitives[i].center();
     box.low = box.low.min(center);
     box.high = box.high.max(center);
   }
@@ -92,10 +92,10 @@ Bins fillBins(const std::vector<Primitive>& primitives, const Binning& binning, 
 {
   Bins bins;
   for (Index i = begin; i < end; ++i) {
-    const Primitive& primitive = primitives[static_cast<std::size_t>(i)];
+    const Primitive& primitive = primitives[i];
     const Eigen::Array4i at = binning(primitive.center());
     for (int axis = 0; axis < 3; ++axis) {
-      Bin& bin = bins[static_cast<std::size_t>(axis)][static_cast<std::size_t>(at[axis])];
+      Bin& bin = bins[axis][at[axis]];
       bin.box.add(primitive.box);
       ++bin.count;
     }
@@ -145,7 +145,7 @@ public:
     appendNode(nodes_, all, true);
     std::vector<std::vector<TreeNode>> subtrees(tasks_.size());
     parallelFor(
-        static_cast<Index>(tasks_.size()), threads_,
+        tasks_.size(), threads_,
         [&](Index t) {
           const auto slot = static_cast<std::size_t>(t);
           appendNode(subtrees[slot], tasks_[slot].range, false);
@@ -166,7 +166,7 @@ private:
   {
     Box box;
     for (Index i = begin; i < end; ++i)
-      box.add(primitives_[static_cast<std::size_t>(i)].box);
+      box.add(primitives_[i].box);
     return box;
   }
 
@@ -180,7 +180,7 @@ private:
                           : fill(0, range.size());
     Split best;
     for (int axis = 0; axis < 3; ++axis)
-      improveSplit(bins[static_cast<std::size_t>(axis)], binning.count, axis, best);
+      improveSplit(bins[axis], binning.count, axis, best);
     return best;
   }
 
@@ -223,7 +223,7 @@ private:
       const Range whole = *widest;
       const Index middle = partition(whole);
       *widest = {whole.begin, middle, whole.splits + 1, boxOf(whole.begin, middle)};
-      parts[static_cast<std::size_t>(count++)] = {middle, whole.end, whole.splits + 1, boxOf(middle, whole.end)};
+      parts[count++] = {middle, whole.end, whole.splits + 1, boxOf(middle, whole.end)};
     }
     return count;
   }
@@ -236,8 +236,8 @@ private:
     std::array<Range, 4> parts{range};
     const int count = splitInFour(parts);
     for (int slot = 0; slot < 4; ++slot) {
-      const Range part = slot < count ? parts[static_cast<std::size_t>(slot)] : Range{};
-      TreeNode& node = nodes[static_cast<std::size_t>(self)];
+      const Range part = slot < count ? parts[slot] : Range{};
+      TreeNode& node = nodes[self];
       for (int axis = 0; axis < 3; ++axis) {
         node.low[axis][slot] = part.box.low[axis];
         node.high[axis][slot] = part.box.high[axis];
@@ -251,7 +251,7 @@ private:
         tasks_.push_back({part, self, slot});
       } else {
         const std::int32_t child = appendNode(nodes, part, top); // may move `node`
-        nodes[static_cast<std::size_t>(self)].child[slot] = child;
+        nodes[self].child[slot] = child;
       }
     }
     return self;
@@ -265,7 +265,7 @@ private:
     nodes_.reserve(total);
     for (std::size_t t = 0; t < subtrees.size(); ++t) {
       const auto offset = static_cast<std::int32_t>(nodes_.size());
-      nodes_[static_cast<std::size_t>(tasks_[t].parent)].child[tasks_[t].slot] = offset;
+      nodes_[tasks_[t].parent].child[tasks_[t].slot] = offset;
       for (TreeNode node : subtrees[t]) {
         for (int slot = 0; slot < 4; ++slot)
           if (node.count[slot] == 0)
@@ -285,10 +285,10 @@ private:
 std::vector<Primitive> primitivesOf(const std::vector<TreeTriangle>& triangles, int threads)
 {
   std::vector<Primitive> primitives(triangles.size());
-  parallelFor(static_cast<Index>(triangles.size()), threads, [&](Index i) {
-    Primitive& primitive = primitives[static_cast<std::size_t>(i)];
+  parallelFor(triangles.size(), threads, [&](Index i) {
+    Primitive& primitive = primitives[i];
     primitive.triangle = static_cast<std::int32_t>(i);
-    for (const auto& corner : triangles[static_cast<std::size_t>(i)].corner) {
+    for (const auto& corner : triangles[i].corner) {
       const Vector point(corner[0], corner[1], corner[2], 0.f);
       primitive.box.add({point, point});
     }
@@ -303,9 +303,9 @@ TriangleTreeData buildTriangleTree(std::vector<TreeTriangle> triangles, int thre
   TriangleTreeData tree;
   tree.nodes = Builder(primitives, threads).build();
   tree.triangles.resize(triangles.size());
-  parallelFor(static_cast<Index>(triangles.size()), threads, [&](Index i) {
+  parallelFor(triangles.size(), threads, [&](Index i) {
     const auto slot = static_cast<std::size_t>(i);
-    tree.triangles[slot] = triangles[static_cast<std::size_t>(primitives[slot].triangle)];
+    tree.triangles[slot] = triangles[primitives[slot].triangle];
   });
   return tree;
 }

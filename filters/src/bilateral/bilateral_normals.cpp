@@ -79,7 +79,7 @@ template <typename Use>
 void forNeighborhoods(const Field& field, const Points& normals, int threads, const Use& use)
 {
   const auto search = [&](Index range) {
-    const CompactLists& lists = field.lists[static_cast<std::size_t>(range)];
+    const CompactLists& lists = field.lists[range];
     CompactReader reader(lists);
     Neighborhood around;
     for (around.point = lists.begin; around.point < lists.end; ++around.point) {
@@ -88,7 +88,7 @@ void forNeighborhoods(const Field& field, const Points& normals, int threads, co
       use(around);
     }
   };
-  parallelFor(static_cast<Index>(field.lists.size()), threads, search, 1);
+  parallelFor(field.lists.size(), threads, search, 1);
 }
 
 Points smoothOnce(const Field& field, const Points& normals, int threads)

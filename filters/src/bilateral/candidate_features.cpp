@@ -32,7 +32,7 @@ float logCount(float count)
       values[n] = std::log(static_cast<float>(n) + 0.5f);
     return values;
   }();
-  return logs[static_cast<std::size_t>(std::min(count, 255.f))];
+  return logs[static_cast<Index>(std::min(count, 255.f))];
 }
 } // namespace
 
@@ -45,7 +45,7 @@ void DirectionFigures::set(const std::vector<FacedNeighbor>& neighbors, const Ve
   normals_.resize(3, n);
   at_crease_.resize(n);
   for (Index j = 0; j < n; ++j) {
-    const FacedNeighbor& neighbor = neighbors[static_cast<std::size_t>(order_[static_cast<std::size_t>(j)].second)];
+    const FacedNeighbor& neighbor = neighbors[order_[j].second];
     offsets_.col(j) = neighbor.offset;
     normals_.col(j) = neighbor.normal;
     at_crease_[j] = neighbor.at_crease;
@@ -90,12 +90,12 @@ void DirectionFigures::markNearestAcross()
 {
   sorted_.assign(across_.data(), across_.data() + across_.size());
   auto end = sorted_.end();
-  const auto mark = [&](Index count, ArrayXf& marked) {
-    if (end - sorted_.begin() <= count) {
+  const auto mark = [&](Index most, ArrayXf& marked) {
+    if (end - sorted_.begin() <= most) {
       marked.setOnes(across_.size());
       return;
     }
-    const auto last = sorted_.begin() + (count - 1);
+    const auto last = sorted_.begin() + (most - 1);
     std::nth_element(sorted_.begin(), last, end);
     marked = (across_ <= *last).cast<float>();
     end = last + 1;

@@ -58,8 +58,7 @@ float SurfaceChoice::typicalArea(const Eigen::VectorXf& areas)
 /// From the viewer to the point, unit; zero where unknown.
 Eigen::Vector3f SurfaceChoice::beam(Index i) const
 {
-  return -viewDirection(viewpoints_, field_.tree->columns()[static_cast<std::size_t>(i)], field_.tree->point(i))
-              .normalized();
+  return -viewDirection(viewpoints_, field_.tree->columns()[i], field_.tree->point(i)).normalized();
 }
 
 /// Deviation of the neighbours across the plane of a point, along its beam; 0 where the beam grazes.
@@ -81,10 +80,10 @@ float SurfaceChoice::noiseAt(Index i, const std::vector<int>& list) const
 
 void SurfaceChoice::markCreases(int threads)
 {
-  at_crease_.assign(static_cast<std::size_t>(normals_.cols()), 0);
+  at_crease_.assign(normals_.cols(), 0);
   std::vector<float> noises(at_crease_.size());
-  parallelFor(static_cast<Index>(field_.lists.size()), threads, [&](Index range) {
-    const CompactLists& lists = field_.lists[static_cast<std::size_t>(range)];
+  parallelFor(field_.lists.size(), threads, [&](Index range) {
+    const CompactLists& lists = field_.lists[range];
     CompactReader reader(lists);
     std::vector<int> list;
     for (Index i = lists.begin; i < lists.end; ++i) {
@@ -92,8 +91,8 @@ void SurfaceChoice::markCreases(int threads)
       const Eigen::Vector3f normal = normals_.col(i);
       const bool crease =
           std::any_of(list.begin(), list.end(), [&](int j) { return !(normals_.col(j).dot(normal) > agreeing); });
-      at_crease_[static_cast<std::size_t>(i)] = crease;
-      noises[static_cast<std::size_t>(i)] = crease ? 0.f : noiseAt(i, list);
+      at_crease_[i] = crease;
+      noises[i] = crease ? 0.f : noiseAt(i, list);
     }
   });
   for (Index i = 0; i < normals_.cols(); ++i) {
@@ -108,8 +107,7 @@ void SurfaceChoice::setNeighbors(Index i, const std::vector<int>& list, std::vec
   near.clear();
   for (const int j : list)
     if (j != i)
-      near.push_back({field_.tree->point(j) - field_.tree->point(i), normals_.col(j),
-                      at_crease_[static_cast<std::size_t>(j)] != 0});
+      near.push_back({field_.tree->point(j) - field_.tree->point(i), normals_.col(j), at_crease_[j] != 0});
 }
 
 /// The own normal first; none where it does not face the viewer or the noise is unknown.
@@ -133,8 +131,8 @@ void SurfaceChoice::setOffers(Index i, const Eigen::Vector3f& ray, const Directi
 
 void SurfaceChoice::compare(int threads, const UseOffers& use) const
 {
-  parallelFor(static_cast<Index>(field_.lists.size()), threads, [&](Index range) {
-    const CompactLists& lists = field_.lists[static_cast<std::size_t>(range)];
+  parallelFor(field_.lists.size(), threads, [&](Index range) {
+    const CompactLists& lists = field_.lists[range];
     CompactReader reader(lists);
     std::vector<int> list;
     std::vector<DirectionOffer> offered;
@@ -142,7 +140,7 @@ void SurfaceChoice::compare(int threads, const UseOffers& use) const
     DirectionFigures figures;
     for (Index i = lists.begin; i < lists.end; ++i) {
       reader.next(list);
-      if (!at_crease_[static_cast<std::size_t>(i)])
+      if (!at_crease_[i])
         continue;
       const Eigen::Vector3f ray = beam(i);
       const DirectionGrid::Surroundings& around = grid_.at(field_.tree->point(i));

@@ -104,8 +104,8 @@ float DirectionGrid::noiseOfAll() const
 void DirectionGrid::finish(int threads)
 {
   const float noise = noiseOfAll();
-  parallelFor(static_cast<Index>(cells_.size()), threads, [&](Index c) {
-    Cell& cell = cells_[static_cast<std::size_t>(c)];
+  parallelFor(cells_.size(), threads, [&](Index c) {
+    Cell& cell = cells_[c];
     cell.around = surroundingsOf(cell);
     if (!(cell.around.noise > 0))
       cell.around.noise = noise;

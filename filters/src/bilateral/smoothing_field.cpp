@@ -34,7 +34,7 @@ SmoothingField makeSmoothingField(const Points& points, const Points& normals, c
   field.lists = compactRadiusLists(*field.tree, field.radii, most, options.threads);
   field.normals.resize(3, field.tree->size());
   for (Index i = 0; i < field.normals.cols(); ++i)
-    field.normals.col(i) = normals.col(field.tree->columns()[static_cast<std::size_t>(i)]).normalized();
+    field.normals.col(i) = normals.col(field.tree->columns()[i]).normalized();
   return field;
 }
 } // namespace fresco::filters

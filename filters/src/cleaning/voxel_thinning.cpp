@@ -34,7 +34,7 @@ struct Entry {
 /// Finite points with their cells, sorted by cell, then point.
 std::vector<Entry> sortedByCell(const Points& points, const Eigen::AlignedBox3f& box, float cell, int threads)
 {
-  std::vector<Entry> entries(static_cast<std::size_t>(points.cols()));
+  std::vector<Entry> entries(points.cols());
   const Eigen::Vector3d low = box.min().cast<double>();
   parallelFor(points.cols(), threads, [&](Index i) {
     std::uint64_t key = no_cell;

@@ -44,8 +44,7 @@ private:
   {
     some_.nearestKeys(beam, count, keys_);
     for (PointTree::Key& key : keys_)
-      key = PointTree::key(PointTree::squaredDistance(key),
-                           m_ * some_.columns()[static_cast<std::size_t>(PointTree::position(key))]);
+      key = PointTree::key(PointTree::squaredDistance(key), m_ * some_.columns()[PointTree::position(key)]);
   }
 
   const PointTree &directions_, &some_;

@@ -161,7 +161,7 @@ RangeNoise measureNoise(const BeamScan& scan, int threads)
       const float off =
           std::abs(window.range - at) / std::sqrt(1 + std::min(largest_leverage, static_cast<float>(plane.leverage)));
       const bool known = count >= 4 && std::isfinite(off) && at > 0;
-      differences[static_cast<std::size_t>(i)] = {known ? at : window.range, known ? off : 0.f};
+      differences[i] = {known ? at : window.range, known ? off : 0.f};
     }
   });
   std::sort(differences.begin(), differences.end());

@@ -97,7 +97,7 @@ bool BeamWindows::fill(Index i)
 void BeamWindows::fillWithout(Index i, const std::vector<float>& scores)
 {
   const auto leaveOut = [&] {
-    const auto high = [&](int j) { return j != i && scores[static_cast<std::size_t>(j)] > 0; };
+    const auto high = [&](int j) { return j != i && scores[j] > 0; };
     list_.erase(std::remove_if(list_.begin(), list_.end(), high), list_.end());
     list_.resize(std::min(list_.size(), static_cast<std::size_t>(k_) + 1));
     return list_.size() > beside;
@@ -122,7 +122,7 @@ Eigen::Vector2f veilWidth(const BeamScan& scan, const VeilOptions& options, cons
   parallelRanges(scan.ranges.size(), options.threads, [&](Index begin, Index end) {
     BeamWindows windows(scan, options);
     for (Index i = begin; i < end; ++i)
-      if (scores[static_cast<std::size_t>(i)] > 0 && windows.fill(i)) {
+      if (scores[i] > 0 && windows.fill(i)) {
         const auto around = scoresAround(windows.around(), scores);
         near += (around.head<half>().array() > 0).count();
         wide += (around.tail<half>().array() > 0).count();
@@ -151,7 +151,7 @@ void forLikelyVeil(const BeamScan& scan, const VeilOptions& options, const std::
   parallelRanges(scan.ranges.size(), options.threads, [&](Index begin, Index end) {
     BeamWindows windows(scan, options);
     for (Index i = begin; i < end; ++i) {
-      const float score = scores[static_cast<std::size_t>(i)];
+      const float score = scores[i];
       if (!(score > least_likely) || !windows.fill(i))
         continue;
       const VeilFigures before = veilFigures(windows.around());

@@ -153,8 +153,7 @@ Eigen::Matrix<float, 2 * bearings, 1> scoresAround(const BeamSurroundings& aroun
   for (const BeamWindow* window : {&around.near, &around.wide}) {
     const Compass compass(*window, around.noise);
     for (int b = 0; b < bearings; ++b)
-      found[at++] =
-          std::max(scores[static_cast<std::size_t>(beamAt(*window, compass.way(b), 1).position)], least_score);
+      found[at++] = std::max(scores[beamAt(*window, compass.way(b), 1).position], least_score);
   }
   return found;
 }
@@ -169,7 +168,7 @@ Eigen::Matrix<float, of_rings, 1> ringsAround(const BeamWindow& window, float no
       const Eigen::Vector2f way = compass.wayAt(static_cast<float>(k) * circle / of_ring);
       const BeamWindow::Beam& beam = beamAt(window, way, static_cast<float>(ring));
       found[at] = flattened((beam.range - window.range) / noise);
-      found[at + rings * of_ring] = std::max(scores[static_cast<std::size_t>(beam.position)], least_score);
+      found[at + rings * of_ring] = std::max(scores[beam.position], least_score);
       ++at;
     }
   return found;

@@ -18,9 +18,8 @@ float veilScore(const LikelyFigures& figures) { return score<LikelyWeights>(figu
 std::vector<float> firstScores(const BeamScan& scan, const VeilOptions& options)
 {
   std::vector<float> scores(scan.columns.size(), least_likely);
-  forVeilCandidates(scan, options, [&](Index i, const BeamSurroundings& around) {
-    scores[static_cast<std::size_t>(i)] = veilScore(veilFigures(around));
-  });
+  forVeilCandidates(scan, options,
+                    [&](Index i, const BeamSurroundings& around) { scores[i] = veilScore(veilFigures(around)); });
   return scores;
 }
 } // namespace fresco::filters

@@ -40,7 +40,7 @@ std::vector<Index> withoutRepetitions(const Points& points, std::vector<Index> c
   for (const Index i : columns) {
     if (single.empty() || key(single.back()) != key(i))
       single.push_back(i);
-    first[static_cast<std::size_t>(i)] = single.back();
+    first[i] = single.back();
   }
   std::sort(single.begin(), single.end());
   return single;
@@ -81,9 +81,9 @@ void validate(const Points& points, const Points& viewpoints, const VeilOptions&
 std::vector<Index> withoutVeil(const Points& points, const Points& viewpoints, const VeilOptions& options)
 {
   validate(points, viewpoints, options);
-  std::vector<char> veil(static_cast<std::size_t>(points.cols()), 0);
+  std::vector<char> veil(points.cols(), 0);
   const auto groups = groupByViewpoint(points, viewpoints);
-  std::vector<Index> first(static_cast<std::size_t>(points.cols()), -1);
+  std::vector<Index> first(points.cols(), -1);
   for (const auto& group : groups) {
     const std::vector<Index> single = withoutRepetitions(points, group, first);
     if (!single.empty())

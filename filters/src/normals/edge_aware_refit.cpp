@@ -123,7 +123,7 @@ bool seesSecond(const Plane& a, const Plane& b, const Eigen::Vector3f& point, co
 int GroupPass::choose(const GroupLists& lists, Index i) const
 {
   const int self = lists.codeOf(i);
-  const Plane& own = near_[static_cast<std::size_t>(self)];
+  const Plane& own = near_[self];
   if (!std::isfinite(own.variance) || lists.count(i) == 0)
     return self;
   const Eigen::Vector3f here = all_.point(i);
@@ -136,9 +136,9 @@ int GroupPass::choose(const GroupLists& lists, Index i) const
   const Eigen::Vector3f view = viewDirection(set_.viewpoints, all_.column(i), here);
   if (!crease || !(view.squaredNorm() > 0))
     return best;
-  const Plane& first = near_[static_cast<std::size_t>(best)];
+  const Plane& first = near_[best];
   const int other = otherSide(lists, i, first);
-  const bool seen = other >= 0 && seesSecond(first, near_[static_cast<std::size_t>(other)], here, -view.normalized());
+  const bool seen = other >= 0 && seesSecond(first, near_[other], here, -view.normalized());
   return seen ? other : best;
 }
 
@@ -147,7 +147,7 @@ int GroupPass::choose(const GroupLists& lists, Index i) const
 Moments GroupPass::nearMoments(Index i, Index start)
 {
   const Eigen::Vector3f here = all_.point(i);
-  const Plane& plane = planes_[static_cast<std::size_t>(start)];
+  const Plane& plane = planes_[start];
   const float scale = -0.125f / std::max(plane.variance, std::numeric_limits<float>::min());
   std::size_t count = 0;
   for (const Index point : {i, start}) {
@@ -192,7 +192,7 @@ Updates GroupPass::run(const GroupLists& lists, const std::vector<char>& changed
   batch.finish();
   for (std::size_t u = 0; u < starts.size(); ++u)
     if (updates.planes[u].shape() != Plane::plane)
-      updates.planes[u] = near_[static_cast<std::size_t>(starts[u])];
+      updates.planes[u] = near_[starts[u]];
   updates.points.shrink_to_fit();
   updates.planes.shrink_to_fit();
   return updates;
@@ -209,7 +209,7 @@ void refitAtEdges(const PointSet& set, const Neighborhoods& all, std::vector<Pla
     parallelRanges(groups, threads, [&](Index begin, Index end) {
       GroupPass work(set, all, planes);
       for (Index g = begin; g < end; ++g)
-        updates[static_cast<std::size_t>(g)] = work.run(all.groups[static_cast<std::size_t>(g)], changed);
+        updates[g] = work.run(all.groups[g], changed);
     });
     std::fill(changed.begin(), changed.end(), 0);
     for (const Updates& group : updates)

@@ -23,7 +23,7 @@ constexpr int doublings = 4;          // of the radius around a line
 float surfaceNoise(const PointTree& tree, int k, int threads)
 {
   const Index count = std::min(noise_samples, tree.size());
-  std::vector<float> deviations(static_cast<std::size_t>(count));
+  std::vector<float> deviations(count);
   parallelRanges(count, threads, [&](Index begin, Index end) {
     std::vector<PointTree::Key> keys;
     for (Index s = begin; s < end; ++s) {
@@ -35,8 +35,7 @@ float surfaceNoise(const PointTree& tree, int k, int threads)
         moments.add(tree.point(PointTree::position(key)) - here);
       const Plane plane = fitPlane(moments, here);
       const float variance = plane.shape() == Plane::plane ? plane.variance : 0.f;
-      deviations[static_cast<std::size_t>(s)] =
-          std::sqrt(variance * moments.weight / std::max(1.f, moments.weight - 3));
+      deviations[s] = std::sqrt(variance * moments.weight / std::max(1.f, moments.weight - 3));
     }
   });
   const auto middle = deviations.begin() + count / 2;
@@ -70,7 +69,7 @@ public:
   GroupFitter(const PointTree& tree, int k, float width, Fits& fits)
       : tree_(tree), k_(k), width_(width), variance_(width * width / (least_width * least_width)), fits_(fits),
         group_(tree), wide_(tree), evenly_(static_cast<std::size_t>(k)),
-        batch_([this](Index i, const Plane& plane) { fits_.planes[static_cast<std::size_t>(i)] = plane; })
+        batch_([this](Index i, const Plane& plane) { fits_.planes[i] = plane; })
   {}
   GroupLists fit(Index first_leaf, Index end_leaf, std::uint16_t* codes);
 
@@ -99,7 +98,7 @@ void GroupFitter::take(Index i, float weight, const float* sums)
   Moments moments;
   moments.weight = weight;
   std::copy_n(sums, 9, moments.sums);
-  fits_.reaches[static_cast<std::size_t>(i)] = sums[9];
+  fits_.reaches[i] = sums[9];
   if (isLine(moments, variance_))
     lines_.push_back(i);
   batch_.add(i, tree_.point(i), moments);
@@ -122,10 +121,10 @@ bool GroupFitter::settled(Index i, float radius)
     return plane.variance > others * variance_;
   const double step = static_cast<double>(found) / static_cast<double>(k);
   for (std::size_t j = 0; j < k; ++j)
-    evenly_[j] = group_.codeOf(wide_.position(codes[static_cast<std::size_t>((static_cast<double>(j) + 0.5) * step)]));
+    evenly_[j] = group_.codeOf(wide_.position(codes[static_cast<Index>((static_cast<double>(j) + 0.5) * step)]));
   encoder_.replace(i, evenly_.data(), k);
-  fits_.planes[static_cast<std::size_t>(i)] = plane;
-  fits_.reaches[static_cast<std::size_t>(i)] = sums[9];
+  fits_.planes[i] = plane;
+  fits_.reaches[i] = sums[9];
   return true;
 }
 
@@ -133,7 +132,7 @@ void GroupFitter::widenLines(Index first_leaf, Index end_leaf)
 {
   float radius = width_;
   for (const Index i : lines_)
-    radius = std::max(radius, std::sqrt(fits_.reaches[static_cast<std::size_t>(i)]));
+    radius = std::max(radius, std::sqrt(fits_.reaches[i]));
   for (int doubling = 0; doubling < doublings && !lines_.empty(); ++doubling) {
     radius *= 2;
     wide_.enter(first_leaf, end_leaf);
@@ -157,7 +156,7 @@ bool GroupFitter::fitKept(Index i)
   const int* codes = group_.sum(sums);
   const double step = static_cast<double>(found) / static_cast<double>(k);
   for (std::size_t j = 0; j < k; ++j)
-    evenly_[j] = codes[static_cast<std::size_t>((static_cast<double>(j) + 0.5) * step)];
+    evenly_[j] = codes[static_cast<Index>((static_cast<double>(j) + 0.5) * step)];
   encoder_.add(evenly_.data(), k);
   take(i, static_cast<float>(found), sums);
   return true;
@@ -201,18 +200,18 @@ GroupLists GroupFitter::fit(Index first_leaf, Index end_leaf, std::uint16_t* cod
 Fits fitNearest(Neighborhoods& all, int k, int threads)
 {
   const PointTree& tree = *all.tree;
-  const int each = static_cast<int>(std::min<Index>(k, tree.size()));
+  const int each = std::min<Index>(k, tree.size());
   Fits fits;
-  fits.planes.resize(static_cast<std::size_t>(tree.size()));
-  fits.reaches.resize(static_cast<std::size_t>(tree.size()));
+  fits.planes.resize(tree.size());
+  fits.reaches.resize(tree.size());
   const float width = tree.size() > k ? least_width * surfaceNoise(tree, k, threads) : 0.f;
   const std::vector<Index> first = tree.subtrees(Neighborhoods::groupLeaves(k));
   all.groups.resize(first.size() - 1);
-  all.codes.resize(static_cast<std::size_t>(tree.size() * each));
-  parallelRanges(static_cast<Index>(all.groups.size()), threads, [&](Index begin, Index end) {
+  all.codes.resize(tree.size() * each);
+  parallelRanges(all.groups.size(), threads, [&](Index begin, Index end) {
     GroupFitter fitter(tree, each, width, fits);
     for (Index g = begin; g < end; ++g)
-      all.groups[static_cast<std::size_t>(g)] = fitter.fit(first[g], first[g + 1], all.codes.data());
+      all.groups[g] = fitter.fit(first[g], first[g + 1], all.codes.data());
   });
   all.numberGroups();
   return fits;
@@ -221,11 +220,11 @@ Fits fitNearest(Neighborhoods& all, int k, int threads)
 Fits fitLists(const Neighborhoods& all, int threads)
 {
   Fits fits;
-  fits.planes.resize(static_cast<std::size_t>(all.size()));
-  fits.reaches.resize(static_cast<std::size_t>(all.size()));
-  parallelFor(static_cast<Index>(all.groups.size()), threads, [&](Index g) {
-    const GroupLists& lists = all.groups[static_cast<std::size_t>(g)];
-    PlaneBatch batch([&](Index i, const Plane& plane) { fits.planes[static_cast<std::size_t>(i)] = plane; });
+  fits.planes.resize(all.size());
+  fits.reaches.resize(all.size());
+  parallelFor(all.groups.size(), threads, [&](Index g) {
+    const GroupLists& lists = all.groups[g];
+    PlaneBatch batch([&](Index i, const Plane& plane) { fits.planes[i] = plane; });
     for (Index i = lists.begin; i < lists.end; ++i) {
       const Eigen::Vector3f here = all.point(i);
       Moments moments;
@@ -235,7 +234,7 @@ Fits fitLists(const Neighborhoods& all, int threads)
         moments.add(offset);
         reach = std::max(reach, offset.squaredNorm());
       }
-      fits.reaches[static_cast<std::size_t>(i)] = reach;
+      fits.reaches[i] = reach;
       batch.add(i, here, moments);
     }
     batch.finish();

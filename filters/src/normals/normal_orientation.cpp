@@ -100,7 +100,7 @@ std::vector<char> partTurns(const Field& field, const SignedSets& parts)
     Eigen::Vector3d moment = Eigen::Vector3d::Zero(), normal = Eigen::Vector3d::Zero();
   };
   const Index n = field.points.cols();
-  std::vector<Part> sums(static_cast<std::size_t>(n));
+  std::vector<Part> sums(n);
   for (Index i = 0; i < n; ++i) {
     Part& part = sums[parts.root(i)];
     part.area += field.areas[i];
@@ -114,7 +114,7 @@ std::vector<char> partTurns(const Field& field, const SignedSets& parts)
     part.size += field.areas[i] * arm.norm();
     part.normal += field.areas[i] * normal;
   }
-  std::vector<char> turns(static_cast<std::size_t>(n));
+  std::vector<char> turns(n);
   for (Index i = 0; i < n; ++i) {
     const Part& part = sums[i];
     Index largest;

@@ -41,12 +41,12 @@ NeighborLists listsWithin(const PointTree& tree, const NormalOptions& options)
 /// Lists of an image, in the order of its pixels.
 void findInImage(const PointSet& set, const NormalOptions& options, Neighborhoods& all)
 {
-  all.image_columns.resize(static_cast<std::size_t>(set.size()));
+  all.image_columns.resize(set.size());
   std::iota(all.image_columns.begin(), all.image_columns.end(), 0);
-  all.image_coordinates.resize(static_cast<std::size_t>((set.size() + 7) / 8 * 24));
+  all.image_coordinates.resize((set.size() + 7) / 8 * 24);
   for (Index i = 0; i < set.size(); ++i)
     for (Index axis = 0; axis < 3; ++axis)
-      all.image_coordinates[static_cast<std::size_t>(i / 8 * 24 + 8 * axis + i % 8)] = set.points(axis, i);
+      all.image_coordinates[i / 8 * 24 + 8 * axis + i % 8] = set.points(axis, i);
   encodeLists(imageLists(set.points, options.image_width, options.k, options.threads), options.threads, all);
 }
 
@@ -84,9 +84,9 @@ float confidenceOf(const GroupLists& lists, const std::vector<float>& densities,
   const auto count = static_cast<float>(lists.count(i));
   float around = 0;
   for (std::size_t j = 0; j < lists.count(i); ++j)
-    around += densities[static_cast<std::size_t>(lists.position(lists.list(i)[j]))] / count;
+    around += densities[lists.position(lists.list(i)[j])] / count;
   const float company = std::clamp((count - 2) / (fewest - 2), 0.f, 1.f);
-  return around > 0 ? company * std::min(1.f, densities[static_cast<std::size_t>(i)] / around) : 0.f;
+  return around > 0 ? company * std::min(1.f, densities[i] / around) : 0.f;
 }
 
 /// Puts confidences in place of the reaches.
@@ -94,18 +94,17 @@ void toConfidences(const Neighborhoods& all, std::vector<float>& reaches, int th
 {
   std::vector<float> result(reaches.size());
   const auto forGroups = [&](const auto& use) {
-    parallelFor(static_cast<Index>(all.groups.size()), threads, [&](Index g) {
-      const GroupLists& lists = all.groups[static_cast<std::size_t>(g)];
+    parallelFor(all.groups.size(), threads, [&](Index g) {
+      const GroupLists& lists = all.groups[g];
       for (Index i = lists.begin; i < lists.end; ++i)
         use(lists, i);
     });
   };
   forGroups([&](const GroupLists& lists, Index i) {
-    float& reach = reaches[static_cast<std::size_t>(i)];
+    float& reach = reaches[i];
     reach = reach > 0 ? static_cast<float>(lists.count(i)) / reach : 0.f;
   });
-  forGroups(
-      [&](const GroupLists& lists, Index i) { result[static_cast<std::size_t>(i)] = confidenceOf(lists, reaches, i); });
+  forGroups([&](const GroupLists& lists, Index i) { result[i] = confidenceOf(lists, reaches, i); });
   reaches.swap(result);
 }
 
@@ -116,25 +115,25 @@ NormalField toField(const PointSet& set, Neighborhoods& all, const Fits& fits, i
   std::vector<char> empty(shares.size());
   for (const GroupLists& lists : all.groups)
     for (Index i = lists.begin; i < lists.end; ++i)
-      empty[static_cast<std::size_t>(i)] = lists.count(i) == 0;
+      empty[i] = lists.count(i) == 0;
   releaseMemory(all.groups);
   releaseMemory(all.codes);
   NormalField field;
   field.normals = Points::Constant(3, set.size(), NAN);
   field.curvatures = Eigen::VectorXf::Constant(set.size(), NAN);
   field.confidences = Eigen::VectorXf::Zero(set.size());
-  parallelFor(static_cast<Index>(fits.planes.size()), threads, [&](Index i) {
+  parallelFor(fits.planes.size(), threads, [&](Index i) {
     const Index column = all.column(i);
-    if (empty[static_cast<std::size_t>(i)])
+    if (empty[i])
       return;
-    const Plane& fit = fits.planes[static_cast<std::size_t>(i)];
+    const Plane& fit = fits.planes[i];
     const Eigen::Vector3f view = viewDirection(set.viewpoints, column, all.point(i)), normal = normalOf(fit, view);
     field.normals.col(column) = normal;
     field.curvatures[column] = std::max(0.f, fit.curvature);
     if (fit.shape() == Plane::plane) {
       const float length = view.norm();
       const float incidence = length > 0 ? std::abs(normal.dot(view)) / length : 1.f;
-      field.confidences[column] = shares[static_cast<std::size_t>(i)] * incidence;
+      field.confidences[column] = shares[i] * incidence;
     }
   });
   return field;

@@ -24,7 +24,7 @@ std::vector<Place> placesOf(const std::vector<ScanCluster>& clusters, std::size_
   std::vector<Place> places(scan_count);
   for (std::size_t c = 0; c < clusters.size(); ++c)
     for (std::size_t k = 0; k < clusters[c].scans.size(); ++k)
-      places[static_cast<std::size_t>(clusters[c].scans[k])] = {c, k};
+      places[clusters[c].scans[k]] = {c, k};
   return places;
 }
 
@@ -93,7 +93,7 @@ Legs Contest::legsFrom(std::size_t cluster, const std::vector<PairAlignment>& pa
 bool Contest::rivals(const Leg& out, const Leg& back) const
 {
   const Eigen::Isometry3d T = out.T_from_to * back.T_from_to.inverse();
-  const double size = scans_[static_cast<std::size_t>(clusters_[join_.first].scans[0])].size;
+  const double size = scans_[clusters_[join_.first].scans[0]].size;
   if (poseDistance(T, join_.T_first_second, size) < std::max<double>(3.0 * options_.tolerance, 0.5 * size))
     return false;
   const double there = std::max({violation(join_.first, join_.second, T), violation(join_.first, out.to, out.T_from_to),
@@ -125,13 +125,13 @@ double worstViolation(const std::vector<PreparedScan>& scans, const ScanCluster&
   const std::size_t n = first.scans.size(), m = second.scans.size();
   std::vector<double> violations(n * m, 0.0);
   parallelFor(
-      static_cast<Index>(n * m), threads,
+      n * m, threads,
       [&](Index k) {
         const std::size_t i = static_cast<std::size_t>(k) / m, j = static_cast<std::size_t>(k) % m;
-        const PreparedScan& a = scans[static_cast<std::size_t>(first.scans[i])];
-        const PreparedScan& b = scans[static_cast<std::size_t>(second.scans[j])];
+        const PreparedScan& a = scans[first.scans[i]];
+        const PreparedScan& b = scans[second.scans[j]];
         const Eigen::Isometry3d T_a_b = first.poses[i].inverse() * T_first_second * second.poses[j];
-        violations[static_cast<std::size_t>(k)] = checkPair(a, b, T_a_b, check_level).violation;
+        violations[k] = checkPair(a, b, T_a_b, check_level).violation;
       },
       1);
   return *std::max_element(violations.begin(), violations.end());
@@ -150,7 +150,7 @@ bool hasTwin(const std::vector<PreparedScan>& scans, const std::vector<ScanClust
   IsometryVector elsewhere;
   const auto collect = [&](const ScanCluster& cluster, bool is_first) {
     for (std::size_t k = 0; k < cluster.scans.size(); ++k)
-      for (const SelfMotion& motion : scans[static_cast<std::size_t>(cluster.scans[k])].twins)
+      for (const SelfMotion& motion : scans[cluster.scans[k]].twins)
         if (motion.certain)
           for (const Eigen::Isometry3d& S : {motion.T, motion.T.inverse()}) {
             const Eigen::Isometry3d own = cluster.poses[k] * S * cluster.poses[k].inverse();
@@ -161,7 +161,7 @@ bool hasTwin(const std::vector<PreparedScan>& scans, const std::vector<ScanClust
   collect(second, false);
   if (elsewhere.empty())
     return false;
-  const double size = scans[static_cast<std::size_t>(first.scans[0])].size;
+  const double size = scans[first.scans[0]].size;
   const double here = worstViolation(scans, first, second, join.T_first_second, options.threads);
   return std::any_of(elsewhere.begin(), elsewhere.end(), [&](const Eigen::Isometry3d& T) {
     if (poseDistance(T, join.T_first_second, size) < std::max<double>(3.0 * options.tolerance, 0.5 * size))

@@ -29,7 +29,7 @@ bool isKnown(const ScanCluster& known, Index scan)
 std::vector<RankedPair> possiblePairs(const std::vector<PreparedScan>& scans, const ScanCluster& known)
 {
   std::vector<RankedPair> pairs;
-  const auto usable = [&](Index i) { return scans[static_cast<std::size_t>(i)].problem.empty(); };
+  const auto usable = [&](Index i) { return scans[i].problem.empty(); };
   for (Index a = 0; a < static_cast<Index>(scans.size()); ++a)
     for (Index b = a + 1; b < static_cast<Index>(scans.size()); ++b)
       if (usable(a) && usable(b) && !(isKnown(known, a) && isKnown(known, b)))
@@ -50,9 +50,9 @@ void rankPairs(std::vector<RankedPair>& pairs, const std::vector<PreparedScan>& 
   for (const ScanFeatures& all : features)
     few.push_back(mostDistinctive(all));
   parallelFor(
-      static_cast<Index>(pairs.size()), threads,
+      pairs.size(), threads,
       [&](Index k) {
-        RankedPair& pair = pairs[static_cast<std::size_t>(k)];
+        RankedPair& pair = pairs[k];
         const auto a = static_cast<std::size_t>(pair.a), b = static_cast<std::size_t>(pair.b);
         ConsensusOptions options;
         options.tolerance = 1.5f * scans[a].levels[1].voxel;
@@ -71,7 +71,7 @@ std::vector<RankedPair> takeRound(std::vector<RankedPair>& pairs, std::size_t sc
   std::vector<Index> taken(scan_count, 0);
   std::vector<RankedPair> round, rest;
   for (const RankedPair& pair : pairs) {
-    Index &a = taken[static_cast<std::size_t>(pair.a)], &b = taken[static_cast<std::size_t>(pair.b)];
+    Index &a = taken[pair.a], &b = taken[pair.b];
     const bool take = std::min(a, b) < partners_a_round;
     (take ? round : rest).push_back(pair);
     a += take ? 1 : 0;
@@ -113,10 +113,10 @@ void GlobalAligner::describe(const Progress& progress)
     features_.push_back(scans_[i].problem.empty() ? describeScan(scans_[i], options) : ScanFeatures{});
   }
   parallelFor(
-      static_cast<Index>(scans_.size()), options_.threads,
+      scans_.size(), options_.threads,
       [&](Index k) {
-        PreparedScan& scan = scans_[static_cast<std::size_t>(k)];
-        scan.twins = findSelfMotions(scan, features_[static_cast<std::size_t>(k)]);
+        PreparedScan& scan = scans_[k];
+        scan.twins = findSelfMotions(scan, features_[k]);
       },
       1);
 }
@@ -129,11 +129,11 @@ void GlobalAligner::alignPairs(const std::vector<RankedPair>& round)
   options.upright = options_.upright;
   std::vector<PairAlignment> aligned(round.size());
   parallelFor(
-      static_cast<Index>(round.size()), options_.threads,
+      round.size(), options_.threads,
       [&](Index k) {
-        const auto a = static_cast<std::size_t>(round[static_cast<std::size_t>(k)].a);
-        const auto b = static_cast<std::size_t>(round[static_cast<std::size_t>(k)].b);
-        PairAlignment& alignment = aligned[static_cast<std::size_t>(k)];
+        const auto a = static_cast<std::size_t>(round[k].a);
+        const auto b = static_cast<std::size_t>(round[k].b);
+        PairAlignment& alignment = aligned[k];
         alignment = alignPair(scans_[a], scans_[b], features_[a], features_[b], options);
         alignment.a = static_cast<Index>(a);
         alignment.b = static_cast<Index>(b);
@@ -191,7 +191,7 @@ void GlobalAligner::correctViewpoints()
     std::vector<RankedPair> again;
     std::vector<PairAlignment> kept;
     for (const PairAlignment& pair : result_.pairs)
-      if (wrong[static_cast<std::size_t>(pair.a)] || wrong[static_cast<std::size_t>(pair.b)])
+      if (wrong[pair.a] || wrong[pair.b])
         again.push_back({pair.a, pair.b, 0});
       else
         kept.push_back(pair);
@@ -206,9 +206,9 @@ void GlobalAligner::closeLoops(ScanCluster& cluster) const
   const auto position = [&](Index scan) {
     return std::find(cluster.scans.begin(), cluster.scans.end(), scan) - cluster.scans.begin();
   };
-  const Index n = static_cast<Index>(cluster.scans.size());
+  const Index n = cluster.scans.size();
   PoseGraphOptions options;
-  options.size = scans_[static_cast<std::size_t>(cluster.scans[0])].size;
+  options.size = scans_[cluster.scans[0]].size;
   options.tolerance = graphOptions().tolerance;
   for (const Index scan : cluster.scans)
     options.fixed.push_back(isKnown(known_, scan));
@@ -219,8 +219,7 @@ void GlobalAligner::closeLoops(ScanCluster& cluster) const
     const Index a = position(pair.a), b = position(pair.b);
     if (a == n || b == n)
       continue;
-    const Eigen::Isometry3d T =
-        cluster.poses[static_cast<std::size_t>(a)].inverse() * cluster.poses[static_cast<std::size_t>(b)];
+    const Eigen::Isometry3d T = cluster.poses[a].inverse() * cluster.poses[b];
     for (const PairMode& mode : pair.modes)
       if (poseDistance(T, mode.T_a_b, options.size) < edge_reach * options.tolerance)
         edges.push_back({a, b, mode.T_a_b, mode.support});

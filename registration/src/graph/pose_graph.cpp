@@ -44,8 +44,7 @@ private:
 // Rotation (times size) and translation that the edge misses, in the frame of b.
 Vector6d PoseGraph::error(const IsometryVector& poses, const PoseEdge& edge) const
 {
-  const Eigen::Isometry3d difference = edge.T_a_b.inverse() * poses[static_cast<std::size_t>(edge.a)].inverse() *
-                                       poses[static_cast<std::size_t>(edge.b)];
+  const Eigen::Isometry3d difference = edge.T_a_b.inverse() * poses[edge.a].inverse() * poses[edge.b];
   const Eigen::AngleAxisd turn(difference.linear());
   Vector6d e;
   e << options_.size * turn.angle() * turn.axis(), difference.translation();
@@ -77,8 +76,7 @@ Eigen::VectorXd PoseGraph::step(const IsometryVector& poses, double damping) con
   for (const PoseEdge& edge : edges_) {
     const Vector6d e = error(poses, edge);
     const double falloff = c / (c + e.squaredNorm()), weight = edge.weight * falloff * falloff;
-    const Eigen::Isometry3d T =
-        poses[static_cast<std::size_t>(edge.b)].inverse() * poses[static_cast<std::size_t>(edge.a)];
+    const Eigen::Isometry3d T = poses[edge.b].inverse() * poses[edge.a];
     // The error moves with b and against a motion of a carried over to the frame of b.
     Matrix6d J = Matrix6d::Zero();
     J.topLeftCorner<3, 3>() = J.bottomRightCorner<3, 3>() = -T.linear();

@@ -88,7 +88,7 @@ bool GraphBuilder::unconvincing(const Candidate& candidate) const
   double likeness = 1.0;
   for (const Index scan : {candidate.pair->a, candidate.pair->b}) {
     double most = 0.0;
-    for (const SelfMotion& motion : scans_[static_cast<std::size_t>(scan)].twins)
+    for (const SelfMotion& motion : scans_[scan].twins)
       most = std::max(most, motion.likeness);
     likeness = std::min(likeness, most);
   }
@@ -110,8 +110,7 @@ bool GraphBuilder::supported(const Candidate& candidate, const Eigen::Isometry3d
       if (doubtful(mode) || (only_best && &mode != &pair.modes[0]))
         continue;
       const Eigen::Isometry3d T = clusterPose({&pair, &mode});
-      if (poseDistance(a == first ? T : T.inverse(), T_first_second, scans_[static_cast<std::size_t>(pair.a)].size) <
-          slack())
+      if (poseDistance(a == first ? T : T.inverse(), T_first_second, scans_[pair.a].size) < slack())
         return true;
     }
   }

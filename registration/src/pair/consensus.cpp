@@ -37,11 +37,11 @@ struct MatchedPoints {
 MatchedPoints gather(const ScanFeatures& a, const ScanFeatures& b, const std::vector<Correspondence>& matches)
 {
   MatchedPoints points;
-  const Index n = static_cast<Index>(matches.size());
+  const Index n = matches.size();
   for (Points* matrix : {&points.a, &points.b, &points.normals_a, &points.normals_b})
     matrix->resize(3, n);
   for (Index k = 0; k < n; ++k) {
-    const Correspondence& match = matches[static_cast<std::size_t>(k)];
+    const Correspondence& match = matches[k];
     points.a.col(k) = a.points.col(match.a);
     points.b.col(k) = b.points.col(match.b);
     points.normals_a.col(k) = a.normals.col(match.a);
@@ -165,7 +165,7 @@ Hypotheses findConsensus(const ScanFeatures& a, const ScanFeatures& b, const std
       hypothesis.votes = static_cast<Index>(set.size());
     }
     for (const Index k : set)
-      spent[static_cast<std::size_t>(k)] = options.exclusive;
+      spent[k] = options.exclusive;
     const auto same = [&](const Hypothesis& other) {
       return poseDistance(other.T_a_b, hypothesis.T_a_b, options.size) < 4.0 * options.tolerance;
     };

@@ -10,7 +10,7 @@ double overlapShare(const ScanLevel& source, const ScanLevel& target, const Eige
   const float least_cosine = std::cos(test.max_angle);
   Index found = 0;
   for (Index k = 0; k < count; ++k) {
-    const Index i = source.samples[static_cast<std::size_t>(k)];
+    const Index i = source.samples[k];
     const auto hit = target.tree->nearest(T_target_source * source.points.col(i), test.distance);
     if (hit.index < 0)
       continue;
@@ -34,12 +34,12 @@ double violationShare(const FreeSpace& space, const ScanLevel& level, const Eige
   Index comparable = 0, violating = 0;
   std::vector<Neighbor> hits;
   for (Index i = 0; i < level.points.cols(); ++i) {
-    comparable += verdicts[static_cast<std::size_t>(i)] != FreeSpace::Verdict::unknown ? 1 : 0;
-    if (verdicts[static_cast<std::size_t>(i)] != FreeSpace::Verdict::violates)
+    comparable += verdicts[i] != FreeSpace::Verdict::unknown ? 1 : 0;
+    if (verdicts[i] != FreeSpace::Verdict::violates)
       continue;
     level.tree->nearest(level.points.col(i), neighbor_count, hits);
     const auto around = std::count_if(hits.begin(), hits.end(), [&](const Neighbor& hit) {
-      return verdicts[static_cast<std::size_t>(hit.index)] == FreeSpace::Verdict::violates;
+      return verdicts[hit.index] == FreeSpace::Verdict::violates;
     });
     violating += around >= fewest_violating ? 1 : 0;
   }
@@ -54,7 +54,7 @@ std::optional<double> colorCorrelation(const ScanLevel& source, const ScanLevel&
   Eigen::Array3d sx(0, 0, 0), sy(0, 0, 0), sxx(0, 0, 0), syy(0, 0, 0), sxy(0, 0, 0);
   Index count = 0;
   for (Index k = 0; k < std::min(color_samples, static_cast<Index>(source.samples.size())); ++k) {
-    const Index i = source.samples[static_cast<std::size_t>(k)];
+    const Index i = source.samples[k];
     const auto hit = target.tree->nearest(T_target_source * source.points.col(i), distance);
     if (hit.index < 0)
       continue;
@@ -66,7 +66,7 @@ std::optional<double> colorCorrelation(const ScanLevel& source, const ScanLevel&
     sxy += x * y;
     ++count;
   }
-  const double n = static_cast<double>(count);
+  const double n = count;
   const double vx = (sxx - sx * sx / n).sum() / n, vy = (syy - sy * sy / n).sum() / n;
   if (count < fewest_colored || vx < least_variance || vy < least_variance)
     return {};
@@ -76,8 +76,8 @@ std::optional<double> colorCorrelation(const ScanLevel& source, const ScanLevel&
 
 PairCheck checkPair(const PreparedScan& a, const PreparedScan& b, const Eigen::Isometry3d& T_a_b, int level)
 {
-  const ScanLevel& level_a = a.levels[static_cast<std::size_t>(level)];
-  const ScanLevel& level_b = b.levels[static_cast<std::size_t>(level)];
+  const ScanLevel& level_a = a.levels[level];
+  const ScanLevel& level_b = b.levels[level];
   const Eigen::Isometry3f T_ab = T_a_b.cast<float>(), T_ba = T_a_b.inverse().cast<float>();
   OverlapTest test;
   test.distance = 2.f * std::max(level_a.voxel, level_b.voxel);

@@ -68,19 +68,15 @@ public:
   JointResult run(const Progress& progress);
 
 private:
-  const ScanLevel& level(Index scan) const
-  {
-    return scans_[static_cast<std::size_t>(scan)]->levels[static_cast<std::size_t>(level_)];
-  }
+  const ScanLevel& level(Index scan) const { return scans_[scan]->levels[level_]; }
   Index scanCount() const { return static_cast<Index>(scans_.size()); }
   Eigen::Isometry3d relative(const DirectedPair& pair) const
   {
-    return poses_[static_cast<std::size_t>(pair.target)].inverse() * poses_[static_cast<std::size_t>(pair.source)];
+    return poses_[pair.target].inverse() * poses_[pair.source];
   }
   bool oriented(const DirectedPair& pair) const
   {
-    return scans_[static_cast<std::size_t>(pair.source)]->oriented &&
-           scans_[static_cast<std::size_t>(pair.target)]->oriented;
+    return scans_[pair.source]->oriented && scans_[pair.target]->oriented;
   }
   void refineLevel();
   void findPairs(float distance);
@@ -104,7 +100,7 @@ private:
 void Refinement::findPairs(float distance)
 {
   const Index n = scanCount();
-  std::vector<char> overlaps(static_cast<std::size_t>(n * n), 0);
+  std::vector<char> overlaps(n * n, 0);
   OverlapTest test;
   test.distance = distance;
   test.most = overlap_samples;
@@ -117,21 +113,21 @@ void Refinement::findPairs(float distance)
           return;
         OverlapTest own = test;
         own.oriented = oriented(pair);
-        overlaps[static_cast<std::size_t>(k)] = overlapShare(level(pair.source), level(pair.target),
-                                                             relative(pair).cast<float>(), own) >= options_.min_overlap;
+        overlaps[k] = overlapShare(level(pair.source), level(pair.target), relative(pair).cast<float>(), own) >=
+                      options_.min_overlap;
       },
       1);
   for (const auto& [a, b] : options_.excluded)
-    overlaps[static_cast<std::size_t>(a * n + b)] = overlaps[static_cast<std::size_t>(b * n + a)] = 0;
+    overlaps[a * n + b] = overlaps[b * n + a] = 0;
   pairs_.clear();
   for (Index a = 0; a < n; ++a)
     for (Index b = 0; b < n; ++b)
-      if (a != b && (overlaps[static_cast<std::size_t>(a * n + b)] || overlaps[static_cast<std::size_t>(b * n + a)]))
+      if (a != b && (overlaps[a * n + b] || overlaps[b * n + a]))
         pairs_.push_back({a, b, {}, 0.0});
   blocks_.clear();
   for (std::size_t p = 0; p < pairs_.size(); ++p) {
     const Index count = std::min(options_.samples, static_cast<Index>(level(pairs_[p].source).samples.size()));
-    pairs_[p].matches.resize(static_cast<std::size_t>(count));
+    pairs_[p].matches.resize(count);
     for (Index begin = 0; begin < count; begin += block_size)
       blocks_.push_back({p, begin, std::min(count, begin + block_size)});
   }
@@ -141,16 +137,16 @@ void Refinement::findMatches(float distance)
 {
   const float least_cosine = std::cos(angle_limit);
   parallelFor(
-      static_cast<Index>(blocks_.size()), options_.threads,
+      blocks_.size(), options_.threads,
       [&](Index b) {
-        const Block& block = blocks_[static_cast<std::size_t>(b)];
+        const Block& block = blocks_[b];
         DirectedPair& pair = pairs_[block.pair];
         const Eigen::Isometry3f T = relative(pair).cast<float>();
         const ScanLevel &source = level(pair.source), &target = level(pair.target);
         const bool signs = oriented(pair);
         for (Index k = block.begin; k < block.end; ++k) {
-          Match& match = pair.matches[static_cast<std::size_t>(k)];
-          const Index i = source.samples[static_cast<std::size_t>(k)];
+          Match& match = pair.matches[k];
+          const Index i = source.samples[k];
           const Eigen::Vector3f x = T * source.points.col(i);
           const auto hit = target.tree->nearest(x, distance);
           match.target = -1;
@@ -165,8 +161,7 @@ void Refinement::findMatches(float distance)
       },
       1);
   parallelFor(
-      static_cast<Index>(pairs_.size()), options_.threads,
-      [&](Index p) { findCutoff(pairs_[static_cast<std::size_t>(p)]); }, 1);
+      pairs_.size(), options_.threads, [&](Index p) { findCutoff(pairs_[p]); }, 1);
 }
 
 void Refinement::findCutoff(DirectedPair& pair) const
@@ -190,13 +185,13 @@ PairSystem Refinement::accumulateBlock(const Block& block) const
   const ScanLevel &source = level(pair.source), &target = level(pair.target);
   PairSystem system;
   for (Index k = block.begin; k < block.end; ++k) {
-    const Match& match = pair.matches[static_cast<std::size_t>(k)];
+    const Match& match = pair.matches[k];
     const double u = match.target < 0 || pair.cutoff <= 0.0 ? 1.0 : std::abs(match.residual) / pair.cutoff;
     if (u >= 1.0)
       continue;
-    const Eigen::Vector3d x = (T * source.points.col(source.samples[static_cast<std::size_t>(k)])).cast<double>();
+    const Eigen::Vector3d x = (T * source.points.col(source.samples[k])).cast<double>();
     const Eigen::Vector3d n = target.normals.col(match.target).cast<double>();
-    const double bend = source.bend[source.samples[static_cast<std::size_t>(k)]] + target.bend[match.target];
+    const double bend = source.bend[source.samples[k]] + target.bend[match.target];
     const double weight = (1.0 - u * u) * (1.0 - u * u) * plain_bend / (plain_bend + bend), r = match.residual;
     Vector6d J;
     J << x.cross(n), n;
@@ -212,8 +207,7 @@ std::vector<PairSystem> Refinement::accumulate() const
 {
   std::vector<PairSystem> parts(blocks_.size()), systems(pairs_.size());
   parallelFor(
-      static_cast<Index>(blocks_.size()), options_.threads,
-      [&](Index b) { parts[static_cast<std::size_t>(b)] = accumulateBlock(blocks_[static_cast<std::size_t>(b)]); }, 1);
+      blocks_.size(), options_.threads, [&](Index b) { parts[b] = accumulateBlock(blocks_[b]); }, 1);
   for (std::size_t b = 0; b < blocks_.size(); ++b)
     systems[blocks_[b].pair] += parts[b];
   return systems;
@@ -244,12 +238,11 @@ double Refinement::step(const std::vector<PairSystem>& systems)
         entries.emplace_back(6 * row + r, 6 * column + c, block(r, c) * scale[6 * row + r] * scale[6 * column + c]);
   };
   for (Index i = 0; i < scanCount(); ++i)
-    scale.segment<6>(6 * i) << Eigen::Vector3d::Constant(1.0 / scans_[static_cast<std::size_t>(i)]->size),
-        Eigen::Vector3d::Ones();
+    scale.segment<6>(6 * i) << Eigen::Vector3d::Constant(1.0 / scans_[i]->size), Eigen::Vector3d::Ones();
   Index matches = 0;
   for (std::size_t p = 0; p < pairs_.size(); ++p) {
     const DirectedPair& pair = pairs_[p];
-    const PairJacobian M(poses_[static_cast<std::size_t>(pair.target)], relative(pair));
+    const PairJacobian M(poses_[pair.target], relative(pair));
     const Matrix6d& G = systems[p].G;
     add(pair.source, pair.source, M.M_source * G * M.M_source.transpose());
     add(pair.target, pair.target, M.M_target * G * M.M_target.transpose());
@@ -270,8 +263,8 @@ double Refinement::step(const std::vector<PairSystem>& systems)
   for (Index i = 0; i < scanCount(); ++i) {
     const Vector6d scaled = x.segment<6>(6 * i);
     motion = std::max(motion, scaled.norm());
-    const Eigen::Vector3d w = scaled.head<3>() / scans_[static_cast<std::size_t>(i)]->size;
-    Eigen::Isometry3d& pose = poses_[static_cast<std::size_t>(i)];
+    const Eigen::Vector3d w = scaled.head<3>() / scans_[i]->size;
+    Eigen::Isometry3d& pose = poses_[i];
     const double angle = w.norm();
     if (angle > 0.0)
       pose.linear() = Eigen::AngleAxisd(angle, w / angle).toRotationMatrix() * pose.linear();
@@ -312,20 +305,20 @@ void Refinement::keepGauge()
   std::vector<Index> group(scans_.size());
   std::iota(group.begin(), group.end(), Index(0));
   const auto root = [&](Index i) {
-    while (group[static_cast<std::size_t>(i)] != i)
-      i = group[static_cast<std::size_t>(i)];
+    while (group[i] != i)
+      i = group[i];
     return i;
   };
   for (const DirectedPair& pair : pairs_) {
     const Index a = root(pair.source), b = root(pair.target);
-    group[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
+    group[std::max(a, b)] = std::min(a, b);
   }
   std::vector<Index> holder(group);
   for (auto anchor = options_.anchors.rbegin(); anchor != options_.anchors.rend(); ++anchor)
-    holder[static_cast<std::size_t>(root(*anchor))] = *anchor;
+    holder[root(*anchor)] = *anchor;
   IsometryVector corrections(scans_.size());
   for (std::size_t i = 0; i < scans_.size(); ++i) {
-    const auto held = static_cast<std::size_t>(holder[static_cast<std::size_t>(root(static_cast<Index>(i)))]);
+    const auto held = static_cast<std::size_t>(holder[root(static_cast<Index>(i))]);
     corrections[i] = first_poses_[held] * poses_[held].inverse();
   }
   for (std::size_t i = 0; i < scans_.size(); ++i)
@@ -341,9 +334,9 @@ void Refinement::finish(JointResult& result) const
     const PairSystem& system = systems[p];
     result.pairs.push_back({pair.source, pair.target, system.count,
                             system.count > 0 ? std::sqrt(system.squares / static_cast<double>(system.count)) : 0.0});
-    const PairJacobian M(poses_[static_cast<std::size_t>(pair.target)], relative(pair));
-    result.information[static_cast<std::size_t>(pair.source)] += M.M_source * system.G * M.M_source.transpose();
-    result.information[static_cast<std::size_t>(pair.target)] += M.M_target * system.G * M.M_target.transpose();
+    const PairJacobian M(poses_[pair.target], relative(pair));
+    result.information[pair.source] += M.M_source * system.G * M.M_source.transpose();
+    result.information[pair.target] += M.M_target * system.G * M.M_target.transpose();
   }
   result.poses = poses_;
   result.iterations = iterations_;

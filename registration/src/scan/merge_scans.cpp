@@ -49,9 +49,7 @@ PointSet placedScan(const PointSet& scan, const Eigen::Matrix4d& T_world_scan, c
 
 PointSet mergeScans(const std::vector<PointSet>& scans, const std::vector<Pose>& poses, int threads)
 {
-  return mergeScans(
-      ScanSource{static_cast<Index>(scans.size()), [&](Index i) { return scans[static_cast<std::size_t>(i)]; }}, poses,
-      threads);
+  return mergeScans(ScanSource{static_cast<Index>(scans.size()), [&](Index i) { return scans[i]; }}, poses, threads);
 }
 
 PointSet mergeScans(const ScanSource& scans, const std::vector<Pose>& poses, int threads)

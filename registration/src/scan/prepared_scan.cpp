@@ -68,7 +68,7 @@ struct CellPoint {
 RawScan thin(const RawScan& raw, float voxel)
 {
   std::vector<CellPoint> order;
-  order.reserve(static_cast<std::size_t>(raw.points.cols()));
+  order.reserve(raw.points.cols());
   for (Index i = 0; i < raw.points.cols(); ++i) {
     const Eigen::Array3f cell = (raw.points.col(i).array() / voxel).floor();
     if ((cell.abs() < grid_limit).all())
@@ -118,7 +118,7 @@ LocalPlane fitPlane(const Points& points, const Eigen::Vector3f& center, const s
   }
   if (count < 5)
     return {};
-  const float n = static_cast<float>(count);
+  const float n = count;
   const Eigen::Matrix3f covariance = squares / n - (sum / n) * (sum / n).transpose();
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f> solver;
   solver.computeDirect(covariance);

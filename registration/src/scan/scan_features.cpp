@@ -35,7 +35,7 @@ void addPair(const Eigen::Vector3f& p1, const Eigen::Vector3f& n1, const Eigen::
     return;
   v /= norm;
   const Eigen::Vector3f w = u.cross(v);
-  const float pi = static_cast<float>(M_PI);
+  const float pi = M_PI;
   histogram[binOf(v.dot(n), -1.f, 1.f)] += 1.f;
   histogram[bins + binOf(u.dot(d), -1.f, 1.f)] += 1.f;
   histogram[2 * bins + binOf(std::atan2(w.dot(n), u.dot(n)), -pi, pi)] += 1.f;
@@ -56,9 +56,9 @@ Histograms describePoints(const ScanLevel& level, float radius, int threads)
 {
   const Index n = level.points.cols();
   Histograms simple = Histograms::Zero(3 * bins, n), full(3 * bins, n);
-  std::vector<std::vector<Neighbor>> neighbors(static_cast<std::size_t>(n));
+  std::vector<std::vector<Neighbor>> neighbors(n);
   parallelFor(n, threads, [&](Index i) {
-    auto& hits = neighbors[static_cast<std::size_t>(i)];
+    auto& hits = neighbors[i];
     if (level.normals.col(i).isZero())
       return;
     level.tree->within(level.points.col(i), radius, hits);
@@ -72,7 +72,7 @@ Histograms describePoints(const ScanLevel& level, float radius, int threads)
   });
   parallelFor(n, threads, [&](Index i) {
     Histogram sum = Histogram::Zero();
-    for (const Neighbor& hit : neighbors[static_cast<std::size_t>(i)])
+    for (const Neighbor& hit : neighbors[i])
       if (hit.index != i)
         sum += simple.col(hit.index) / std::sqrt(std::max(hit.squared_distance, 1e-12f));
     normalizeParts(sum);
@@ -96,18 +96,18 @@ std::vector<Index> distinctivePoints(const ScanLevel& level, const Histograms& h
   mean.normalize();
   const Eigen::VectorXf likeness = histograms.transpose() * mean;
   std::stable_sort(candidates.begin(), candidates.end(), [&](Index i, Index j) { return likeness[i] < likeness[j]; });
-  std::vector<char> blocked(static_cast<std::size_t>(histograms.cols()), 0);
+  std::vector<char> blocked(histograms.cols(), 0);
   std::vector<Index> kept;
   std::vector<Neighbor> hits;
   for (const Index i : candidates) {
     if (static_cast<Index>(kept.size()) >= most)
       break;
-    if (blocked[static_cast<std::size_t>(i)])
+    if (blocked[i])
       continue;
     kept.push_back(i);
     level.tree->within(level.points.col(i), spacing, hits);
     for (const Neighbor& hit : hits)
-      blocked[static_cast<std::size_t>(hit.index)] = 1;
+      blocked[hit.index] = 1;
   }
   return kept;
 }
@@ -115,11 +115,11 @@ std::vector<Index> distinctivePoints(const ScanLevel& level, const Histograms& h
 // Column of the most similar descriptor of `b` for each of `a`, and the likeness, 0..1.
 std::vector<std::pair<Index, float>> mostSimilar(const Eigen::MatrixXf& likeness)
 {
-  std::vector<std::pair<Index, float>> best(static_cast<std::size_t>(likeness.cols()));
+  std::vector<std::pair<Index, float>> best(likeness.cols());
   for (Index i = 0; i < likeness.cols(); ++i) {
     Index row = 0;
     const float value = likeness.col(i).maxCoeff(&row);
-    best[static_cast<std::size_t>(i)] = {row, value};
+    best[i] = {row, value};
   }
   return best;
 }
@@ -127,7 +127,7 @@ std::vector<std::pair<Index, float>> mostSimilar(const Eigen::MatrixXf& likeness
 
 ScanFeatures describeScan(const PreparedScan& scan, const FeatureOptions& options)
 {
-  const ScanLevel& level = scan.levels[static_cast<std::size_t>(options.level)];
+  const ScanLevel& level = scan.levels[options.level];
   const Histograms histograms = describePoints(level, options.radius * level.voxel, options.threads);
   const std::vector<Index> kept = distinctivePoints(level, histograms, 1.2f * level.voxel, options.most);
   return {level.points(Eigen::all, kept), level.normals(Eigen::all, kept), histograms(Eigen::all, kept)};
@@ -146,12 +146,12 @@ std::vector<Correspondence> matchFeatures(const ScanFeatures& a, const ScanFeatu
   };
   std::vector<Ranked> ranked;
   for (Index i = 0; i < a.points.cols(); ++i) {
-    const auto [j, value] = forward[static_cast<std::size_t>(i)];
-    ranked.push_back({backward[static_cast<std::size_t>(j)].first != i, value, {i, j}});
+    const auto [j, value] = forward[i];
+    ranked.push_back({backward[j].first != i, value, {i, j}});
   }
   for (Index j = 0; j < b.points.cols(); ++j) {
-    const auto [i, value] = backward[static_cast<std::size_t>(j)];
-    if (forward[static_cast<std::size_t>(i)].first != j)
+    const auto [i, value] = backward[j];
+    if (forward[i].first != j)
       ranked.push_back({true, value, {i, j}});
   }
   std::stable_sort(ranked.begin(), ranked.end(), [](const Ranked& x, const Ranked& y) {

@@ -112,10 +112,10 @@ FreeSpace::Map FreeSpace::buildMap(const Points& points, const std::vector<Index
 std::vector<FreeSpace::Verdict> FreeSpace::judge(const Points& points, const Eigen::Isometry3f& T_scan_points,
                                                  const Slack& slack) const
 {
-  std::vector<Verdict> verdicts(static_cast<std::size_t>(points.cols()), Verdict::unknown);
+  std::vector<Verdict> verdicts(points.cols(), Verdict::unknown);
   for (Index i = 0; i < points.cols(); ++i) {
     const Eigen::Vector3f point = T_scan_points * points.col(i);
-    Verdict& verdict = verdicts[static_cast<std::size_t>(i)];
+    Verdict& verdict = verdicts[i];
     for (const Map& map : maps_) {
       const Eigen::Vector3f ray = point - map.center;
       const float range = ray.norm(), margin = slack.absolute + slack.relative * range;

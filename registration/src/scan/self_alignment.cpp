@@ -65,7 +65,7 @@ std::vector<Correspondence> matchToSelf(const ScanFeatures& features, const Self
 
 std::vector<Index> allOf(const ScanFeatures& features)
 {
-  std::vector<Index> all(static_cast<std::size_t>(features.points.cols()));
+  std::vector<Index> all(features.points.cols());
   std::iota(all.begin(), all.end(), Index(0));
   return all;
 }
@@ -85,7 +85,7 @@ std::vector<Index> farOf(const ScanFeatures& features, const PreparedScan& scan)
 Eigen::Isometry3d refined(const PreparedScan& scan, const Eigen::Isometry3d& T, int first_level, int last_level)
 {
   JointOptions options;
-  options.max_distance = 2.f * scan.levels[static_cast<std::size_t>(first_level)].voxel;
+  options.max_distance = 2.f * scan.levels[first_level].voxel;
   options.samples = 2000;
   options.max_iterations = 20;
   options.first_level = first_level;
@@ -195,7 +195,7 @@ public:
       const Index other = pair.a == scan ? pair.b : pair.a;
       shared_.push_back({other, motion});
       shared_.back().second.T = T * motion.T * T.inverse();
-      const PreparedScan& seen = scans[static_cast<std::size_t>(other)];
+      const PreparedScan& seen = scans[other];
       refuted_ = refuted_ || checkPair(seen, seen, shared_.back().second.T, check_level).violation > refuting_violation;
     }
   }
@@ -205,8 +205,8 @@ public:
   void addTo(std::vector<PreparedScan>& scans) const
   {
     for (const auto& [scan, motion] : shared_)
-      if (!isKnown(scans[static_cast<std::size_t>(scan)], motion.T))
-        scans[static_cast<std::size_t>(scan)].twins.push_back(motion);
+      if (!isKnown(scans[scan], motion.T))
+        scans[scan].twins.push_back(motion);
   }
 
 private:

@@ -28,9 +28,9 @@ struct Side {
 
 std::vector<int> countedVertices(const TriangleMesh& mesh)
 {
-  std::vector<char> counts(static_cast<std::size_t>(mesh.vertexCount()), mesh.faceCount() == 0);
+  std::vector<char> counts(mesh.vertexCount(), mesh.faceCount() == 0);
   for (Index i = 0; i < mesh.faces.size(); ++i)
-    counts[static_cast<std::size_t>(mesh.faces.data()[i])] = 1;
+    counts[mesh.faces.data()[i]] = 1;
   std::vector<int> vertices;
   for (std::size_t v = 0; v < counts.size(); ++v)
     if (counts[v])

@@ -28,10 +28,10 @@ Vector3d corner(const TriangleMesh& mesh, Index face, int i)
 // Sums of the areas of the faces up to and including each.
 std::vector<double> areaSums(const TriangleMesh& mesh, int threads)
 {
-  std::vector<double> sums(static_cast<std::size_t>(mesh.faceCount()));
+  std::vector<double> sums(mesh.faceCount());
   parallelFor(mesh.faceCount(), threads, [&](Index f) {
     const Vector3d a = corner(mesh, f, 0);
-    sums[static_cast<std::size_t>(f)] = 0.5 * (corner(mesh, f, 1) - a).cross(corner(mesh, f, 2) - a).norm();
+    sums[f] = 0.5 * (corner(mesh, f, 1) - a).cross(corner(mesh, f, 2) - a).norm();
   });
   double sum = 0.0;
   for (double& entry : sums)

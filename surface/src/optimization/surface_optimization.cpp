@@ -10,7 +10,6 @@
 namespace fresco {
 using namespace optimization;
 namespace {
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 constexpr double reach = 6.0; // mean edge lengths: points farther from the mesh are of something else
 
@@ -86,7 +85,7 @@ double optimization::robustDeviation(std::vector<float>& magnitudes)
 double optimization::rmsMove(const Positions& move, const std::vector<char>& counts, int threads)
 {
   const double sum =
-      parallelSum(move.cols(), threads, 0.0, [&](Index v) { return counts[at(v)] ? move.col(v).squaredNorm() : 0.0; });
+      parallelSum(move.cols(), threads, 0.0, [&](Index v) { return counts[v] ? move.col(v).squaredNorm() : 0.0; });
   const auto number = std::count(counts.begin(), counts.end(), char{1});
   return number > 0 ? std::sqrt(sum / static_cast<double>(number)) : 0.0;
 }

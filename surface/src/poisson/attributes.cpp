@@ -46,20 +46,17 @@ public:
   }
 
 private:
-  Index parent(int d, Index b) const
-  {
-    return tree_.levels[static_cast<std::size_t>(d)].parents[static_cast<std::size_t>(b)];
-  }
+  Index parent(int d, Index b) const { return tree_.levels[d].parents[b]; }
 
   Eigen::Vector3f toBrick(const Eigen::Vector3f& position, int d, Index b) const
   {
-    return position * std::ldexp(1.f, d - tree_.depth) - tree_.levels[static_cast<std::size_t>(d)].origin(b);
+    return position * std::ldexp(1.f, d - tree_.depth) - tree_.levels[d].origin(b);
   }
 
   void makeFields(int d, int threads)
   {
-    const BrickLevel& level = tree_.levels[static_cast<std::size_t>(d)];
-    Fields& fields = fields_[static_cast<std::size_t>(d)];
+    const BrickLevel& level = tree_.levels[d];
+    Fields& fields = fields_[d];
     const Array<std::uint32_t> begin = sampleRanges(level, samples_.codes, tree_.depth, threads);
     for (std::size_t c = 0; c < channel_count; ++c) {
       fields[c] = NodeField(level.size(), threads);
@@ -69,7 +66,7 @@ private:
         continue;
       }
       splatBricks(level, begin, fields[c], threads, [&](SplatBlock<1>& block, int b) {
-        for (std::uint32_t i = begin[static_cast<std::size_t>(b)]; i < begin[static_cast<std::size_t>(b) + 1]; ++i) {
+        for (std::uint32_t i = begin[b]; i < begin[static_cast<std::size_t>(b) + 1]; ++i) {
           const HatWeights w(toBrick(samples_.samples[i].position, d, b));
           const float value = channelsOf(samples_, i)[static_cast<Index>(c)];
           for (int k = 0; k < 8; ++k)
@@ -84,10 +81,10 @@ private:
   {
     std::vector<Channels> nodes(brick_nodes * brick_nodes * brick_nodes, Channels::Zero());
     const BrickLevel& level = tree_.levels.back();
-    for (const int n : level.neighbors[static_cast<std::size_t>(brick)]) {
+    for (const int n : level.neighbors[brick]) {
       if (n < 0)
         continue;
-      for (std::uint32_t i = begin_[static_cast<std::size_t>(n)]; i < begin_[static_cast<std::size_t>(n) + 1]; ++i) {
+      for (std::uint32_t i = begin_[n]; i < begin_[static_cast<std::size_t>(n) + 1]; ++i) {
         const Eigen::Vector3f p = toBrick(samples_.samples[i].position, tree_.depth, brick);
         if (p.minCoeff() <= -1.f || p.maxCoeff() >= static_cast<float>(brick_nodes))
           continue;
@@ -95,7 +92,7 @@ private:
         for (int k = 0; k < 8; ++k) {
           const int x = w.x + (k & 1), y = w.y + (k >> 1 & 1), z = w.z + (k >> 2);
           if (std::min({x, y, z}) >= 0 && std::max({x, y, z}) < brick_nodes)
-            nodes[static_cast<std::size_t>(nodeIndex(x, y, z))] += w.value[k] * channelsOf(samples_, i);
+            nodes[nodeIndex(x, y, z)] += w.value[k] * channelsOf(samples_, i);
         }
       }
     }
@@ -107,7 +104,7 @@ private:
     const HatWeights w = HatWeights::inBrick(position);
     Channels sum = Channels::Zero();
     for (int k = 0; k < 8; ++k)
-      sum += w.value[k] * nodes[static_cast<std::size_t>(w.nodeOf(k))];
+      sum += w.value[k] * nodes[w.nodeOf(k)];
     return sum;
   }
 
@@ -116,7 +113,7 @@ private:
     const HatWeights w = HatWeights::inBrick(toBrick(position, d, b));
     Channels sum;
     for (std::size_t c = 0; c < channel_count; ++c)
-      sum[static_cast<Index>(c)] = w.interpolate(fields_[static_cast<std::size_t>(d)][c].brick(b));
+      sum[static_cast<Index>(c)] = w.interpolate(fields_[d][c].brick(b));
     return sum;
   }
 
@@ -131,9 +128,8 @@ Eigen::Matrix4Xf vertexAttributes(const Octree& tree, const Samples& samples, co
 {
   Eigen::Matrix4Xf result(4, surface.vertices.cols());
   const Transfer transfer(tree, samples, threads);
-  parallelFor(static_cast<Index>(surface.ranges.size()), threads, [&](Index r) {
-    transfer.fillRange(surface.ranges[static_cast<std::size_t>(r)], surface.vertices, result);
-  });
+  parallelFor(surface.ranges.size(), threads,
+              [&](Index r) { transfer.fillRange(surface.ranges[r], surface.vertices, result); });
   return result;
 }
 } // namespace fresco::poisson

@@ -39,9 +39,9 @@ Box innerBox(const PointSet& set, const Array<std::uint32_t>& points)
     const Index drop =
         std::min(std::max(few_outliers, static_cast<Index>(outlier_share * static_cast<double>(n))), n / 16);
     std::nth_element(values.begin(), values.begin() + drop, values.end());
-    lower[axis] = values[static_cast<std::size_t>(drop)];
+    lower[axis] = values[drop];
     std::nth_element(values.begin(), values.end() - 1 - drop, values.end());
-    upper[axis] = values[static_cast<std::size_t>(n - 1 - drop)];
+    upper[axis] = values[n - 1 - drop];
   }
   return Box(lower, upper);
 }
@@ -51,11 +51,11 @@ Box boxOf(const PointSet& set, const Array<std::uint32_t>& points, int threads)
   const auto map = [&](Index begin, Index end) {
     Box box;
     for (Index k = begin; k < end; ++k)
-      box.extend(set.points.col(points[static_cast<std::size_t>(k)]).cast<double>());
+      box.extend(set.points.col(points[k]).cast<double>());
     return box;
   };
   const auto join = [](const Box& a, const Box& b) { return a.merged(b); };
-  return parallelReduce(static_cast<Index>(points.size()), threads, Box(), map, join);
+  return parallelReduce(points.size(), threads, Box(), map, join);
 }
 
 /// @return box of the points that are left
@@ -122,9 +122,8 @@ Usable usablePoints(const PointSet& set, const VolumetricOptions& options)
   require(box.sizes().maxCoeff() > 1e-30, "volumetric reconstruction: all ", usable.points.size(),
           " usable points coincide");
   const auto n = static_cast<Index>(usable.points.size());
-  const double sum = parallelSum(n, options.threads, 0.0, [&](Index k) {
-    return usable.weights.of(set, usable.points[static_cast<std::size_t>(k)]);
-  });
+  const double sum =
+      parallelSum(n, options.threads, 0.0, [&](Index k) { return usable.weights.of(set, usable.points[k]); });
   usable.weights.scale = static_cast<double>(n) / sum;
   usable.cube = fitCube(box, options);
   return usable;

@@ -19,16 +19,16 @@ void splatWeights(const BrickLevel& level, const SampleLevel& samples, int fines
   const float scale = std::ldexp(1.f, level.depth - finest);
   splatBricks(level, begin, field, threads, [&](SplatBlock<1>& block, int b) {
     const std::array<int, 3> corner = level.corner(b);
-    for (std::uint32_t i = begin[static_cast<std::size_t>(b)]; i < begin[static_cast<std::size_t>(b) + 1]; ++i) {
+    for (std::uint32_t i = begin[b]; i < begin[static_cast<std::size_t>(b) + 1]; ++i) {
       const CoarseSample& s = samples.samples[i];
       const QuadraticWeights x(s.position.x() * scale - static_cast<float>(corner[0]));
       const QuadraticWeights y(s.position.y() * scale - static_cast<float>(corner[1]));
       const QuadraticWeights z(s.position.z() * scale - static_cast<float>(corner[2]));
       for (int c = 0; c < 3; ++c)
         for (int r = 0; r < 3; ++r) {
-          const float w = s.area * z.value[static_cast<std::size_t>(c)] * y.value[static_cast<std::size_t>(r)];
+          const float w = s.area * z.value[c] * y.value[r];
           for (int q = 0; q < 3; ++q)
-            block.at(x.first + q, y.first + r, z.first + c) += w * x.value[static_cast<std::size_t>(q)];
+            block.at(x.first + q, y.first + r, z.first + c) += w * x.value[q];
         }
     }
   });
@@ -39,11 +39,10 @@ Density::Density(const Octree& tree, const Samples& samples, int threads) : tree
 {
   fields_.resize(tree.levels.size());
   SampleLevel level = finestLevel(samples, threads);
-  total_weight_ = parallelSum(static_cast<Index>(level.samples.size()), threads, 0.f,
-                              [&](Index i) { return level.samples[static_cast<std::size_t>(i)].area; });
+  total_weight_ = parallelSum(level.samples.size(), threads, 0.f, [&](Index i) { return level.samples[i].area; });
   for (int d = std::max(2, tree.depth - 1); d >= 2; --d) {
-    const BrickLevel& bricks = tree.levels[static_cast<std::size_t>(d)];
-    NodeField& field = fields_[static_cast<std::size_t>(d)];
+    const BrickLevel& bricks = tree.levels[d];
+    NodeField& field = fields_[d];
     field = NodeField(bricks.size(), threads);
     splatWeights(bricks, level, tree.depth, field, threads);
     level = coarsen(level, threads);
@@ -52,8 +51,8 @@ Density::Density(const Octree& tree, const Samples& samples, int threads) : tree
 
 float Density::weightAt(int depth, Index brick, const Eigen::Vector3f& position) const
 {
-  const BrickLevel& level = tree_->levels[static_cast<std::size_t>(depth)];
-  const NodeField& field = fields_[static_cast<std::size_t>(depth)];
+  const BrickLevel& level = tree_->levels[depth];
+  const NodeField& field = fields_[depth];
   const float scale = std::ldexp(1.f, depth - tree_->depth);
   const std::array<int, 3> corner = level.corner(brick);
   const QuadraticWeights x(position.x() * scale - static_cast<float>(corner[0]));
@@ -65,8 +64,7 @@ float Density::weightAt(int depth, Index brick, const Eigen::Vector3f& position)
       for (int q = 0; q < 3; ++q) {
         const NodePlace place = findNode(level, brick, x.first + q, y.first + r, z.first + c);
         if (place.brick >= 0)
-          sum += field.brick(place.brick)[place.index] * x.value[static_cast<std::size_t>(q)] *
-                 y.value[static_cast<std::size_t>(r)] * z.value[static_cast<std::size_t>(c)];
+          sum += field.brick(place.brick)[place.index] * x.value[q] * y.value[r] * z.value[c];
       }
   return sum;
 }
@@ -76,13 +74,13 @@ Density::Estimate Density::at(int depth, Index brick, const Eigen::Vector3f& pos
   float weight = 0, finer_weight = 0;
   int d = depth;
   for (;; --d) {
-    if (fields_[static_cast<std::size_t>(d)].size() > 0) {
+    if (fields_[d].size() > 0) {
       finer_weight = weight;
       weight = weightAt(d, brick, position);
       if (weight >= least_weight || d == 2)
         break;
     }
-    brick = tree_->levels[static_cast<std::size_t>(d)].parents[static_cast<std::size_t>(brick)];
+    brick = tree_->levels[d].parents[brick];
   }
   weight = std::max(weight, 1e-6f * total_weight_);
   const float per_face = weight / plane_weight; // samples per face of a cell of depth d
@@ -102,7 +100,7 @@ void estimateDensity(const Octree& tree, const Density& density, float samples_p
   const Array<std::uint32_t> begin = sampleRanges(finest, samples.codes, tree.depth, threads);
   const float shift = 0.5f * std::log2(samples_per_node);
   parallelFor(finest.size(), threads, [&](Index b) {
-    for (std::uint32_t i = begin[static_cast<std::size_t>(b)]; i < begin[static_cast<std::size_t>(b) + 1]; ++i) {
+    for (std::uint32_t i = begin[b]; i < begin[static_cast<std::size_t>(b) + 1]; ++i) {
       Sample& s = samples.samples[i];
       const Density::Estimate estimate = density.at(tree.depth, b, s.position);
       s.depth = estimate.depth - shift;

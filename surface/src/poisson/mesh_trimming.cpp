@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "poisson/isosurface/union_find.h"
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <fresco/core/require.h>
+#include <fresco/core/union_find.h>
 #include <fresco/surface/core/mesh_trimming.h>
 #include <unordered_map>
 #include <vector>
 namespace fresco {
-using namespace poisson;
 namespace {
 /// Cuts keep this distance from the ends of an edge (edge length 1).
 constexpr float end_margin = 1e-3f;
@@ -40,17 +39,17 @@ double faceArea(const TriangleMesh& mesh, Index f)
 void flipPatches(const TriangleMesh& mesh, float least, double patch_area, Eigen::VectorXf& values)
 {
   const auto above = [&](int v) { return values[v] >= least; };
-  poisson::DisjointSets patches(mesh.vertexCount());
+  UnionFind patches(mesh.vertexCount());
   for (Index f = 0; f < mesh.faceCount(); ++f)
     for (int k = 0; k < 3; ++k)
       if (const int a = mesh.faces(k, f), b = mesh.faces((k + 1) % 3, f); above(a) == above(b))
         patches.join(a, b);
-  std::vector<double> area(static_cast<std::size_t>(mesh.vertexCount()), 0.0);
+  std::vector<double> area(mesh.vertexCount(), 0.0);
   for (Index f = 0; f < mesh.faceCount(); ++f)
     for (int k = 0; k < 3; ++k)
-      area[static_cast<std::size_t>(patches.root(mesh.faces(k, f)))] += faceArea(mesh, f) / 3;
+      area[patches.root(mesh.faces(k, f))] += faceArea(mesh, f) / 3;
   for (int v = 0; v < static_cast<int>(mesh.vertexCount()); ++v)
-    if (area[static_cast<std::size_t>(patches.root(v))] < patch_area)
+    if (area[patches.root(v)] < patch_area)
       values[v] = above(v) ? least - flipped_margin : least + flipped_margin;
 }
 

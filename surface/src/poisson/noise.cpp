@@ -22,7 +22,7 @@ float noiseOfRun(const Array<Sample>& samples, Index begin, Index end)
   std::vector<float> offsets;
   for (Index i = begin; i < end; ++i)
     for (Index j = i + 1; j <= i + partners && j < end; ++j) {
-      const Sample &a = samples[static_cast<std::size_t>(i)], &b = samples[static_cast<std::size_t>(j)];
+      const Sample &a = samples[i], &b = samples[j];
       const Eigen::Vector3f apart = b.position - a.position;
       const float reach = 3.f * std::sqrt(a.area + b.area) + 3.f;
       if (a.normal.dot(b.normal) > least_cosine && apart.squaredNorm() < reach * reach)
@@ -39,20 +39,17 @@ float noiseOfRun(const Array<Sample>& samples, Index begin, Index end)
 void estimateNoise(Samples& samples, int threads)
 {
   const auto n = static_cast<Index>(samples.samples.size());
-  std::vector<float> noise(static_cast<std::size_t>((n + run_length - 1) / run_length));
+  std::vector<float> noise((n + run_length - 1) / run_length);
   parallelRanges(
-      n, threads,
-      [&](Index begin, Index end) {
-        noise[static_cast<std::size_t>(begin / run_length)] = noiseOfRun(samples.samples, begin, end);
-      },
+      n, threads, [&](Index begin, Index end) { noise[begin / run_length] = noiseOfRun(samples.samples, begin, end); },
       run_length);
   const auto finest = static_cast<float>(samples.cube.depth);
   parallelFor(n, threads, [&](Index i) {
     const Index run = i / run_length, last = static_cast<Index>(noise.size()) - 1;
     float sum = 0;
     for (const Index r : {std::max<Index>(run - 1, 0), run, std::min(run + 1, last)})
-      sum += noise[static_cast<std::size_t>(r)] * noise[static_cast<std::size_t>(r)] / 3.f;
-    Sample& s = samples.samples[static_cast<std::size_t>(i)];
+      sum += noise[r] * noise[r] / 3.f;
+    Sample& s = samples.samples[i];
     s.noise = std::sqrt(sum);
     const float cell_squared = s.noise * std::sqrt(s.area) / tolerated_mean_noise;
     s.depth = std::min(s.depth, finest - 0.5f * std::log2(std::max(cell_squared, 1e-6f)));

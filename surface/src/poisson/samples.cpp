@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "poisson/samples.h"
 #include "poisson/cube.h"
-#include "poisson/octree/morton.h"
 #include "poisson/octree/radix_sort.h"
 #include "poisson/octree/select.h"
 #include <algorithm>
 #include <cmath>
+#include <fresco/core/morton.h>
 #include <fresco/core/parallel.h>
 #include <fresco/core/release.h>
 #include <fresco/core/require.h>
@@ -13,7 +13,7 @@ namespace fresco::poisson {
 namespace {
 std::uint64_t cellCode(const Eigen::Vector3f& cell, int depth)
 {
-  const float last = static_cast<float>((1 << depth) - 1);
+  const float last = (1 << depth) - 1;
   const Eigen::Vector3f c = cell.cwiseMax(0.f).cwiseMin(last);
   return mortonCode(static_cast<std::uint32_t>(c.x()), static_cast<std::uint32_t>(c.y()),
                     static_cast<std::uint32_t>(c.z()));
@@ -36,9 +36,9 @@ public:
     const int code_bits = std::min(3 * cube.depth, 64 - index_bits_);
     dropped_bits_ = 3 * cube.depth - code_bits;
     keys_.resize(usable.size());
-    parallelFor(static_cast<Index>(usable.size()), threads, [&](Index k) {
-      const std::uint32_t i = usable[static_cast<std::size_t>(k)];
-      keys_[static_cast<std::size_t>(k)] = codeOf(i) >> dropped_bits_ << index_bits_ | i;
+    parallelFor(usable.size(), threads, [&](Index k) {
+      const std::uint32_t i = usable[k];
+      keys_[k] = codeOf(i) >> dropped_bits_ << index_bits_ | i;
     });
     sortBits(keys_, index_bits_, code_bits, threads);
     if (dropped_bits_ > 0)
@@ -123,7 +123,7 @@ Samples gatherSamples(const PointSet& set, const VolumetricOptions& options)
   result.samples.resize(n);
   if (set.colors.cols() > 0 || set.intensities.size() > 0)
     result.attributes.resize(n);
-  parallelFor(static_cast<Index>(n), options.threads, [&](Index c) {
+  parallelFor(n, options.threads, [&](Index c) {
     const auto i = static_cast<std::size_t>(c);
     const Sums sums = sumCell(set, usable.weights, points, runs[i], runs[i + 1]);
     result.codes[i] = points.code(runs[i]);
@@ -145,7 +145,7 @@ SampleLevel finestLevel(const Samples& samples, int threads)
   level.depth = samples.cube.depth;
   level.codes.resize(samples.codes.size());
   level.samples.resize(samples.samples.size());
-  parallelFor(static_cast<Index>(samples.samples.size()), threads, [&](Index i) {
+  parallelFor(samples.samples.size(), threads, [&](Index i) {
     const auto at = static_cast<std::size_t>(i);
     const Sample& s = samples.samples[at];
     level.codes[at] = samples.codes[at];
@@ -156,13 +156,13 @@ SampleLevel finestLevel(const Samples& samples, int threads)
 
 SampleLevel coarsen(const SampleLevel& fine, int threads)
 {
-  const auto parentOf = [&](Index i) { return fine.codes[static_cast<std::size_t>(i)] >> 3; };
+  const auto parentOf = [&](Index i) { return fine.codes[i] >> 3; };
   const Array<std::uint32_t> runs = runBegins(static_cast<Index>(fine.codes.size()), threads, parentOf);
   SampleLevel coarse;
   coarse.depth = fine.depth - 1;
   coarse.codes.resize(runs.size() - 1);
   coarse.samples.resize(runs.size() - 1);
-  parallelFor(static_cast<Index>(coarse.codes.size()), threads, [&](Index c) {
+  parallelFor(coarse.codes.size(), threads, [&](Index c) {
     const auto at = static_cast<std::size_t>(c);
     Eigen::Vector3d position = Eigen::Vector3d::Zero();
     double area = 0, variance = 0, depth = 0;
@@ -186,11 +186,11 @@ Array<std::uint32_t> sampleRanges(const BrickLevel& level, const Array<std::uint
   Array<std::uint32_t> begin(level.codes.size() + 1);
   parallelRanges(level.size(), threads, [&](Index first, Index last) {
     const auto isBefore = [&](std::uint64_t code, std::uint64_t brick) { return code >> shift < brick; };
-    auto at = std::lower_bound(codes.begin(), codes.end(), level.codes[static_cast<std::size_t>(first)], isBefore);
+    auto at = std::lower_bound(codes.begin(), codes.end(), level.codes[first], isBefore);
     for (Index b = first; b < last; ++b) {
-      while (at != codes.end() && isBefore(*at, level.codes[static_cast<std::size_t>(b)]))
+      while (at != codes.end() && isBefore(*at, level.codes[b]))
         ++at;
-      begin[static_cast<std::size_t>(b)] = static_cast<std::uint32_t>(at - codes.begin());
+      begin[b] = static_cast<std::uint32_t>(at - codes.begin());
     }
   });
   begin.back() = static_cast<std::uint32_t>(codes.size());

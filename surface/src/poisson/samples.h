@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include "poisson/octree/array.h"
 #include "poisson/octree/octree.h"
 #include <Eigen/Geometry>
+#include <fresco/core/array.h>
 #include <fresco/core/point_set.h>
 #include <fresco/surface/core/volumetric_reconstruction.h>
 namespace fresco::poisson {

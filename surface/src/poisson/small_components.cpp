@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "poisson/small_components.h"
-#include "poisson/isosurface/union_find.h"
 #include <algorithm>
+#include <fresco/core/union_find.h>
 namespace fresco::poisson {
 namespace {
 constexpr Index least_faces = 150;
@@ -13,7 +13,7 @@ void compactVertices(const std::vector<int>& new_index, IsoSurface& surface)
   for (VertexRange& range : surface.ranges) {
     const Index first = count;
     for (Index v = range.first; v < range.first + range.count; ++v)
-      if (new_index[static_cast<std::size_t>(v)] >= 0)
+      if (new_index[v] >= 0)
         surface.vertices.col(count++) = surface.vertices.col(v).eval();
     range.first = first;
     range.count = count - first;
@@ -21,26 +21,26 @@ void compactVertices(const std::vector<int>& new_index, IsoSurface& surface)
   surface.vertices.conservativeResize(3, count);
   for (Index f = 0; f < surface.faces.cols(); ++f)
     for (int k = 0; k < 3; ++k)
-      surface.faces(k, f) = new_index[static_cast<std::size_t>(surface.faces(k, f))];
+      surface.faces(k, f) = new_index[surface.faces(k, f)];
 }
 } // namespace
 
 void removeSpecks(IsoSurface& surface)
 {
-  DisjointSets components(surface.vertices.cols());
+  UnionFind components(surface.vertices.cols());
   for (Index f = 0; f < surface.faces.cols(); ++f) {
     components.join(surface.faces(0, f), surface.faces(1, f));
     components.join(surface.faces(0, f), surface.faces(2, f));
   }
-  std::vector<int> faces(static_cast<std::size_t>(surface.vertices.cols()),
+  std::vector<int> faces(surface.vertices.cols(),
                          0); // by root
   for (Index f = 0; f < surface.faces.cols(); ++f)
-    ++faces[static_cast<std::size_t>(components.root(surface.faces(0, f)))];
+    ++faces[components.root(surface.faces(0, f))];
   const int largest = faces.empty() ? 0 : *std::max_element(faces.begin(), faces.end());
   const auto isSmall = [&](int n) { return n < least_faces && n < least_share * largest; };
   if (std::none_of(faces.begin(), faces.end(), [&](int n) { return n > 0 && isSmall(n); }))
     return;
-  const auto isSpeck = [&](int v) { return isSmall(faces[static_cast<std::size_t>(components.root(v))]); };
+  const auto isSpeck = [&](int v) { return isSmall(faces[components.root(v)]); };
   Index kept = 0;
   for (Index f = 0; f < surface.faces.cols(); ++f)
     if (!isSpeck(surface.faces(0, f)))
@@ -50,7 +50,7 @@ void removeSpecks(IsoSurface& surface)
   int count = 0;
   for (const VertexRange& range : surface.ranges)
     for (Index v = range.first; v < range.first + range.count; ++v)
-      new_index[static_cast<std::size_t>(v)] = isSpeck(static_cast<int>(v)) ? -1 : count++;
+      new_index[v] = isSpeck(static_cast<int>(v)) ? -1 : count++;
   compactVertices(new_index, surface);
 }
 } // namespace fresco::poisson

@@ -61,8 +61,7 @@ Solution solve(const Octree& tree, Constraints& constraints, const std::vector<S
   solution.chi.resize(tree.levels.size());
   for (int d = 2; d <= tree.full_depth; ++d)
     addCoarser(tree, d, options.threads, constraints);
-  solution.chi[static_cast<std::size_t>(tree.full_depth)] =
-      solveBase(tree, constraints.fine, levels, options.point_weight, options.threads);
+  solution.chi[tree.full_depth] = solveBase(tree, constraints.fine, levels, options.point_weight, options.threads);
   for (int depth = tree.full_depth + 1; depth <= tree.depth; ++depth) {
     report(progress, "solve", 0.35 + 0.35 * (depth - tree.full_depth) / (tree.depth - tree.full_depth + 1));
     const auto d = static_cast<std::size_t>(depth);
@@ -92,7 +91,7 @@ float levelSetValue(const Octree& tree, const NodeField& chi, const Samples& sam
   const Eigen::Array2d sums = parallelSum(level.size(), threads, Eigen::Array2d(0, 0), [&](Index b) {
     Eigen::Array2d sum(0, 0);
     const Eigen::Vector3f origin = level.origin(b);
-    for (std::uint32_t i = begin[static_cast<std::size_t>(b)]; i < begin[static_cast<std::size_t>(b) + 1]; ++i) {
+    for (std::uint32_t i = begin[b]; i < begin[static_cast<std::size_t>(b) + 1]; ++i) {
       const Sample& s = samples.samples[i];
       const double value = HatWeights::inBrick(s.position - origin).interpolate(chi.brick(b));
       sum += Eigen::Array2d(s.area * value, s.area);
@@ -106,8 +105,8 @@ Eigen::VectorXf vertexSupport(const Density& density, const IsoSurface& surface,
 {
   Eigen::VectorXf support(surface.vertices.cols());
   const float shift = 0.5f * std::log2(samples_per_node);
-  parallelFor(static_cast<Index>(surface.ranges.size()), threads, [&](Index r) {
-    const VertexRange& range = surface.ranges[static_cast<std::size_t>(r)];
+  parallelFor(surface.ranges.size(), threads, [&](Index r) {
+    const VertexRange& range = surface.ranges[r];
     for (Index v = range.first; v < range.first + range.count; ++v)
       support[v] = std::max(0.f, density.at(range.depth, range.brick, surface.vertices.col(v)).support - shift);
   });

@@ -12,8 +12,8 @@ TEST(Parallel, EveryIndexOnceForAnyThreadCount)
 {
   for (const Index n : {0, 1, 2, 511, 512, 513, 100000})
     for (const int threads : {0, 1, 3, 8}) {
-      std::vector<int> hits(static_cast<std::size_t>(n), 0);
-      fresco::parallelFor(n, threads, [&](Index i) { ++hits[static_cast<std::size_t>(i)]; });
+      std::vector<int> hits(n, 0);
+      fresco::parallelFor(n, threads, [&](Index i) { ++hits[i]; });
       EXPECT_EQ(std::count(hits.begin(), hits.end(), 1), n) << threads;
     }
 }
@@ -56,8 +56,7 @@ TEST(Parallel, LoopInsideALoop)
 {
   std::vector<double> sums(64);
   fresco::parallelFor(64, 4, [&](Index i) {
-    sums[static_cast<std::size_t>(i)] =
-        fresco::parallelSum(1000, 4, 0.0, [&](Index j) { return static_cast<double>(i * j); });
+    sums[i] = fresco::parallelSum(1000, 4, 0.0, [&](Index j) { return static_cast<double>(i * j); });
   });
   for (std::size_t i = 0; i < sums.size(); ++i)
     EXPECT_EQ(sums[i], static_cast<double>(i) * 499500.0);
@@ -90,13 +89,13 @@ TEST(Parallel, LoopsOfSeveralThreadsAtOnce)
     callers.emplace_back([&sums, caller] {
       for (int round = 0; round < 200; ++round) {
         const auto own = [caller](Index i) { return i * caller; };
-        sums[static_cast<std::size_t>(caller)] += fresco::parallelSum(1000, 3, Index(0), own);
+        sums[caller] += fresco::parallelSum(1000, 3, Index(0), own);
       }
     });
   for (std::thread& caller : callers)
     caller.join();
   for (Index caller = 0; caller < 6; ++caller)
-    EXPECT_EQ(sums[static_cast<std::size_t>(caller)], 200 * 499500 * caller);
+    EXPECT_EQ(sums[caller], 200 * 499500 * caller);
 }
 
 TEST(Parallel, NegativeThreadCountThrows)

@@ -140,7 +140,7 @@ TEST(PclConversionsOf, PclSavesTheTextureMesh)
   TexturedMesh model = test::fullTexturedMesh(6, 2);
   model.mesh.normals.resize(3, 0);
   for (int i = 0; i < 2; ++i)
-    writeImage(folder + "/texture_" + std::to_string(i) + ".png", model.atlases[static_cast<std::size_t>(i)]);
+    writeImage(folder + "/texture_" + std::to_string(i) + ".png", model.atlases[i]);
   pcl::TextureMesh texture;
   toTextureMesh(model, texture);
   ASSERT_EQ(pcl::io::saveOBJFile(folder + "/model.obj", texture, 9), 0);

@@ -81,7 +81,7 @@ inline TexturedMesh fullTexturedMesh(int side, int atlases)
   model.face_atlas.resize(faces);
   for (Index f = 0; f < faces; ++f) {
     const bool textured = f + 2 < faces;
-    const int first = static_cast<int>(f);
+    const int first = f;
     model.face_atlas[f] = textured ? first * atlases / static_cast<int>(faces) : -1;
     model.texcoord_faces.col(f) = textured ? Eigen::Vector3i(first, first + 1, first + 2) : Eigen::Vector3i(-1, -1, -1);
   }

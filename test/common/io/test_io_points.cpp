@@ -161,7 +161,7 @@ TEST(PointIo, PclReadsWhatWeWrite)
     ASSERT_EQ(cloud.size(), 64U);
     EXPECT_FALSE(cloud.is_dense);
     for (Index i = 0; i < 20; ++i) {
-      const auto& point = cloud[static_cast<std::size_t>(i)];
+      const auto& point = cloud[i];
       EXPECT_EQ(point.getVector3fMap(), set.points.col(i)) << type;
       EXPECT_EQ(point.getNormalVector3fMap(), set.normals.col(i)) << type;
       EXPECT_EQ(point.r, set.colors(0, i)) << type;
@@ -373,8 +373,7 @@ TEST(PointIo, RealFiles)
   pcl::PointCloud<pcl::PointXYZ> peer;
   ASSERT_EQ(pcl::io::loadPCDFile(test::dataFolder() + "/lobby/room_scan1.pcd", peer), 0);
   for (Index i = 0; i < lobby.size(); ++i)
-    ASSERT_TRUE(sameValues(Eigen::Vector3f(lobby.points.col(i)),
-                           Eigen::Vector3f(peer[static_cast<std::size_t>(i)].getVector3fMap())));
+    ASSERT_TRUE(sameValues(Eigen::Vector3f(lobby.points.col(i)), Eigen::Vector3f(peer[i].getVector3fMap())));
   const PointSet apartment = readPoints(test::dataFolder() + "/apartment/cloud.00000.vtk");
   EXPECT_EQ(apartment.size(), 24989);
   EXPECT_EQ(apartment.points.col(0), Eigen::Vector3f(-3.79521f, 0.0131325f, -0.95763f));

@@ -86,8 +86,8 @@ TEST(TexturedIo, GlbSurvives)
 template <typename T>
 T value(const tinygltf::Model& gltf, int accessor, std::size_t index)
 {
-  const auto& a = gltf.accessors[static_cast<std::size_t>(accessor)];
-  const auto& view = gltf.bufferViews[static_cast<std::size_t>(a.bufferView)];
+  const auto& a = gltf.accessors[accessor];
+  const auto& view = gltf.bufferViews[a.bufferView];
   T result;
   std::memcpy(static_cast<void*>(&result), gltf.buffers[0].data.data() + view.byteOffset + index * sizeof(T),
               sizeof(T));
@@ -120,9 +120,9 @@ TEST(TexturedIo, GlbIsWhatTinygltfExpects)
     const bool textured = primitive.attributes.count("TEXCOORD_0") > 0;
     EXPECT_EQ(textured, indices + 6 < 3 * static_cast<std::size_t>(model.mesh.faceCount()));
     EXPECT_EQ(primitive.attributes.count("COLOR_0"), textured ? 0U : 1U);
-    EXPECT_EQ(gltf.materials[static_cast<std::size_t>(primitive.material)].extensions.count("KHR_materials_unlit"), 1U);
+    EXPECT_EQ(gltf.materials[primitive.material].extensions.count("KHR_materials_unlit"), 1U);
     const int position = primitive.attributes.at("POSITION");
-    const auto& accessor = gltf.accessors[static_cast<std::size_t>(position)];
+    const auto& accessor = gltf.accessors[position];
     Eigen::Array3f low = Eigen::Array3f::Constant(1e9f), high = -low;
     for (std::size_t i = 0; i < accessor.count; ++i) {
       const Eigen::Array3f p = value<Eigen::Vector3f>(gltf, position, i).array();
@@ -130,15 +130,15 @@ TEST(TexturedIo, GlbIsWhatTinygltfExpects)
       high = high.max(p);
     }
     for (int k = 0; k < 3; ++k) {
-      EXPECT_EQ(accessor.minValues[static_cast<std::size_t>(k)], static_cast<double>(low[k]));
-      EXPECT_EQ(accessor.maxValues[static_cast<std::size_t>(k)], static_cast<double>(high[k]));
+      EXPECT_EQ(accessor.minValues[k], static_cast<double>(low[k]));
+      EXPECT_EQ(accessor.maxValues[k], static_cast<double>(high[k]));
     }
-    const std::size_t count = gltf.accessors[static_cast<std::size_t>(primitive.indices)].count;
+    const std::size_t count = gltf.accessors[primitive.indices].count;
     for (std::size_t i = 0; i < count; ++i, ++indices) {
       const auto at = value<std::uint32_t>(gltf, primitive.indices, i);
       ASSERT_LT(at, accessor.count);
       const auto face = static_cast<Index>(indices / 3);
-      const int k = static_cast<int>(indices % 3);
+      const int k = indices % 3;
       EXPECT_EQ(value<Eigen::Vector3f>(gltf, position, at), model.mesh.vertices.col(model.mesh.faces(k, face)));
       if (!textured)
         continue;

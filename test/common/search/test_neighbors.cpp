@@ -119,8 +119,7 @@ TEST(PointTree, ListsHoldThePointAndDoNotDependOnThreads)
     std::vector<Neighbor> found;
     tree.nearest(tree.point(i), 12, found);
     for (int k = 0; k < 12; ++k)
-      EXPECT_NEAR((tree.point(one.first(i)[k]) - tree.point(i)).squaredNorm(),
-                  found[static_cast<std::size_t>(k)].squared_distance, 1e-8f);
+      EXPECT_NEAR((tree.point(one.first(i)[k]) - tree.point(i)).squaredNorm(), found[k].squared_distance, 1e-8f);
   }
 }
 

@@ -88,8 +88,8 @@ TEST_P(TriangleTreeSoup, EqualsBruteForce)
       EXPECT_NEAR((found.point - query).norm(), found.distance, 1e-12);
       EXPECT_NEAR(bruteForceDistance(mesh, found.face, query), found.distance, 1e-12); // the face is the one meant
       EXPECT_LT(bruteForceDistance(mesh, found.face, found.point), 1e-12);             // the point lies on it
-      EXPECT_EQ(together[static_cast<std::size_t>(i)].distance, found.distance);
-      EXPECT_EQ(together[static_cast<std::size_t>(i)].face, found.face);
+      EXPECT_EQ(together[i].distance, found.distance);
+      EXPECT_EQ(together[i].face, found.face);
     }
   }
 }
@@ -109,7 +109,7 @@ TEST(TriangleTree, ManyTrianglesAndThreadsGiveTheSame)
     ASSERT_EQ(one[i].point, four[i].point);
   }
   for (Index i = 0; i < 50; ++i)
-    EXPECT_NEAR(one[static_cast<std::size_t>(i)].distance, bruteForce(mesh, queries.col(i)).distance, 1e-12);
+    EXPECT_NEAR(one[i].distance, bruteForce(mesh, queries.col(i)).distance, 1e-12);
 }
 
 TEST(TriangleTree, EqualDistancesGiveTheSmallestFace)

@@ -45,7 +45,7 @@ inline TriangleMesh gridCube(int cells)
 {
   TriangleMesh face = gridPlane(2.f, 2.f, cells);
   face.vertices.colwise() += Eigen::Vector3f(-1.f, -1.f, 1.f);
-  const float right = static_cast<float>(M_PI_2);
+  const float right = M_PI_2;
   TriangleMesh cube = face;
   using Eigen::AngleAxisf;
   using Eigen::Isometry3f;

@@ -42,7 +42,7 @@ TEST(MeshDistanceClass, EqualsCoreAndColorsTheMesh)
   EXPECT_EQ(int(colored.colors(2, farthest)), 255); // blue
   pcl::PointCloud<pcl::PointXYZRGB> cloud;
   pcl::fromPCLPointCloud2(output.cloud, cloud); // PCL reads the colours
-  EXPECT_EQ(int(cloud[static_cast<std::size_t>(farthest)].b), 255);
+  EXPECT_EQ(int(cloud[farthest].b), 255);
 }
 
 TEST(MeshDistanceClass, PolygonsAreTriangulated)

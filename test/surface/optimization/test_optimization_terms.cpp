@@ -106,7 +106,7 @@ TEST(OptimizationTerms, FollowingFindsTheClosestFaceAgain)
     double best = 1e9;
     for (Index f = 0; f < problem.graph.faceCount(); ++f)
       best = std::min(best, distance(i, static_cast<int>(f)));
-    const double found = distance(i, followed.face[static_cast<std::size_t>(i)]);
+    const double found = distance(i, followed.face[i]);
     missed += found > best + 1e-6 ? 1 : 0;
     EXPECT_LT(found, 1.3 * best + 0.1);
   }
@@ -155,7 +155,7 @@ TEST(OptimizationTerms, FoldsAreUndone)
     return std::count(folded.begin(), folded.end(), char{1});
   };
   EXPECT_GT(folds(), 0);
-  unfold(graph, start, std::vector<char>(static_cast<std::size_t>(x.cols()), 1), x, 1);
+  unfold(graph, start, std::vector<char>(x.cols(), 1), x, 1);
   EXPECT_EQ(folds(), 0);
 }
 

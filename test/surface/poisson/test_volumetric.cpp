@@ -88,7 +88,7 @@ TEST(Volumetric, OrderOfThePointsDoesNotMatter)
   const PointSet points = sphere(8000);
   std::vector<Index> order(8000);
   for (Index i = 0; i < 8000; ++i)
-    order[static_cast<std::size_t>(i)] = (i * 4801) % 8000;
+    order[i] = (i * 4801) % 8000;
   const TriangleMesh a = reconstructVolumetric(points, atDepth(5)).mesh;
   const TriangleMesh b = reconstructVolumetric(selectPoints(points, order), atDepth(5)).mesh;
   ASSERT_EQ(a.vertexCount(), b.vertexCount());

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "poisson/isosurface/isosurface.h"
 #include "poisson/isosurface/polygon.h"
-#include "poisson/octree/morton.h"
 #include "poisson/octree/radix_sort.h"
 #include "poisson/solver/transfer.h"
 #include <algorithm>
 #include <fresco/core/mesh.h>
+#include <fresco/core/morton.h>
 #include <gtest/gtest.h>
 #include <random>
 #include <set>
@@ -93,7 +93,7 @@ Octree randomTree(int depth, double probability, std::mt19937& random)
     for (const std::uint64_t parent : codes[static_cast<std::size_t>(d) - 1])
       for (std::uint64_t octant = 0; octant < 8; ++octant)
         if (d == 3 || unit(random) < probability)
-          codes[static_cast<std::size_t>(d)].push_back(parent << 3 | octant);
+          codes[d].push_back(parent << 3 | octant);
   return linkBricks(std::move(codes), 3, 1);
 }
 
@@ -116,8 +116,7 @@ std::vector<NodeField> randomValues(const Octree& tree, std::mt19937& random)
     chi[i] = NodeField(level.size(), 1);
     for (Index b = 0; b < level.size(); ++b) {
       if (d > tree.full_depth)
-        interpolateToChild(chi[i - 1].brick(level.parents[static_cast<std::size_t>(b)]),
-                           static_cast<int>(level.codes[static_cast<std::size_t>(b)] & 7), chi[i].brick(b));
+        interpolateToChild(chi[i - 1].brick(level.parents[b]), static_cast<int>(level.codes[b] & 7), chi[i].brick(b));
       else
         std::fill_n(chi[i].brick(b), 125, 1.f);
     }

@@ -61,8 +61,8 @@ TEST(VolumetricScales, RightHandSideHasTheMomentsOfTheNormalsAtEveryDepth)
       across += s.area * scale * scale * s.normal.y();
       flux += s.area * scale * scale * scale * s.normal.dot(s.position);
     }
-    const BrickLevel& level = tree.levels[static_cast<std::size_t>(d)];
-    const NodeField& field = constraints.fine[static_cast<std::size_t>(d)];
+    const BrickLevel& level = tree.levels[d];
+    const NodeField& field = constraints.fine[d];
     EXPECT_NEAR(momentOf(level, field, [](const Eigen::Vector3d&) { return 1.0; }), 0, 1e-3 * area) << d;
     EXPECT_NEAR(momentOf(level, field, [](const Eigen::Vector3d& x) { return x.x(); }), along, 2e-3 * area) << d;
     EXPECT_NEAR(momentOf(level, field, [](const Eigen::Vector3d& x) { return x.y(); }), across, 2e-3 * area) << d;

@@ -20,8 +20,7 @@ inline TriangleMesh sphere(float radius, int levels)
     const auto middle = [&](int a, int b) {
       const auto [at, added] = middles.emplace(std::minmax(a, b), static_cast<int>(vertices.size()));
       if (added)
-        vertices.push_back(
-            (vertices[static_cast<std::size_t>(a)] + vertices[static_cast<std::size_t>(b)]).normalized());
+        vertices.push_back((vertices[a] + vertices[b]).normalized());
       return at->second;
     };
     std::vector<Eigen::Vector3i> finer;

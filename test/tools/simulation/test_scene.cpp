@@ -77,8 +77,8 @@ TEST_P(VirtualRooms, CellsAndFacesAgree)
   const Scene& scene = coarseRoom(GetParam());
   ASSERT_EQ(scene.face_cell.size(), static_cast<std::size_t>(scene.mesh.faceCount()));
   for (Index f = 0; f < scene.mesh.faceCount(); ++f) {
-    const int code = scene.face_cell[static_cast<std::size_t>(f)];
-    const Cell& cell = scene.cells[static_cast<std::size_t>(code / 2)];
+    const int code = scene.face_cell[f];
+    const Cell& cell = scene.cells[code / 2];
     for (int k = 0; k < 3; ++k) {
       const CellPoint at = cellPoint(code % 2, k == 1 ? 1.f : 0.f, k == 2 ? 1.f : 0.f);
       EXPECT_LT((cellPosition(scene, cell, at) - scene.mesh.vertices.col(scene.mesh.faces(k, f))).norm(), 1e-5f);

@@ -85,8 +85,8 @@ TEST(VirtualLaser, WithoutNoiseEveryPointLiesOnTheTruth)
   double worst = 0;
   for (Index i = 0; i < scan.points.size(); ++i) {
     const Vector3d p = (pose * scan.points.points.col(i).cast<double>().homogeneous()).head<3>();
-    worst = std::max(worst, offPlane(room().scene, scan.faces[static_cast<std::size_t>(i)], p));
-    EXPECT_FALSE(scan.mixed[static_cast<std::size_t>(i)]);
+    worst = std::max(worst, offPlane(room().scene, scan.faces[i], p));
+    EXPECT_FALSE(scan.mixed[i]);
   }
   EXPECT_LT(worst, 1e-4);
 }
@@ -101,8 +101,8 @@ TEST(VirtualLaser, WideBeamsMixRangesAtDepthJumpsOnly)
   double worst_clean = 0;
   for (Index i = 0; i < scan.points.size(); ++i) {
     const Vector3d p = (pose * scan.points.points.col(i).cast<double>().homogeneous()).head<3>();
-    const double away = offPlane(room().scene, scan.faces[static_cast<std::size_t>(i)], p);
-    if (scan.mixed[static_cast<std::size_t>(i)])
+    const double away = offPlane(room().scene, scan.faces[i], p);
+    if (scan.mixed[i])
       ++mixed, off += away > 0.01 ? 1 : 0;
     else
       worst_clean = std::max(worst_clean, away);

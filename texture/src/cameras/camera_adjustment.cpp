@@ -161,7 +161,7 @@ private:
   double costOf(const CameraState& state, const Eigen::VectorXd& x) const
   {
     const double square = scale_ * scale_;
-    const double errors = parallelSum(static_cast<Index>(matches_.size()), threads_, 0.0, [&](Index i) {
+    const double errors = parallelSum(matches_.size(), threads_, 0.0, [&](Index i) {
       return square * std::log1p(residual(matches_[i], state).squaredNorm() / square);
     });
     return errors + x.cwiseQuotient(sigma_).squaredNorm();
@@ -208,7 +208,7 @@ private:
   void linearize(const CameraState& state)
   {
     std::vector<Row> rows(matches_.size());
-    parallelFor(static_cast<Index>(rows.size()), threads_, [&](Index i) { rows[i] = rowOf(matches_[i], state); });
+    parallelFor(rows.size(), threads_, [&](Index i) { rows[i] = rowOf(matches_[i], state); });
     H_ = sigma_.cwiseAbs2().cwiseInverse().asDiagonal();
     gradient_ = x_.cwiseQuotient(sigma_.cwiseAbs2());
     for (std::size_t i = 0; i < rows.size(); ++i)

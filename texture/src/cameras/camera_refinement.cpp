@@ -39,7 +39,7 @@ std::vector<MatchPhoto> prepare(PhotoStore& photos, Index count, int threads)
   const double share = 0.5 * static_cast<double>(photos.mostBytes()) / (with_halvings * static_cast<double>(count));
   const auto pixels = static_cast<Index>(std::clamp<double>(share, least_pixels, most_pixels));
   photos.setAside(static_cast<std::size_t>(with_halvings * static_cast<double>(pixels * count)));
-  std::vector<MatchPhoto> out(static_cast<std::size_t>(count));
+  std::vector<MatchPhoto> out(count);
   parallelFor(
       count, threads,
       [&](Index v) {

@@ -97,7 +97,7 @@ public:
       for (int i = 0; i < side; ++i)
         product += wanted[i] * row[i];
     }
-    const float sum = static_cast<float>(box(sums_, x, y));
+    const float sum = box(sums_, x, y);
     const float spread = static_cast<float>(box(squares_, x, y)) - sum * sum / count;
     return spread > 1 ? product / std::sqrt(spread) : -1;
   }
@@ -148,7 +148,7 @@ float parabolaTop(float before, float middle, float after)
 bool findPatch(const PatchQuery& query, Eigen::Vector2f& place)
 {
   int level = 0;
-  const int levels = static_cast<int>(std::min(query.from.levels.size(), query.to.levels.size()));
+  const int levels = std::min(query.from.levels.size(), query.to.levels.size());
   while (level + 1 < levels && query.search / static_cast<float>(1 << level) > coarse_search)
     ++level;
   place = query.pixel_to;

@@ -32,7 +32,7 @@ public:
 
   std::vector<PhotoMatch> run() const
   {
-    const Index n = static_cast<Index>(photos_.size());
+    const Index n = photos_.size();
     std::vector<std::vector<Corner>> corners(photos_.size());
     parallelFor(
         n, options_.threads, [&](Index v) { corners[v] = cornersOnSurface(v); }, 1);
@@ -115,7 +115,7 @@ private:
     double step = 1;
     for (double rank = 0; rank < static_cast<double>(order.size()) && static_cast<int>(out.size()) < options_.partners;
          rank += step) {
-      const int v = order[static_cast<std::size_t>(rank)];
+      const int v = order[rank];
       if (shared[v] < least_shared)
         break;
       out.push_back(v);

@@ -94,7 +94,7 @@ private:
 
   void growFrom(int seed)
   {
-    const int id = static_cast<int>(charts_.size());
+    const int id = charts_.size();
     const std::vector<int> first = flood(seed, graph_.smooth_normals.col(seed), id);
     Eigen::Vector3f axis = Eigen::Vector3f::Zero();
     for (const int f : first)

@@ -69,7 +69,7 @@ public:
       std::vector<Chart> charts = cutToSize(segmentFaces(graph_, open));
       std::vector<std::vector<int>> out(charts.size());
       parallelFor(
-          static_cast<Index>(charts.size()), options_.threads,
+          charts.size(), options_.threads,
           [&](Index c) { out[c] = rasterizeChart(patches_, first_, options_.border, charts[c]); }, 1);
       open = inSeedOrder(out);
       std::move(charts.begin(), charts.end(), std::back_inserter(done));
@@ -90,8 +90,7 @@ private:
   {
     std::vector<std::vector<Chart>> parts(charts.size());
     parallelFor(
-        static_cast<Index>(charts.size()), options_.threads,
-        [&](Index c) { cutToSize(std::move(charts[c]), parts[c]); }, 1);
+        charts.size(), options_.threads, [&](Index c) { cutToSize(std::move(charts[c]), parts[c]); }, 1);
     std::vector<Chart> out;
     for (std::vector<Chart>& list : parts)
       std::move(list.begin(), list.end(), std::back_inserter(out));

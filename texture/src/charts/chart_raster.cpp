@@ -111,7 +111,7 @@ private:
 void growOwners(int rounds, int width, std::vector<int>& owner)
 {
   const int offsets[8][2] = {{1, 0}, {0, 1}, {-1, 0}, {0, -1}, {1, 1}, {-1, 1}, {-1, -1}, {1, -1}};
-  const int height = static_cast<int>(owner.size() / static_cast<std::size_t>(width));
+  const int height = owner.size() / static_cast<std::size_t>(width);
   const auto ownerBeside = [&](std::size_t at) {
     const int x = static_cast<int>(at % static_cast<std::size_t>(width)),
               y = static_cast<int>(at / static_cast<std::size_t>(width));

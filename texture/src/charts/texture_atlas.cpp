@@ -21,7 +21,7 @@ void fillTexcoords(const std::vector<Chart>& charts, int side, TexturedMesh& mod
   std::vector<Eigen::Vector2f> coords;
   std::vector<int> number(mesh.vertexCount(), -1); // of the vertex's coordinate, if not below `begin`
   for (const Chart& chart : charts) {
-    const int begin = static_cast<int>(coords.size());
+    const int begin = coords.size();
     for (const int f : chart.faces) {
       model.face_atlas[f] = chart.atlas;
       for (int k = 0; k < 3; ++k) {

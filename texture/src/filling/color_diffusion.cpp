@@ -91,7 +91,7 @@ void smooth(const Rings& rings, const std::vector<int>& free, int threads, Point
       100; // takes the streaks of the breadth-first start away; a solution to the last digit is not needed
   Points next = value;
   for (int round = 0; round < rounds; ++round) {
-    parallelFor(static_cast<Index>(free.size()), threads, [&](Index i) {
+    parallelFor(free.size(), threads, [&](Index i) {
       const int v = free[i];
       Eigen::Vector3f sum = Eigen::Vector3f::Zero();
       for (int r = rings.begin[v]; r < rings.begin[v + 1]; ++r)

@@ -160,7 +160,7 @@ Index inpaintByExample(const PaintScene& scene, const std::vector<Image>& masks,
   const auto texelsOf = [&](std::size_t c) { return ChartTexels{scene.charts[c], masks[scene.charts[c].atlas]}; };
   std::vector<std::vector<Hole>> by_chart(scene.charts.size());
   parallelFor(
-      static_cast<Index>(scene.charts.size()), scene.threads,
+      scene.charts.size(), scene.threads,
       [&](Index c) { by_chart[c] = holesOf(texelsOf(static_cast<std::size_t>(c)), static_cast<std::size_t>(c)); }, 1);
   std::vector<Hole> holes;
   for (auto& list : by_chart)
@@ -170,7 +170,7 @@ Index inpaintByExample(const PaintScene& scene, const std::vector<Image>& masks,
                    [](const Hole& a, const Hole& b) { return a.texels.size() > b.texels.size(); });
   std::vector<Index> filled(holes.size(), 0);
   parallelFor(
-      static_cast<Index>(holes.size()), scene.threads,
+      holes.size(), scene.threads,
       [&](Index h) {
         if (fill(texelsOf(holes[h].chart), holes[h], atlases[scene.charts[holes[h].chart].atlas]))
           filled[h] = static_cast<Index>(holes[h].texels.size());

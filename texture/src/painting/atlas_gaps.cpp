@@ -97,7 +97,7 @@ private:
 void fillGaps(const std::vector<Chart>& charts, int threads, std::vector<Image>& atlases)
 {
   parallelFor(
-      static_cast<Index>(atlases.size()), threads,
+      atlases.size(), threads,
       [&](Index a) { Growth(ownTexels(charts, static_cast<int>(a), atlases[a]), atlases[a]).run(); }, 1);
 }
 } // namespace fresco::texture

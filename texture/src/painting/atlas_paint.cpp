@@ -142,7 +142,7 @@ void paintSeen(const PaintScene& scene, const PaintSources& sources, std::vector
     if (parts[v].empty())
       continue;
     const std::shared_ptr<const Image> photo = sources.photos.get(static_cast<Index>(v));
-    parallelFor(static_cast<Index>(parts[v].size()), scene.threads, [&](Index i) {
+    parallelFor(parts[v].size(), scene.threads, [&](Index i) {
       paintShare(scene, sources, parts[v][i], *photo, atlases[scene.chartOf(parts[v][i].patch)->atlas]);
     });
   }
@@ -215,7 +215,7 @@ void paintUnseen(const PaintScene& scene, const Points& colors, std::vector<Imag
 
 std::vector<int> texelSlots(const std::vector<Chart>& charts, Index patches)
 {
-  std::vector<int> slots(static_cast<std::size_t>(patches), -1);
+  std::vector<int> slots(patches, -1);
   for (const Chart& chart : charts)
     for (std::size_t s = 0; s < chart.texels.patches.size(); ++s)
       slots[chart.texels.patches[s]] = static_cast<int>(s);

@@ -31,7 +31,7 @@ public:
 
   void round()
   {
-    const Index n = static_cast<Index>(sources_.views.size());
+    const Index n = sources_.views.size();
     for (Index first = 0, last = 0; first < n; first = last) {
       std::size_t bytes = 0;
       do
@@ -72,9 +72,9 @@ private:
     each([&](Index, int view) { ++shown_.begin[view + 1]; });
     for (std::size_t v = 1; v < shown_.begin.size(); ++v)
       shown_.begin[v] += shown_.begin[v - 1];
-    shown_.list.resize(static_cast<std::size_t>(shown_.begin.back()));
+    shown_.list.resize(shown_.begin.back());
     std::vector<Index> next(shown_.begin.begin(), shown_.begin.end() - 1);
-    each([&](Index i, int view) { shown_.list[static_cast<std::size_t>(next[view]++)] = static_cast<int>(i); });
+    each([&](Index i, int view) { shown_.list[next[view]++] = static_cast<int>(i); });
   }
 
   void compare(Index first, Index last)

@@ -173,7 +173,7 @@ OutlineTexels findOutlineTexels(const PaintScene& scene, const OutlineSources& s
 {
   OutlineTexels out;
   out.by_view.resize(sources.views.size());
-  std::vector<char> near(static_cast<std::size_t>(scene.patches.size()), 0);
+  std::vector<char> near(scene.patches.size(), 0);
   parallelFor(scene.patches.size(), scene.threads,
               [&](Index i) { near[i] = scene.isSeen(i) && PatchChoice(scene, sources, i).isNearOutline(); });
   std::vector<Index> patches;
@@ -181,7 +181,7 @@ OutlineTexels findOutlineTexels(const PaintScene& scene, const OutlineSources& s
     if (near[i])
       patches.push_back(i);
   std::vector<std::vector<int>> choices(patches.size());
-  parallelFor(static_cast<Index>(patches.size()), scene.threads,
+  parallelFor(patches.size(), scene.threads,
               [&](Index k) { choices[k] = PatchChoice(scene, sources, patches[k]).run(); });
   for (std::size_t k = 0; k < patches.size(); ++k)
     append(scene, patches[k], choices[k], out);
@@ -198,7 +198,7 @@ void fillUnknown(const PaintScene& scene, const std::vector<PatchTexel>& unknown
     by_chart[scene.face_chart[scene.patches.parent[texel.patch]]].push_back(texel);
   }
   parallelFor(
-      static_cast<Index>(by_chart.size()), scene.threads,
+      by_chart.size(), scene.threads,
       [&](Index c) {
         if (!by_chart[c].empty())
           ChartFill(scene, scene.charts[c], std::move(by_chart[c]), atlases[scene.charts[c].atlas]).run();

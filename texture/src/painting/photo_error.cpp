@@ -45,10 +45,10 @@ private:
   void addLarge(const Eigen::Vector2f& low, const Eigen::Vector2f& high, const Eigen::Vector4f& value)
   {
     const Eigen::Vector4f share = value * per_size_.prod();
-    for (int y = static_cast<int>(low.y()); y <= static_cast<int>(high.y()); ++y) {
+    for (int y = low.y(); y <= static_cast<int>(high.y()); ++y) {
       const float down = std::min(high.y(), static_cast<float>(y + 1)) - std::max(low.y(), static_cast<float>(y));
       Eigen::Vector4f* row = sums_.pixels.data() + static_cast<std::size_t>(y) * sums_.width;
-      for (int x = static_cast<int>(low.x()); x <= static_cast<int>(high.x()); ++x)
+      for (int x = low.x(); x <= static_cast<int>(high.x()); ++x)
         row[x] +=
             (down * (std::min(high.x(), static_cast<float>(x + 1)) - std::max(low.x(), static_cast<float>(x)))) * share;
     }

@@ -104,14 +104,14 @@ Points solveGains(const Candidates& candidates, Index views)
   Points gains = Points::Ones(3, views);
   for (int c = 0; c < 3 && views > 0; ++c) {
     std::vector<Equation> equations;
-    std::vector<char> known(static_cast<std::size_t>(views), 0);
+    std::vector<char> known(views, 0);
     for (const auto& [key, pair] : pairs)
       if (pair.ratios.size() >= least_samples) {
         equations.push_back(
             {key.first, key.second, medianOf(pair.ratios, c), std::sqrt(static_cast<double>(pair.ratios.size()))});
         known[key.first] = known[key.second] = 1;
       }
-    const double count = static_cast<double>(std::count(known.begin(), known.end(), 1));
+    const double count = std::count(known.begin(), known.end(), 1);
     if (!(count > 0))
       break;
     const Eigen::VectorXd x = solve(equations, views);

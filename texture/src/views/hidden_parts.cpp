@@ -10,7 +10,7 @@ constexpr Index cells_of_all = 64'000'000; // 128 MB
 
 std::vector<DepthMap> coarseMaps(const RayScene& scene, const ViewList& views, int threads)
 {
-  const Index n = static_cast<Index>(views.projectors.size());
+  const Index n = views.projectors.size();
   std::vector<DepthMap> maps(views.projectors.size());
   parallelFor(
       n, threads,
@@ -49,7 +49,7 @@ PatchMesh cutHiddenParts(PatchMesh patches, const RayScene& scene, const ViewLis
   const std::vector<DepthMap> maps = coarseMaps(scene, views, options.threads);
   const float tolerance = limitsFor(patches, views, options).tolerance;
   for (int round = 0; round < rounds; ++round) {
-    std::vector<char> marked(static_cast<std::size_t>(patches.size()));
+    std::vector<char> marked(patches.size());
     parallelFor(patches.size(), options.threads,
                 [&](Index i) { marked[i] = isOnlySeenInPart(patches, i, views, maps, tolerance); });
     patches = cutPatches(patches, marked, options.threads);

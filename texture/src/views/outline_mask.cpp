@@ -50,7 +50,7 @@ OutlineMask::OutlineMask(const DepthMap& map, float reach, float step)
     : width_(map.width), height_(map.height), per_pixel_(1 / map.step),
       near_(static_cast<std::size_t>(map.width) * map.height, false)
 {
-  const int radius = static_cast<int>(std::ceil(reach / map.step));
+  const int radius = std::ceil(reach / map.step);
   const auto spread = [&](const Line& line) {
     const float between = 0.5f * (line.inverse(0) + line.inverse(1));
     for (int y = std::max(0, line.y + line.dy - radius); y <= std::min(height_ - 1, line.y + radius); ++y)
@@ -111,7 +111,7 @@ std::vector<OutlineMask> outlineMasks(const PatchMesh& patches, const RayScene& 
   const float step = limitsFor(patches, views, options).tolerance;
   std::vector<OutlineMask> masks(views.used.size());
   parallelFor(
-      static_cast<Index>(masks.size()), options.threads,
+      masks.size(), options.threads,
       [&](Index v) {
         if (views.used[v])
           masks[v] = OutlineMask(scene.depthMap(views.projectors[v], most_cells), reach_pixels, step);

@@ -44,7 +44,7 @@ Midpoints cutEdges(Patches& patches, const Want& want)
 /// Parts of a face with corners f whose edges k -> k+1 are cut at m[k] (-1 = not cut).
 void appendParts(const Eigen::Vector3i& f, const Eigen::Vector3i& m, std::vector<Eigen::Vector3i>& out)
 {
-  const int cuts = static_cast<int>((m.array() >= 0).count());
+  const int cuts = (m.array() >= 0).count();
   if (cuts == 0)
     out.push_back(f);
   else if (cuts == 3) {
@@ -124,8 +124,8 @@ Patches copyOf(const PatchMesh& mesh)
 PatchMesh finish(const Patches& patches, int threads)
 {
   PatchMesh out;
-  const Index n = static_cast<Index>(patches.faces.size());
-  const Index corners = static_cast<Index>(patches.vertices.size());
+  const Index n = patches.faces.size();
+  const Index corners = patches.vertices.size();
   out.vertices = Eigen::Map<const Points>(patches.vertices.front().data(), 3, corners);
   if (!patches.colors.empty())
     out.colors = Eigen::Map<const Points>(patches.colors.front().data(), 3, corners);
@@ -172,7 +172,7 @@ Eigen::Matrix3Xi faceNeighbors(const Faces& faces)
     int slot; ///< 3 * face + corner
   };
   std::vector<Side> sides;
-  sides.reserve(static_cast<std::size_t>(faces.size()));
+  sides.reserve(faces.size());
   for (Index f = 0; f < faces.cols(); ++f)
     for (int k = 0; k < 3; ++k)
       if (faces(k, f) != faces((k + 1) % 3, f))

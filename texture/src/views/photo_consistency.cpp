@@ -75,7 +75,7 @@ std::vector<float> oddityCosts(const PatchMesh& patches, const Candidates& candi
   for (int round = 0; round < smoothing_rounds; ++round)
     difference = smoothed(patches, candidates, difference, threads);
   std::vector<float> cost(difference.size());
-  parallelFor(static_cast<Index>(cost.size()), threads, [&](Index c) {
+  parallelFor(cost.size(), threads, [&](Index c) {
     const auto& color = candidates.list[c].color;
     const float octaves = difference[c] / one_octave;
     cost[c] = std::min(octaves * octaves, most_octaves) +

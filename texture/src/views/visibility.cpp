@@ -187,7 +187,7 @@ Candidates findCandidates(const PatchMesh& patches, const RayScene& scene, const
                           const TextureOptions& options, const Progress& progress)
 {
   constexpr Index batch = 16; // views between two reports
-  const Index n = static_cast<Index>(views.used.size());
+  const Index n = views.used.size();
   CandidateTable table(patches.size(), CandidateTable::mostPerPatch(patches.size(), n));
   std::vector<std::vector<Seen>> seen(batch);
   const SightLimits limits = limitsFor(patches, views, options);

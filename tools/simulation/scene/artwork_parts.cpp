@@ -17,7 +17,7 @@ std::string word(CounterRandom& random) { return words[random.integer(30)]; }
 
 Vector3f hue(CounterRandom& random, float strength, float value)
 {
-  const float h = static_cast<float>(random.uniform(0, 6.2832));
+  const float h = random.uniform(0, 6.2832);
   const Vector3f wave(std::cos(h), std::cos(h - 2.0944f), std::cos(h + 2.0944f));
   return (Vector3f::Constant(value) + strength * wave).cwiseMax(0.04f).cwiseMin(0.95f);
 }

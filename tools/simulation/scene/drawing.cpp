@@ -112,7 +112,7 @@ void Drawing::line(const std::vector<Vector2f>& points, const Pen& pen)
 void Drawing::rectangle(const Vector2f& min, const Vector2f& max, const Vector3f& color)
 {
   const auto covered = [](float low, float high, int at) {
-    const float from = static_cast<float>(at);
+    const float from = at;
     return std::clamp(std::min(high, from + 1.f) - std::max(low, from), 0.f, 1.f);
   };
   const int right = std::min(picture_.width() - 1, static_cast<int>(max.x()));

@@ -157,7 +157,7 @@ void bookShelf(SceneBuilder& b, const Palette& p, const Spot& spot, const Vector
 {
   b.beginObject("shelf", spot.pose());
   const float half = size.x() / 2, depth = 0.28f, board = 0.02f;
-  const int floors = static_cast<int>(std::lround(size.y() / 0.36f));
+  const int floors = std::lround(size.y() / 0.36f);
   const float step = (size.y() - board) / static_cast<float>(floors);
   std::vector<Box> boxes = {solid({-half, 0, 0}, {half, 0.012f, size.y()}, p.oak),
                             solid({-half, 0, 0}, {-half + board, depth, size.y()}, p.oak),
@@ -176,7 +176,7 @@ void bookShelf(SceneBuilder& b, const Palette& p, const Spot& spot, const Vector
         x += static_cast<float>(random.uniform(0.04, 0.16));
         continue;
       }
-      const float thick = static_cast<float>(random.uniform(0.018, 0.055));
+      const float thick = random.uniform(0.018, 0.055);
       const float high = static_cast<float>(random.uniform(0.55, 0.88)) * (step - board),
                   deep = static_cast<float>(random.uniform(0.15, 0.22));
       const PictureBox book{
@@ -198,7 +198,7 @@ void sideboard(SceneBuilder& b, const Palette& p, const Spot& spot, const Vector
   const float half = size.x() / 2;
   std::vector<Box> boxes = {solid({-half + 0.03f, 0.02f, 0}, {half - 0.03f, size.y() - 0.04f, 0.07f}, p.black),
                             solid({-half, 0, 0.07f}, {half, size.y() - 0.02f, size.z()}, p.walnut)};
-  const int doors = static_cast<int>(std::lround(size.x() / 0.45f));
+  const int doors = std::lround(size.x() / 0.45f);
   const float wide = size.x() / static_cast<float>(doors);
   for (int k = 0; k < doors; ++k) {
     const float x = -half + wide * static_cast<float>(k);

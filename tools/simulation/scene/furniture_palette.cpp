@@ -82,7 +82,7 @@ BoxMaterials pictureSides(SceneBuilder& builder, const PictureBox& box)
   material.right = wide;
   material.down = -high;
   BoxMaterials sides = allSides(box.body);
-  sides[static_cast<std::size_t>(box.direction)] = builder.add(material);
+  sides[box.direction] = builder.add(material);
   return sides;
 }
 } // namespace fresco::simulation

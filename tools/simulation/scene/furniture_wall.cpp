@@ -64,7 +64,7 @@ void socket(SceneBuilder& b, const Palette& p, const Spot& spot)
 void radiator(SceneBuilder& b, const Palette& p, const Spot& spot, float width)
 {
   b.beginObject("radiator", spot.pose());
-  const int ribs = static_cast<int>(std::lround(width / 0.06f));
+  const int ribs = std::lround(width / 0.06f);
   const float half = width / 2;
   std::vector<Box> boxes = {solid({-half, 0.045f, 0.14f}, {half, 0.075f, 0.18f}, p.frame),
                             solid({-half, 0.045f, 0.66f}, {half, 0.075f, 0.7f}, p.frame)};

@@ -110,7 +110,7 @@ Index bestStation(const Eigen::MatrixXf& sees, const Eigen::VectorXi& seen, cons
           total += 1.f;
         }
       const bool first = seen.maxCoeff() == 0;
-      if (!taken[static_cast<std::size_t>(p)] && gain > most && (!linked || first || overlap > 0.3f * total))
+      if (!taken[p] && gain > most && (!linked || first || overlap > 0.3f * total))
         most = gain, best = p;
     }
     if (best >= 0)
@@ -129,12 +129,11 @@ float sceneUnit(const Scene& scene)
 ScenePlaces sampleSurface(const Scene& scene, int count, std::uint64_t seed)
 {
   const TriangleMesh& mesh = scene.mesh;
-  std::vector<double> until(static_cast<std::size_t>(mesh.faceCount()));
+  std::vector<double> until(mesh.faceCount());
   double area = 0.0;
   const auto corner = [&](Index f, int k) -> Vector3f { return mesh.vertices.col(mesh.faces(k, f)); };
   for (Index f = 0; f < mesh.faceCount(); ++f)
-    until[static_cast<std::size_t>(f)] = area +=
-        0.5 * (corner(f, 1) - corner(f, 0)).cross(corner(f, 2) - corner(f, 0)).norm();
+    until[f] = area += 0.5 * (corner(f, 1) - corner(f, 0)).cross(corner(f, 2) - corner(f, 0)).norm();
   ScenePlaces samples{Points(3, count), Points(3, count)};
   for (int s = 0; s < count; ++s) {
     CounterRandom random(seed, 43, static_cast<std::uint64_t>(s));
@@ -155,10 +154,10 @@ Points freePlaces(const PlanningInput& in, const PlaceRules& rules)
   const std::vector<Vector3f> grid = in.scene.furnished ? roomGrid(in, rules) : meshGrid(in);
   const float clearance = rules.clearance * sceneUnit(in.scene);
   std::vector<char> good(grid.size(), 0);
-  parallelFor(static_cast<Index>(grid.size()), in.threads, [&](Index i) {
-    const Vector3f& place = grid[static_cast<std::size_t>(i)];
+  parallelFor(grid.size(), in.threads, [&](Index i) {
+    const Vector3f& place = grid[i];
     const bool standing = !in.scene.furnished || !rules.on_floor || aboveFloor(in, place);
-    good[static_cast<std::size_t>(i)] = standing && isFree(in, place, clearance);
+    good[i] = standing && isFree(in, place, clearance);
   });
   Points places(3, std::count(good.begin(), good.end(), 1));
   Index next = 0;
@@ -200,11 +199,11 @@ Points chooseStations(const PlanningInput& in, int count)
     throw std::runtime_error(concat("only ", places.cols(), " free places for ", count, " stations"));
   const Eigen::MatrixXf sees = viewQuality(in, places, 4.f * sceneUnit(in.scene));
   Eigen::VectorXi seen = Eigen::VectorXi::Zero(sees.cols());
-  std::vector<bool> taken(static_cast<std::size_t>(places.cols()), false);
+  std::vector<bool> taken(places.cols(), false);
   Points stations(3, count);
   for (int k = 0; k < count; ++k) {
     const Index best = bestStation(sees, seen, taken);
-    taken[static_cast<std::size_t>(best)] = true;
+    taken[best] = true;
     stations.col(k) = places.col(best);
     for (Index s = 0; s < sees.cols(); ++s)
       seen[s] += sees(best, s) > 0.f ? 1 : 0;

@@ -72,8 +72,7 @@ inline Eigen::Vector3f cellPosition(const Scene& scene, const Cell& cell, const 
   const auto weights = cornerWeights(at);
   Eigen::Vector3f position = Eigen::Vector3f::Zero();
   for (int k = 0; k < 4; ++k)
-    position +=
-        weights[static_cast<std::size_t>(k)] * scene.mesh.vertices.col(cell.corners[static_cast<std::size_t>(k)]);
+    position += weights[k] * scene.mesh.vertices.col(cell.corners[k]);
   return position;
 }
 

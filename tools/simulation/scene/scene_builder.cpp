@@ -54,7 +54,7 @@ void SceneBuilder::cell(const std::array<Corner, 4>& corners, int material)
     cell.normals[k] = (T_world_body_.linear() * corners[k].normal).normalized();
   }
   cell.part = part(material);
-  const int number = static_cast<int>(scene_.cells.size());
+  const int number = scene_.cells.size();
   const auto face = [&](int half, std::array<int, 3> v) {
     if (v[0] == v[1] || v[1] == v[2] || v[2] == v[0])
       return;
@@ -92,21 +92,21 @@ struct Blocks {
   std::array<Steps, 3> lines;
   std::vector<int> box; ///< last box that covers a block, -1 none
 
-  int count(int axis) const { return static_cast<int>(lines[static_cast<std::size_t>(axis)].size()) - 1; }
+  int count(int axis) const { return static_cast<int>(lines[axis].size()) - 1; }
   int at(const Eigen::Vector3i& block) const
   {
     for (int axis = 0; axis < 3; ++axis)
       if (block[axis] < 0 || block[axis] >= count(axis))
         return -1;
-    return box[static_cast<std::size_t>((block[2] * count(1) + block[1]) * count(0) + block[0])];
+    return box[(block[2] * count(1) + block[1]) * count(0) + block[0]];
   }
-  float line(int axis, int i) const { return lines[static_cast<std::size_t>(axis)][static_cast<std::size_t>(i)]; }
+  float line(int axis, int i) const { return lines[axis][i]; }
 };
 
 int lastCover(const std::vector<Box>& boxes, const Vector3f& middle)
 {
   for (int b = static_cast<int>(boxes.size()) - 1; b >= 0; --b) {
-    const Box& box = boxes[static_cast<std::size_t>(b)];
+    const Box& box = boxes[b];
     if ((middle.array() > box.min.array()).all() && (middle.array() < box.max.array()).all())
       return b;
   }
@@ -117,7 +117,7 @@ Blocks cutIntoBlocks(const std::vector<Box>& boxes, float max_edge)
 {
   Blocks blocks;
   for (int axis = 0; axis < 3; ++axis)
-    blocks.lines[static_cast<std::size_t>(axis)] = gridLines(boxes, axis, max_edge);
+    blocks.lines[axis] = gridLines(boxes, axis, max_edge);
   for (int z = 0; z < blocks.count(2); ++z)
     for (int y = 0; y < blocks.count(1); ++y)
       for (int x = 0; x < blocks.count(0); ++x) {
@@ -141,7 +141,7 @@ std::array<Vector3f, 4> blockSide(const Blocks& blocks, const Eigen::Vector3i& b
     corner[axis] = blocks.line(axis, block[axis] + (positive ? 1 : 0));
     corner[u] = blocks.line(u, block[u] + du[from]);
     corner[v] = blocks.line(v, block[v] + dv[from]);
-    side[static_cast<std::size_t>(k)] = corner;
+    side[k] = corner;
   }
   return side;
 }
@@ -151,7 +151,7 @@ void SceneBuilder::boxes(const std::vector<Box>& list, bool background_solid)
 {
   welded_.clear();
   const Blocks blocks = cutIntoBlocks(list, max_edge_);
-  const auto solid = [&](int b) { return b < 0 ? background_solid : list[static_cast<std::size_t>(b)].solid; };
+  const auto solid = [&](int b) { return b < 0 ? background_solid : list[b].solid; };
   const auto sides = [&](const Eigen::Vector3i& block) {
     const int own = blocks.at(block);
     for (int direction = 0; direction < 6; ++direction) {
@@ -169,7 +169,7 @@ void SceneBuilder::boxes(const std::vector<Box>& list, bool background_solid)
       const auto p = blockSide(blocks, block, axis, positive);
       const std::array<Corner, 4> seen = {{{p[0], normal}, {p[1], normal}, {p[2], normal}, {p[3], normal}}};
       const std::array<Corner, 4> turned = {{{p[3], normal}, {p[2], normal}, {p[1], normal}, {p[0], normal}}};
-      cell(flip ? turned : seen, list[static_cast<std::size_t>(own)].materials[static_cast<std::size_t>(direction)]);
+      cell(flip ? turned : seen, list[own].materials[direction]);
     }
   };
   for (int z = 0; z < blocks.count(2); ++z)

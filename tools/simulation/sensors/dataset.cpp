@@ -67,7 +67,7 @@ std::vector<Pose> writeScans(const Run& run, const Points& stations, std::vector
       throw std::runtime_error("scan " + std::to_string(k) +
                                " has no point: nothing sends enough light back within the range");
     for (const int face : scan.faces)
-      ++returns[static_cast<std::size_t>(face)];
+      ++returns[face];
     const std::string file = folder + "/" + numbered("scan_%02d.pcd", k);
     if (surfaces) {
       Eigen::Matrix4d T_truth_scan = pose;
@@ -93,7 +93,7 @@ void writeTruth(const Run& run, const std::vector<int>& returns)
       const VirtualHit corner{static_cast<int>(f), 0.f, k == 1 ? 1.f : 0.f, k == 2 ? 1.f : 0.f};
       sum.col(mesh.faces(k, f)) += surfaceColor(run.lit, corner, 0.02f);
       weight[mesh.faces(k, f)] += 1.f;
-      seen[mesh.faces(k, f)] += static_cast<float>(returns[static_cast<std::size_t>(f)]);
+      seen[mesh.faces(k, f)] += static_cast<float>(returns[f]);
     }
   mesh.colors.resize(3, mesh.vertexCount());
   for (Index v = 0; v < mesh.vertexCount(); ++v)
@@ -187,7 +187,7 @@ void writeDataset(const std::string& name, const std::string& folder, const Data
   const PlanningInput planning{scene, rays, samples, options.seed, options.threads};
   report(progress, "stations", 0.3);
   const Points stations = chooseStations(planning, options.stations);
-  std::vector<int> returns(static_cast<std::size_t>(scene.mesh.faceCount()), 0);
+  std::vector<int> returns(scene.mesh.faceCount(), 0);
   const std::vector<Pose> poses = writeScans(run, stations, returns, subProgress(progress, 0.32, 0.45));
   writeTruth(run, returns);
   if (options.views > 0) {

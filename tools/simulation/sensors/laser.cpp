@@ -219,9 +219,8 @@ LaserScan scanScene(const LitScene& lit, const Eigen::Matrix4d& T_world_scan, co
   const double share = std::max(laser.hitShare(), 0.01);
   const Grid grid = gridOf(options.points / share);
   const Index beams = grid.rows * grid.columns;
-  std::vector<Return> returns(static_cast<std::size_t>(beams));
-  parallelFor(beams, options.threads,
-              [&](Index b) { returns[static_cast<std::size_t>(b)] = laser.measure(grid.direction(b), b); });
+  std::vector<Return> returns(beams);
+  parallelFor(beams, options.threads, [&](Index b) { returns[b] = laser.measure(grid.direction(b), b); });
   const Index count = std::count_if(returns.begin(), returns.end(), [](const Return& r) { return r.range > 0.f; });
   LaserScan scan;
   scan.points.points.resize(3, count);
@@ -229,7 +228,7 @@ LaserScan scanScene(const LitScene& lit, const Eigen::Matrix4d& T_world_scan, co
   scan.points.viewpoints = Points::Zero(3, 1);
   Index next = 0;
   for (Index b = 0; b < beams; ++b) {
-    const Return& back = returns[static_cast<std::size_t>(b)];
+    const Return& back = returns[b];
     if (back.range <= 0.f)
       continue;
     scan.points.points.col(next) = (back.range * grid.direction(b)).cast<float>();

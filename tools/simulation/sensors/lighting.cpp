@@ -122,14 +122,14 @@ Gathered gather(const GatherInput& in, const Place& place)
     for (std::size_t i = 0; i < packet_size; ++i) {
       if (hits[i].face < 0)
         continue;
-      const auto cell = static_cast<std::size_t>(in.scene.face_cell[static_cast<std::size_t>(hits[i].face)] / 2);
+      const auto cell = static_cast<std::size_t>(in.scene.face_cell[hits[i].face] / 2);
       if (in.facets[cell].dot(packet[i].direction) > 0.f)
         sum.buried += 1.f;
       else
         sum.light += in.radiance[cell];
     }
   }
-  const float count = static_cast<float>(in.directions.size());
+  const float count = in.directions.size();
   return {sum.light * (pi / count), sum.buried / count};
 }
 
@@ -143,19 +143,18 @@ Vector3f cellAlbedo(const Scene& scene, const Cell& cell, const CellPoint& at, f
       color += weights[k] / 255.f * scene.mesh.colors.col(cell.corners[k]).cast<float>();
     return color;
   }
-  const Part& part = scene.parts[static_cast<std::size_t>(cell.part)];
-  return albedo(scene.materials[static_cast<std::size_t>(part.material)],
-                {part.scale * (part.T_part_world * cellPosition(scene, cell, at)),
-                 part.T_part_world.linear() * cell.normals[0], part.scale * footprint});
+  const Part& part = scene.parts[cell.part];
+  return albedo(scene.materials[part.material], {part.scale * (part.T_part_world * cellPosition(scene, cell, at)),
+                                                 part.T_part_world.linear() * cell.normals[0], part.scale * footprint});
 }
 
 /// Radiance of every cell after two bounces; lamps themselves are left out, for they are counted as lamps.
 std::vector<Vector3f> cellRadiance(const Scene& scene, const VirtualRays& rays, const std::vector<Vector3f>& facets,
                                    int threads)
 {
-  const Index count = static_cast<Index>(scene.cells.size());
+  const Index count = scene.cells.size();
   std::vector<Vector3f> reflectance(scene.cells.size()), direct(scene.cells.size()), radiance(scene.cells.size());
-  const auto middle = [&](Index c) { return placeOn(scene, scene.cells[static_cast<std::size_t>(c)], {0.5f, 0.5f}); };
+  const auto middle = [&](Index c) { return placeOn(scene, scene.cells[c], {0.5f, 0.5f}); };
   parallelFor(count, threads, [&](Index c) {
     const auto i = static_cast<std::size_t>(c);
     reflectance[i] = linear(cellAlbedo(scene, scene.cells[i], {0.5f, 0.5f}, 0.05f)) / pi;
@@ -209,8 +208,8 @@ std::array<int, 6> placeKey(const Place& place)
 {
   std::array<int, 6> key;
   for (int axis = 0; axis < 3; ++axis) {
-    key[static_cast<std::size_t>(axis)] = static_cast<int>(std::lround(1e4f * place.position[axis]));
-    key[static_cast<std::size_t>(axis + 3)] = static_cast<int>(std::lround(100.f * place.normal[axis]));
+    key[axis] = static_cast<int>(std::lround(1e4f * place.position[axis]));
+    key[axis + 3] = static_cast<int>(std::lround(100.f * place.normal[axis]));
   }
   return key;
 }
@@ -252,7 +251,7 @@ void spread(const SharedPlaces& shared, const std::vector<Gathered>& light,
     std::vector<bool> buried;
     for (std::size_t i = lattice.first; i < lattice.first + static_cast<std::size_t>(lattice.columns * lattice.rows);
          ++i) {
-      const Gathered& from = light[static_cast<std::size_t>(shared.place_of_node[i])];
+      const Gathered& from = light[shared.place_of_node[i]];
       values.push_back(from.light);
       buried.push_back(from.buried > 0.5f);
     }
@@ -264,7 +263,7 @@ void spread(const SharedPlaces& shared, const std::vector<Gathered>& light,
 
 Vector3f Lightmap::at(int cell, const CellPoint& where) const
 {
-  const Lattice& lattice = lattices_[static_cast<std::size_t>(cell)];
+  const Lattice& lattice = lattices_[cell];
   const float x = std::clamp(where.s, 0.f, 1.f) * static_cast<float>(lattice.columns - 1);
   const float y = std::clamp(where.t, 0.f, 1.f) * static_cast<float>(lattice.rows - 1);
   const int x0 = std::min(static_cast<int>(x), lattice.columns - 2),
@@ -294,14 +293,13 @@ void Lightmap::layOut(const Scene& scene, float spacing)
 /// Brings the mean to `brightness` and takes the display power.
 void Lightmap::expose(const LightingOptions& options)
 {
-  const Index count = static_cast<Index>(nodes_.size());
-  const double sum = parallelSum(count, options.threads, 0.0, [&](Index n) {
-    return static_cast<double>(nodes_[static_cast<std::size_t>(n)].mean());
-  });
+  const Index count = nodes_.size();
+  const double sum =
+      parallelSum(count, options.threads, 0.0, [&](Index n) { return static_cast<double>(nodes_[n].mean()); });
   const double mean = std::max(sum / static_cast<double>(std::max<Index>(count, 1)), 1e-9);
-  const float exposure = static_cast<float>(std::pow(options.brightness, gamma_power) / mean);
+  const float exposure = std::pow(options.brightness, gamma_power) / mean;
   parallelFor(count, options.threads, [&](Index n) {
-    Vector3f& node = nodes_[static_cast<std::size_t>(n)];
+    Vector3f& node = nodes_[n];
     node = (node * exposure).array().max(0.f).pow(1.f / gamma_power);
   });
 }
@@ -315,13 +313,12 @@ Lightmap bakeLight(const Scene& scene, const VirtualRays& rays, const LightingOp
   Lightmap map;
   map.layOut(scene, sky ? 1e30f : options.spacing);
   const SharedPlaces shared = sharePlaces(scene, map.lattices_);
-  const Index count = static_cast<Index>(shared.places.size());
+  const Index count = shared.places.size();
   std::vector<Gathered> light(shared.places.size());
   if (sky) {
     parallelFor(count, options.threads, [&](Index i) {
-      const Vector3f n = shared.places[static_cast<std::size_t>(i)].normal;
-      light[static_cast<std::size_t>(i)].light =
-          Vector3f(1.f, 0.98f, 0.94f) * (0.7f + 0.25f * n.z() + 0.15f * n.x() - 0.1f * n.y());
+      const Vector3f n = shared.places[i].normal;
+      light[i].light = Vector3f(1.f, 0.98f, 0.94f) * (0.7f + 0.25f * n.z() + 0.15f * n.x() - 0.1f * n.y());
     });
   } else {
     std::vector<Vector3f> facets;
@@ -331,8 +328,8 @@ Lightmap bakeLight(const Scene& scene, const VirtualRays& rays, const LightingOp
     report(progress, "light", 0.3);
     const std::vector<Vector3f> directions = hemisphere(options.gather_packets * packet_size);
     parallelFor(count, options.threads, [&](Index i) {
-      const Place& place = shared.places[static_cast<std::size_t>(i)];
-      Gathered& from = light[static_cast<std::size_t>(i)];
+      const Place& place = shared.places[i];
+      Gathered& from = light[i];
       from = gather({scene, rays, radiance, facets, directions}, place);
       if (from.buried <= 0.5f)
         from.light += directLight(scene, rays, place);
@@ -353,15 +350,14 @@ Vector3f toneCurve(const Vector3f& x)
 
 Vector3f surfaceAlbedo(const Scene& scene, const VirtualHit& hit, float footprint)
 {
-  const int code = scene.face_cell[static_cast<std::size_t>(hit.face)];
-  return cellAlbedo(scene, scene.cells[static_cast<std::size_t>(code / 2)], cellPoint(code % 2, hit.beta, hit.gamma),
-                    footprint);
+  const int code = scene.face_cell[hit.face];
+  return cellAlbedo(scene, scene.cells[code / 2], cellPoint(code % 2, hit.beta, hit.gamma), footprint);
 }
 
 const Material& materialAt(const Scene& scene, int face)
 {
-  const Cell& cell = scene.cells[static_cast<std::size_t>(scene.face_cell[static_cast<std::size_t>(face)] / 2)];
-  return scene.materials[static_cast<std::size_t>(scene.parts[static_cast<std::size_t>(cell.part)].material)];
+  const Cell& cell = scene.cells[scene.face_cell[face] / 2];
+  return scene.materials[scene.parts[cell.part].material];
 }
 
 Vector3f surfaceColor(const LitScene& lit, const VirtualHit& hit, float footprint)
@@ -370,7 +366,7 @@ Vector3f surfaceColor(const LitScene& lit, const VirtualHit& hit, float footprin
   const float emission = materialAt(lit.scene, hit.face).emission;
   if (emission > 0.f)
     return toneCurve(emission * color);
-  const int code = lit.scene.face_cell[static_cast<std::size_t>(hit.face)];
+  const int code = lit.scene.face_cell[hit.face];
   return toneCurve(color.cwiseProduct(lit.light.at(code / 2, cellPoint(code % 2, hit.beta, hit.gamma))));
 }
 } // namespace fresco::simulation

@@ -6,7 +6,7 @@ namespace fresco::simulation {
 /// Largest whole number <= x, without a call into the library.
 inline int floorOf(float x)
 {
-  const int whole = static_cast<int>(x);
+  const int whole = x;
   return whole - (static_cast<float>(whole) > x ? 1 : 0);
 }
 

@@ -51,7 +51,7 @@ RayPacket pixelRays(const Shot& shot, const Vector3f& center, const Eigen::Vecto
     const int pixel = i / 4;
     const Vector2d where(at.x() + pixel % block + corners[i % 4][0], at.y() + pixel / block + corners[i % 4][1]);
     const Vector3d direction = R_world_camera * unproject(shot.camera, where);
-    packet[static_cast<std::size_t>(i)] = {center, direction.cast<float>()};
+    packet[i] = {center, direction.cast<float>()};
   }
   return packet;
 }

@@ -41,10 +41,10 @@ Eigen::Vector3f Picture::bilinear(const Level& level, float u, float v)
 
 Eigen::Vector3f Picture::sample(float u, float v, float footprint) const
 {
-  const float last = static_cast<float>(levels_.size() - 1);
+  const float last = levels_.size() - 1;
   const float depth = std::clamp(std::log2(std::max(footprint, 1e-6f)), 0.f, last);
-  const int level = static_cast<int>(depth);
-  const Eigen::Vector3f fine = bilinear(levels_[static_cast<std::size_t>(level)], u, v);
+  const int level = depth;
+  const Eigen::Vector3f fine = bilinear(levels_[level], u, v);
   const float t = depth - level;
   if (t <= 0.f)
     return fine;

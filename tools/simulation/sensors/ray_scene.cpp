@@ -64,7 +64,7 @@ namespace {
 void fill(RTCRay16& to, const RayPacket& rays, int count)
 {
   for (int i = 0; i < packet_size; ++i) {
-    const Ray& ray = rays[static_cast<std::size_t>(i < count ? i : 0)];
+    const Ray& ray = rays[i < count ? i : 0];
     to.org_x[i] = ray.origin.x(), to.org_y[i] = ray.origin.y(), to.org_z[i] = ray.origin.z();
     to.dir_x[i] = ray.direction.x(), to.dir_y[i] = ray.direction.y(), to.dir_z[i] = ray.direction.z();
     to.tnear[i] = 0.f, to.tfar[i] = ray.far, to.time[i] = 0.f;
@@ -96,8 +96,7 @@ HitPacket VirtualRays::intersectPacket(const RayPacket& rays, bool coherent) con
   HitPacket hits;
   for (int i = 0; i < packet_size; ++i)
     if (query.hit.geomID[i] != RTC_INVALID_GEOMETRY_ID)
-      hits[static_cast<std::size_t>(i)] = {static_cast<int>(query.hit.primID[i]), query.ray.tfar[i], query.hit.u[i],
-                                           query.hit.v[i]};
+      hits[i] = {static_cast<int>(query.hit.primID[i]), query.ray.tfar[i], query.hit.u[i], query.hit.v[i]};
   return hits;
 }
 

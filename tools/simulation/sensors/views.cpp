@@ -90,8 +90,7 @@ private:
 std::vector<Candidate> greedy(Planner& planner, const std::vector<Candidate>& all, int count, int threads)
 {
   std::vector<float> gains(all.size());
-  parallelFor(static_cast<Index>(all.size()), threads,
-              [&](Index i) { gains[static_cast<std::size_t>(i)] = planner.gain(all[static_cast<std::size_t>(i)]); });
+  parallelFor(all.size(), threads, [&](Index i) { gains[i] = planner.gain(all[i]); });
   using Entry = std::pair<float, std::ptrdiff_t>; // gain, minus index: ties go to the first
   std::priority_queue<Entry> queue;
   for (std::size_t i = 0; i < all.size(); ++i)
@@ -100,7 +99,7 @@ std::vector<Candidate> greedy(Planner& planner, const std::vector<Candidate>& al
   while (static_cast<int>(chosen.size()) < count && !queue.empty()) {
     Entry top = queue.top();
     queue.pop();
-    const Candidate& candidate = all[static_cast<std::size_t>(-top.second)];
+    const Candidate& candidate = all[-top.second];
     top.first = planner.gain(candidate);
     if (!queue.empty() && top < queue.top()) {
       queue.push(top);

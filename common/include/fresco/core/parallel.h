@@ -56,8 +56,7 @@ Value parallelReduce(Index n, int threads, Value init, const Map& map, const Joi
   const Index size = chunk > 0 ? chunk : detail::chunkSize(n);
   std::vector<Value> parts(n > 0 ? static_cast<std::size_t>((n + size - 1) / size) : 0, init);
   parallelRanges(
-      n, threads, [&](Index begin, Index end) { parts[static_cast<std::size_t>(begin / size)] = map(begin, end); },
-      size);
+      n, threads, [&](Index begin, Index end) { parts[begin / size] = map(begin, end); }, size);
   Value total = init;
   for (const Value& part : parts)
     total = join(total, part);

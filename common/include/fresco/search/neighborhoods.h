@@ -16,10 +16,7 @@ struct GroupLists {
   std::vector<int> starts;              ///< of the lists in `codes`, and the end; empty where all lists are as long
   int length = 0;                       ///< of every list, then
 
-  std::size_t start(Index at) const
-  {
-    return static_cast<std::size_t>(starts.empty() ? at * length : starts[static_cast<std::size_t>(at)]);
-  }
+  std::size_t start(Index at) const { return static_cast<std::size_t>(starts.empty() ? at * length : starts[at]); }
   const std::uint16_t* list(Index i) const { return codes + start(i - begin); }
   std::size_t count(Index i) const { return start(i - begin + 1) - start(i - begin); }
   std::uint16_t codeOf(Index i) const { return static_cast<std::uint16_t>(i - begin); } ///< of a point of the group
@@ -42,16 +39,13 @@ struct FRESCO_EXPORT Neighborhoods {
 
   Index size() const { return groups.empty() ? 0 : groups.back().end; }
   const float* coordinates() const { return tree ? tree->leafCoordinates() : image_coordinates.data(); }
-  int column(Index i) const { return (tree ? tree->columns() : image_columns)[static_cast<std::size_t>(i)]; }
+  int column(Index i) const { return (tree ? tree->columns() : image_columns)[i]; }
   Eigen::Vector3f point(Index i) const
   {
     const float* leaf = coordinates() + i / 8 * 24 + i % 8;
     return {leaf[0], leaf[8], leaf[16]};
   }
-  const GroupLists& groupOf(Index i) const
-  {
-    return groups[static_cast<std::size_t>(group_of_leaf[static_cast<std::size_t>(i / 8)])];
-  }
+  const GroupLists& groupOf(Index i) const { return groups[group_of_leaf[i / 8]]; }
   void numberGroups();
 };
 

@@ -141,7 +141,7 @@ std::vector<CameraEntry> readCamerasBinary(const std::string& path)
     if (name.empty())
       fail(path,
            concat("camera model number ", model, " is none of SIMPLE_PINHOLE, PINHOLE, SIMPLE_RADIAL, RADIAL, OPENCV"));
-    std::vector<double> parameters(static_cast<std::size_t>(parameterCount(name)));
+    std::vector<double> parameters(parameterCount(name));
     for (double& value : parameters)
       value = bytes.next<double>();
     cameras.push_back({id, makeCamera(name, width, height, parameters, path)});

@@ -239,7 +239,7 @@ Faces objFaces(const ObjContent& content)
 {
   Faces faces(3, static_cast<Index>(content.triangles.size()));
   for (Index f = 0; f < faces.cols(); ++f) {
-    const auto& corners = content.triangles[static_cast<std::size_t>(f)].vertices;
+    const auto& corners = content.triangles[f].vertices;
     faces.col(f) << corners[0], corners[1], corners[2];
   }
   return faces;

@@ -85,8 +85,8 @@ void writeFaces(OutputFile& file, const Faces& faces)
     int corners[3];
   };
 #pragma pack(pop)
-  std::vector<Row> rows(static_cast<std::size_t>(faces.cols()));
-  const auto store = [&](Index f) { rows[static_cast<std::size_t>(f)] = {3, {faces(0, f), faces(1, f), faces(2, f)}}; };
+  std::vector<Row> rows(faces.cols());
+  const auto store = [&](Index f) { rows[f] = {3, {faces(0, f), faces(1, f), faces(2, f)}}; };
   parallelFor(faces.cols(), 0, store, rows_per_task);
   file.write(rows.data(), rows.size() * sizeof(Row));
 }

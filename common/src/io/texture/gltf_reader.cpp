@@ -17,7 +17,7 @@ const T& at(const std::vector<T>& items, int index, const char* what)
 {
   if (index < 0 || static_cast<std::size_t>(index) >= items.size())
     fail(concat("there is no ", what, ' ', index));
-  return items[static_cast<std::size_t>(index)];
+  return items[index];
 }
 
 Scalar componentType(int type)
@@ -152,7 +152,7 @@ public:
     model_.face_atlas = Eigen::Map<const Eigen::VectorXi>(atlases_.data(), faces);
     model_.texcoords.resize(2, static_cast<Index>(texcoords_.size()));
     for (Index i = 0; i < model_.texcoords.cols(); ++i)
-      model_.texcoords.col(i) = texcoords_[static_cast<std::size_t>(i)];
+      model_.texcoords.col(i) = texcoords_[i];
     return std::move(model_);
   }
 
@@ -237,7 +237,7 @@ private:
       return -1;
     const int source = at(gltf_.textures, texture, "texture").source;
     const tinygltf::Image& image = at(gltf_.images, source, "image");
-    int& atlas = atlas_of_image_[static_cast<std::size_t>(source)];
+    int& atlas = atlas_of_image_[source];
     if (atlas < 0) {
       atlas = static_cast<int>(model_.atlases.size());
       model_.atlases.push_back(readImageOf(gltf_, image));

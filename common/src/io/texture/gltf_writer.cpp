@@ -52,9 +52,9 @@ private:
 
   std::uint32_t place(int vertex, int texcoord)
   {
-    int& first = first_[static_cast<std::size_t>(vertex)];
-    for (int at = first; at >= 0; at = places_[static_cast<std::size_t>(at)].next)
-      if (places_[static_cast<std::size_t>(at)].texcoord == texcoord)
+    int& first = first_[vertex];
+    for (int at = first; at >= 0; at = places_[at].next)
+      if (places_[at].texcoord == texcoord)
         return static_cast<std::uint32_t>(at);
     places_.push_back({texcoord, first});
     first = static_cast<int>(places_.size()) - 1;
@@ -109,7 +109,7 @@ public:
     if (part.indices.empty())
       return;
     tinygltf::Texture texture;
-    texture.source = addImage(source_.atlases[static_cast<std::size_t>(atlas)], jpeg_quality);
+    texture.source = addImage(source_.atlases[atlas], jpeg_quality);
     texture.sampler = sampler();
     gltf_.textures.push_back(texture);
     tinygltf::Material material = plainMaterial();

@@ -41,7 +41,7 @@ public:
   void append(int y, Bytes& out)
   {
     const std::uint8_t *row = image_.pixel(0, y), *above = y > 0 ? image_.pixel(0, y - 1) : zero_.data();
-    const std::size_t step = static_cast<std::size_t>(image_.channels);
+    const std::size_t step = image_.channels;
     for (std::size_t i = 0; i < width_; ++i)
       up_[i] = static_cast<std::uint8_t>(row[i] - above[i]);
     for (std::size_t i = 0; i < std::min(step, width_); ++i) {
@@ -126,10 +126,10 @@ Bytes header(const Image& image)
 std::vector<std::uint8_t> encodePng(const Image& image, int threads)
 {
   const std::size_t row = static_cast<std::size_t>(image.width) * image.channels + 1;
-  const int rows = static_cast<int>(std::max<std::size_t>(1, band_bytes / row));
-  std::vector<Band> bands(static_cast<std::size_t>((image.height + rows - 1) / rows));
+  const int rows = std::max<std::size_t>(1, band_bytes / row);
+  std::vector<Band> bands((image.height + rows - 1) / rows);
   parallelFor(
-      static_cast<Index>(bands.size()), threads,
+      bands.size(), threads,
       [&](Index b) {
         const int first = static_cast<int>(b) * rows;
         bands[b] = packRows(image, first, std::min(image.height, first + rows));

@@ -152,9 +152,9 @@ TexturedMesh readTexturedObj(const std::string& path)
   model.texcoord_faces.setConstant(3, faces, -1);
   model.face_atlas.setConstant(faces, -1);
   for (Index f = 0; f < faces; ++f) {
-    const ObjTriangle& triangle = obj.triangles[static_cast<std::size_t>(f)];
+    const ObjTriangle& triangle = obj.triangles[f];
     const Eigen::Vector3i texcoords(triangle.texcoords[0], triangle.texcoords[1], triangle.texcoords[2]);
-    const int atlas = triangle.material < 0 ? -1 : atlas_of_material[static_cast<std::size_t>(triangle.material)];
+    const int atlas = triangle.material < 0 ? -1 : atlas_of_material[triangle.material];
     if (atlas < 0 || texcoords.minCoeff() < 0)
       continue;
     model.texcoord_faces.col(f) = texcoords;

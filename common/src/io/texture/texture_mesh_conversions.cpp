@@ -160,7 +160,7 @@ TexturedMesh toTexturedMesh(const pcl::TextureMesh& texture, const std::string& 
   model.face_atlas = Eigen::Map<const Eigen::VectorXi>(faces.atlases.data(), model.mesh.faceCount());
   model.texcoords.resize(2, static_cast<Index>(texcoords.all().size()));
   for (Index i = 0; i < model.texcoords.cols(); ++i)
-    model.texcoords.col(i) = texcoords.all()[static_cast<std::size_t>(i)];
+    model.texcoords.col(i) = texcoords.all()[i];
   model.atlases = atlases.empty() ? readAtlases(texture, folder) : std::move(atlases);
   while (!model.atlases.empty() && model.atlases.back().empty() &&
          (model.face_atlas.array() < static_cast<int>(model.atlases.size()) - 1).all())

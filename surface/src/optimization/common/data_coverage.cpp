@@ -7,7 +7,6 @@
 namespace fresco::optimization {
 namespace {
 using Eigen::Vector3d;
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 constexpr int most_rings = 24;      // beyond, a vertex is unsupported however sparse the data are
 constexpr double least_reach = 2.5; // mean edge lengths within which data always support
@@ -22,8 +21,8 @@ Eigen::Matrix3Xf middles(const DataPoints& data, const FacePoints& lists, Index 
 {
   Eigen::Matrix3Xf middle = Eigen::Matrix3Xf::Zero(3, faces);
   parallelFor(faces, threads, [&](Index f) {
-    for (int i = lists.begin[at(f)]; i < lists.begin[at(f) + 1]; ++i)
-      middle.col(f) += data.points.col(lists.order[at(i)]);
+    for (int i = lists.begin[f]; i < lists.begin[f + 1]; ++i)
+      middle.col(f) += data.points.col(lists.order[i]);
     if (lists.count(f) > 0)
       middle.col(f) /= static_cast<float>(lists.count(f));
   });
@@ -45,12 +44,12 @@ void improve(const Eigen::Matrix3Xf& middle, const Vector3d& v, int seed, int& b
 std::vector<int> firstSeeds(const MeshGraph& graph, const Positions& x, const FacePoints& lists,
                             const Eigen::Matrix3Xf& middle, int threads)
 {
-  std::vector<int> seed(at(graph.vertexCount()), -1);
+  std::vector<int> seed(graph.vertexCount(), -1);
   parallelFor(graph.vertexCount(), threads, [&](Index v) {
     double squared = std::numeric_limits<double>::infinity();
     for (const int f : facesAround(graph, v))
       if (lists.count(f) > 0)
-        improve(middle, x.col(v), f, seed[at(v)], squared);
+        improve(middle, x.col(v), f, seed[v], squared);
   });
   return seed;
 }
@@ -64,13 +63,13 @@ Seeds spreadSeeds(const MeshGraph& graph, const Positions& x, const DataPoints& 
   std::vector<int> next(seeds.of_vertex.size());
   for (int ring = 0; ring < most_rings; ++ring) {
     const Index changes = parallelSum(graph.vertexCount(), threads, Index{0}, [&](Index v) -> Index {
-      int best = seeds.of_vertex[at(v)];
+      int best = seeds.of_vertex[v];
       double squared = best < 0 ? std::numeric_limits<double>::infinity()
                                 : (seeds.middle.col(best).cast<double>() - x.col(v)).squaredNorm();
       for (const int e : edgesAround(graph, v))
-        improve(seeds.middle, x.col(v), seeds.of_vertex[at(graph.otherVertex(e, static_cast<int>(v)))], best, squared);
-      next[at(v)] = best;
-      return best != seeds.of_vertex[at(v)] ? 1 : 0;
+        improve(seeds.middle, x.col(v), seeds.of_vertex[graph.otherVertex(e, static_cast<int>(v))], best, squared);
+      next[v] = best;
+      return best != seeds.of_vertex[v] ? 1 : 0;
     });
     seeds.of_vertex.swap(next);
     if (changes == 0)
@@ -83,21 +82,21 @@ Seeds spreadSeeds(const MeshGraph& graph, const Positions& x, const DataPoints& 
 std::vector<double> seedSpacing(const MeshGraph& graph, const Seeds& seeds, Index faces)
 {
   constexpr double none = std::numeric_limits<double>::infinity();
-  std::vector<double> first(at(faces), none), second(at(faces), none);
-  std::vector<int> nearest(at(faces), -1);
+  std::vector<double> first(faces, none), second(faces, none);
+  std::vector<int> nearest(faces, -1);
   const auto tell = [&](int seed, int other, double distance) {
-    if (nearest[at(seed)] == other)
+    if (nearest[seed] == other)
       return;
-    if (distance < first[at(seed)]) {
-      second[at(seed)] = first[at(seed)];
-      first[at(seed)] = distance;
-      nearest[at(seed)] = other;
-    } else if (distance < second[at(seed)]) {
-      second[at(seed)] = distance;
+    if (distance < first[seed]) {
+      second[seed] = first[seed];
+      first[seed] = distance;
+      nearest[seed] = other;
+    } else if (distance < second[seed]) {
+      second[seed] = distance;
     }
   };
   for (const auto& [a, b] : graph.edges) {
-    const int s = seeds.of_vertex[at(a)], t = seeds.of_vertex[at(b)];
+    const int s = seeds.of_vertex[a], t = seeds.of_vertex[b];
     if (s < 0 || t < 0 || s == t)
       continue;
     const double distance = (seeds.middle.col(s) - seeds.middle.col(t)).cast<double>().norm();
@@ -113,10 +112,10 @@ std::vector<double> seedSpacing(const MeshGraph& graph, const Seeds& seeds, Inde
 std::vector<double> vertexAreas(const MeshGraph& graph, const Positions& x, int threads)
 {
   const Eigen::Matrix3Xd normals = areaVectors(graph, x, threads);
-  std::vector<double> areas(at(graph.vertexCount()), 0.0);
+  std::vector<double> areas(graph.vertexCount(), 0.0);
   parallelFor(graph.vertexCount(), threads, [&](Index v) {
     for (const int f : facesAround(graph, v))
-      areas[at(v)] += normals.col(f).norm() / 6.0;
+      areas[v] += normals.col(f).norm() / 6.0;
   });
   return areas;
 }
@@ -129,22 +128,22 @@ Support findSupport(const MeshGraph& graph, const Positions& x, const DataPoints
   const std::vector<double> spacing = seedSpacing(graph, seeds, graph.faceCount());
   const std::vector<double> areas = vertexAreas(graph, x, threads);
   Support support;
-  support.vertex.assign(at(graph.vertexCount()), 0);
+  support.vertex.assign(graph.vertexCount(), 0);
   Eigen::VectorXf face_area = Eigen::VectorXf::Zero(graph.faceCount());
   for (Index v = 0; v < graph.vertexCount(); ++v) {
-    const int s = seeds.of_vertex[at(v)];
+    const int s = seeds.of_vertex[v];
     if (s < 0)
       continue;
-    const double reach = std::max(least_reach, spacings * spacing[at(s)]);
+    const double reach = std::max(least_reach, spacings * spacing[s]);
     if ((seeds.middle.col(s).cast<double>() - x.col(v)).norm() > reach)
       continue;
-    support.vertex[at(v)] = 1;
-    face_area[s] += static_cast<float>(areas[at(v)]);
+    support.vertex[v] = 1;
+    face_area[s] += static_cast<float>(areas[v]);
   }
   support.point_weight.setZero(data.size());
   std::vector<float> spacings_of_points;
   for (Index i = 0; i < data.size(); ++i) {
-    const Index f = data.face[at(i)];
+    const Index f = data.face[i];
     support.point_weight[i] = face_area[f] / static_cast<float>(lists.count(f));
     if (support.point_weight[i] > 0.f)
       spacings_of_points.push_back(std::sqrt(support.point_weight[i]));

@@ -8,7 +8,6 @@
 namespace fresco::optimization {
 namespace {
 using Eigen::Vector3d;
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 constexpr Index block_size = 1 << 19; // queries at a time: bounds the memory for answers
 constexpr int longest_walk = 16;      // faces; a step of the optimiser moves the mesh by less
@@ -34,7 +33,7 @@ void repeatFromOutside(const MeshGraph& graph, const Positions& x, const Triangl
                        double reach, int threads)
 {
   parallelFor(queries.cols(), threads, [&](Index i) {
-    ClosestPoint& answer = found[at(i)];
+    ClosestPoint& answer = found[i];
     const Vector3d normal = normals.col(i).cast<double>();
     if (answer.face < 0 || !normal.allFinite() || areaVector(graph, x, answer.face).dot(normal) >= 0.0)
       return;
@@ -76,13 +75,13 @@ Assigned assignFaces(const MeshGraph& graph, const Positions& x, const PointSet&
 
 std::vector<int> sortedByFace(const std::vector<int>& faces, Index face_count, std::vector<int>& begin)
 {
-  begin.assign(at(face_count) + 1, 0);
+  begin.assign(face_count + 1, 0);
   for (const int f : faces)
-    ++begin[at(f) + 1];
+    ++begin[f + 1];
   std::partial_sum(begin.begin(), begin.end(), begin.begin());
   std::vector<int> order(faces.size()), next(begin.begin(), begin.end() - 1);
   for (std::size_t i = 0; i < faces.size(); ++i)
-    order[at(next[at(faces[i])]++)] = static_cast<int>(i);
+    order[next[faces[i]]++] = static_cast<int>(i);
   return order;
 }
 
@@ -170,15 +169,15 @@ DataPoints findCorrespondences(const MeshGraph& graph, const Positions& x, const
   std::vector<int> begin;
   const std::vector<int> order = sortedByFace(assigned.faces, graph.faceCount(), begin);
   DataPoints data;
-  const Index count = static_cast<Index>(order.size());
+  const Index count = order.size();
   data.left_out = set.size() - count;
   data.points.resize(3, count);
   data.normals.resize(3, set.hasNormals() ? count : 0);
-  data.face.resize(at(count));
+  data.face.resize(count);
   parallelFor(count, threads, [&](Index i) {
-    const std::size_t from = at(order[at(i)]);
+    const std::size_t from = order[i];
     const Index column = assigned.columns[from];
-    data.face[at(i)] = assigned.faces[from];
+    data.face[i] = assigned.faces[from];
     data.points.col(i) =
         ((set.points.col(column).cast<double>() + set.origin - frame.center) / frame.unit).cast<float>();
     if (set.hasNormals())
@@ -193,7 +192,7 @@ void followFaces(const MeshGraph& graph, const Positions& x, DataPoints& data, i
   parallelFor(data.size(), threads, [&](Index i) {
     const Vector3d normal = data.hasNormals() ? data.normals.col(i).cast<double>().eval() : Vector3d::Zero().eval();
     Walk walk(graph, x, data.points.col(i).cast<double>(), normal);
-    data.face[at(i)] = walk.from(data.face[at(i)]);
+    data.face[i] = walk.from(data.face[i]);
   });
 }
 

@@ -9,7 +9,6 @@ namespace fresco::optimization {
 namespace {
 using Eigen::Vector3d;
 using Triangle = std::array<int, 3>;
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 constexpr double least_gain = 0.05;  // mean edge lengths times radians
 constexpr double least_height = 0.1; // of a new triangle, mean edge lengths: no needles
@@ -39,7 +38,7 @@ public:
 
   bool quadOf(Index edge, Quad& q) const
   {
-    const auto [f, g] = graph_.edge_faces[at(edge)];
+    const auto [f, g] = graph_.edge_faces[edge];
     if (f < 0 || g < 0)
       return false;
     for (int k = 0; k < 3; ++k)
@@ -116,8 +115,8 @@ private:
   {
     double old_sum = 0.0, new_sum = 0.0, count = 0.0;
     for (const int f : {q.left, q.right})
-      for (int j = lists_.begin[at(f)]; j < lists_.begin[at(f) + 1]; ++j) {
-        const Vector3d p = data_.points.col(lists_.order[at(j)]).cast<double>();
+      for (int j = lists_.begin[f]; j < lists_.begin[f + 1]; ++j) {
+        const Vector3d p = data_.points.col(lists_.order[j]).cast<double>();
         old_sum += std::min(squaredDistance(p, before[0]), squaredDistance(p, before[1]));
         new_sum += std::min(squaredDistance(p, after[0]), squaredDistance(p, after[1]));
         ++count;
@@ -149,16 +148,16 @@ std::array<int, 6> facesConcerned(const MeshGraph& graph, const Quad& q)
 // Edges that gain, the largest gain first.
 std::vector<int> bestFirst(const OptimizationProblem& problem, const Flipper& flipper, int threads)
 {
-  std::vector<double> gains(at(problem.graph.edgeCount()));
+  std::vector<double> gains(problem.graph.edgeCount());
   parallelFor(problem.graph.edgeCount(), threads, [&](Index e) {
-    const auto [a, b] = problem.graph.edges[at(e)];
-    gains[at(e)] = problem.support.vertex[at(a)] && problem.support.vertex[at(b)] ? flipper.gain(e) : 0.0;
+    const auto [a, b] = problem.graph.edges[e];
+    gains[e] = problem.support.vertex[a] && problem.support.vertex[b] ? flipper.gain(e) : 0.0;
   });
   std::vector<int> order;
   for (std::size_t e = 0; e < gains.size(); ++e)
     if (gains[e] > 0.0)
       order.push_back(static_cast<int>(e));
-  std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return gains[at(a)] > gains[at(b)]; });
+  std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return gains[a] > gains[b]; });
   return order;
 }
 
@@ -166,20 +165,20 @@ std::vector<int> bestFirst(const OptimizationProblem& problem, const Flipper& fl
 // vertex could make the same edge.
 Index flipApart(const MeshGraph& graph, const Flipper& flipper, const std::vector<int>& order, Faces& faces)
 {
-  std::vector<char> used(at(graph.faceCount()), 0), touched(at(graph.vertexCount()), 0);
+  std::vector<char> used(graph.faceCount(), 0), touched(graph.vertexCount(), 0);
   Index count = 0;
   for (const int e : order) {
     Quad q;
     flipper.quadOf(e, q);
     const std::array<int, 6> concerned = facesConcerned(graph, q);
-    if (std::any_of(concerned.begin(), concerned.end(), [&](int f) { return f >= 0 && used[at(f)]; }) ||
-        touched[at(q.a)] || touched[at(q.b)] || touched[at(q.c)] || touched[at(q.d)])
+    if (std::any_of(concerned.begin(), concerned.end(), [&](int f) { return f >= 0 && used[f]; }) || touched[q.a] ||
+        touched[q.b] || touched[q.c] || touched[q.d])
       continue;
     for (const int f : concerned)
       if (f >= 0)
-        used[at(f)] = 1;
+        used[f] = 1;
     for (const int v : {q.a, q.b, q.c, q.d})
-      touched[at(v)] = 1;
+      touched[v] = 1;
     faces.col(q.left) << q.a, q.d, q.c;
     faces.col(q.right) << q.d, q.b, q.c;
     ++count;

@@ -6,7 +6,6 @@
 namespace fresco::optimization {
 namespace {
 using Eigen::Vector3d;
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 constexpr int halvings = 5;         // of a move before it is given up
 constexpr int relaxations = 3;      // before vertices go back
@@ -40,9 +39,9 @@ bool touchFolded(const MeshGraph& graph, Index f, const std::vector<char>& times
 {
   bool any = false;
   const auto touch = [&](Index v) {
-    if (times[at(v)] > halvings)
+    if (times[v] > halvings)
       return;
-    touched[at(v)] = 1;
+    touched[v] = 1;
     any = true;
   };
   for (int k = 0; k < 3; ++k)
@@ -62,7 +61,7 @@ void relaxWhere(const MeshGraph& graph, const std::vector<char>& free, Positions
   const Positions before = x;
   parallelFor(graph.vertexCount(), threads, [&](Index v) {
     const IntRange edges = edgesAround(graph, v);
-    if (!free[at(v)] || graph.border[at(v)] || edges.size() == 0 || !which(v))
+    if (!free[v] || graph.border[v] || edges.size() == 0 || !which(v))
       return;
     Vector3d sum = Vector3d::Zero();
     for (const int e : edges)
@@ -75,26 +74,26 @@ void relaxWhere(const MeshGraph& graph, const std::vector<char>& free, Positions
 void limitMoves(const MeshGraph& graph, const Positions& x, const Eigen::Matrix3Xf& normals, Positions& move,
                 int threads)
 {
-  std::vector<char> spoiled(at(graph.faceCount())), times(at(graph.vertexCount()), 0);
+  std::vector<char> spoiled(graph.faceCount()), times(graph.vertexCount(), 0);
   for (int round = 0; round < limit_rounds; ++round) {
     const Index count = parallelSum(graph.faceCount(), threads, Index{0}, [&](Index f) -> Index {
-      spoiled[at(f)] = isSpoiled(graph, x, move, normals.col(f).cast<double>(), f) ? 1 : 0;
-      return spoiled[at(f)];
+      spoiled[f] = isSpoiled(graph, x, move, normals.col(f).cast<double>(), f) ? 1 : 0;
+      return spoiled[f];
     });
     if (count == 0)
       return;
     parallelFor(graph.vertexCount(), threads, [&](Index v) {
       for (const int f : facesAround(graph, v))
-        if (spoiled[at(f)]) {
-          move.col(v) *= ++times[at(v)] > halvings ? 0.0 : 0.5;
-          times[at(v)] = std::min<char>(times[at(v)], halvings);
+        if (spoiled[f]) {
+          move.col(v) *= ++times[v] > halvings ? 0.0 : 0.5;
+          times[v] = std::min<char>(times[v], halvings);
           return;
         }
     });
   }
   parallelFor(graph.vertexCount(), threads, [&](Index v) {
     for (const int f : facesAround(graph, v))
-      if (spoiled[at(f)])
+      if (spoiled[f])
         move.col(v).setZero();
   });
 }
@@ -107,14 +106,14 @@ std::vector<char> foldedFaces(const MeshGraph& graph, const Positions& x, int th
     for (const int f : facesAround(graph, v))
       around.col(v) += areas.col(f);
   });
-  std::vector<char> folded(at(graph.faceCount()), 0);
+  std::vector<char> folded(graph.faceCount(), 0);
   parallelFor(graph.faceCount(), threads, [&](Index f) {
     if (graph.face_edges(0, f) < 0)
       return;
     Vector3d mean = Vector3d::Zero();
     for (int k = 0; k < 3; ++k)
       mean += around.col(graph.faces(k, f));
-    folded[at(f)] = areas.col(f).dot(mean) < 0.0 ? 1 : 0;
+    folded[f] = areas.col(f).dot(mean) < 0.0 ? 1 : 0;
   });
   return folded;
 }
@@ -124,7 +123,7 @@ void relaxFolds(const MeshGraph& graph, const std::vector<char>& free, Positions
   const std::vector<char> folded = foldedFaces(graph, x, threads);
   relaxWhere(graph, free, x, threads, [&](Index v) {
     const IntRange faces = facesAround(graph, v);
-    return std::any_of(faces.begin(), faces.end(), [&](int f) { return folded[at(f)]; });
+    return std::any_of(faces.begin(), faces.end(), [&](int f) { return folded[f]; });
   });
 }
 
@@ -138,17 +137,17 @@ Index unfold(const MeshGraph& graph, const Positions& start, const std::vector<c
   const std::vector<char> before = foldedFaces(graph, start, threads);
   for (int round = 0; round < relaxations; ++round)
     relaxFolds(graph, free, x, threads);
-  std::vector<char> times(at(graph.vertexCount()), 0), touched(at(graph.vertexCount()));
+  std::vector<char> times(graph.vertexCount(), 0), touched(graph.vertexCount());
   for (bool again = true; again;) {
     again = false;
     std::fill(touched.begin(), touched.end(), char{0});
     const std::vector<char> now = foldedFaces(graph, x, threads);
     for (Index f = 0; f < graph.faceCount(); ++f)
-      if (now[at(f)] && !before[at(f)])
+      if (now[f] && !before[f])
         again |= touchFolded(graph, f, times, touched);
     parallelFor(graph.vertexCount(), threads, [&](Index v) {
-      if (touched[at(v)])
-        x.col(v) = ++times[at(v)] > halvings ? start.col(v).eval() : (0.5 * (start.col(v) + x.col(v))).eval();
+      if (touched[v])
+        x.col(v) = ++times[v] > halvings ? start.col(v).eval() : (0.5 * (start.col(v) + x.col(v))).eval();
     });
   }
   return graph.vertexCount() - std::count(times.begin(), times.end(), char{0});

@@ -5,7 +5,6 @@
 #include <fresco/core/parallel.h>
 namespace fresco::optimization {
 namespace {
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 bool isDegenerate(const Faces& faces, Index f)
 {
@@ -28,14 +27,14 @@ void collectVertexFaces(MeshGraph& graph)
   for (Index f = 0; f < faces; ++f)
     if (!isDegenerate(graph.faces, f))
       for (int k = 0; k < 3; ++k)
-        ++graph.face_begin[at(graph.faces(k, f))];
+        ++graph.face_begin[graph.faces(k, f)];
   runningSum(graph.face_begin);
-  graph.vertex_faces.resize(at(graph.face_begin.back()));
+  graph.vertex_faces.resize(graph.face_begin.back());
   std::vector<int> next(graph.face_begin.begin(), graph.face_begin.end() - 1);
   for (Index f = 0; f < faces; ++f)
     if (!isDegenerate(graph.faces, f))
       for (int k = 0; k < 3; ++k)
-        graph.vertex_faces[at(next[at(graph.faces(k, f))]++)] = static_cast<int>(f);
+        graph.vertex_faces[next[graph.faces(k, f)]++] = static_cast<int>(f);
 }
 
 // A side of a face, seen from its vertex with the smaller index.
@@ -74,16 +73,16 @@ int forEachEdge(const std::vector<Side>& sides, const Visit& visit)
 void collectEdges(MeshGraph& graph, int threads)
 {
   const Index vertices = graph.vertexCount();
-  std::vector<int> first(at(vertices) + 1, 0);
+  std::vector<int> first(vertices + 1, 0);
   parallelRanges(vertices, threads, [&](Index begin, Index end) {
     std::vector<Side> sides;
     for (Index v = begin; v < end; ++v) {
       sidesFrom(graph, v, sides);
-      first[at(v)] = forEachEdge(sides, [](int, std::size_t, std::size_t) {});
+      first[v] = forEachEdge(sides, [](int, std::size_t, std::size_t) {});
     }
   });
   runningSum(first);
-  graph.edges.resize(at(first.back()));
+  graph.edges.resize(first.back());
   graph.edge_faces.assign(graph.edges.size(), {-1, -1});
   graph.face_edges.setConstant(3, graph.faceCount(), -1);
   parallelRanges(vertices, threads, [&](Index begin, Index end) {
@@ -91,10 +90,10 @@ void collectEdges(MeshGraph& graph, int threads)
     for (Index v = begin; v < end; ++v) {
       sidesFrom(graph, v, sides);
       forEachEdge(sides, [&](int rank, std::size_t i, std::size_t j) {
-        const int edge = first[at(v)] + rank;
-        graph.edges[at(edge)] = {static_cast<int>(v), sides[i].other};
+        const int edge = first[v] + rank;
+        graph.edges[edge] = {static_cast<int>(v), sides[i].other};
         if (j - i <= 2)
-          graph.edge_faces[at(edge)] = {sides[i].face, j - i == 2 ? sides[i + 1].face : -1};
+          graph.edge_faces[edge] = {sides[i].face, j - i == 2 ? sides[i + 1].face : -1};
         for (std::size_t s = i; s < j; ++s)
           graph.face_edges(sides[s].corner, sides[s].face) = edge;
       });
@@ -107,16 +106,16 @@ void collectVertexEdges(MeshGraph& graph)
   graph.edge_begin.assign(graph.face_begin.size(), 0);
   for (const auto& edge : graph.edges)
     for (const int v : edge)
-      ++graph.edge_begin[at(v)];
+      ++graph.edge_begin[v];
   runningSum(graph.edge_begin);
   graph.vertex_edges.resize(2 * graph.edges.size());
   std::vector<int> next(graph.edge_begin.begin(), graph.edge_begin.end() - 1);
-  graph.border.assign(at(graph.vertexCount()), 0);
+  graph.border.assign(graph.vertexCount(), 0);
   for (std::size_t e = 0; e < graph.edges.size(); ++e)
     for (const int v : graph.edges[e]) {
-      graph.vertex_edges[at(next[at(v)]++)] = static_cast<int>(e);
+      graph.vertex_edges[next[v]++] = static_cast<int>(e);
       if (graph.edge_faces[e][1] < 0)
-        graph.border[at(v)] = 1;
+        graph.border[v] = 1;
     }
 }
 } // namespace
@@ -125,7 +124,7 @@ MeshGraph buildGraph(const Faces& faces, Index vertices, int threads)
 {
   MeshGraph graph;
   graph.faces = faces;
-  graph.face_begin.assign(at(vertices) + 1, 0);
+  graph.face_begin.assign(vertices + 1, 0);
   collectVertexFaces(graph);
   collectEdges(graph, threads);
   collectVertexEdges(graph);
@@ -149,7 +148,7 @@ Eigen::Matrix3Xd areaVectors(const MeshGraph& graph, const Positions& x, int thr
 double meanEdgeLength(const MeshGraph& graph, const Positions& x, int threads)
 {
   const double sum = parallelSum(graph.edgeCount(), threads, 0.0, [&](Index e) {
-    const auto [a, b] = graph.edges[at(e)];
+    const auto [a, b] = graph.edges[e];
     return (x.col(a) - x.col(b)).norm();
   });
   return sum / static_cast<double>(std::max<Index>(graph.edgeCount(), 1));

@@ -22,7 +22,7 @@ struct MeshGraph {
   Index edgeCount() const { return static_cast<Index>(edges.size()); }
   int otherVertex(int edge, int vertex) const
   {
-    const auto& ends = edges[static_cast<std::size_t>(edge)];
+    const auto& ends = edges[edge];
     return ends[0] == vertex ? ends[1] : ends[0];
   }
   /// The face across corner k's edge (k, k + 1) of `face`, or -1.
@@ -31,7 +31,7 @@ struct MeshGraph {
     const int edge = face_edges(k, face);
     if (edge < 0)
       return -1;
-    const auto& sides = edge_faces[static_cast<std::size_t>(edge)];
+    const auto& sides = edge_faces[edge];
     return sides[0] == face ? sides[1] : sides[1] == face ? sides[0] : -1;
   }
 };
@@ -46,13 +46,13 @@ struct IntRange {
 
 inline IntRange facesAround(const MeshGraph& graph, Index v)
 {
-  return {graph.vertex_faces.data() + graph.face_begin[static_cast<std::size_t>(v)],
+  return {graph.vertex_faces.data() + graph.face_begin[v],
           graph.vertex_faces.data() + graph.face_begin[static_cast<std::size_t>(v) + 1]};
 }
 
 inline IntRange edgesAround(const MeshGraph& graph, Index v)
 {
-  return {graph.vertex_edges.data() + graph.edge_begin[static_cast<std::size_t>(v)],
+  return {graph.vertex_edges.data() + graph.edge_begin[v],
           graph.vertex_edges.data() + graph.edge_begin[static_cast<std::size_t>(v) + 1]};
 }
 

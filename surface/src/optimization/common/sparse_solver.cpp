@@ -6,7 +6,6 @@ namespace fresco::optimization {
 namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 struct System {
   const QuadraticEnergy& energy;
@@ -39,13 +38,13 @@ template <typename Own>
 void gather(const System& system, const Eigen::Matrix3Xd& shares, const Own& own, Positions& result)
 {
   parallelFor(system.size(), system.threads, [&](Index v) {
-    if (!system.energy.free[at(v)]) {
+    if (!system.energy.free[v]) {
       result.col(v).setZero();
       return;
     }
     Vector3d sum = own(v);
     for (const int f : facesAround(system.graph, v))
-      sum += shares(cornerOf(system.graph, f, v), f) * system.energy.faces[at(f)].normal.cast<double>();
+      sum += shares(cornerOf(system.graph, f, v), f) * system.energy.faces[f].normal.cast<double>();
     result.col(v) = sum;
   });
 }
@@ -53,10 +52,10 @@ void gather(const System& system, const Eigen::Matrix3Xd& shares, const Own& own
 void multiply(const System& system, const Positions& d, Eigen::Matrix3Xd& shares, Positions& result)
 {
   parallelFor(system.graph.faceCount(), system.threads, [&](Index f) {
-    const FaceTerm& term = system.energy.faces[at(f)];
+    const FaceTerm& term = system.energy.faces[f];
     shares.col(f) = times(term, heights(term, system.graph, f, d));
   });
-  const auto own = [&](Index v) -> Vector3d { return system.energy.vertices[at(v)].slide.cast<double>() * d.col(v); };
+  const auto own = [&](Index v) -> Vector3d { return system.energy.vertices[v].slide.cast<double>() * d.col(v); };
   gather(system, shares, own, result);
 }
 
@@ -64,7 +63,7 @@ Positions rightHandSide(const System& system, const Positions& x)
 {
   Eigen::Matrix3Xd shares(3, system.graph.faceCount());
   parallelFor(system.graph.faceCount(), system.threads, [&](Index f) {
-    const FaceTerm& t = system.energy.faces[at(f)];
+    const FaceTerm& t = system.energy.faces[f];
     const Vector3d u = heights(t, system.graph, f, x);
     const double sum = u.sum();
     for (int k = 0; k < 3; ++k)
@@ -72,7 +71,7 @@ Positions rightHandSide(const System& system, const Positions& x)
   });
   Positions b(3, system.size());
   const auto own = [&](Index v) -> Vector3d {
-    const VertexTerm& term = system.energy.vertices[at(v)];
+    const VertexTerm& term = system.energy.vertices[v];
     return (term.slide * term.target).cast<double>();
   };
   gather(system, shares, own, b);
@@ -81,18 +80,18 @@ Positions rightHandSide(const System& system, const Positions& x)
 
 std::vector<Matrix3d> inverseBlocks(const System& system)
 {
-  std::vector<Matrix3d> inverse(at(system.size()), Matrix3d::Zero());
+  std::vector<Matrix3d> inverse(system.size(), Matrix3d::Zero());
   parallelFor(system.size(), system.threads, [&](Index v) {
-    if (!system.energy.free[at(v)])
+    if (!system.energy.free[v])
       return;
-    Matrix3d block = system.energy.vertices[at(v)].slide.cast<double>();
+    Matrix3d block = system.energy.vertices[v].slide.cast<double>();
     for (const int f : facesAround(system.graph, v)) {
-      const FaceTerm& t = system.energy.faces[at(f)];
+      const FaceTerm& t = system.energy.faces[f];
       const Vector3d n = t.normal.cast<double>();
       block += (t.own[cornerOf(system.graph, f, v)] + 2.0 * t.slope) * n * n.transpose();
     }
     block.diagonal().array() += 1e-9 * block.trace() + 1e-30;
-    inverse[at(v)] = block.inverse();
+    inverse[v] = block.inverse();
   });
   return inverse;
 }
@@ -104,7 +103,7 @@ double dot(const Positions& a, const Positions& b, int threads)
 
 void precondition(const System& system, const std::vector<Matrix3d>& inverse, const Positions& r, Positions& z)
 {
-  parallelFor(system.size(), system.threads, [&](Index v) { z.col(v) = inverse[at(v)] * r.col(v); });
+  parallelFor(system.size(), system.threads, [&](Index v) { z.col(v) = inverse[v] * r.col(v); });
 }
 } // namespace
 
@@ -117,7 +116,7 @@ EnergyTerms evaluate(const QuadraticEnergy& energy, const MeshGraph& graph, cons
   const auto faces = [&](Index begin, Index end) {
     EnergyTerms sum;
     for (Index f = begin; f < end; ++f) {
-      const FaceTerm& t = energy.faces[at(f)];
+      const FaceTerm& t = energy.faces[f];
       const Vector3d d = heights(t, graph, f, move), u = heights(t, graph, f, x) + d;
       const Vector3d pull(t.pull[0], t.pull[1], t.pull[2]), own(t.own[0], t.own[1], t.own[2]);
       const double pairs = t.pair[0] * d[0] * d[1] + t.pair[1] * d[1] * d[2] + t.pair[2] * d[2] * d[0];
@@ -130,9 +129,9 @@ EnergyTerms evaluate(const QuadraticEnergy& energy, const MeshGraph& graph, cons
   const auto vertices = [&](Index begin, Index end) {
     EnergyTerms sum;
     for (Index v = begin; v < end; ++v) {
-      const Vector3d off = move.col(v) - energy.vertices[at(v)].target.cast<double>();
-      if (energy.free[at(v)])
-        sum.slide += off.dot(energy.vertices[at(v)].slide.cast<double>() * off);
+      const Vector3d off = move.col(v) - energy.vertices[v].target.cast<double>();
+      if (energy.free[v])
+        sum.slide += off.dot(energy.vertices[v].slide.cast<double>() * off);
     }
     return sum;
   };

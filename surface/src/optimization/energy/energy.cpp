@@ -8,7 +8,6 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Matrix3Xd;
 using Eigen::Vector3d;
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 constexpr double bend_scale = 0.1;     // eps of psi, chord of unit normals: bends below 6 degrees are smoothed as noise
 constexpr double area_softness = 1e-2; // double area at which a triangle's normal begins to fade, mean edge lengths^2
@@ -45,8 +44,8 @@ double fitOfFace(Work& work, Index f)
   const FacePoints& lists = work.energy.lists;
   const double s2 = work.energy.robust * work.energy.robust;
   double sum = 0.0;
-  for (int j = lists.begin[at(f)]; j < lists.begin[at(f) + 1]; ++j) {
-    const int i = lists.order[at(j)];
+  for (int j = lists.begin[f]; j < lists.begin[f + 1]; ++j) {
+    const int i = lists.order[j];
     const double weight = problem.support.point_weight[i];
     const Vector3d p = problem.data.points.col(i).cast<double>();
     const Vector3d foot = footOn(work.graph, work.x, f, p);
@@ -95,7 +94,7 @@ Vector3d lengthGradient(const Work& work, Index v)
 {
   Vector3d sum = Vector3d::Zero();
   for (const int e : edgesAround(work.graph, v)) {
-    const auto [f, g] = work.graph.edge_faces[at(e)];
+    const auto [f, g] = work.graph.edge_faces[e];
     const Vector3d side = work.x.col(v) - work.x.col(work.graph.otherVertex(e, static_cast<int>(v)));
     const double length = side.norm();
     if (f >= 0 && g >= 0 && length > 0.0)
@@ -162,7 +161,7 @@ FaithfulTerms evaluate(const FaithfulEnergy& energy, const Positions& x, Positio
   if (gradient)
     parallelFor(graph.vertexCount(), energy.threads, [&](Index v) {
       gradient->col(v).setZero();
-      if (energy.problem.support.vertex[at(v)])
+      if (energy.problem.support.vertex[v])
         gradient->col(v) = cornerSum(work, v) + energy.kappa1 * lengthGradient(work, v) +
                            energy.kappa2 * topologyGradient(work, rings, v);
     });

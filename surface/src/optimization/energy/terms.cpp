@@ -8,7 +8,6 @@ namespace fresco::optimization {
 namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 // Weight that keeps a vertex where it is, in every direction: where nothing else holds it the system stays regular.
 constexpr double proximal = 1e-3;
@@ -59,8 +58,8 @@ Eigen::VectorXf urgencyOfMisfits(const OptimizationProblem& problem, const FaceP
   parallelFor(problem.graph.vertexCount(), threads, [&](Index v) {
     double sum = 0.0, count = 0.0;
     for (const int f : facesAround(problem.graph, v))
-      for (int j = lists.begin[at(f)]; j < lists.begin[at(f) + 1]; ++j) {
-        const double e = residuals[lists.order[at(j)]];
+      for (int j = lists.begin[f]; j < lists.begin[f + 1]; ++j) {
+        const double e = residuals[lists.order[j]];
         if (std::abs(e) > weights.robust)
           continue;
         sum += e;
@@ -80,8 +79,8 @@ FaceTerm faceTerm(const OptimizationProblem& problem, const FacePoints& lists, c
   double urgency = 0.0;
   for (int k = 0; k < 3; ++k)
     urgency += urgencies[problem.graph.faces(k, f)] / 3.0;
-  for (int j = lists.begin[at(f)]; j < lists.begin[at(f) + 1]; ++j) {
-    const int i = lists.order[at(j)];
+  for (int j = lists.begin[f]; j < lists.begin[f + 1]; ++j) {
+    const int i = lists.order[j];
     const Vector3d foot = footOn(problem.graph, problem.x, f, problem.data.points.col(i).cast<double>());
     const double weight =
         urgency * problem.support.point_weight[i] * pointWeight(problem.data, i, residuals[i], term, weights.robust);
@@ -95,7 +94,7 @@ Matrix3d freeDirections(const OptimizationProblem& problem, const std::vector<Fa
 {
   Matrix3d spread = Matrix3d::Zero();
   for (const int f : facesAround(problem.graph, v)) {
-    const Vector3d n = faces[at(f)].normal.cast<double>();
+    const Vector3d n = faces[f].normal.cast<double>();
     spread += n * n.transpose();
   }
   const double trace = spread.trace();
@@ -117,7 +116,7 @@ VertexTerm vertexTerm(const OptimizationProblem& problem, const std::vector<Face
   const IntRange edges = edgesAround(problem.graph, v);
   VertexTerm term;
   term.slide = (weights.slide * directions + proximal * Matrix3d::Identity()).cast<float>();
-  if (problem.graph.border[at(v)] || edges.size() == 0)
+  if (problem.graph.border[v] || edges.size() == 0)
     return term;
   Vector3d middle = Vector3d::Zero();
   for (const int e : edges)
@@ -133,7 +132,7 @@ Eigen::VectorXf dataResiduals(const OptimizationProblem& problem, const Eigen::M
   const DataPoints& data = problem.data;
   Eigen::VectorXf residuals(data.size());
   parallelFor(data.size(), threads, [&](Index i) {
-    const int f = data.face[at(i)];
+    const int f = data.face[i];
     const Vector3d p = data.points.col(i).cast<double>(), foot = footOn(problem.graph, problem.x, f, p);
     Vector3d offset = p;
     for (int k = 0; k < 3; ++k)
@@ -148,12 +147,12 @@ double noiseOf(const FacePoints& lists, const Eigen::VectorXf& residuals)
   std::vector<float> magnitudes;
   for (std::size_t f = 0; f + 1 < lists.begin.size(); ++f)
     for (int j = lists.begin[f] + 1; j < lists.begin[f + 1]; j += 2)
-      magnitudes.push_back(std::abs(residuals[lists.order[at(j)]] - residuals[lists.order[at(j) - 1]]));
+      magnitudes.push_back(std::abs(residuals[lists.order[j]] - residuals[lists.order[j - 1]]));
   if (static_cast<double>(magnitudes.size()) > least_pairs * static_cast<double>(residuals.size()))
     return robustDeviation(magnitudes) / std::sqrt(2.0);
-  magnitudes.resize(at(residuals.size()));
+  magnitudes.resize(residuals.size());
   for (Index i = 0; i < residuals.size(); ++i)
-    magnitudes[at(i)] = std::abs(residuals[i]);
+    magnitudes[i] = std::abs(residuals[i]);
   return robustDeviation(magnitudes);
 }
 
@@ -165,10 +164,10 @@ Eigen::Matrix3Xf dataNormals(const OptimizationProblem& problem, const Eigen::Ma
   if (!data.hasNormals() || !(trust > 0.0))
     return given;
   parallelFor(problem.graph.faceCount(), threads, [&](Index f) {
-    for (int j = lists.begin[at(f)]; j < lists.begin[at(f) + 1]; ++j) {
-      const auto normal = data.normals.col(lists.order[at(j)]);
+    for (int j = lists.begin[f]; j < lists.begin[f + 1]; ++j) {
+      const auto normal = data.normals.col(lists.order[j]);
       if (normal.cast<double>().dot(areas.col(f)) > 0.0)
-        given.col(f) += problem.support.point_weight[lists.order[at(j)]] * normal;
+        given.col(f) += problem.support.point_weight[lists.order[j]] * normal;
     }
     given.col(f) *= static_cast<float>(trust);
   });
@@ -181,17 +180,17 @@ QuadraticEnergy makeEnergy(const OptimizationProblem& problem, const FacePoints&
   const Eigen::VectorXf urgencies = urgencyOfMisfits(problem, lists, residuals, weights, threads);
   QuadraticEnergy energy;
   energy.free = problem.support.vertex;
-  energy.faces.resize(at(problem.graph.faceCount()));
-  energy.vertices.resize(at(problem.graph.vertexCount()));
+  energy.faces.resize(problem.graph.faceCount());
+  energy.vertices.resize(problem.graph.vertexCount());
   parallelFor(problem.graph.faceCount(), threads, [&](Index f) {
     FaceTerm term;
     term.normal = normals.col(f);
     if (problem.graph.face_edges(0, f) >= 0)
-      energy.faces[at(f)] = faceTerm(problem, lists, residuals, urgencies, weights, f, term);
+      energy.faces[f] = faceTerm(problem, lists, residuals, urgencies, weights, f, term);
   });
   parallelFor(problem.graph.vertexCount(), threads, [&](Index v) {
-    if (energy.free[at(v)])
-      energy.vertices[at(v)] = vertexTerm(problem, energy.faces, weights, v);
+    if (energy.free[v])
+      energy.vertices[v] = vertexTerm(problem, energy.faces, weights, v);
   });
   return energy;
 }

@@ -29,7 +29,7 @@ Eigen::Matrix3Xf filterNormals(const MeshGraph& graph, const Eigen::Matrix3Xd& a
     area[f] = static_cast<float>(length);
     normals.col(f) = length > 1e-12 ? (areas.col(f) / length).cast<float>().eval() : Vector3f::Zero().eval();
   });
-  const float reach = static_cast<float>(5.0 * options.sigma * options.sigma);
+  const float reach = 5.0 * options.sigma * options.sigma;
   Eigen::VectorXf agreement(faces);
   for (int round = 0; round < options.rounds; ++round) {
     parallelFor(faces, options.threads, [&](Index f) {

@@ -20,9 +20,9 @@ int countBits(std::uint64_t v)
 
 bool LevelSet::hasLeaves(int depth, Index brick) const
 {
-  if ((*chi)[static_cast<std::size_t>(depth)].size() == 0)
+  if ((*chi)[depth].size() == 0)
     return false;
-  const auto& children = tree->levels[static_cast<std::size_t>(depth)].children[static_cast<std::size_t>(brick)];
+  const auto& children = tree->levels[depth].children[brick];
   return *std::min_element(children.begin(), children.end()) < 0;
 }
 
@@ -30,8 +30,7 @@ CellPlace normalized(const Octree& tree, CellPlace c)
 {
   const int o = offsetIndex(c.x >> 2, c.y >> 2, c.z >> 2);
   if (o != offset_self)
-    c.brick = tree.levels[static_cast<std::size_t>(c.depth)]
-                  .neighbors[static_cast<std::size_t>(c.brick)][static_cast<std::size_t>(o)];
+    c.brick = tree.levels[c.depth].neighbors[c.brick][o];
   c.x &= 3;
   c.y &= 3;
   c.z &= 3;
@@ -40,8 +39,7 @@ CellPlace normalized(const Octree& tree, CellPlace c)
 
 int childBrick(const Octree& tree, const CellPlace& c)
 {
-  return tree.levels[static_cast<std::size_t>(c.depth)]
-      .children[static_cast<std::size_t>(c.brick)][static_cast<std::size_t>(octantOf(c.x, c.y, c.z))];
+  return tree.levels[c.depth].children[c.brick][octantOf(c.x, c.y, c.z)];
 }
 
 int CrossedEdges::BrickEdges::count() const
@@ -82,7 +80,7 @@ void CrossedEdges::findCrossings(int depth, Index brick)
 {
   if (!surface_->hasLeaves(depth, brick))
     return;
-  const float* chi = (*surface_->chi)[static_cast<std::size_t>(depth)].brick(brick);
+  const float* chi = (*surface_->chi)[depth].brick(brick);
   bool inside[brick_nodes * brick_nodes * brick_nodes];
   int count = 0;
   for (int i = 0; i < brick_nodes * brick_nodes * brick_nodes; ++i)
@@ -99,7 +97,7 @@ void CrossedEdges::findCrossings(int depth, Index brick)
             continue;
           const EdgePlace edge{depth, static_cast<int>(brick), axis, x, y, z};
           if (ownerOf(edge).brick == edge.brick && !isSubdivided(edge))
-            bricks_[static_cast<std::size_t>(depth)][static_cast<std::size_t>(brick)].set(axis, node);
+            bricks_[depth][brick].set(axis, node);
         }
 }
 
@@ -127,8 +125,8 @@ EdgePlace CrossedEdges::ownerOfFaceEdge(const EdgePlace& edge) const
 {
   const int first = edge.axis == 0 ? 1 : 0, second = edge.axis == 2 ? 1 : 2;
   const int at[3] = {edge.x, edge.y, edge.z};
-  const BrickLevel& level = surface_->tree->levels[static_cast<std::size_t>(edge.depth)];
-  const auto& neighbors = level.neighbors[static_cast<std::size_t>(edge.brick)];
+  const BrickLevel& level = surface_->tree->levels[edge.depth];
+  const auto& neighbors = level.neighbors[edge.brick];
   // Offsets of the upper bricks on both axes; the lower ones are one less where
   // the edge lies between two bricks.
   const int up_first = at[first] == brick_cells, up_second = at[second] == brick_cells;
@@ -139,7 +137,7 @@ EdgePlace CrossedEdges::ownerOfFaceEdge(const EdgePlace& edge) const
       int offset[3] = {0, 0, 0};
       offset[first] = p;
       offset[second] = q;
-      const int n = neighbors[static_cast<std::size_t>(offsetIndex(offset[0], offset[1], offset[2]))];
+      const int n = neighbors[offsetIndex(offset[0], offset[1], offset[2])];
       if (n >= 0)
         return {edge.depth,
                 n,
@@ -171,7 +169,7 @@ bool CrossedEdges::finerHalf(EdgePlace& edge) const
       continue;
     EdgePlace half{edge.depth + 1,       child, edge.axis, 2 * (cell.x % 2 + dx), 2 * (cell.y % 2 + dy),
                    2 * (cell.z % 2 + dz)};
-    const float* chi = (*surface_->chi)[static_cast<std::size_t>(half.depth)].brick(child);
+    const float* chi = (*surface_->chi)[half.depth].brick(child);
     const int node = nodeIndex(half.x, half.y, half.z);
     const int step = edge.axis == 0 ? 1 : edge.axis == 1 ? brick_nodes : brick_nodes * brick_nodes;
     if (surface_->inside(chi[node]) == surface_->inside(chi[node + step]))
@@ -187,18 +185,18 @@ int CrossedEdges::vertexOn(EdgePlace edge) const
   while (finerHalf(edge)) {
   }
   const EdgePlace owner = ownerOf(edge);
-  const BrickEdges& edges = bricks_[static_cast<std::size_t>(owner.depth)][static_cast<std::size_t>(owner.brick)];
+  const BrickEdges& edges = bricks_[owner.depth][owner.brick];
   return edges.first + edges.rank(owner.axis, nodeIndex(owner.x, owner.y, owner.z));
 }
 
 Eigen::Vector3f CrossedEdges::position(const EdgePlace& edge) const
 {
-  const float* chi = (*surface_->chi)[static_cast<std::size_t>(edge.depth)].brick(edge.brick);
+  const float* chi = (*surface_->chi)[edge.depth].brick(edge.brick);
   const int node = nodeIndex(edge.x, edge.y, edge.z);
   const int step = edge.axis == 0 ? 1 : edge.axis == 1 ? brick_nodes : brick_nodes * brick_nodes;
   const float a = chi[node], b = chi[node + step];
   const float t = std::clamp((surface_->value - a) / (b - a), end_margin, 1.f - end_margin);
-  const auto corner = surface_->tree->levels[static_cast<std::size_t>(edge.depth)].corner(edge.brick);
+  const auto corner = surface_->tree->levels[edge.depth].corner(edge.brick);
   Eigen::Vector3f p(static_cast<float>(corner[0] + edge.x), static_cast<float>(corner[1] + edge.y),
                     static_cast<float>(corner[2] + edge.z));
   p[edge.axis] += t;
@@ -209,8 +207,8 @@ Points CrossedEdges::positions(int threads) const
 {
   Points points(3, count_);
   for (std::size_t d = 0; d < bricks_.size(); ++d)
-    parallelFor(static_cast<Index>(bricks_[d].size()), threads, [&](Index b) {
-      const BrickEdges& edges = bricks_[d][static_cast<std::size_t>(b)];
+    parallelFor(bricks_[d].size(), threads, [&](Index b) {
+      const BrickEdges& edges = bricks_[d][b];
       Index at = edges.first;
       for (int w = 0; w < 6; ++w)
         for (int bit = 0; edges.bits[w] >> bit != 0; ++bit) {

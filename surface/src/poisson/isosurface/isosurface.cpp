@@ -35,7 +35,7 @@ public:
 private:
   const float* values(const CellPlace& c) const
   {
-    return (*surface_.chi)[static_cast<std::size_t>(c.depth)].brick(c.brick) + nodeIndex(c.x, c.y, c.z);
+    return (*surface_.chi)[c.depth].brick(c.brick) + nodeIndex(c.x, c.y, c.z);
   }
 
   static int cornerStep(int corner) { return nodeIndex(corner & 1, corner >> 1 & 1, corner >> 2); }
@@ -130,7 +130,7 @@ std::vector<BrickPlace> bricksWithLeaves(const LevelSet& surface)
 {
   std::vector<BrickPlace> bricks;
   for (int d = 2; d <= surface.tree->depth; ++d)
-    for (Index b = 0; b < surface.tree->levels[static_cast<std::size_t>(d)].size(); ++b)
+    for (Index b = 0; b < surface.tree->levels[d].size(); ++b)
       if (surface.hasLeaves(d, b))
         bricks.push_back({d, b});
   return bricks;
@@ -170,14 +170,13 @@ IsoSurface extractIsoSurface(const LevelSet& surface, int threads)
   });
   const std::vector<BrickPlace> bricks = bricksWithLeaves(surface);
   const auto n = static_cast<Index>(bricks.size());
-  std::vector<Part> parts(static_cast<std::size_t>((n + bricks_per_part - 1) / bricks_per_part));
+  std::vector<Part> parts((n + bricks_per_part - 1) / bricks_per_part);
   parallelRanges(
       n, threads,
       [&](Index begin, Index end) {
         CellMarcher marcher(surface, edges, result.vertices);
         for (Index i = begin; i < end; ++i)
-          marcher.marchBrick(bricks[static_cast<std::size_t>(i)].depth, bricks[static_cast<std::size_t>(i)].brick,
-                             parts[static_cast<std::size_t>(begin / bricks_per_part)]);
+          marcher.marchBrick(bricks[i].depth, bricks[i].brick, parts[begin / bricks_per_part]);
       },
       bricks_per_part);
   join(parts, result, edges.vertexCount());

@@ -91,10 +91,8 @@ bool CellPolygons::cheapestTriangles(const Eigen::Matrix3Xf& positions, std::vec
   int middle[most_corners][most_corners];
   Eigen::Vector3f p[most_corners];
   for (int i = 0; i < n; ++i)
-    p[i] = positions.col(polygon_[static_cast<std::size_t>(i)].vertex);
-  const auto shareFace = [&](int i, int j) {
-    return (polygon_[static_cast<std::size_t>(i)].faces & polygon_[static_cast<std::size_t>(j)].faces) != 0;
-  };
+    p[i] = positions.col(polygon_[i].vertex);
+  const auto shareFace = [&](int i, int j) { return (polygon_[i].faces & polygon_[j].faces) != 0; };
   for (int length = 1; length < n; ++length)
     for (int i = 0; i + length < n; ++i) {
       const int j = i + length;
@@ -118,7 +116,7 @@ bool CellPolygons::cheapestTriangles(const Eigen::Matrix3Xf& positions, std::vec
     if (j - i < 2)
       continue;
     const int k = middle[i][j];
-    const auto vertex = [&](int c) { return polygon_[static_cast<std::size_t>(c)].vertex; };
+    const auto vertex = [&](int c) { return polygon_[c].vertex; };
     faces.insert(faces.end(), {vertex(i), vertex(k), vertex(j)});
     stack[depth][0] = i;
     stack[depth++][1] = k;

@@ -26,15 +26,15 @@ void copyPart(const float* nodes, const int d[3], const int h[3], float* halo)
 
 void loadHalo(const BrickLevel& level, Index brick, const NodeField& field, float* halo)
 {
-  const auto& neighbors = level.neighbors[static_cast<std::size_t>(brick)];
+  const auto& neighbors = level.neighbors[brick];
   for (int o = 0; o < 27; ++o) {
     const int d[3] = {o % 3 - 1, o / 3 % 3 - 1, o / 9 - 1};
     int h[3] = {d[0], d[1], d[2]}; // offset of the brick that holds the nodes
-    int holder = neighbors[static_cast<std::size_t>(o)];
+    int holder = neighbors[o];
     for (int m = 1; m < 8 && holder < 0; ++m) { // else one that has them on its upper faces
       for (int a = 0; a < 3; ++a)
         h[a] = m >> a & 1 ? std::min(d[a], 0) : d[a];
-      holder = neighbors[static_cast<std::size_t>(offsetIndex(h[0], h[1], h[2]))];
+      holder = neighbors[offsetIndex(h[0], h[1], h[2])];
     }
     copyPart(holder < 0 ? nullptr : field.brick(holder), d, h, halo);
   }
@@ -48,14 +48,14 @@ std::uint64_t fixedNodes(const BrickLevel& level, Index brick)
     for (int o = 0; o < 8; ++o)
       for (int i = 0; i < own_nodes; ++i)
         if (((o & 1) == 0 || (i & 3) == 0) && ((o & 2) == 0 || (i >> 2 & 3) == 0) && ((o & 4) == 0 || i >> 4 == 0))
-          masks[static_cast<std::size_t>(o)] |= std::uint64_t(1) << i;
+          masks[o] |= std::uint64_t(1) << i;
     return masks;
   }();
-  const auto& neighbors = level.neighbors[static_cast<std::size_t>(brick)];
+  const auto& neighbors = level.neighbors[brick];
   std::uint64_t fixed = 0;
   for (int o = 1; o < 8; ++o)
-    if (neighbors[static_cast<std::size_t>(offsetIndex(-(o & 1), -(o >> 1 & 1), -(o >> 2)))] < 0)
-      fixed |= on_lower_faces[static_cast<std::size_t>(o)];
+    if (neighbors[offsetIndex(-(o & 1), -(o >> 1 & 1), -(o >> 2))] < 0)
+      fixed |= on_lower_faces[o];
   return fixed;
 }
 } // namespace fresco::poisson

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "poisson/octree/octree.h"
-#include "poisson/octree/morton.h"
 #include <algorithm>
 #include <cstring>
+#include <fresco/core/morton.h>
 #include <fresco/core/parallel.h>
 namespace fresco::poisson {
 namespace {
@@ -23,7 +23,7 @@ Masks touchMasks()
     for (std::uint64_t cell = 0; cell < 64; ++cell) {
       const auto [x, y, z] = mortonCell(cell);
       if (reaches(x, o % 3 - 1) && reaches(y, o / 3 % 3 - 1) && reaches(z, o / 9 - 1))
-        masks[static_cast<std::size_t>(o)] |= std::uint64_t(1) << cell;
+        masks[o] |= std::uint64_t(1) << cell;
     }
   return masks;
 }
@@ -64,8 +64,7 @@ std::vector<std::uint64_t> dilate(const std::vector<Occupied>& bricks, int depth
     const auto [x, y, z] = mortonCell(brick.code);
     for (int o = 0; o < 27; ++o) {
       const int nx = x + o % 3 - 1, ny = y + o / 3 % 3 - 1, nz = z + o / 9 - 1;
-      if ((brick.cells & masks[static_cast<std::size_t>(o)]) != 0 && std::min({nx, ny, nz}) >= 0 &&
-          std::max({nx, ny, nz}) < side)
+      if ((brick.cells & masks[o]) != 0 && std::min({nx, ny, nz}) >= 0 && std::max({nx, ny, nz}) < side)
         codes.push_back(
             mortonCode(static_cast<std::uint32_t>(nx), static_cast<std::uint32_t>(ny), static_cast<std::uint32_t>(nz)));
     }
@@ -89,10 +88,10 @@ void linkToParents(BrickLevel& coarse, BrickLevel& fine)
   fine.parents.resize(fine.codes.size());
   int parent = 0;
   for (std::size_t i = 0; i < fine.codes.size(); ++i) {
-    while (coarse.codes[static_cast<std::size_t>(parent)] != fine.codes[i] >> 3)
+    while (coarse.codes[parent] != fine.codes[i] >> 3)
       ++parent;
     fine.parents[i] = parent;
-    coarse.children[static_cast<std::size_t>(parent)][fine.codes[i] & 7] = static_cast<int>(i);
+    coarse.children[parent][fine.codes[i] & 7] = static_cast<int>(i);
   }
 }
 
@@ -102,17 +101,16 @@ std::array<int, 27> findNeighbors(const BrickLevel& coarse, int parent, int octa
   for (int o = 0; o < 27; ++o) {
     const int x = (octant & 1) + o % 3 - 1, y = (octant >> 1 & 1) + o / 3 % 3 - 1, z = (octant >> 2) + o / 9 - 1;
     const int at = offsetIndex(x >> 1, y >> 1, z >> 1);
-    const int uncle = coarse.neighbors[static_cast<std::size_t>(parent)][static_cast<std::size_t>(at)];
+    const int uncle = coarse.neighbors[parent][at];
     const int child = (x & 1) | (y & 1) << 1 | (z & 1) << 2;
-    found[static_cast<std::size_t>(o)] =
-        uncle < 0 ? -1 : coarse.children[static_cast<std::size_t>(uncle)][static_cast<std::size_t>(child)];
+    found[o] = uncle < 0 ? -1 : coarse.children[uncle][child];
   }
   return found;
 }
 
 void linkLevel(Octree& tree, int depth, int threads)
 {
-  BrickLevel& level = tree.levels[static_cast<std::size_t>(depth)];
+  BrickLevel& level = tree.levels[depth];
   std::array<int, 8> no_children;
   no_children.fill(-1);
   level.children.assign(level.codes.size(), no_children);
@@ -129,7 +127,7 @@ void linkLevel(Octree& tree, int depth, int threads)
     level.neighbors[0][offset_self] = 0;
     return;
   }
-  BrickLevel& coarse = tree.levels[static_cast<std::size_t>(depth - 1)];
+  BrickLevel& coarse = tree.levels[depth - 1];
   linkToParents(coarse, level);
   parallelFor(level.size(), threads, [&](Index b) {
     const auto i = static_cast<std::size_t>(b);
@@ -140,7 +138,7 @@ void linkLevel(Octree& tree, int depth, int threads)
 
 std::array<int, 3> BrickLevel::corner(Index b) const
 {
-  const auto [x, y, z] = mortonCell(codes[static_cast<std::size_t>(b)]);
+  const auto [x, y, z] = mortonCell(codes[b]);
   return {x * brick_cells, y * brick_cells, z * brick_cells};
 }
 
@@ -157,8 +155,8 @@ Octree linkBricks(std::vector<std::vector<std::uint64_t>> codes, int full_depth,
   tree.full_depth = full_depth;
   tree.levels.resize(codes.size());
   for (int d = 2; d <= tree.depth; ++d) {
-    tree.levels[static_cast<std::size_t>(d)].depth = d;
-    tree.levels[static_cast<std::size_t>(d)].codes = std::move(codes[static_cast<std::size_t>(d)]);
+    tree.levels[d].depth = d;
+    tree.levels[d].codes = std::move(codes[d]);
     linkLevel(tree, d, threads);
   }
   return tree;
@@ -169,7 +167,7 @@ Octree buildOctree(const Array<std::uint64_t>& cell_codes, int depth, int full_d
   std::vector<std::vector<std::uint64_t>> codes(static_cast<std::size_t>(depth) + 1);
   std::vector<Occupied> occupied = occupiedBricks(cell_codes);
   for (int d = depth; d >= 2; --d) {
-    codes[static_cast<std::size_t>(d)] = d <= full_depth ? allBricks(d) : dilate(occupied, d);
+    codes[d] = d <= full_depth ? allBricks(d) : dilate(occupied, d);
     occupied = coarsen(occupied);
   }
   return linkBricks(std::move(codes), full_depth, threads);
@@ -180,8 +178,7 @@ std::vector<Index> countBricks(const Array<std::uint64_t>& cell_codes, int depth
   std::vector<Index> counts(static_cast<std::size_t>(depth) + 1, 0);
   std::vector<Occupied> occupied = occupiedBricks(cell_codes);
   for (int d = depth; d >= 2; --d) {
-    counts[static_cast<std::size_t>(d)] =
-        d <= full_depth ? Index(1) << (3 * (d - 2)) : static_cast<Index>(dilate(occupied, d).size());
+    counts[d] = d <= full_depth ? Index(1) << (3 * (d - 2)) : static_cast<Index>(dilate(occupied, d).size());
     occupied = coarsen(occupied);
   }
   return counts;
@@ -196,9 +193,9 @@ void NodeField::clear(int threads)
 
 NodePlace findNode(const BrickLevel& level, Index b, int x, int y, int z)
 {
-  const auto& neighbors = level.neighbors[static_cast<std::size_t>(b)];
+  const auto& neighbors = level.neighbors[b];
   const int ox = x >> 2, oy = y >> 2, oz = z >> 2;
-  const int owner = neighbors[static_cast<std::size_t>(offsetIndex(ox, oy, oz))];
+  const int owner = neighbors[offsetIndex(ox, oy, oz)];
   if (owner >= 0)
     return {owner, nodeIndex(x & 3, y & 3, z & 3)};
   const int mx = std::min(ox, (x - 1) >> 2), my = std::min(oy, (y - 1) >> 2), mz = std::min(oz, (z - 1) >> 2);
@@ -206,7 +203,7 @@ NodePlace findNode(const BrickLevel& level, Index b, int x, int y, int z)
     const int px = m & 1 ? mx : ox, py = m & 2 ? my : oy, pz = m & 4 ? mz : oz;
     if (px < -1 || py < -1 || pz < -1)
       continue;
-    const int holder = neighbors[static_cast<std::size_t>(offsetIndex(px, py, pz))];
+    const int holder = neighbors[offsetIndex(px, py, pz)];
     if (holder >= 0)
       return {holder, nodeIndex(x - 4 * px, y - 4 * py, z - 4 * pz)};
   }
@@ -216,11 +213,11 @@ NodePlace findNode(const BrickLevel& level, Index b, int x, int y, int z)
 void sumFaces(const BrickLevel& level, NodeField& field, int threads)
 {
   parallelFor(level.size(), threads, [&](Index b) {
-    const auto& neighbors = level.neighbors[static_cast<std::size_t>(b)];
+    const auto& neighbors = level.neighbors[b];
     float* own = field.brick(b);
     for (int o = 0; o < 8; ++o) { // bits: below in x, y, z
       const int dx = o & 1, dy = o >> 1 & 1, dz = o >> 2;
-      const int n = neighbors[static_cast<std::size_t>(offsetIndex(-dx, -dy, -dz))];
+      const int n = neighbors[offsetIndex(-dx, -dy, -dz)];
       if (o == 0 || n < 0)
         continue;
       const float* other = field.brick(n);
@@ -236,12 +233,12 @@ void sumFaces(const BrickLevel& level, NodeField& field, int threads)
 void syncFaces(const BrickLevel& level, NodeField& field, int threads)
 {
   parallelFor(level.size(), threads, [&](Index b) {
-    const auto& neighbors = level.neighbors[static_cast<std::size_t>(b)];
+    const auto& neighbors = level.neighbors[b];
     float* own = field.brick(b);
     for (int z = 0; z < brick_nodes; ++z)
       for (int y = 0; y < brick_nodes; ++y)
         for (int x = (y == 4 || z == 4) ? 0 : 4; x < brick_nodes; ++x) {
-          const int n = neighbors[static_cast<std::size_t>(offsetIndex(x >> 2, y >> 2, z >> 2))];
+          const int n = neighbors[offsetIndex(x >> 2, y >> 2, z >> 2)];
           if (n >= 0)
             own[nodeIndex(x, y, z)] = field.brick(n)[nodeIndex(x & 3, y & 3, z & 3)];
         }

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include "poisson/octree/array.h"
 #include <Eigen/Core>
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <fresco/core/array.h>
 #include <fresco/core/types.h>
 #include <memory>
 #include <vector>
@@ -97,7 +97,7 @@ NodePlace findNode(const BrickLevel& level, Index b, int x, int y, int z);
 inline bool holdsNode(const BrickLevel& level, Index b, int x, int y, int z)
 {
   const int o = offsetIndex(x >> 2, y >> 2, z >> 2);
-  return o == offset_self || level.neighbors[static_cast<std::size_t>(b)][static_cast<std::size_t>(o)] < 0;
+  return o == offset_self || level.neighbors[b][o] < 0;
 }
 
 /// Adds the values on the upper faces of the neighbours to the nodes they are

@@ -27,15 +27,15 @@ void sortDigit(const Array<std::uint64_t>& from, Array<std::uint64_t>& to, int s
 {
   const auto n = static_cast<Index>(from.size());
   const Index chunk = std::max<Index>(1 << 14, (n + 31) / 32);
-  std::vector<Counts> counts(static_cast<std::size_t>((n + chunk - 1) / chunk));
-  const auto countsOf = [&](Index begin) -> Counts& { return counts[static_cast<std::size_t>(begin / chunk)]; };
+  std::vector<Counts> counts((n + chunk - 1) / chunk);
+  const auto countsOf = [&](Index begin) -> Counts& { return counts[begin / chunk]; };
   parallelRanges(
       n, threads,
       [&](Index begin, Index end) {
         Counts& count = countsOf(begin);
         count.fill(0);
         for (Index i = begin; i < end; ++i)
-          ++count[digitOf(from[static_cast<std::size_t>(i)], shift)];
+          ++count[digitOf(from[i], shift)];
       },
       chunk);
   placeChunks(counts);
@@ -44,7 +44,7 @@ void sortDigit(const Array<std::uint64_t>& from, Array<std::uint64_t>& to, int s
       [&](Index begin, Index end) {
         Counts& place = countsOf(begin);
         for (Index i = begin; i < end; ++i) {
-          const std::uint64_t item = from[static_cast<std::size_t>(i)];
+          const std::uint64_t item = from[i];
           to[place[digitOf(item, shift)]++] = item;
         }
       },

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include "poisson/octree/array.h"
 #include <cstdint>
+#include <fresco/core/array.h>
 #include <fresco/core/parallel.h>
 namespace fresco::poisson {
 /// The numbers i of 0..n-1 with holds(i), rising.
@@ -11,7 +11,7 @@ Array<std::uint32_t> selectIndices(Index n, int threads, const Predicate& holds,
 {
   constexpr Index chunk = 1 << 14;
   std::vector<std::size_t> place(static_cast<std::size_t>((n + chunk - 1) / chunk) + 1, 0);
-  const auto placeOf = [&](Index begin) -> std::size_t& { return place[static_cast<std::size_t>(begin / chunk)]; };
+  const auto placeOf = [&](Index begin) -> std::size_t& { return place[begin / chunk]; };
   parallelRanges(
       n, threads,
       [&](Index begin, Index end) {

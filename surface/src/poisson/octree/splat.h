@@ -73,11 +73,11 @@ public:
   float& at(int x, int y, int z) { return data_[index(x, y, z)]; }
   void addTo(const BrickLevel& level, Index brick, NodeField& field) const
   {
-    const auto& neighbors = level.neighbors[static_cast<std::size_t>(brick)];
+    const auto& neighbors = level.neighbors[brick];
     for (int dz = -1; dz <= 1; ++dz)
       for (int dy = -1; dy <= 1; ++dy)
         for (int dx = -1; dx <= 1; ++dx) {
-          const int n = neighbors[static_cast<std::size_t>(offsetIndex(dx, dy, dz))];
+          const int n = neighbors[offsetIndex(dx, dy, dz)];
           if (n >= 0)
             forEachRow(dx, dy, dz, [&](int x, int y, int z, int count) {
               float* to = field.brick(n) + nodeIndex(x & 3, y & 3, z & 3);
@@ -130,10 +130,10 @@ void splatBricks(const BrickLevel& level, const Array<std::uint32_t>& begin, Nod
                  const Splat& splat)
 {
   for (const std::vector<BrickRun>& runs : level.colors)
-    parallelFor(static_cast<Index>(runs.size()), threads, [&](Index r) {
-      const BrickRun run = runs[static_cast<std::size_t>(r)];
+    parallelFor(runs.size(), threads, [&](Index r) {
+      const BrickRun run = runs[r];
       for (int b = run.begin; b < run.end; ++b) {
-        if (begin[static_cast<std::size_t>(b)] == begin[static_cast<std::size_t>(b) + 1])
+        if (begin[b] == begin[static_cast<std::size_t>(b) + 1])
           continue;
         SplatBlock<reach> block;
         block.clear();

@@ -82,6 +82,6 @@ NodeField solveBase(const Octree& tree, const std::vector<NodeField>& right, con
   const SampleLevel& samples = levels[std::min(static_cast<std::size_t>(tree.full_depth) + 1, levels.size() - 1)];
   x.values.array() -= meanAtSamples(x, samples, std::ldexp(1.0, tree.full_depth - tree.depth));
   closeBoundary(x);
-  return scatter(tree.levels[static_cast<std::size_t>(tree.full_depth)], x);
+  return scatter(tree.levels[tree.full_depth], x);
 }
 } // namespace fresco::poisson

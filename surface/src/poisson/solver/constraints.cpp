@@ -39,7 +39,7 @@ void splatLevel(const BrickLevel& level, const Samples& samples, NodeField& fiel
   const float scale = std::ldexp(1.f, level.depth - finest);
   splatBricks<Weights::reach>(level, begin, field, threads, [&](SplatBlock<Weights::reach>& block, int b) {
     const Eigen::Vector3f origin = level.origin(b);
-    for (std::uint32_t i = begin[static_cast<std::size_t>(b)]; i < begin[static_cast<std::size_t>(b) + 1]; ++i) {
+    for (std::uint32_t i = begin[b]; i < begin[static_cast<std::size_t>(b) + 1]; ++i) {
       const Sample& s = samples.samples[i];
       const float w = share(s.depth, level.depth, finest);
       if (w > 0.f)

@@ -46,7 +46,7 @@ std::array<Index, 8> cornerNodes(const DenseGrid& grid, const Eigen::Vector3i& c
 {
   std::array<Index, 8> nodes;
   for (int i = 0; i < 8; ++i)
-    nodes[static_cast<std::size_t>(i)] = grid.at(cell.x() + (i & 1), cell.y() + (i >> 1 & 1), cell.z() + (i >> 2));
+    nodes[i] = grid.at(cell.x() + (i & 1), cell.y() + (i >> 1 & 1), cell.z() + (i >> 2));
   return nodes;
 }
 
@@ -113,7 +113,7 @@ double interpolate(const DenseGrid& grid, const Eigen::Vector3d& position)
   const std::array<Index, 8> nodes = cornerNodes(grid, cell);
   double sum = 0;
   for (int i = 0; i < 8; ++i)
-    sum += weights[i] * grid.values[nodes[static_cast<std::size_t>(i)]];
+    sum += weights[i] * grid.values[nodes[i]];
   return sum;
 }
 
@@ -128,8 +128,7 @@ DenseSystem::DenseSystem(int cells, const SampleLevel& samples, double scale, do
   forEachCell(cells, [&](const Eigen::Vector3i& cell, std::size_t index) {
     const std::array<Index, 8> nodes = cornerNodes(shape_, cell);
     for (int i = 0; i < 8; ++i)
-      diagonal_[nodes[static_cast<std::size_t>(i)]] +=
-          block_of_cell_[index] < 0 ? base(i, i) : blocks_[static_cast<std::size_t>(block_of_cell_[index])](i, i);
+      diagonal_[nodes[i]] += block_of_cell_[index] < 0 ? base(i, i) : blocks_[block_of_cell_[index]](i, i);
   });
 }
 
@@ -137,14 +136,14 @@ void DenseSystem::addSample(const CoarseSample& sample, double scale, double poi
 {
   const Eigen::Vector3d position = sample.position.cast<double>() * scale;
   const Eigen::Vector3i cell = cellOf(position, shape_.cells);
-  int& block = block_of_cell_[static_cast<std::size_t>(cell.x() + shape_.cells * (cell.y() + shape_.cells * cell.z()))];
+  int& block = block_of_cell_[cell.x() + shape_.cells * (cell.y() + shape_.cells * cell.z())];
   if (block < 0) {
     block = static_cast<int>(blocks_.size());
     blocks_.push_back(stiffness());
   }
   const Corners weights = cornerWeights(position - cell.cast<double>());
-  blocks_[static_cast<std::size_t>(block)] += point_weight * screeningWeight(sample.noise * static_cast<float>(scale)) *
-                                              sample.area * scale * scale * weights * weights.transpose();
+  blocks_[block] += point_weight * screeningWeight(sample.noise * static_cast<float>(scale)) * sample.area * scale *
+                    scale * weights * weights.transpose();
 }
 
 /// Slices of cells in two colours: those of one colour share no node.
@@ -165,12 +164,12 @@ void DenseSystem::multiplySlice(int z, const Eigen::VectorXd& x, Eigen::VectorXd
       const std::array<Index, 8> nodes = cornerNodes(shape_, Eigen::Vector3i(cell_x, cell_y, z));
       Corners local;
       for (int i = 0; i < 8; ++i)
-        local[i] = x[nodes[static_cast<std::size_t>(i)]];
+        local[i] = x[nodes[i]];
       const int block = block_of_cell_[index];
-      const Block& matrix = block < 0 ? base : blocks_[static_cast<std::size_t>(block)];
+      const Block& matrix = block < 0 ? base : blocks_[block];
       const Corners product = matrix * local;
       for (int i = 0; i < 8; ++i)
-        y[nodes[static_cast<std::size_t>(i)]] += product[i];
+        y[nodes[i]] += product[i];
     }
 }
 

@@ -45,31 +45,31 @@ WaveFilter::WaveFilter(const BrickLevel& level, const SampleLevel& samples, int 
   });
   parallelFor(level.size(), threads, [&](Index b) {
     BrickSums around;
-    for (const int n : level_.neighbors[static_cast<std::size_t>(b)])
+    for (const int n : level_.neighbors[b])
       if (n >= 0) {
-        const BrickSums& part = sums[static_cast<std::size_t>(n)];
+        const BrickSums& part = sums[n];
         around = {around.area + part.area, around.lack + part.lack, around.noise + part.noise};
       }
-    strengths_[static_cast<std::size_t>(b)] = strengthOf(around);
+    strengths_[b] = strengthOf(around);
   });
 }
 
 void WaveFilter::apply(NodeField& chi, NodeField& spare) const
 {
-  const auto isActive = [&](int b) { return b >= 0 && strengths_[static_cast<std::size_t>(b)] > 0.f; };
+  const auto isActive = [&](int b) { return b >= 0 && strengths_[b] > 0.f; };
   if (std::none_of(strengths_.begin(), strengths_.end(), [](float w) { return w > 0.f; }))
     return;
   parallelFor(level_.size(), threads_, [&](Index b) {
     float* to = spare.brick(b);
     std::memset(to, 0, brick_stride * sizeof(float));
-    const auto& around = level_.neighbors[static_cast<std::size_t>(b)];
+    const auto& around = level_.neighbors[b];
     if (std::any_of(around.begin(), around.end(), isActive))
       addWaves(b, chi, 1.f, to);
   });
   syncFaces(level_, spare, threads_);
   parallelFor(level_.size(), threads_, [&](Index b) {
     if (isActive(static_cast<int>(b)))
-      addWaves(b, spare, -strengths_[static_cast<std::size_t>(b)], chi.brick(b));
+      addWaves(b, spare, -strengths_[b], chi.brick(b));
   });
   syncFaces(level_, chi, threads_);
 }

@@ -36,12 +36,12 @@ LevelSystem::LevelSystem(const BrickLevel& level, const SampleLevel& samples, in
       samples_(samples.samples.size()), threads_(threads)
 {
   const float scale = std::ldexp(1.f, level.depth - finest);
-  parallelFor(static_cast<Index>(samples_.size()), threads, [&](Index i) {
-    const CoarseSample& s = samples.samples[static_cast<std::size_t>(i)];
+  parallelFor(samples_.size(), threads, [&](Index i) {
+    const CoarseSample& s = samples.samples[i];
     const float isolated = std::clamp(static_cast<float>(level.depth) + 1.f - s.depth, 0.f, 1.f);
     const float faces = std::min(s.area * scale * scale, most_faces);
     const float weight = point_weight * screeningWeight(s.noise * scale) * faces;
-    samples_[static_cast<std::size_t>(i)] = {s.position * scale, weight, isolated};
+    samples_[i] = {s.position * scale, weight, isolated};
   });
   for (int k = 0; k < 27; ++k) {
     std::fill_n(laplacian_rows_[k], own_nodes, laplacian[axesOf(k)]);
@@ -65,13 +65,13 @@ void LevelSystem::addSample(const HatWeights& hat, float weight, Block& block)
 void LevelSystem::assemble(Index brick, Block& block) const
 {
   std::memcpy(block.rows, laplacian_rows_, sizeof(block.rows));
-  const auto& neighbors = level_.neighbors[static_cast<std::size_t>(brick)];
+  const auto& neighbors = level_.neighbors[brick];
   const Eigen::Vector3f origin = level_.origin(brick);
   for (int o = 0; o < 8; ++o) {
-    const int n = neighbors[static_cast<std::size_t>(offsetIndex(-(o & 1), -(o >> 1 & 1), -(o >> 2)))];
+    const int n = neighbors[offsetIndex(-(o & 1), -(o >> 1 & 1), -(o >> 2))];
     if (n < 0)
       continue;
-    for (std::uint32_t i = begin_[static_cast<std::size_t>(n)]; i < begin_[static_cast<std::size_t>(n) + 1]; ++i) {
+    for (std::uint32_t i = begin_[n]; i < begin_[static_cast<std::size_t>(n) + 1]; ++i) {
       const Eigen::Vector3f position = samples_[i].position - origin;
       if (position.x() >= -1.f && position.y() >= -1.f && position.z() >= -1.f && samples_[i].weight > 0.f)
         addSample(HatWeights(position), samples_[i].weight, block);
@@ -137,8 +137,8 @@ void LevelSystem::smooth(const NodeField& b, int iterations, NodeField& x) const
 {
   for (int done = 0; done < iterations; done += local_sweeps)
     for (const std::vector<BrickRun>& runs : level_.colors)
-      parallelFor(static_cast<Index>(runs.size()), threads_, [&](Index r) {
-        const BrickRun run = runs[static_cast<std::size_t>(r)];
+      parallelFor(runs.size(), threads_, [&](Index r) {
+        const BrickRun run = runs[r];
         for (int brick = run.begin; brick < run.end; ++brick)
           smoothBrick(brick, b, std::min(local_sweeps, iterations - done), x);
       });
@@ -162,7 +162,7 @@ void LevelSystem::addPull(const NodeField& x, NodeField& pull) const
 {
   splatBricks(level_, begin_, pull, threads_, [&](SplatBlock<1>& block, int b) {
     const Eigen::Vector3f origin = level_.origin(b);
-    for (std::uint32_t i = begin_[static_cast<std::size_t>(b)]; i < begin_[static_cast<std::size_t>(b) + 1]; ++i) {
+    for (std::uint32_t i = begin_[b]; i < begin_[static_cast<std::size_t>(b) + 1]; ++i) {
       const Constraint& s = samples_[i];
       if (s.isolated * s.weight <= 0.f)
         continue;

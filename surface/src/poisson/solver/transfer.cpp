@@ -75,7 +75,7 @@ void restrictLevel(const BrickLevel& fine_level, const NodeField& fine, const Br
           if (!holdsNode(coarse_level, p, x, y, z))
             parent[nodeIndex(x, y, z)] = 0.f;
     for (int octant = 0; octant < 8; ++octant) {
-      const int c = coarse_level.children[static_cast<std::size_t>(p)][static_cast<std::size_t>(octant)];
+      const int c = coarse_level.children[p][octant];
       if (c < 0)
         continue;
       float held[brick_stride];

@@ -56,7 +56,7 @@ PointSet toPointSet(const pcl::PointCloud<PointT>& cloud, const pcl::Indices& in
 template <typename PointT>
 void toPointCloud(const PointSet& set, pcl::PointCloud<PointT>& cloud)
 {
-  cloud.points.assign(static_cast<std::size_t>(set.size()), PointT());
+  cloud.points.assign(set.size(), PointT());
   cloud.width = static_cast<std::uint32_t>(set.size());
   cloud.height = 1;
   cloud.is_dense = set.points.allFinite();

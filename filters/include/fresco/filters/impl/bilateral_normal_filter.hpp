@@ -18,7 +18,7 @@ void BilateralNormalFilter<PointNT>::applyFilter(PointCloud& output)
   else
     pcl::copyPointCloud(*this->input_, *this->indices_, output);
   for (Index i = 0; i < set.size(); ++i) {
-    PointNT& point = output[static_cast<std::size_t>(i)];
+    PointNT& point = output[i];
     point.getVector3fMap() = result.points.col(i);
     point.getNormalVector3fMap() = result.normals.col(i);
   }

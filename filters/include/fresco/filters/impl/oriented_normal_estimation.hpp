@@ -71,7 +71,7 @@ void OrientedNormalEstimation<PointInT, PointOutT>::computeFeature(PointCloudOut
   confidences_.setZero(static_cast<Index>(places.size()));
   for (std::size_t i = 0; i < places.size(); ++i) {
     PointOutT& point = output[i];
-    pcl::copyPoint((*this->input_)[static_cast<std::size_t>((*this->indices_)[i])], point);
+    pcl::copyPoint((*this->input_)[(*this->indices_)[i]], point);
     const bool found = places[i] >= 0;
     point.getNormalVector3fMap() =
         found ? Eigen::Vector3f(field.normals.col(places[i])) : Eigen::Vector3f::Constant(NAN);

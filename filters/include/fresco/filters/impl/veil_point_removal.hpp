@@ -8,17 +8,17 @@ void VeilPointRemoval<PointT>::applyFilter(pcl::Indices& indices)
 {
   const PointSet set = toPointSet(*this->input_, *this->indices_);
   const Points viewpoints = viewpoint_ ? Points(*viewpoint_) : set.viewpoints;
-  std::vector<char> stays(static_cast<std::size_t>(set.size()), 0);
+  std::vector<char> stays(set.size(), 0);
   for (const Index i : withoutVeil(set.points, viewpoints, options_))
-    stays[static_cast<std::size_t>(i)] = 1;
+    stays[i] = 1;
   indices.clear();
   this->removed_indices_->clear();
   for (Index i = 0; i < set.size(); ++i) {
-    const bool wanted = (stays[static_cast<std::size_t>(i)] != 0) != this->negative_ && set.points.col(i).allFinite();
+    const bool wanted = (stays[i] != 0) != this->negative_ && set.points.col(i).allFinite();
     if (wanted)
-      indices.push_back((*this->indices_)[static_cast<std::size_t>(i)]);
+      indices.push_back((*this->indices_)[i]);
     else if (this->extract_removed_indices_)
-      this->removed_indices_->push_back((*this->indices_)[static_cast<std::size_t>(i)]);
+      this->removed_indices_->push_back((*this->indices_)[i]);
   }
 }
 

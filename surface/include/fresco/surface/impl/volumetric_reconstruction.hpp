@@ -70,11 +70,11 @@ void VolumetricReconstruction<PointNT>::performReconstruction(pcl::PointCloud<Po
   points.header = this->input_->header;
   points.sensor_origin_ = this->input_->sensor_origin_;
   points.sensor_orientation_ = this->input_->sensor_orientation_;
-  polygons.resize(static_cast<std::size_t>(mesh.faceCount()));
+  polygons.resize(mesh.faceCount());
   for (Index f = 0; f < mesh.faceCount(); ++f) {
     const Eigen::Vector3i face = mesh.faces.col(f);
-    polygons[static_cast<std::size_t>(f)].vertices = {
-        static_cast<pcl::index_t>(face[0]), static_cast<pcl::index_t>(face[1]), static_cast<pcl::index_t>(face[2])};
+    polygons[f].vertices = {static_cast<pcl::index_t>(face[0]), static_cast<pcl::index_t>(face[1]),
+                            static_cast<pcl::index_t>(face[2])};
   }
 }
 } // namespace fresco

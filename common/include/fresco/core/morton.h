@@ -2,7 +2,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
-namespace fresco::poisson {
+namespace fresco {
 /// The lower 21 bits of `v` with two zero bits between each.
 inline std::uint64_t spreadBits(std::uint64_t v)
 {
@@ -36,4 +36,4 @@ inline std::array<int, 3> mortonCell(std::uint64_t code)
   return {static_cast<int>(gatherBits(code)), static_cast<int>(gatherBits(code >> 1)),
           static_cast<int>(gatherBits(code >> 2))};
 }
-} // namespace fresco::poisson
+} // namespace fresco

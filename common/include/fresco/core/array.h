@@ -4,7 +4,7 @@
 #include <new>
 #include <utility>
 #include <vector>
-namespace fresco::poisson {
+namespace fresco {
 /// Leaves new numbers unset, so that the parallel loop that fills an array is also the first to touch its memory.
 template <typename T>
 struct UnsetAllocator : std::allocator<T> {
@@ -33,4 +33,4 @@ struct UnsetAllocator : std::allocator<T> {
 /// Array of numbers, or of plain structs of them, whose elements have no value until they are given one.
 template <typename T>
 using Array = std::vector<T, UnsetAllocator<T>>;
-} // namespace fresco::poisson
+} // namespace fresco
