@@ -27,8 +27,8 @@ try {
   pcl::PolygonMesh sharp;
   optimization.process(sharp);
 
-  const fresco::SurfaceOptimizationResult& result = optimization.getResult();
-  std::cout << sharp.polygons.size() << " triangles, " << result.steps.size() << " iterations, " << result.flipped_edges
+  const fresco::NormalFilteringResult& result = optimization.getNormalFilteringResult();
+  std::cout << sharp.polygons.size() << " triangles, " << result.iterations << " iterations, " << result.flipped_edges
             << " edges flipped\n";
   return pcl::io::savePLYFileBinary(argv[3], sharp) == 0 ? 0 : 1;
 } catch (const std::exception& error) {

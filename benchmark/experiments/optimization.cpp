@@ -8,7 +8,8 @@
 #include <fresco/core/require.h>
 #include <fresco/io/mesh_io.h>
 #include <fresco/surface/core/mesh_distance.h>
-#include <fresco/surface/core/surface_optimization.h>
+#include <fresco/surface/core/normal_filtering.h>
+#include <fresco/surface/core/surface_energy.h>
 #include <fresco/surface/core/surface_samples.h>
 #include <fresco/surface/core/volumetric_reconstruction.h>
 #include <random>
@@ -18,7 +19,7 @@ using namespace fresco;
 struct Request {
   int count = 100000, depth = 7;
   double noise = 0.25;
-  std::string keep, mode = "best";
+  std::string keep, mode = "normal_filtering";
   std::vector<std::string> models;
   bool flip = false;
   CommonOptions common;
@@ -35,11 +36,13 @@ Request parse(int argc, char** argv)
   args.option("count", request.count, "samples, > 0");
   args.option("noise", request.noise, "deviation of Gaussian noise, % of the diagonal of the bounding box, > 0");
   args.option("depth", request.depth, "octree depth of the reconstruction, 2..16");
-  args.option("mode", request.mode, "best or faithful");
+  args.option("mode", request.mode, "normal_filtering or energy");
   args.flag("flip", request.flip, "with edge flips");
   args.option("keep", request.keep, "folder (must exist) for the meshes: NAME_before.ply, NAME_after.ply");
   request.common.declare(args);
   request.models = args.parse(argc, argv, 0, 100);
+  if (request.mode != "normal_filtering" && request.mode != "energy")
+    throw UsageError("-mode is normal_filtering or energy, not '" + request.mode + "'");
   return request;
 }
 
@@ -73,17 +76,26 @@ void printRow(const std::string& name, const TriangleMesh& mesh, const TriangleM
   std::fflush(stdout);
 }
 
+TriangleMesh optimized(const TriangleMesh& mesh, const PointSet& points, const Request& request)
+{
+  if (request.mode == "energy") {
+    EnergyOptions options;
+    options.threads = request.common.threads;
+    return minimizeSurfaceEnergy(mesh, points, options).mesh;
+  }
+  NormalFilteringOptions options;
+  options.flip = request.flip;
+  options.threads = request.common.threads;
+  return filterSurface(mesh, points, options).mesh;
+}
+
 void measure(const std::string& name, const TriangleMesh& reference, const Request& request, bool noisy)
 {
   const PointSet points = samplePoints(reference, request, noisy);
   VolumetricOptions volumetric;
   volumetric.depth = request.depth;
   const TriangleMesh before = reconstructVolumetric(points, volumetric).mesh;
-  SurfaceOptimizationOptions options;
-  options.mode = request.mode == "faithful" ? OptimizationMode::faithful : OptimizationMode::best;
-  options.flip = request.flip;
-  options.threads = request.common.threads;
-  const TriangleMesh after = optimizeSurface(before, points, options).mesh;
+  const TriangleMesh after = optimized(before, points, request);
   const std::string label = name + (noisy ? ", noisy" : ", exact");
   printRow(label + ", before", before, reference);
   printRow(label + ", after", after, reference);

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "experiments/sharp_shapes.h"
 #include <cmath>
+#include <fresco/core/constants.h>
 #include <functional>
 #include <map>
 #include <vector>
 namespace fresco::benchmark {
 namespace {
 using Eigen::Vector2d;
-constexpr double pi = 3.14159265358979323846;
 
 struct Builder {
   std::vector<Eigen::Vector3f> vertices;
@@ -16,7 +16,7 @@ struct Builder {
   int add(double x, double y, double z)
   {
     vertices.emplace_back(Eigen::Vector3d(x, y, z).cast<float>());
-    return static_cast<int>(vertices.size()) - 1;
+    return vertices.size() - 1;
   }
   void quad(int a, int b, int c, int d)
   {
@@ -26,12 +26,12 @@ struct Builder {
   TriangleMesh mesh() const
   {
     TriangleMesh mesh;
-    mesh.vertices.resize(3, static_cast<Index>(vertices.size()));
+    mesh.vertices.resize(3, vertices.size());
     for (std::size_t i = 0; i < vertices.size(); ++i)
-      mesh.vertices.col(static_cast<Index>(i)) = vertices[i];
-    mesh.faces.resize(3, static_cast<Index>(faces.size()));
+      mesh.vertices.col(i) = vertices[i];
+    mesh.faces.resize(3, faces.size());
     for (std::size_t i = 0; i < faces.size(); ++i)
-      mesh.faces.col(static_cast<Index>(i)) = faces[i];
+      mesh.faces.col(i) = faces[i];
     return mesh;
   }
 };
@@ -67,19 +67,17 @@ public:
 
   TriangleMesh mesh()
   {
-    for (int i = 0; i + 1 < static_cast<int>(x_.size()); ++i)
-      for (int k = 0; k + 1 < static_cast<int>(z_.size()); ++k)
+    for (int i = 0; i < cellsX(); ++i)
+      for (int k = 0; k < cellsZ(); ++k)
         if (isFilled(i, k))
           addCell(i, k);
     return builder_.mesh();
   }
 
 private:
-  bool isFilled(int i, int k) const
-  {
-    return i >= 0 && k >= 0 && i + 1 < static_cast<int>(x_.size()) && k + 1 < static_cast<int>(z_.size()) &&
-           filled_(i, k);
-  }
+  int cellsX() const { return x_.size() - 1; }
+  int cellsZ() const { return z_.size() - 1; }
+  bool isFilled(int i, int k) const { return i >= 0 && k >= 0 && i < cellsX() && k < cellsZ() && filled_(i, k); }
   int at(int i, int j, int k)
   {
     const auto [place, fresh] = index_.try_emplace({i, j, k}, 0);

@@ -3,7 +3,7 @@
 #include "fusion.h"
 #include <fresco/io/mesh_io.h>
 #include <fresco/io/point_io.h>
-#include <fresco/surface/core/surface_optimization.h>
+#include <fresco/surface/core/normal_filtering.h>
 namespace fresco::model {
 PointSet pointsForVertices(PointSet points, Index vertices, double cell)
 {
@@ -30,18 +30,18 @@ nlohmann::ordered_json makeOptimizedSurface(const ModelFiles& files, const Model
     writeMesh(files.mesh, surface);
     return {{"optimized", false}};
   }
-  SurfaceOptimizationOptions optimization;
-  optimization.flip = true;
-  optimization.threads = options.threads;
+  NormalFilteringOptions filtering;
+  filtering.flip = true;
+  filtering.threads = options.threads;
   const PointSet points = pointsForVertices(readPoints(files.points), surface.vertexCount(), options.cell);
-  const SurfaceOptimizationResult result = optimizeSurface(surface, points, optimization, progress);
+  const NormalFilteringResult result = filterSurface(surface, points, filtering, progress);
   writeMesh(files.mesh, result.mesh);
   return {{"optimized", true},
-          {"iterations", result.steps.size()},
+          {"iterations", result.iterations},
           {"converged", result.converged},
           {"points", points.size()},
           {"noise", result.noise},
-          {"supported_vertices", result.supported_vertices},
+          {"covered_vertices", result.covered_vertices},
           {"restored_vertices", result.restored_vertices},
           {"flipped_edges", result.flipped_edges}};
 }

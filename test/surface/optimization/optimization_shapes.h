@@ -2,8 +2,10 @@
 #pragma once
 #include <algorithm>
 #include <cmath>
+#include <fresco/core/constants.h>
 #include <fresco/core/point_set.h>
-#include <fresco/surface/core/surface_optimization.h>
+#include <fresco/surface/core/normal_filtering.h>
+#include <fresco/surface/core/surface_energy.h>
 #include <fresco/surface/core/volumetric_reconstruction.h>
 #include <map>
 #include <random>
@@ -46,12 +48,12 @@ inline TriangleMesh roundedCube(int n, double rounding)
           }
         }
   TriangleMesh mesh;
-  mesh.vertices.resize(3, static_cast<Index>(vertices.size()));
+  mesh.vertices.resize(3, vertices.size());
   for (std::size_t v = 0; v < vertices.size(); ++v)
-    mesh.vertices.col(static_cast<Index>(v)) = vertices[v];
-  mesh.faces.resize(3, static_cast<Index>(faces.size()));
+    mesh.vertices.col(v) = vertices[v];
+  mesh.faces.resize(3, faces.size());
   for (std::size_t f = 0; f < faces.size(); ++f)
-    mesh.faces.col(static_cast<Index>(f)) = faces[f];
+    mesh.faces.col(f) = faces[f];
   return mesh;
 }
 
@@ -60,7 +62,7 @@ inline PointSet cubePoints(Index count, double noise, unsigned seed = 3)
 {
   std::mt19937 random(seed);
   std::uniform_real_distribution<float> unit(-1, 1);
-  std::normal_distribution<float> error(0.f, static_cast<float>(noise));
+  std::normal_distribution<float> error(0.f, noise);
   PointSet set;
   set.points.resize(3, count);
   set.normals.setZero(3, count);
@@ -103,7 +105,7 @@ inline double bentShare(const TriangleMesh& mesh)
     const Eigen::Vector3d n = (mesh.vertices.col(mesh.faces(1, f)).cast<double>() - a)
                                   .cross(mesh.vertices.col(mesh.faces(2, f)).cast<double>() - a);
     all += n.norm();
-    if (n.cwiseAbs().maxCoeff() < std::cos(20 * 3.14159265 / 180) * n.norm())
+    if (n.cwiseAbs().maxCoeff() < std::cos(20 * radians_per_degree) * n.norm())
       bent += n.norm();
   }
   return bent / all;

@@ -14,40 +14,71 @@ constexpr double cell = 2.0 / 20;
 
 TriangleMesh rounded() { return test::roundedCube(20, 0.15); }
 
-SurfaceOptimizationOptions inMode(OptimizationMode mode)
+struct Settings {
+  int iterations = 0; // 0 = enough for a test
+  int threads = 0;
+  bool flip = false; // normal filtering only
+};
+
+struct Outcome {
+  TriangleMesh mesh;
+  std::vector<double> before, after; // energy, of each step
+};
+
+template <typename Result>
+Outcome outcomeOf(const Result& result)
 {
-  SurfaceOptimizationOptions options;
-  options.mode = mode;
-  options.iterations = mode == OptimizationMode::best ? 10 : 15;
-  return options;
+  Outcome outcome{result.mesh, {}, {}};
+  for (const auto& step : result.steps) {
+    outcome.before.push_back(step.before);
+    outcome.after.push_back(step.after);
+  }
+  EXPECT_EQ(result.iterations, Index(result.steps.size()));
+  return outcome;
 }
 
 class BothModes : public testing::TestWithParam<OptimizationMode> {
 protected:
-  SurfaceOptimizationOptions options() const { return inMode(GetParam()); }
+  static bool isEnergy() { return GetParam() == OptimizationMode::energy; }
+
+  static Outcome optimized(const TriangleMesh& mesh, const PointSet& points, const Settings& settings = {})
+  {
+    if (isEnergy()) {
+      EnergyOptions options;
+      options.iterations = settings.iterations > 0 ? settings.iterations : 15;
+      options.threads = settings.threads;
+      return outcomeOf(minimizeSurfaceEnergy(mesh, points, options));
+    }
+    NormalFilteringOptions options;
+    options.iterations = settings.iterations > 0 ? settings.iterations : 10;
+    options.threads = settings.threads;
+    options.flip = settings.flip;
+    return outcomeOf(filterSurface(mesh, points, options));
+  }
 };
-INSTANTIATE_TEST_SUITE_P(Optimization, BothModes, testing::Values(OptimizationMode::best, OptimizationMode::faithful),
+INSTANTIATE_TEST_SUITE_P(Optimization, BothModes,
+                         testing::Values(OptimizationMode::normal_filtering, OptimizationMode::energy),
                          [](const auto& mode) {
-                           return mode.param == OptimizationMode::best ? std::string("best") : std::string("faithful");
+                           return std::string(mode.param == OptimizationMode::energy ? "energy" : "normal_filtering");
                          });
 
 TEST_P(BothModes, EnergyNeverRises)
 {
-  const SurfaceOptimizationResult result = optimizeSurface(rounded(), test::cubePoints(8000, 0.01), options());
-  ASSERT_FALSE(result.steps.empty());
-  for (const OptimizationStep& step : result.steps)
-    EXPECT_LE(step.after, step.before * (1 + 1e-12));
-  if (GetParam() == OptimizationMode::best)
+  const Outcome result = optimized(rounded(), test::cubePoints(8000, 0.01));
+  ASSERT_FALSE(result.after.empty());
+  for (std::size_t i = 0; i < result.after.size(); ++i)
+    EXPECT_LE(result.after[i], result.before[i] * (1 + 1e-12));
+  if (!isEnergy())
     return;
   // One energy throughout: new correspondences and a smaller kappa_2 only lower it.
-  for (std::size_t i = 1; i < result.steps.size(); ++i)
-    EXPECT_LE(result.steps[i].before, result.steps[i - 1].after * (1 + 1e-6));
+  for (std::size_t i = 1; i < result.after.size(); ++i)
+    EXPECT_LE(result.before[i], result.after[i - 1] * (1 + 1e-6));
 }
 
 TEST_P(BothModes, FitsBetterAndStaysWatertight)
 {
   const TriangleMesh before = rounded();
-  const TriangleMesh after = optimizeSurface(before, test::cubePoints(8000, 0.01), options()).mesh;
+  const TriangleMesh after = optimized(before, test::cubePoints(8000, 0.01)).mesh;
   EXPECT_LT(test::cubeErrors(after).first, test::cubeErrors(before).first);
   EXPECT_TRUE(meshTopology(after).watertight);
   EXPECT_EQ(after.faces, before.faces);
@@ -55,15 +86,9 @@ TEST_P(BothModes, FitsBetterAndStaysWatertight)
 
 TEST_P(BothModes, SameBitsForAnyNumberOfThreads)
 {
-  SurfaceOptimizationOptions one = options();
-  one.iterations = 4;
-  one.flip = true;
-  one.threads = 1;
-  SurfaceOptimizationOptions four = one;
-  four.threads = 4;
   const PointSet points = test::cubePoints(10000, 0.01);
-  const TriangleMesh a = optimizeSurface(rounded(), points, one).mesh,
-                     b = optimizeSurface(rounded(), points, four).mesh;
+  const TriangleMesh a = optimized(rounded(), points, {4, 1, true}).mesh,
+                     b = optimized(rounded(), points, {4, 4, true}).mesh;
   EXPECT_EQ(a.vertices, b.vertices);
   EXPECT_EQ(a.faces, b.faces);
 }
@@ -74,7 +99,7 @@ TEST_P(BothModes, NoDamageOnASphere)
   PointSet points;
   points.points = test::sphere(1.f, 5).vertices;
   points.normals = points.points;
-  const TriangleMesh after = optimizeSurface(mesh, points, options()).mesh;
+  const TriangleMesh after = optimized(mesh, points).mesh;
   // The sagitta of the triangles of the mesh: nothing is farther off than its flat faces are.
   double longest = 0;
   for (Index f = 0; f < mesh.faceCount(); ++f)
@@ -99,9 +124,9 @@ TEST(Optimization, ContradictingDataDrawNoSplinters)
   std::mt19937 random(5);
   for (Index i = 0; i < points.points.size(); ++i) // noise as large as an edge
     points.points.data()[i] += 0.15f * (static_cast<float>(random() % 2000) / 1000.f - 1.f) * 1.7f;
-  const SurfaceOptimizationResult result = optimizeSurface(mesh, points);
+  const NormalFilteringResult result = filterSurface(mesh, points);
   const double farthest = (result.mesh.vertices - mesh.vertices).colwise().norm().maxCoeff();
-  EXPECT_LE(farthest, 4 * result.edge_length); // three, and what the mending of folds may add
+  EXPECT_LE(farthest, 4 * result.edge_length); // three, and what the mending of inverted faces may add
   EXPECT_LT(result.steps.size(), 15U);         // nothing to converge to: no steps are wasted
   EXPECT_FALSE(result.converged);
 }
@@ -110,7 +135,7 @@ TEST(Optimization, CreasesAreSharpAndFlatPartsFlat)
 {
   for (const double noise : {0.0, 0.01}) {
     const TriangleMesh before = rounded();
-    const SurfaceOptimizationResult result = optimizeSurface(before, test::cubePoints(20000, noise));
+    const NormalFilteringResult result = filterSurface(before, test::cubePoints(20000, noise));
     EXPECT_LT(test::bentShare(result.mesh), 0.2 * test::bentShare(before)) << noise;
     EXPECT_LT(test::cubeErrors(result.mesh).first, 0.25 * noise + 0.02 * cell) << noise; // many data averaged
     EXPECT_LT(test::cubeErrors(result.mesh).second, noise + 0.5 * cell) << noise;
@@ -120,7 +145,7 @@ TEST(Optimization, CreasesAreSharpAndFlatPartsFlat)
 
 TEST(Optimization, ReachesEdgesAndCorners)
 {
-  const TriangleMesh after = optimizeSurface(rounded(), test::cubePoints(20000, 0.0)).mesh;
+  const TriangleMesh after = filterSurface(rounded(), test::cubePoints(20000, 0.0)).mesh;
   const MeshDistanceResult distance = measureMeshDistance(after, [] {
     TriangleMesh cube = test::box(Eigen::Vector3f::Constant(2));
     cube.vertices.array() -= 1.f;
@@ -139,8 +164,8 @@ TEST(Optimization, WithoutDataVerticesStay)
   for (Index i = 0; i < half.size(); ++i)
     if (half.points(0, i) > 0.f)
       kept.push_back(i);
-  const SurfaceOptimizationResult result = optimizeSurface(mesh, selectPoints(half, kept));
-  EXPECT_LT(result.supported_vertices, mesh.vertexCount() * 2 / 3);
+  const NormalFilteringResult result = filterSurface(mesh, selectPoints(half, kept));
+  EXPECT_LT(result.covered_vertices, mesh.vertexCount() * 2 / 3);
   for (Index v = 0; v < mesh.vertexCount(); ++v)
     if (mesh.vertices(0, v) < -0.3f) {
       EXPECT_EQ(mesh.vertices.col(v), result.mesh.vertices.col(v));
@@ -157,7 +182,7 @@ TEST(Optimization, AttributesPassThrough)
   PointSet points = test::cubePoints(5000, 0.0);
   points.origin = mesh.origin + Eigen::Vector3d(1, 2, 3);
   points.points.colwise() -= Eigen::Vector3f(1, 2, 3);
-  const TriangleMesh after = optimizeSurface(mesh, points).mesh;
+  const TriangleMesh after = filterSurface(mesh, points).mesh;
   EXPECT_EQ(after.colors, mesh.colors);
   EXPECT_EQ(after.fields.at("support"), mesh.fields.at("support"));
   EXPECT_EQ(after.origin, mesh.origin);
@@ -177,19 +202,19 @@ TEST(Optimization, MovesAndScalesWithItsInput)
   PointSet others = points;
   others.points = (s * R * points.points).colwise() + t * s;
   others.normals = R * points.normals;
-  SurfaceOptimizationOptions options;
+  NormalFilteringOptions options;
   options.iterations = 3;
-  const Points expected = (s * R * optimizeSurface(mesh, points, options).mesh.vertices).colwise() + t * s;
-  const Points found = optimizeSurface(other, others, options).mesh.vertices;
+  const Points expected = (s * R * filterSurface(mesh, points, options).mesh.vertices).colwise() + t * s;
+  const Points found = filterSurface(other, others, options).mesh.vertices;
   EXPECT_LT((found - expected).cwiseAbs().mean(), 1e-3 * s);
 }
 
 TEST(Optimization, FlipsKeepTheTopology)
 {
-  SurfaceOptimizationOptions options;
+  NormalFilteringOptions options;
   options.flip = true;
   const TriangleMesh mesh = rounded();
-  const SurfaceOptimizationResult result = optimizeSurface(mesh, test::cubePoints(20000, 0.005), options);
+  const NormalFilteringResult result = filterSurface(mesh, test::cubePoints(20000, 0.005), options);
   const MeshTopology topology = meshTopology(result.mesh);
   EXPECT_TRUE(topology.watertight);
   EXPECT_EQ(topology.euler, 2);
@@ -210,9 +235,9 @@ TEST(Optimization, StrangeMeshesAreKept)
   points.points.col(3).setConstant(std::numeric_limits<float>::infinity());
   points.normals.col(5).setConstant(std::numeric_limits<float>::quiet_NaN());
   for (const bool flip : {false, true}) {
-    SurfaceOptimizationOptions options;
+    NormalFilteringOptions options;
     options.flip = flip;
-    const SurfaceOptimizationResult result = optimizeSurface(mesh, points, options);
+    const NormalFilteringResult result = filterSurface(mesh, points, options);
     EXPECT_TRUE(result.mesh.vertices.leftCols(vertices).allFinite());
     EXPECT_GE(result.left_out_points, 1);
     EXPECT_LE(meshTopology(result.mesh).nonmanifold_edges, meshTopology(mesh).nonmanifold_edges);
@@ -226,27 +251,28 @@ TEST(Optimization, BadInputIsAnError)
   PointSet far = points, none, broken = points;
   far.points.array() += 1000.f;
   broken.points.setConstant(std::numeric_limits<float>::quiet_NaN());
-  EXPECT_THROW(optimizeSurface(mesh, far), std::invalid_argument);
-  EXPECT_THROW(optimizeSurface(mesh, none), std::invalid_argument);
-  EXPECT_THROW(optimizeSurface(mesh, broken), std::invalid_argument);
-  EXPECT_THROW(optimizeSurface(TriangleMesh(), points), std::invalid_argument);
+  EXPECT_THROW(filterSurface(mesh, far), std::invalid_argument);
+  EXPECT_THROW(filterSurface(mesh, none), std::invalid_argument);
+  EXPECT_THROW(filterSurface(mesh, broken), std::invalid_argument);
+  EXPECT_THROW(filterSurface(TriangleMesh(), points), std::invalid_argument);
   TriangleMesh bad = mesh;
   bad.vertices(0, 3) = std::numeric_limits<float>::quiet_NaN();
-  EXPECT_THROW(optimizeSurface(bad, points), std::invalid_argument);
+  EXPECT_THROW(filterSurface(bad, points), std::invalid_argument);
   bad = mesh;
   bad.faces(0, 0) = 100000;
-  EXPECT_THROW(optimizeSurface(bad, points), std::invalid_argument);
+  EXPECT_THROW(filterSurface(bad, points), std::invalid_argument);
   bad = mesh;
   bad.vertices.setZero();
-  EXPECT_THROW(optimizeSurface(bad, points), std::invalid_argument);
-  for (const auto& change : std::vector<std::function<void(SurfaceOptimizationOptions&)>>{
-           [](auto& o) { o.iterations = -1; }, [](auto& o) { o.kappa1 = NAN; }, [](auto& o) { o.kappa2 = INFINITY; },
-           [](auto& o) { o.tolerance = -1; }, [](auto& o) { o.threads = -1; }}) {
-    SurfaceOptimizationOptions options;
+  EXPECT_THROW(filterSurface(bad, points), std::invalid_argument);
+  for (const auto& change : std::vector<std::function<void(NormalFilteringOptions&)>>{
+           [](auto& o) { o.iterations = 0; }, [](auto& o) { o.smoothness_weight = NAN; },
+           [](auto& o) { o.tangential_weight = INFINITY; }, [](auto& o) { o.tolerance = -1; },
+           [](auto& o) { o.threads = -1; }}) {
+    NormalFilteringOptions options;
     change(options);
-    EXPECT_THROW(optimizeSurface(mesh, points, options), std::invalid_argument);
+    EXPECT_THROW(filterSurface(mesh, points, options), std::invalid_argument);
   }
-  EXPECT_THROW(optimizeSurface(mesh, points, {}, [](auto, double) { return false; }), Cancelled);
+  EXPECT_THROW(filterSurface(mesh, points, {}, [](auto, double) { return false; }), Cancelled);
 }
 
 TEST(Optimization, FandiskGetsItsEdgesBack)
@@ -264,7 +290,7 @@ TEST(Optimization, FandiskGetsItsEdgesBack)
                                                       return options;
                                                     }())
                                   .mesh;
-  const TriangleMesh after = optimizeSurface(before, points).mesh;
+  const TriangleMesh after = filterSurface(before, points).mesh;
   const MeshDistanceResult a = measureMeshDistance(before, model), b = measureMeshDistance(after, model);
   EXPECT_LT(b.vertices.symmetric.rms, 0.6 * a.vertices.symmetric.rms);
   EXPECT_LT(b.normals_to_reference.mean, 0.6 * a.normals_to_reference.mean);

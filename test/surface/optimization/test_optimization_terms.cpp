@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The parts of the optimiser: gradients, solver, line search, folds, flips.
+// The parts of the optimiser: gradients, solver, line search, inverted faces, flips.
 #include "common/shapes.h"
-#include "optimization/common/edge_flips.h"
 #include "optimization/common/inversion_guard.h"
-#include "optimization/common/sparse_solver.h"
 #include "optimization/energy/energy.h"
 #include "optimization/energy/line_search.h"
-#include "optimization/energy/terms.h"
+#include "optimization/normal_filtering/edge_flips.h"
+#include "optimization/normal_filtering/vertex_energy.h"
+#include "optimization/normal_filtering/vertex_solver.h"
 #include "surface/optimization/optimization_shapes.h"
 #include <gtest/gtest.h>
 using namespace fresco::optimization;
@@ -21,8 +21,8 @@ OptimizationProblem problemOf(const TriangleMesh& mesh, const PointSet& points)
   problem.x /= problem.frame.unit;
   problem.start = problem.x;
   problem.data = findCorrespondences(problem.graph, problem.x, points, problem.frame, 6, 1);
-  problem.support =
-      findSupport(problem.graph, problem.x, problem.data, pointsOfFaces(problem.data, problem.graph.faceCount()), 1);
+  problem.coverage =
+      findCoverage(problem.graph, problem.x, problem.data, pointsOfFaces(problem.data, problem.graph.faceCount()), 1);
   return problem;
 }
 
@@ -44,14 +44,14 @@ struct Kappas {
 double gradientError(const OptimizationProblem& problem, const Kappas& kappas)
 {
   OptimizationProblem scaled = problem;
-  scaled.support.point_weight *= static_cast<float>(kappas.fit);
-  FaithfulEnergy energy{scaled,
-                        pointsOfFaces(scaled.data, scaled.graph.faceCount()),
-                        oneRings(scaled.graph, scaled.start, 1),
-                        kappas.smooth,
-                        kappas.topology,
-                        3.0,
-                        1};
+  scaled.coverage.point_weight *= static_cast<float>(kappas.fit);
+  SurfaceEnergy energy{scaled,
+                       pointsOfFaces(scaled.data, scaled.graph.faceCount()),
+                       oneRings(scaled.graph, scaled.start, 1),
+                       kappas.smooth,
+                       kappas.topology,
+                       3.0,
+                       1};
   const Positions x = scaled.start + randomMove(scaled.start.cols(), 0.1, 5);
   Positions gradient(3, x.cols());
   evaluate(energy, x, &gradient);
@@ -76,11 +76,11 @@ TEST(OptimizationTerms, GradientsEqualFiniteDifferences)
   EXPECT_LT(gradientError(problem, {1, 0.3, 0.7}), 1e-4) << "all";
 }
 
-TEST(OptimizationTerms, SmoothnessPrefersOneSharpBendToManySmallOnes)
+TEST(OptimizationTerms, SmoothnessPrefersOneCreaseToManySmallAngles)
 {
-  EXPECT_EQ(bendPotential(0.0), 0.0);
-  EXPECT_LT(bendPotential(1.0), 5 * bendPotential(0.2));
-  EXPECT_GT(bendPotential(0.5), bendPotential(0.4));
+  EXPECT_EQ(smoothnessPotential(0.0), 0.0);
+  EXPECT_LT(smoothnessPotential(1.0), 5 * smoothnessPotential(0.2));
+  EXPECT_GT(smoothnessPotential(0.5), smoothnessPotential(0.4));
 }
 
 TEST(OptimizationTerms, FollowingFindsTheClosestFaceAgain)
@@ -105,7 +105,7 @@ TEST(OptimizationTerms, FollowingFindsTheClosestFaceAgain)
   for (Index i = 0; i < followed.size(); ++i) {
     double best = 1e9;
     for (Index f = 0; f < problem.graph.faceCount(); ++f)
-      best = std::min(best, distance(i, static_cast<int>(f)));
+      best = std::min(best, distance(i, f));
     const double found = distance(i, followed.face[i]);
     missed += found > best + 1e-6 ? 1 : 0;
     EXPECT_LT(found, 1.3 * best + 0.1);
@@ -142,7 +142,7 @@ TEST(OptimizationTerms, LineSearchSatisfiesStrongWolfe)
   }
 }
 
-TEST(OptimizationTerms, FoldsAreUndone)
+TEST(OptimizationTerms, InvertedFacesAreRepaired)
 {
   const TriangleMesh mesh = test::sphere(1.f, 3);
   const MeshGraph graph = buildGraph(mesh.faces, mesh.vertexCount(), 1);
@@ -150,16 +150,16 @@ TEST(OptimizationTerms, FoldsAreUndone)
   Positions x = start;
   const int neighbour = graph.otherVertex(*edgesAround(graph, 7).begin(), 7);
   x.col(7) += 3 * (x.col(neighbour) - x.col(7)); // beyond its ring: faces turn over
-  const auto folds = [&] {
-    const std::vector<char> folded = foldedFaces(graph, x, 1);
-    return std::count(folded.begin(), folded.end(), char{1});
+  const auto inversions = [&] {
+    const std::vector<char> inverted = invertedFaces(graph, x, 1);
+    return std::count(inverted.begin(), inverted.end(), char{1});
   };
-  EXPECT_GT(folds(), 0);
-  unfold(graph, start, std::vector<char>(x.cols(), 1), x, 1);
-  EXPECT_EQ(folds(), 0);
+  EXPECT_GT(inversions(), 0);
+  repairInverted(graph, start, std::vector<char>(x.cols(), 1), x, 1);
+  EXPECT_EQ(inversions(), 0);
 }
 
-TEST(OptimizationTerms, MovesThatFoldAreShortened)
+TEST(OptimizationTerms, MovesThatInvertAreShortened)
 {
   const TriangleMesh mesh = test::sphere(1.f, 3);
   const MeshGraph graph = buildGraph(mesh.faces, mesh.vertexCount(), 1);
@@ -182,17 +182,16 @@ TEST(OptimizationTerms, FlipsFollowTheCrease)
   mesh.vertices.resize(3, (n + 1) * (n + 1));
   for (int i = 0; i <= n; ++i)
     for (int j = 0; j <= n; ++j) // a grid turned so that its ridge x = y runs along the wrong diagonal
-      mesh.vertices.col(i * (n + 1) + j) << static_cast<float>(i), static_cast<float>(j),
-          -std::abs(static_cast<float>(i - j));
+      mesh.vertices.col(i * (n + 1) + j) = Eigen::Vector3i(i, j, -std::abs(i - j)).cast<float>();
   for (int i = 0; i < n; ++i)
     for (int j = 0; j < n; ++j) {
       const int a = i * (n + 1) + j, b = a + n + 1;
       faces.emplace_back(a, b, a + 1);
       faces.emplace_back(b, b + 1, a + 1);
     }
-  mesh.faces.resize(3, static_cast<Index>(faces.size()));
+  mesh.faces.resize(3, faces.size());
   for (std::size_t f = 0; f < faces.size(); ++f)
-    mesh.faces.col(static_cast<Index>(f)) = faces[f];
+    mesh.faces.col(f) = faces[f];
   PointSet points;
   points.points = mesh.vertices;
   OptimizationProblem problem = problemOf(mesh, points);

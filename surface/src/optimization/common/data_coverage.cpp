@@ -3,14 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <fresco/core/parallel.h>
+#include <fresco/core/statistics.h>
 #include <limits>
 namespace fresco::optimization {
 namespace {
 using Eigen::Vector3d;
-
-constexpr int most_rings = 24;      // beyond, a vertex is unsupported however sparse the data are
-constexpr double least_reach = 2.5; // mean edge lengths within which data always support
-constexpr double spacings = 2.5;    // reach in distances between neighbouring data
 
 struct Seeds {
   std::vector<int> of_vertex; // face with points, or -1
@@ -23,8 +20,9 @@ Eigen::Matrix3Xf middles(const DataPoints& data, const FacePoints& lists, Index 
   parallelFor(faces, threads, [&](Index f) {
     for (int i = lists.begin[f]; i < lists.begin[f + 1]; ++i)
       middle.col(f) += data.points.col(lists.order[i]);
-    if (lists.count(f) > 0)
-      middle.col(f) /= static_cast<float>(lists.count(f));
+    const float count = lists.count(f);
+    if (count > 0.f)
+      middle.col(f) /= count;
   });
   return middle;
 }
@@ -57,6 +55,7 @@ std::vector<int> firstSeeds(const MeshGraph& graph, const Positions& x, const Fa
 Seeds spreadSeeds(const MeshGraph& graph, const Positions& x, const DataPoints& data, const FacePoints& lists,
                   int threads)
 {
+  constexpr int most_rings = 24; // data so sparse that they are farther apart say nothing of what lies between
   Seeds seeds;
   seeds.middle = middles(data, lists, graph.faceCount(), threads);
   seeds.of_vertex = firstSeeds(graph, x, lists, seeds.middle, threads);
@@ -67,7 +66,7 @@ Seeds spreadSeeds(const MeshGraph& graph, const Positions& x, const DataPoints& 
       double squared = best < 0 ? std::numeric_limits<double>::infinity()
                                 : (seeds.middle.col(best).cast<double>() - x.col(v)).squaredNorm();
       for (const int e : edgesAround(graph, v))
-        improve(seeds.middle, x.col(v), seeds.of_vertex[graph.otherVertex(e, static_cast<int>(v))], best, squared);
+        improve(seeds.middle, x.col(v), seeds.of_vertex[graph.otherVertex(e, v)], best, squared);
       next[v] = best;
       return best != seeds.of_vertex[v] ? 1 : 0;
     });
@@ -121,38 +120,40 @@ std::vector<double> vertexAreas(const MeshGraph& graph, const Positions& x, int 
 }
 } // namespace
 
-Support findSupport(const MeshGraph& graph, const Positions& x, const DataPoints& data, const FacePoints& lists,
-                    int threads)
+DataCoverage findCoverage(const MeshGraph& graph, const Positions& x, const DataPoints& data, const FacePoints& lists,
+                          int threads)
 {
+  // Lengths of an edge, or of the distance between neighbouring data where that is longer: two and a half pass over one
+  // missing datum, but not over two.
+  constexpr double reach_lengths = 2.5;
   const Seeds seeds = spreadSeeds(graph, x, data, lists, threads);
   const std::vector<double> spacing = seedSpacing(graph, seeds, graph.faceCount());
   const std::vector<double> areas = vertexAreas(graph, x, threads);
-  Support support;
-  support.vertex.assign(graph.vertexCount(), 0);
+  DataCoverage coverage;
+  coverage.vertex.assign(graph.vertexCount(), 0);
   Eigen::VectorXf face_area = Eigen::VectorXf::Zero(graph.faceCount());
   for (Index v = 0; v < graph.vertexCount(); ++v) {
     const int s = seeds.of_vertex[v];
     if (s < 0)
       continue;
-    const double reach = std::max(least_reach, spacings * spacing[s]);
+    const double reach = reach_lengths * std::max(1.0, spacing[s]);
     if ((seeds.middle.col(s).cast<double>() - x.col(v)).norm() > reach)
       continue;
-    support.vertex[v] = 1;
-    face_area[s] += static_cast<float>(areas[v]);
+    coverage.vertex[v] = 1;
+    const float area = areas[v];
+    face_area[s] += area;
   }
-  support.point_weight.setZero(data.size());
-  std::vector<float> spacings_of_points;
+  coverage.point_weight.setZero(data.size());
+  std::vector<float> spacings;
   for (Index i = 0; i < data.size(); ++i) {
     const Index f = data.face[i];
-    support.point_weight[i] = face_area[f] / static_cast<float>(lists.count(f));
-    if (support.point_weight[i] > 0.f)
-      spacings_of_points.push_back(std::sqrt(support.point_weight[i]));
+    const float count = lists.count(f);
+    coverage.point_weight[i] = face_area[f] / count;
+    if (coverage.point_weight[i] > 0.f)
+      spacings.push_back(std::sqrt(coverage.point_weight[i]));
   }
-  if (!spacings_of_points.empty()) {
-    const auto middle = spacings_of_points.begin() + static_cast<std::ptrdiff_t>(spacings_of_points.size() / 2);
-    std::nth_element(spacings_of_points.begin(), middle, spacings_of_points.end());
-    support.spacing = *middle;
-  }
-  return support;
+  if (!spacings.empty())
+    coverage.spacing = median(spacings);
+  return coverage;
 }
 } // namespace fresco::optimization

@@ -8,20 +8,21 @@ namespace fresco::optimization {
 void limitMoves(const MeshGraph& graph, const Positions& x, const Eigen::Matrix3Xf& normals, Positions& move,
                 int threads);
 
-/// Draws the corners of folded faces to the middle of their neighbours, so that they can find their place from there.
+/// Draws the corners of inverted faces to the middle of their neighbours, so that they can find their place from there.
 /// @param free V, 0: stays
-void relaxFolds(const MeshGraph& graph, const std::vector<char>& free, Positions& x, int threads);
+void relaxInverted(const MeshGraph& graph, const std::vector<char>& free, Positions& x, int threads);
 
 /// The same for vertices that limitMoves() did not let go anywhere.
 void relaxStuck(const MeshGraph& graph, const std::vector<char>& free, const Positions& move, Positions& x,
                 int threads);
 
-/// Relaxes folds, then puts vertices back towards `start` until no face is folded against its neighbours that was not
-/// so at the start. A face is folded if its normal is more than 90 degrees from the area-weighted mean of the faces
-/// around its corners.
+/// Relaxes inverted faces, then puts vertices back towards `start` until no face is inverted that was not so at the
+/// start. A face is inverted if its normal is more than 90 degrees from the area-weighted mean of the faces around its
+/// corners.
 /// @return number of vertices put back
-Index unfold(const MeshGraph& graph, const Positions& start, const std::vector<char>& free, Positions& x, int threads);
+Index repairInverted(const MeshGraph& graph, const Positions& start, const std::vector<char>& free, Positions& x,
+                     int threads);
 
-/// F, 1 where the face is folded in that sense.
-std::vector<char> foldedFaces(const MeshGraph& graph, const Positions& x, int threads);
+/// F, 1 where the face is inverted in that sense.
+std::vector<char> invertedFaces(const MeshGraph& graph, const Positions& x, int threads);
 } // namespace fresco::optimization

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "optimization/common/mesh_graph.h"
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <fresco/core/parallel.h>
 namespace fresco::optimization {
@@ -31,10 +30,10 @@ void collectVertexFaces(MeshGraph& graph)
   runningSum(graph.face_begin);
   graph.vertex_faces.resize(graph.face_begin.back());
   std::vector<int> next(graph.face_begin.begin(), graph.face_begin.end() - 1);
-  for (Index f = 0; f < faces; ++f)
+  for (int f = 0; f < faces; ++f)
     if (!isDegenerate(graph.faces, f))
       for (int k = 0; k < 3; ++k)
-        graph.vertex_faces[next[graph.faces(k, f)]++] = static_cast<int>(f);
+        graph.vertex_faces[next[graph.faces(k, f)]++] = f;
 }
 
 // A side of a face, seen from its vertex with the smaller index.
@@ -91,7 +90,8 @@ void collectEdges(MeshGraph& graph, int threads)
       sidesFrom(graph, v, sides);
       forEachEdge(sides, [&](int rank, std::size_t i, std::size_t j) {
         const int edge = first[v] + rank;
-        graph.edges[edge] = {static_cast<int>(v), sides[i].other};
+        graph.edges[edge][0] = v;
+        graph.edges[edge][1] = sides[i].other;
         if (j - i <= 2)
           graph.edge_faces[edge] = {sides[i].face, j - i == 2 ? sides[i + 1].face : -1};
         for (std::size_t s = i; s < j; ++s)
@@ -110,10 +110,9 @@ void collectVertexEdges(MeshGraph& graph)
   runningSum(graph.edge_begin);
   graph.vertex_edges.resize(2 * graph.edges.size());
   std::vector<int> next(graph.edge_begin.begin(), graph.edge_begin.end() - 1);
-  graph.border.assign(graph.vertexCount(), 0);
-  for (std::size_t e = 0; e < graph.edges.size(); ++e)
+  for (int e = 0; e < graph.edgeCount(); ++e)
     for (const int v : graph.edges[e]) {
-      graph.vertex_edges[next[v]++] = static_cast<int>(e);
+      graph.vertex_edges[next[v]++] = e;
       if (graph.edge_faces[e][1] < 0)
         graph.border[v] = 1;
     }
@@ -125,6 +124,7 @@ MeshGraph buildGraph(const Faces& faces, Index vertices, int threads)
   MeshGraph graph;
   graph.faces = faces;
   graph.face_begin.assign(vertices + 1, 0);
+  graph.border.assign(vertices, 0);
   collectVertexFaces(graph);
   collectEdges(graph, threads);
   collectVertexEdges(graph);
@@ -135,12 +135,10 @@ Eigen::Matrix3Xd areaVectors(const MeshGraph& graph, const Positions& x, int thr
 {
   Eigen::Matrix3Xd vectors(3, graph.faceCount());
   parallelFor(graph.faceCount(), threads, [&](Index f) {
-    if (graph.face_edges(0, f) < 0) {
+    if (graph.face_edges(0, f) < 0)
       vectors.col(f).setZero();
-      return;
-    }
-    const Eigen::Vector3d a = x.col(graph.faces(0, f));
-    vectors.col(f) = (x.col(graph.faces(1, f)) - a).cross(x.col(graph.faces(2, f)) - a);
+    else
+      vectors.col(f) = areaVector(graph, x, f);
   });
   return vectors;
 }
@@ -151,6 +149,7 @@ double meanEdgeLength(const MeshGraph& graph, const Positions& x, int threads)
     const auto [a, b] = graph.edges[e];
     return (x.col(a) - x.col(b)).norm();
   });
-  return sum / static_cast<double>(std::max<Index>(graph.edgeCount(), 1));
+  const double count = std::max<Index>(graph.edgeCount(), 1);
+  return sum / count;
 }
 } // namespace fresco::optimization

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+#include <Eigen/Geometry>
 #include <array>
 #include <fresco/core/mesh.h>
 #include <vector>
@@ -17,16 +18,16 @@ struct MeshGraph {
   std::vector<int> edge_begin, vertex_edges;  ///< edges around vertex v: vertex_edges[edge_begin[v] ..]
   std::vector<char> border;                   ///< V, 1 at boundary edges and edges of three faces and more
 
-  Index vertexCount() const { return static_cast<Index>(face_begin.size()) - 1; }
+  Index vertexCount() const { return border.size(); }
   Index faceCount() const { return faces.cols(); }
-  Index edgeCount() const { return static_cast<Index>(edges.size()); }
-  int otherVertex(int edge, int vertex) const
+  Index edgeCount() const { return edges.size(); }
+  int otherVertex(Index edge, Index vertex) const
   {
     const auto& ends = edges[edge];
     return ends[0] == vertex ? ends[1] : ends[0];
   }
   /// The face across corner k's edge (k, k + 1) of `face`, or -1.
-  int across(int face, int k) const
+  int across(Index face, int k) const
   {
     const int edge = face_edges(k, face);
     if (edge < 0)
@@ -46,19 +47,35 @@ struct IntRange {
 
 inline IntRange facesAround(const MeshGraph& graph, Index v)
 {
-  return {graph.vertex_faces.data() + graph.face_begin[v],
-          graph.vertex_faces.data() + graph.face_begin[static_cast<std::size_t>(v) + 1]};
+  return {graph.vertex_faces.data() + graph.face_begin[v], graph.vertex_faces.data() + graph.face_begin[v + 1]};
 }
 
 inline IntRange edgesAround(const MeshGraph& graph, Index v)
 {
-  return {graph.vertex_edges.data() + graph.edge_begin[v],
-          graph.vertex_edges.data() + graph.edge_begin[static_cast<std::size_t>(v) + 1]};
+  return {graph.vertex_edges.data() + graph.edge_begin[v], graph.vertex_edges.data() + graph.edge_begin[v + 1]};
 }
 
 MeshGraph buildGraph(const Faces& faces, Index vertices, int threads);
 
-/// 3xF: cross product of two sides, twice the area long.
+/// Mean position of the vertices that share an edge with v; there is at least one.
+inline Eigen::Vector3d meanOfNeighbours(const MeshGraph& graph, const Positions& x, Index v)
+{
+  const IntRange edges = edgesAround(graph, v);
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const int e : edges)
+    sum += x.col(graph.otherVertex(e, v));
+  const double count = edges.size();
+  return sum / count;
+}
+
+/// Cross product of two sides of face f, twice the area long.
+inline Eigen::Vector3d areaVector(const MeshGraph& graph, const Positions& x, Index f)
+{
+  const Eigen::Vector3d a = x.col(graph.faces(0, f));
+  return (x.col(graph.faces(1, f)) - a).cross(x.col(graph.faces(2, f)) - a);
+}
+
+/// 3xF: areaVector() of every face, zero for degenerate ones.
 Eigen::Matrix3Xd areaVectors(const MeshGraph& graph, const Positions& x, int threads);
 
 /// Mean over edges.

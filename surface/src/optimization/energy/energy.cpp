@@ -9,11 +9,13 @@ using Eigen::Matrix3d;
 using Eigen::Matrix3Xd;
 using Eigen::Vector3d;
 
-constexpr double bend_scale = 0.1;     // eps of psi, chord of unit normals: bends below 6 degrees are smoothed as noise
-constexpr double area_softness = 1e-2; // double area at which a triangle's normal begins to fade, mean edge lengths^2
+constexpr double potential_scale = 0.1; // eps of psi, chord of unit normals: angles below 6 degrees count as noise
 
 // psi'(t) / t
-double bendSlope(double difference) { return 0.5 * std::pow(difference * difference + bend_scale * bend_scale, -0.75); }
+double potentialSlope(double difference)
+{
+  return 0.5 * std::pow(difference * difference + potential_scale * potential_scale, -0.75);
+}
 
 // Normal of a triangle, shorter than 1 where it has hardly any area, so that needles do not tear at the energy.
 struct SoftNormal {
@@ -23,6 +25,7 @@ struct SoftNormal {
 
 SoftNormal softNormal(const Vector3d& area_vector)
 {
+  constexpr double area_softness = 1e-2; // of twice the area, mean edge lengths^2: 1 % of an equilateral triangle's
   const double length = std::sqrt(area_vector.squaredNorm() + area_softness * area_softness);
   return {area_vector / length, length};
 }
@@ -30,7 +33,7 @@ SoftNormal softNormal(const Vector3d& area_vector)
 using CornerGradients = Eigen::Matrix<double, 9, Eigen::Dynamic>; // of the three corners of each face
 
 struct Work {
-  const FaithfulEnergy& energy;
+  const SurfaceEnergy& energy;
   const MeshGraph& graph;
   const Positions& x;
   Matrix3Xd normals; // soft
@@ -46,7 +49,7 @@ double fitOfFace(Work& work, Index f)
   double sum = 0.0;
   for (int j = lists.begin[f]; j < lists.begin[f + 1]; ++j) {
     const int i = lists.order[j];
-    const double weight = problem.support.point_weight[i];
+    const double weight = problem.coverage.point_weight[i];
     const Vector3d p = problem.data.points.col(i).cast<double>();
     const Vector3d foot = footOn(work.graph, work.x, f, p);
     Vector3d offset = -p;
@@ -62,20 +65,20 @@ double fitOfFace(Work& work, Index f)
   return sum;
 }
 
-// Gradient of the bends at the three sides of face f, by way of its normal; returns half of each side's energy.
-double bendsOfFace(Work& work, Index f)
+// Gradient of E_smooth at the three sides of face f, by way of its normal; returns half of each side's energy.
+double smoothnessOfFace(Work& work, Index f)
 {
   double sum = 0.0;
   Vector3d pull = Vector3d::Zero();
   for (int k = 0; k < 3; ++k) {
-    const int g = work.graph.across(static_cast<int>(f), k);
+    const int g = work.graph.across(f, k);
     if (g < 0)
       continue;
     const Vector3d difference = work.normals.col(f) - work.normals.col(g);
     const double t = difference.norm();
     const double length = (work.x.col(work.graph.faces(k, f)) - work.x.col(work.graph.faces((k + 1) % 3, f))).norm();
-    sum += 0.5 * length * bendPotential(t);
-    pull += length * bendSlope(t) * difference;
+    sum += 0.5 * length * smoothnessPotential(t);
+    pull += length * potentialSlope(t) * difference;
   }
   if (!work.with_gradient)
     return sum;
@@ -95,10 +98,10 @@ Vector3d lengthGradient(const Work& work, Index v)
   Vector3d sum = Vector3d::Zero();
   for (const int e : edgesAround(work.graph, v)) {
     const auto [f, g] = work.graph.edge_faces[e];
-    const Vector3d side = work.x.col(v) - work.x.col(work.graph.otherVertex(e, static_cast<int>(v)));
+    const Vector3d side = work.x.col(v) - work.x.col(work.graph.otherVertex(e, v));
     const double length = side.norm();
     if (f >= 0 && g >= 0 && length > 0.0)
-      sum += bendPotential((work.normals.col(f) - work.normals.col(g)).norm()) / length * side;
+      sum += smoothnessPotential((work.normals.col(f) - work.normals.col(g)).norm()) / length * side;
   }
   return sum;
 }
@@ -107,8 +110,9 @@ Vector3d topologyGradient(const Work& work, const Positions& rings, Index v)
 {
   Vector3d sum = rings.col(v);
   for (const int e : edgesAround(work.graph, v)) {
-    const int other = work.graph.otherVertex(e, static_cast<int>(v));
-    sum -= rings.col(other) / static_cast<double>(edgesAround(work.graph, other).size());
+    const int other = work.graph.otherVertex(e, v);
+    const double count = edgesAround(work.graph, other).size();
+    sum -= rings.col(other) / count;
   }
   return 2.0 * sum;
 }
@@ -124,27 +128,22 @@ Vector3d cornerSum(const Work& work, Index v)
 }
 } // namespace
 
-double bendPotential(double difference)
+double smoothnessPotential(double difference)
 {
-  return std::sqrt(std::sqrt(difference * difference + bend_scale * bend_scale)) - std::sqrt(bend_scale);
+  return std::sqrt(std::sqrt(difference * difference + potential_scale * potential_scale)) - std::sqrt(potential_scale);
 }
 
 Positions oneRings(const MeshGraph& graph, const Positions& x, int threads)
 {
   Positions rings = Positions::Zero(3, graph.vertexCount());
   parallelFor(graph.vertexCount(), threads, [&](Index v) {
-    const IntRange edges = edgesAround(graph, v);
-    if (edges.size() == 0)
-      return;
-    Vector3d sum = Vector3d::Zero();
-    for (const int e : edges)
-      sum += x.col(graph.otherVertex(e, static_cast<int>(v)));
-    rings.col(v) = x.col(v) - sum / static_cast<double>(edges.size());
+    if (edgesAround(graph, v).size() > 0)
+      rings.col(v) = x.col(v) - meanOfNeighbours(graph, x, v);
   });
   return rings;
 }
 
-FaithfulTerms evaluate(const FaithfulEnergy& energy, const Positions& x, Positions* gradient)
+SurfaceEnergyTerms evaluate(const SurfaceEnergy& energy, const Positions& x, Positions* gradient)
 {
   const MeshGraph& graph = energy.problem.graph;
   Work work{energy, graph, x, areaVectors(graph, x, energy.threads), {}, gradient != nullptr};
@@ -152,16 +151,17 @@ FaithfulTerms evaluate(const FaithfulEnergy& energy, const Positions& x, Positio
               [&](Index f) { work.normals.col(f) = softNormal(work.normals.col(f)).direction; });
   if (gradient)
     work.corners.setZero(9, graph.faceCount());
-  FaithfulTerms terms;
+  SurfaceEnergyTerms terms;
   terms.fit = parallelSum(graph.faceCount(), energy.threads, 0.0, [&](Index f) { return fitOfFace(work, f); });
-  terms.smooth = parallelSum(graph.faceCount(), energy.threads, 0.0, [&](Index f) { return bendsOfFace(work, f); });
+  terms.smooth =
+      parallelSum(graph.faceCount(), energy.threads, 0.0, [&](Index f) { return smoothnessOfFace(work, f); });
   const Positions rings = oneRings(graph, x, energy.threads) - energy.one_rings;
   terms.topology =
       parallelSum(graph.vertexCount(), energy.threads, 0.0, [&](Index v) { return rings.col(v).squaredNorm(); });
   if (gradient)
     parallelFor(graph.vertexCount(), energy.threads, [&](Index v) {
       gradient->col(v).setZero();
-      if (energy.problem.support.vertex[v])
+      if (energy.problem.coverage.vertex[v])
         gradient->col(v) = cornerSum(work, v) + energy.kappa1 * lengthGradient(work, v) +
                            energy.kappa2 * topologyGradient(work, rings, v);
     });

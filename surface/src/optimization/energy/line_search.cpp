@@ -4,8 +4,6 @@
 #include <cmath>
 namespace fresco::optimization {
 namespace {
-constexpr double growth = 3.0; // of the step while the value still falls
-
 // Least point of the cubic through two points and their slopes (Nocedal, Wright eq. 3.59), kept off the ends.
 double cubicStep(const LinePoint& a, const LinePoint& b)
 {
@@ -31,6 +29,7 @@ public:
 
   LinePoint run(double step)
   {
+    constexpr double growth = 3.0; // of the step while the value still falls: 12 evaluations span five decades
     LinePoint last = start_;
     while (left_ > 0) {
       const LinePoint now = probe(step);

@@ -3,16 +3,16 @@
 #include "optimization/common/mesh_graph.h"
 namespace fresco::optimization {
 struct NormalFilterOptions {
-  int rounds = 3;
-  double sigma = 0.25; ///< normals that differ by more (chord of unit vectors) hardly influence each other
+  int rounds = 3;      ///< so many rings of faces take part: the width of the band along an edge that is rounded
+  double sigma = 0.25; ///< chord of unit vectors (14 degrees) at which a neighbour has the greatest influence
   int threads = 0;
 };
 
-/// Normals that the faces are to get: the field of the face normals, smoothed where it bends little and steepened where
-/// it bends much (bilateral mesh denoising: Zheng, Fu, Au, Tai 2011).
+/// Filtered face normals, the first stage: n_f <- normalised sum over the faces g around f of A_g w(|n_g - n_f|) n_g,
+/// with the area A and Tukey's biweight w. Smooths where normals differ little and sharpens where they differ much
+/// (Sun et al. 2007 with another w; Zheng et al. 2011 without the spatial weight).
 /// @param areas   3xF area vectors
-/// @param given   3xF normals of the data on each face, as long as the area that they stand for; zero where there are
-/// none
+/// @param given   3xF normals of the data on each face, as long as the area that they stand for; zero: there are none
 /// @return 3xF unit; zero where a face has no area
 Eigen::Matrix3Xf filterNormals(const MeshGraph& graph, const Eigen::Matrix3Xd& areas, const Eigen::Matrix3Xf& given,
                                const NormalFilterOptions& options);

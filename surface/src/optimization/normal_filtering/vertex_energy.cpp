@@ -1,46 +1,38 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "optimization/energy/terms.h"
+#include "optimization/normal_filtering/vertex_energy.h"
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <fresco/core/parallel.h>
+#include <fresco/core/statistics.h>
 namespace fresco::optimization {
 namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
-
-// Weight that keeps a vertex where it is, in every direction: where nothing else holds it the system stays regular.
-constexpr double proximal = 1e-3;
-// A direction counts as free if the target normals around the vertex have less than this share of their squares in it:
-// two normals 16 degrees apart, weighted alike, are a crease.
-constexpr double free_share = 0.02;
-constexpr double least_noise = 0.01; // mean edge lengths
-constexpr double significant = 4.0;  // mean residuals, squared, above so many times what noise explains are misfits
-constexpr double least_pairs = 0.05; // of the data, for noise from differences
-constexpr double most_urgent = 30.0;
 
 double pointWeight(const DataPoints& data, int i, double residual, const FaceTerm& term, double robust)
 {
   const double ratio = residual / robust;
   double weight = 1.0 / ((1.0 + ratio * ratio) * (1.0 + ratio * ratio)); // Geman, McClure 1987
   if (data.hasNormals())
-    weight *= std::clamp(2.0 * static_cast<double>(data.normals.col(i).dot(term.normal)), 0.0, 1.0);
+    weight *= std::clamp(2.0 * data.normals.col(i).dot(term.normal), 0.0, 1.0); // all of it up to 60 degrees
   return weight;
 }
 
 void addDatum(FaceTerm& term, const Vector3d& foot, double residual, double weight)
 {
+  const auto add = [](float& sum, float value) { sum += value; };
   for (int k = 0; k < 3; ++k) {
-    term.own[k] += static_cast<float>(weight * foot[k] * foot[k]);
-    term.pair[k] += static_cast<float>(weight * foot[k] * foot[(k + 1) % 3]);
-    term.pull[k] += static_cast<float>(weight * foot[k] * residual);
+    add(term.diagonal[k], weight * foot[k] * foot[k]);
+    add(term.off_diagonal[k], weight * foot[k] * foot[(k + 1) % 3]);
+    add(term.linear[k], weight * foot[k] * residual);
   }
-  term.constant += static_cast<float>(weight * residual * residual);
+  add(term.constant, weight * residual * residual);
 }
 
 // The squared gradient of a height over the triangle, times its area, is replaced by the squared differences along the
 // sides, scaled to be the same for equilateral triangles: cotangents would let needles dominate.
-double slopeWeight(const OptimizationProblem& problem, Index f)
+double smoothnessWeight(const OptimizationProblem& problem, Index f)
 {
   const Vector3d a = problem.x.col(problem.graph.faces(0, f)), b = problem.x.col(problem.graph.faces(1, f)),
                  c = problem.x.col(problem.graph.faces(2, f));
@@ -50,10 +42,13 @@ double slopeWeight(const OptimizationProblem& problem, Index f)
 
 // Per vertex, how much more the data around it are to count: the square of their mean residual against the square that
 // noise alone would leave on average.
-Eigen::VectorXf urgencyOfMisfits(const OptimizationProblem& problem, const FacePoints& lists,
-                                 const Eigen::VectorXf& residuals, const TermWeights& weights, int threads)
+Eigen::VectorXf misfitGains(const OptimizationProblem& problem, const FacePoints& lists,
+                            const Eigen::VectorXf& residuals, const TermWeights& weights, int threads)
 {
-  Eigen::VectorXf urgencies = Eigen::VectorXf::Ones(problem.graph.vertexCount());
+  constexpr double least_noise = 0.01; // mean edge lengths: exact data on curved surfaces are off flat faces by as much
+  constexpr double significant = 4.0;  // two standard deviations of the mean, squared
+  constexpr double greatest_gain = 30.; // bounds the condition number of the system
+  Eigen::VectorXf gains = Eigen::VectorXf::Ones(problem.graph.vertexCount());
   const double noise = std::max(least_noise, weights.noise);
   parallelFor(problem.graph.vertexCount(), threads, [&](Index v) {
     double sum = 0.0, count = 0.0;
@@ -66,24 +61,23 @@ Eigen::VectorXf urgencyOfMisfits(const OptimizationProblem& problem, const FaceP
         ++count;
       }
     if (count > 0.0)
-      urgencies[v] =
-          static_cast<float>(std::clamp(sum * sum / (count * noise * noise * significant), 1.0, most_urgent));
+      gains[v] = std::clamp(sum * sum / (count * noise * noise * significant), 1.0, greatest_gain);
   });
-  return urgencies;
+  return gains;
 }
 
 FaceTerm faceTerm(const OptimizationProblem& problem, const FacePoints& lists, const Eigen::VectorXf& residuals,
-                  const Eigen::VectorXf& urgencies, const TermWeights& weights, Index f, FaceTerm term)
+                  const Eigen::VectorXf& gains, const TermWeights& weights, Index f, FaceTerm term)
 {
-  term.slope = static_cast<float>(weights.slope * slopeWeight(problem, f));
-  double urgency = 0.0;
+  term.smoothness = weights.smoothness * smoothnessWeight(problem, f);
+  double gain = 0.0;
   for (int k = 0; k < 3; ++k)
-    urgency += urgencies[problem.graph.faces(k, f)] / 3.0;
+    gain += gains[problem.graph.faces(k, f)] / 3.0;
   for (int j = lists.begin[f]; j < lists.begin[f + 1]; ++j) {
     const int i = lists.order[j];
     const Vector3d foot = footOn(problem.graph, problem.x, f, problem.data.points.col(i).cast<double>());
     const double weight =
-        urgency * problem.support.point_weight[i] * pointWeight(problem.data, i, residuals[i], term, weights.robust);
+        gain * problem.coverage.point_weight[i] * pointWeight(problem.data, i, residuals[i], term, weights.robust);
     addDatum(term, foot, residuals[i], weight);
   }
   return term;
@@ -92,6 +86,9 @@ FaceTerm faceTerm(const OptimizationProblem& problem, const FacePoints& lists, c
 // Projection on the directions in which no face around v says where it should be: a plane, a crease's line, nothing.
 Matrix3d freeDirections(const OptimizationProblem& problem, const std::vector<FaceTerm>& faces, Index v)
 {
+  // A direction is free if the normals around have less than this share of their squares in it: two normals 16 degrees
+  // apart, weighted alike, are a crease.
+  constexpr double free_share = 0.02;
   Matrix3d spread = Matrix3d::Zero();
   for (const int f : facesAround(problem.graph, v)) {
     const Vector3d n = faces[f].normal.cast<double>();
@@ -112,19 +109,23 @@ Matrix3d freeDirections(const OptimizationProblem& problem, const std::vector<Fa
 VertexTerm vertexTerm(const OptimizationProblem& problem, const std::vector<FaceTerm>& faces,
                       const TermWeights& weights, Index v)
 {
+  constexpr double proximal = 1e-3; // keeps the system regular where nothing else holds a vertex; too little to be seen
   const Matrix3d directions = freeDirections(problem, faces, v);
-  const IntRange edges = edgesAround(problem.graph, v);
   VertexTerm term;
-  term.slide = (weights.slide * directions + proximal * Matrix3d::Identity()).cast<float>();
-  if (problem.graph.border[v] || edges.size() == 0)
+  term.tangential = (weights.tangential * directions + proximal * Matrix3d::Identity()).cast<float>();
+  if (problem.graph.border[v] || edgesAround(problem.graph, v).size() == 0)
     return term;
-  Vector3d middle = Vector3d::Zero();
-  for (const int e : edges)
-    middle += problem.x.col(problem.graph.otherVertex(e, static_cast<int>(v)));
-  middle /= static_cast<double>(edges.size());
+  const Vector3d middle = meanOfNeighbours(problem.graph, problem.x, v);
   term.target = (directions * (middle - problem.x.col(v))).cast<float>();
   return term;
 }
+
+// Deviation of Gaussian values with these magnitudes; 0 without values.
+double robustDeviation(std::vector<float>& magnitudes)
+{
+  return magnitudes.empty() ? 0.0 : mad_to_sigma * median(magnitudes);
+}
+
 } // namespace
 
 Eigen::VectorXf dataResiduals(const OptimizationProblem& problem, const Eigen::Matrix3Xf& normals, int threads)
@@ -137,18 +138,19 @@ Eigen::VectorXf dataResiduals(const OptimizationProblem& problem, const Eigen::M
     Vector3d offset = p;
     for (int k = 0; k < 3; ++k)
       offset -= foot[k] * problem.x.col(problem.graph.faces(k, f));
-    residuals[i] = static_cast<float>(normals.col(f).cast<double>().dot(offset));
+    residuals[i] = normals.col(f).cast<double>().dot(offset);
   });
   return residuals;
 }
 
 double noiseOf(const FacePoints& lists, const Eigen::VectorXf& residuals)
 {
+  constexpr double least_pairs = 0.05; // of the data: enough of them for a median that holds for all
   std::vector<float> magnitudes;
   for (std::size_t f = 0; f + 1 < lists.begin.size(); ++f)
     for (int j = lists.begin[f] + 1; j < lists.begin[f + 1]; j += 2)
       magnitudes.push_back(std::abs(residuals[lists.order[j]] - residuals[lists.order[j - 1]]));
-  if (static_cast<double>(magnitudes.size()) > least_pairs * static_cast<double>(residuals.size()))
+  if (magnitudes.size() > least_pairs * residuals.size())
     return robustDeviation(magnitudes) / std::sqrt(2.0);
   magnitudes.resize(residuals.size());
   for (Index i = 0; i < residuals.size(); ++i)
@@ -157,19 +159,20 @@ double noiseOf(const FacePoints& lists, const Eigen::VectorXf& residuals)
 }
 
 Eigen::Matrix3Xf dataNormals(const OptimizationProblem& problem, const Eigen::Matrix3Xd& areas, const FacePoints& lists,
-                             double trust, int threads)
+                             double normal_weight, int threads)
 {
   const DataPoints& data = problem.data;
   Eigen::Matrix3Xf given = Eigen::Matrix3Xf::Zero(3, problem.graph.faceCount());
-  if (!data.hasNormals() || !(trust > 0.0))
+  if (!data.hasNormals() || !(normal_weight > 0.0))
     return given;
+  const float float_weight = normal_weight;
   parallelFor(problem.graph.faceCount(), threads, [&](Index f) {
     for (int j = lists.begin[f]; j < lists.begin[f + 1]; ++j) {
       const auto normal = data.normals.col(lists.order[j]);
       if (normal.cast<double>().dot(areas.col(f)) > 0.0)
-        given.col(f) += problem.support.point_weight[lists.order[j]] * normal;
+        given.col(f) += problem.coverage.point_weight[lists.order[j]] * normal;
     }
-    given.col(f) *= static_cast<float>(trust);
+    given.col(f) *= float_weight;
   });
   return given;
 }
@@ -177,16 +180,16 @@ Eigen::Matrix3Xf dataNormals(const OptimizationProblem& problem, const Eigen::Ma
 QuadraticEnergy makeEnergy(const OptimizationProblem& problem, const FacePoints& lists, const Eigen::Matrix3Xf& normals,
                            const Eigen::VectorXf& residuals, const TermWeights& weights, int threads)
 {
-  const Eigen::VectorXf urgencies = urgencyOfMisfits(problem, lists, residuals, weights, threads);
+  const Eigen::VectorXf gains = misfitGains(problem, lists, residuals, weights, threads);
   QuadraticEnergy energy;
-  energy.free = problem.support.vertex;
+  energy.free = problem.coverage.vertex;
   energy.faces.resize(problem.graph.faceCount());
   energy.vertices.resize(problem.graph.vertexCount());
   parallelFor(problem.graph.faceCount(), threads, [&](Index f) {
     FaceTerm term;
     term.normal = normals.col(f);
     if (problem.graph.face_edges(0, f) >= 0)
-      energy.faces[f] = faceTerm(problem, lists, residuals, urgencies, weights, f, term);
+      energy.faces[f] = faceTerm(problem, lists, residuals, gains, weights, f, term);
   });
   parallelFor(problem.graph.vertexCount(), threads, [&](Index v) {
     if (energy.free[v])

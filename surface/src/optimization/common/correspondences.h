@@ -33,7 +33,7 @@ void followFaces(const MeshGraph& graph, const Positions& x, DataPoints& data, i
 /// The points of each face: order[begin[f]] .. order[begin[f + 1] - 1], ascending.
 struct FacePoints {
   std::vector<int> begin, order;
-  Index count(Index f) const { return begin[static_cast<std::size_t>(f) + 1] - begin[f]; }
+  Index count(Index f) const { return begin[f + 1] - begin[f]; }
 };
 
 FacePoints pointsOfFaces(const DataPoints& data, Index faces);

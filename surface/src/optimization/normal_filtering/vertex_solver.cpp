@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "optimization/common/sparse_solver.h"
+#include "optimization/normal_filtering/vertex_solver.h"
 #include <Eigen/LU>
 #include <fresco/core/parallel.h>
 namespace fresco::optimization {
@@ -28,9 +28,10 @@ Vector3d heights(const FaceTerm& term, const MeshGraph& graph, Index f, const Po
 // Symmetric 3x3 matrix of the term in the heights of its corners, times u.
 Vector3d times(const FaceTerm& t, const Vector3d& u)
 {
-  const double s = t.slope, p01 = t.pair[0] - s, p12 = t.pair[1] - s, p20 = t.pair[2] - s;
-  return {(t.own[0] + 2 * s) * u[0] + p01 * u[1] + p20 * u[2], p01 * u[0] + (t.own[1] + 2 * s) * u[1] + p12 * u[2],
-          p20 * u[0] + p12 * u[1] + (t.own[2] + 2 * s) * u[2]};
+  const double s = t.smoothness, p01 = t.off_diagonal[0] - s, p12 = t.off_diagonal[1] - s, p20 = t.off_diagonal[2] - s;
+  return {(t.diagonal[0] + 2 * s) * u[0] + p01 * u[1] + p20 * u[2],
+          p01 * u[0] + (t.diagonal[1] + 2 * s) * u[1] + p12 * u[2],
+          p20 * u[0] + p12 * u[1] + (t.diagonal[2] + 2 * s) * u[2]};
 }
 
 // Sum over the faces around each free vertex of its corner's share, along the face's normal, and own(v) of the vertex.
@@ -55,7 +56,7 @@ void multiply(const System& system, const Positions& d, Eigen::Matrix3Xd& shares
     const FaceTerm& term = system.energy.faces[f];
     shares.col(f) = times(term, heights(term, system.graph, f, d));
   });
-  const auto own = [&](Index v) -> Vector3d { return system.energy.vertices[v].slide.cast<double>() * d.col(v); };
+  const auto own = [&](Index v) -> Vector3d { return system.energy.vertices[v].tangential.cast<double>() * d.col(v); };
   gather(system, shares, own, result);
 }
 
@@ -67,12 +68,12 @@ Positions rightHandSide(const System& system, const Positions& x)
     const Vector3d u = heights(t, system.graph, f, x);
     const double sum = u.sum();
     for (int k = 0; k < 3; ++k)
-      shares(k, f) = t.pull[k] + t.slope * (sum - 3 * u[k]);
+      shares(k, f) = t.linear[k] + t.smoothness * (sum - 3 * u[k]);
   });
   Positions b(3, system.size());
   const auto own = [&](Index v) -> Vector3d {
     const VertexTerm& term = system.energy.vertices[v];
-    return (term.slide * term.target).cast<double>();
+    return (term.tangential * term.target).cast<double>();
   };
   gather(system, shares, own, b);
   return b;
@@ -84,11 +85,11 @@ std::vector<Matrix3d> inverseBlocks(const System& system)
   parallelFor(system.size(), system.threads, [&](Index v) {
     if (!system.energy.free[v])
       return;
-    Matrix3d block = system.energy.vertices[v].slide.cast<double>();
+    Matrix3d block = system.energy.vertices[v].tangential.cast<double>();
     for (const int f : facesAround(system.graph, v)) {
       const FaceTerm& t = system.energy.faces[f];
       const Vector3d n = t.normal.cast<double>();
-      block += (t.own[cornerOf(system.graph, f, v)] + 2.0 * t.slope) * n * n.transpose();
+      block += (t.diagonal[cornerOf(system.graph, f, v)] + 2.0 * t.smoothness) * n * n.transpose();
     }
     block.diagonal().array() += 1e-9 * block.trace() + 1e-30;
     inverse[v] = block.inverse();
@@ -107,36 +108,37 @@ void precondition(const System& system, const std::vector<Matrix3d>& inverse, co
 }
 } // namespace
 
-EnergyTerms evaluate(const QuadraticEnergy& energy, const MeshGraph& graph, const Positions& x, const Positions& move,
-                     int threads)
+QuadraticTerms evaluate(const QuadraticEnergy& energy, const MeshGraph& graph, const Positions& x,
+                        const Positions& move, int threads)
 {
-  const auto add = [](EnergyTerms a, const EnergyTerms& b) {
-    return EnergyTerms{a.fit + b.fit, a.slope + b.slope, a.slide + b.slide};
+  const auto add = [](QuadraticTerms a, const QuadraticTerms& b) {
+    return QuadraticTerms{a.fit + b.fit, a.smoothness + b.smoothness, a.tangential + b.tangential};
   };
   const auto faces = [&](Index begin, Index end) {
-    EnergyTerms sum;
+    QuadraticTerms sum;
     for (Index f = begin; f < end; ++f) {
       const FaceTerm& t = energy.faces[f];
       const Vector3d d = heights(t, graph, f, move), u = heights(t, graph, f, x) + d;
-      const Vector3d pull(t.pull[0], t.pull[1], t.pull[2]), own(t.own[0], t.own[1], t.own[2]);
-      const double pairs = t.pair[0] * d[0] * d[1] + t.pair[1] * d[1] * d[2] + t.pair[2] * d[2] * d[0];
+      const Vector3d pull(t.linear[0], t.linear[1], t.linear[2]), own(t.diagonal[0], t.diagonal[1], t.diagonal[2]);
+      const double pairs =
+          t.off_diagonal[0] * d[0] * d[1] + t.off_diagonal[1] * d[1] * d[2] + t.off_diagonal[2] * d[2] * d[0];
       sum.fit += t.constant - 2 * pull.dot(d) + own.dot(d.cwiseAbs2()) + 2 * pairs;
-      sum.slope +=
-          t.slope * ((u[0] - u[1]) * (u[0] - u[1]) + (u[1] - u[2]) * (u[1] - u[2]) + (u[2] - u[0]) * (u[2] - u[0]));
+      sum.smoothness += t.smoothness *
+                        ((u[0] - u[1]) * (u[0] - u[1]) + (u[1] - u[2]) * (u[1] - u[2]) + (u[2] - u[0]) * (u[2] - u[0]));
     }
     return sum;
   };
   const auto vertices = [&](Index begin, Index end) {
-    EnergyTerms sum;
+    QuadraticTerms sum;
     for (Index v = begin; v < end; ++v) {
       const Vector3d off = move.col(v) - energy.vertices[v].target.cast<double>();
       if (energy.free[v])
-        sum.slide += off.dot(energy.vertices[v].slide.cast<double>() * off);
+        sum.tangential += off.dot(energy.vertices[v].tangential.cast<double>() * off);
     }
     return sum;
   };
-  return add(parallelReduce(graph.faceCount(), threads, EnergyTerms{}, faces, add),
-             parallelReduce(graph.vertexCount(), threads, EnergyTerms{}, vertices, add));
+  return add(parallelReduce(graph.faceCount(), threads, QuadraticTerms{}, faces, add),
+             parallelReduce(graph.vertexCount(), threads, QuadraticTerms{}, vertices, add));
 }
 
 Positions solveMoves(const QuadraticEnergy& energy, const MeshGraph& graph, const Positions& x, int rounds, int threads)
@@ -149,7 +151,7 @@ Positions solveMoves(const QuadraticEnergy& energy, const MeshGraph& graph, cons
   precondition(system, inverse, residual, z);
   Positions direction = z;
   double rho = dot(residual, z, threads);
-  const double enough = 1e-4 * rho; // the next iteration has another energy anyway
+  const double enough = 1e-4 * rho; // a hundredth of the first residual: the next iteration has another energy
   for (int round = 0; round < rounds && rho > enough; ++round) {
     multiply(system, direction, shares, product);
     const double curvature = dot(direction, product, threads);

@@ -1,20 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <fresco/surface/core/surface_energy.h>
+
 #include "optimization/energy/energy.h"
 #include "optimization/energy/line_search.h"
 #include <algorithm>
 #include <cmath>
 #include <fresco/core/parallel.h>
-namespace fresco::optimization {
+namespace fresco {
+using namespace optimization;
 namespace {
-constexpr int default_iterations = 200;
-constexpr double default_kappa1 = 0.1, default_kappa2 = 0.1;
-constexpr double least_robust = 3.0;    // mean edge lengths
-constexpr double first_move = 0.1;      // of the vertex that moves most in the first step tried, mean edge lengths
-constexpr double step_share = 0.1;      // of the tolerance: a step along one line is shorter than a solution
-constexpr int restart_after = 50;       // iterations
-constexpr double reduction = 0.5;       // of kappa_2, each time the vertices come to rest
-constexpr double resting = 5.0;         // moves below so many tolerances are rest
-constexpr double last_share = 1.0 / 64; // of kappa_2 at the end
+constexpr int restart_after = 50; // iterations: conjugacy is lost long before the 3 V of a quadratic energy
 
 double dot(const Positions& a, const Positions& b, int threads)
 {
@@ -25,12 +20,11 @@ double dot(const Positions& a, const Positions& b, int threads)
 // conjugate gradient method without the agonizing pain", 14.1).
 class ConjugateGradients {
 public:
-  ConjugateGradients(OptimizationProblem& problem, const SurfaceOptimizationOptions& options)
-      : problem_(problem), energy_{problem, {}, {}, 0, 0, least_robust, options.threads}, threads_(options.threads)
+  ConjugateGradients(OptimizationProblem& problem, const EnergyOptions& options)
+      : problem_(problem), energy_{problem, {}, {}, options.kappa1, options.kappa2, outlier_distance, options.threads},
+        threads_(options.threads)
   {
     energy_.one_rings = oneRings(problem.graph, problem.start, threads_);
-    energy_.kappa1 = options.kappa1 >= 0 ? options.kappa1 : default_kappa1;
-    energy_.kappa2 = options.kappa2 >= 0 ? options.kappa2 : default_kappa2;
     gradient_ = direction_ = Positions::Zero(3, problem.graph.vertexCount());
   }
 
@@ -41,7 +35,7 @@ public:
     since_restart_ = restart_after;
   }
 
-  OptimizationStep improve()
+  EnergyStep improve()
   {
     energy_.lists = pointsOfFaces(problem_.data, problem_.graph.faceCount());
     Positions gradient(3, problem_.graph.vertexCount());
@@ -49,10 +43,10 @@ public:
     turn(gradient);
     const LinePoint start{0.0, before, dot(gradient_, direction_, threads_)};
     const LinePoint found = start.slope < 0.0 ? search(start) : start;
-    OptimizationStep step;
-    step.move = rmsMove(found.step * direction_, problem_.support.vertex, threads_);
+    EnergyStep step;
+    step.move = rmsMove(found.step * direction_, problem_.coverage.vertex, threads_);
     problem_.x += found.step * direction_;
-    const FaithfulTerms terms = evaluate(energy_, problem_.x, nullptr);
+    const SurfaceEnergyTerms terms = evaluate(energy_, problem_.x, nullptr);
     step.fit = terms.fit;
     step.smooth = terms.smooth;
     step.topology = terms.topology;
@@ -79,6 +73,7 @@ private:
 
   LinePoint search(const LinePoint& start)
   {
+    constexpr double first_move = 0.1; // of the vertex that moves most, mean edge lengths: turns no face over
     const double largest = direction_.colwise().norm().maxCoeff();
     double first = first_move / largest;
     if (last_gain_ < 0.0) // as large a gain as the last step's, to first order (Nocedal, Wright 2006, 3.5)
@@ -93,33 +88,48 @@ private:
   }
 
   OptimizationProblem& problem_;
-  FaithfulEnergy energy_;
+  SurfaceEnergy energy_;
   int threads_;
   Positions gradient_, direction_;
   int since_restart_ = restart_after;
   double last_gain_ = 0.0;
 };
-} // namespace
 
-void runFaithful(OptimizationProblem& problem, const SurfaceOptimizationOptions& options, const Progress& progress,
-                 SurfaceOptimizationResult& result)
+// Fills steps and converged.
+void iterate(OptimizationProblem& problem, const EnergyOptions& options, const Progress& progress, EnergyResult& result)
 {
-  const int most = options.iterations > 0 ? options.iterations : default_iterations;
+  constexpr double resting = 5.0; // tolerances: a smaller move is rest, and kappa_2 is reduced by `reduction`, until
+  constexpr double reduction = 0.5,
+                   last_share = 1.0 / 64; // this share is left: less no longer keeps triangles in shape
   ConjugateGradients optimizer(problem, options);
-  const double tolerance = step_share * options.tolerance;
   const double least_kappa2 = last_share * optimizer.kappa2();
-  for (int i = 0; i < most && !result.converged; ++i) {
-    report(progress, "optimize", 0.1 + 0.85 * i / most);
+  for (int i = 0; i < options.iterations && !result.converged; ++i) {
+    report(progress, "optimize", 0.1 + 0.85 * i / options.iterations);
     if (i > 0)
       followFaces(problem.graph, problem.x, problem.data, options.threads);
-    const OptimizationStep step = optimizer.improve();
+    const EnergyStep step = optimizer.improve();
     result.steps.push_back(step);
-    if (step.move > resting * tolerance)
+    if (step.move > resting * options.tolerance)
       continue;
     if (optimizer.kappa2() > least_kappa2)
       optimizer.setKappa2(std::max(least_kappa2, reduction * optimizer.kappa2()));
     else
-      result.converged = step.move <= tolerance;
+      result.converged = step.move <= options.tolerance;
   }
 }
-} // namespace fresco::optimization
+} // namespace
+
+EnergyResult minimizeSurfaceEnergy(const TriangleMesh& mesh, const PointSet& points, const EnergyOptions& options,
+                                   const Progress& progress)
+{
+  validateOptions(options.iterations, options.kappa1, options.kappa2, options.tolerance);
+  report(progress, "correspondences", 0.0);
+  OptimizationProblem problem = makeProblem(mesh, points, options.threads);
+  EnergyResult result;
+  iterate(problem, options, progress, result);
+  report(progress, "check", 0.95);
+  result.iterations = result.steps.size();
+  finish(mesh, problem, options.threads, result);
+  return result;
+}
+} // namespace fresco

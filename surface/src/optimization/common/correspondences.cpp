@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "optimization/common/data_terms.h"
+#include "optimization/common/correspondences.h"
 #include <algorithm>
 #include <fresco/core/parallel.h>
 #include <fresco/search/closest_on_triangle.h>
@@ -8,15 +8,6 @@
 namespace fresco::optimization {
 namespace {
 using Eigen::Vector3d;
-
-constexpr Index block_size = 1 << 19; // queries at a time: bounds the memory for answers
-constexpr int longest_walk = 16;      // faces; a step of the optimiser moves the mesh by less
-
-Vector3d areaVector(const MeshGraph& graph, const Positions& x, Index f)
-{
-  const Vector3d a = x.col(graph.faces(0, f));
-  return (x.col(graph.faces(1, f)) - a).cross(x.col(graph.faces(2, f)) - a);
-}
 
 TriangleMesh workingMesh(const MeshGraph& graph, const Positions& x)
 {
@@ -51,6 +42,7 @@ struct Assigned {
 Assigned assignFaces(const MeshGraph& graph, const Positions& x, const PointSet& set, const WorkingFrame& frame,
                      double reach, int threads)
 {
+  constexpr Index block_size = 1 << 19; // queries at a time: some tens of MB of answers, work for every core
   const TriangleTree tree(workingMesh(graph, x), threads);
   Assigned assigned;
   std::vector<Index> columns;
@@ -67,7 +59,7 @@ Assigned assignFaces(const MeshGraph& graph, const Positions& x, const PointSet&
     for (std::size_t i = 0; i < columns.size(); ++i)
       if (found[i].face >= 0 && found[i].distance <= reach && graph.face_edges(0, found[i].face) >= 0) {
         assigned.columns.push_back(columns[i]);
-        assigned.faces.push_back(static_cast<int>(found[i].face));
+        assigned.faces.push_back(found[i].face);
       }
   }
   return assigned;
@@ -80,19 +72,20 @@ std::vector<int> sortedByFace(const std::vector<int>& faces, Index face_count, s
     ++begin[f + 1];
   std::partial_sum(begin.begin(), begin.end(), begin.begin());
   std::vector<int> order(faces.size()), next(begin.begin(), begin.end() - 1);
-  for (std::size_t i = 0; i < faces.size(); ++i)
-    order[next[faces[i]]++] = static_cast<int>(i);
+  int i = 0;
+  for (const int f : faces)
+    order[next[f]++] = i++;
   return order;
 }
 
 // Where on its triangle the closest point lies: inside (feature 0), on edge `corner` (1) or on the corner itself (2).
-struct Place {
+struct ClosestFeature {
   int feature, corner;
 };
 
-Place placeOf(const Vector3d& foot)
+ClosestFeature featureOf(const Vector3d& foot)
 {
-  constexpr double rim = 1e-9;
+  constexpr double rim = 1e-9; // of barycentric coordinates: some bits above their rounding
   for (int k = 0; k < 3; ++k)
     if (foot[k] >= 1.0 - rim)
       return {2, k};
@@ -113,9 +106,10 @@ public:
     face_ = face;
     foot_ = footOn(graph_, x_, face, point_);
     squared_ = squaredDistance(face, foot_);
+    constexpr int longest_walk = 16; // faces; a step moves the mesh by less than 16 edges
     for (int step = 0; step < longest_walk; ++step) {
       const int last = face_;
-      tryNeighbours(placeOf(foot_));
+      tryNeighbours(featureOf(foot_));
       if (face_ == last)
         break;
     }
@@ -123,12 +117,12 @@ public:
   }
 
 private:
-  void tryNeighbours(const Place& place)
+  void tryNeighbours(const ClosestFeature& closest)
   {
-    if (place.feature == 1)
-      consider(graph_.across(face_, place.corner));
-    else if (place.feature == 2)
-      for (const int f : facesAround(graph_, graph_.faces(place.corner, face_)))
+    if (closest.feature == 1)
+      consider(graph_.across(face_, closest.corner));
+    else if (closest.feature == 2)
+      for (const int f : facesAround(graph_, graph_.faces(closest.corner, face_)))
         consider(f);
   }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "optimization/common/edge_flips.h"
+#include "optimization/normal_filtering/edge_flips.h"
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
@@ -9,9 +9,6 @@ namespace fresco::optimization {
 namespace {
 using Eigen::Vector3d;
 using Triangle = std::array<int, 3>;
-
-constexpr double least_gain = 0.05;  // mean edge lengths times radians
-constexpr double least_height = 0.1; // of a new triangle, mean edge lengths: no needles
 
 // An edge a-b with its faces (a, b, c) and (b, a, d).
 struct Quad {
@@ -24,15 +21,17 @@ public:
       : graph_(problem.graph), x_(problem.x), data_(problem.data), lists_(lists), noise_(noise)
   {}
 
-  // How much less the surface bends after the flip; 0 where it must not be done.
+  // How much less the total curvature is after the flip; 0 where it must not be done.
   double gain(Index edge) const
   {
+    constexpr double least_gain = 0.05; // edge lengths times radians: 3 degrees at an edge; flat parts are left alone
     Quad q;
     if (!quadOf(edge, q) || !isAllowed(q))
       return 0.0;
     const Triangle old_left{q.a, q.b, q.c}, old_right{q.b, q.a, q.d}, left{q.a, q.d, q.c}, right{q.d, q.b, q.c};
-    const double gain = bend(old_left, old_right) + outerBends(q, old_left, old_right, old_left, old_right) -
-                        bend(left, right) - outerBends(q, left, right, right, left);
+    const double gain = edgeCurvature(old_left, old_right) +
+                        outerCurvature(q, old_left, old_right, old_left, old_right) - edgeCurvature(left, right) -
+                        outerCurvature(q, left, right, right, left);
     return gain > least_gain && keepsData(q, {old_left, old_right}, {left, right}) ? gain : 0.0;
   }
 
@@ -59,8 +58,8 @@ private:
 
   static double angle(const Vector3d& m, const Vector3d& n) { return std::atan2(m.cross(n).norm(), m.dot(n)); }
 
-  // Of two triangles that share two corners.
-  double bend(const Triangle& s, const Triangle& t) const
+  // Length times dihedral angle of the edge that two triangles share.
+  double edgeCurvature(const Triangle& s, const Triangle& t) const
   {
     std::array<int, 2> shared{};
     std::size_t count = 0;
@@ -70,15 +69,15 @@ private:
     return (x_.col(shared[0]) - x_.col(shared[1])).norm() * angle(areaVector(s), areaVector(t));
   }
 
-  // Bends at the four sides of the quad, given which triangle lies at side (b,c), (d,b), (c,a) and (a,d).
-  double outerBends(const Quad& q, const Triangle& at_ca_or_left, const Triangle& at_db_or_right, const Triangle& at_bc,
-                    const Triangle& at_ad) const
+  // Curvature at the four sides of the quad, given which triangle lies at side (b,c), (d,b), (c,a) and (a,d).
+  double outerCurvature(const Quad& q, const Triangle& at_ca_or_left, const Triangle& at_db_or_right,
+                        const Triangle& at_bc, const Triangle& at_ad) const
   {
-    return sideBend(q, q.c, q.a, at_ca_or_left) + sideBend(q, q.d, q.b, at_db_or_right) + sideBend(q, q.b, q.c, at_bc) +
-           sideBend(q, q.a, q.d, at_ad);
+    return sideCurvature(q, q.c, q.a, at_ca_or_left) + sideCurvature(q, q.d, q.b, at_db_or_right) +
+           sideCurvature(q, q.b, q.c, at_bc) + sideCurvature(q, q.a, q.d, at_ad);
   }
 
-  double sideBend(const Quad& q, int from, int to, const Triangle& inside) const
+  double sideCurvature(const Quad& q, int from, int to, const Triangle& inside) const
   {
     for (const int f : {q.left, q.right})
       for (int k = 0; k < 3; ++k)
@@ -91,6 +90,7 @@ private:
 
   bool isAllowed(const Quad& q) const
   {
+    constexpr double least_height = 0.1; // of a new triangle over its new side, mean edge lengths: else a needle
     if (q.c == q.d || edgesAround(graph_, q.a).size() < 4 || edgesAround(graph_, q.b).size() < 4)
       return false;
     for (const int e : edgesAround(graph_, q.c))
@@ -131,7 +131,7 @@ private:
   double noise_;
 };
 
-// The faces of the quad and those beyond its sides: their bends were part of the decision.
+// The faces of the quad and those beyond its sides: their curvature was part of the decision.
 std::array<int, 6> facesConcerned(const MeshGraph& graph, const Quad& q)
 {
   std::array<int, 6> faces{q.left, q.right, -1, -1, -1, -1};
@@ -151,12 +151,12 @@ std::vector<int> bestFirst(const OptimizationProblem& problem, const Flipper& fl
   std::vector<double> gains(problem.graph.edgeCount());
   parallelFor(problem.graph.edgeCount(), threads, [&](Index e) {
     const auto [a, b] = problem.graph.edges[e];
-    gains[e] = problem.support.vertex[a] && problem.support.vertex[b] ? flipper.gain(e) : 0.0;
+    gains[e] = problem.coverage.vertex[a] && problem.coverage.vertex[b] ? flipper.gain(e) : 0.0;
   });
   std::vector<int> order;
-  for (std::size_t e = 0; e < gains.size(); ++e)
+  for (int e = 0; e < problem.graph.edgeCount(); ++e)
     if (gains[e] > 0.0)
-      order.push_back(static_cast<int>(e));
+      order.push_back(e);
   std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return gains[a] > gains[b]; });
   return order;
 }

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "optimization/common/problem.h"
+#include "optimization/common/inversion_guard.h"
+#include <algorithm>
+#include <cmath>
+#include <fresco/core/parallel.h>
+#include <fresco/core/require.h>
+namespace fresco::optimization {
+namespace {
+
+void validate(const TriangleMesh& mesh, const PointSet& points)
+{
+  require(mesh.faceCount() > 0, "optimisation: the mesh has no faces");
+  validateMesh(mesh);
+  validatePointSet(points);
+  require(points.size() > 0, "optimisation: no points");
+}
+
+// Mean of the vertices that faces name.
+Eigen::Vector3d middleOf(const TriangleMesh& mesh, const MeshGraph& graph)
+{
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  double count = 0;
+  for (Index v = 0; v < mesh.vertexCount(); ++v)
+    if (facesAround(graph, v).size() > 0) {
+      sum += mesh.vertices.col(v).cast<double>();
+      ++count;
+    }
+  return count > 0 ? (sum / count).eval() : sum;
+}
+
+TriangleMesh movedMesh(const TriangleMesh& mesh, const OptimizationProblem& problem, int threads)
+{
+  TriangleMesh moved = mesh;
+  moved.faces = problem.graph.faces;
+  const Eigen::Vector3d shift = problem.frame.center - mesh.origin;
+  parallelFor(mesh.vertexCount(), threads, [&](Index v) {
+    if (problem.x.col(v) != problem.start.col(v) && facesAround(problem.graph, v).size() > 0)
+      moved.vertices.col(v) = (problem.frame.unit * problem.x.col(v) + shift).cast<float>();
+  });
+  if (mesh.normals.cols() > 0)
+    moved.normals = vertexNormals(moved, threads);
+  return moved;
+}
+} // namespace
+
+void validateOptions(int iterations, double smoothness_weight, double shape_weight, double tolerance)
+{
+  require(iterations >= 1 && iterations <= 10000, "optimisation: ", iterations, " iterations are not in 1..10000");
+  for (const double weight : {smoothness_weight, shape_weight})
+    require(weight >= 0 && std::isfinite(weight), "optimisation: weight ", weight, " is negative or not finite");
+  require(tolerance >= 0 && std::isfinite(tolerance), "optimisation: tolerance ", tolerance,
+          " is negative or not finite");
+}
+
+OptimizationProblem makeProblem(const TriangleMesh& mesh, const PointSet& points, int threads)
+{
+  constexpr double reach =
+      6.0; // mean edge lengths, twice the outlier distance: beyond, a datum has no weight to speak of
+  validate(mesh, points);
+  OptimizationProblem problem;
+  problem.graph = buildGraph(mesh.faces, mesh.vertexCount(), threads);
+  const Eigen::Vector3d middle = middleOf(mesh, problem.graph);
+  Positions x = mesh.vertices.cast<double>().colwise() - middle;
+  problem.frame.center = mesh.origin + middle;
+  problem.frame.unit = meanEdgeLength(problem.graph, x, threads);
+  require(problem.frame.unit > 0 && surfaceArea(mesh) > 0, "optimisation: the mesh has no area");
+  problem.x = x / problem.frame.unit;
+  problem.start = problem.x;
+  problem.data = findCorrespondences(problem.graph, problem.x, points, problem.frame, reach, threads);
+  require(problem.data.size() > 0, "optimisation: no finite point lies within ", reach * problem.frame.unit, " (",
+          reach, " mean edge lengths) of the mesh");
+  problem.coverage = findCoverage(problem.graph, problem.x, problem.data,
+                                  pointsOfFaces(problem.data, problem.graph.faceCount()), threads);
+  return problem;
+}
+
+void finish(const TriangleMesh& mesh, OptimizationProblem& problem, int threads, SurfaceOptimizationResult& result)
+{
+  const std::vector<char>& covered = problem.coverage.vertex;
+  result.edge_length = problem.frame.unit;
+  result.spacing = problem.coverage.spacing * problem.frame.unit;
+  result.used_points = problem.data.size();
+  result.left_out_points = problem.data.left_out;
+  result.covered_vertices = std::count(covered.begin(), covered.end(), char{1});
+  result.restored_vertices = repairInverted(problem.graph, problem.start, covered, problem.x, threads);
+  result.mesh = movedMesh(mesh, problem, threads);
+}
+
+double rmsMove(const Positions& move, const std::vector<char>& counts, int threads)
+{
+  const double sum =
+      parallelSum(move.cols(), threads, 0.0, [&](Index v) { return counts[v] ? move.col(v).squaredNorm() : 0.0; });
+  const double number = std::count(counts.begin(), counts.end(), char{1});
+  return number > 0 ? std::sqrt(sum / number) : 0.0;
+}
+} // namespace fresco::optimization

@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fresco/surface/core/normal_filtering.h>
+
+#include "optimization/common/inversion_guard.h"
+#include "optimization/normal_filtering/edge_flips.h"
+#include "optimization/normal_filtering/face_normals.h"
+#include "optimization/normal_filtering/vertex_energy.h"
+#include <algorithm>
+#include <cmath>
+#include <fresco/core/parallel.h>
+namespace fresco {
+using namespace optimization;
+namespace {
+// The smoothness weight is the square of the length over which data are averaged: half the distance between data, so
+// that exact ones are hardly averaged, and more with noise. Dense data need less: with the root of noise times distance
+// the number of data averaged grows as noise does. Factors by measurement on
+// fandisk, exact and noisy: docs/measurements/optimization.md.
+TermWeights weightsFor(const OptimizationProblem& problem, double noise, const NormalFilteringOptions& options)
+{
+  constexpr double spacing_lengths = 0.5, noise_lengths = 10.0, noise_spacing_lengths = 7.0;
+  constexpr double robust_noises = 4.0; // of Gaussian noise one datum in 16,000 is farther off
+  const double spacing = problem.coverage.spacing;
+  const double length = spacing_lengths * std::max(1.0, spacing) +
+                        std::min(noise_lengths * noise, noise_spacing_lengths * std::sqrt(noise * spacing));
+  TermWeights weights;
+  weights.smoothness = options.smoothness_weight * length * length;
+  weights.tangential = options.tangential_weight;
+  weights.noise = noise;
+  weights.robust = std::max(outlier_distance, robust_noises * noise);
+  return weights;
+}
+
+// Normals of the data count where they are sharper than the field of the mesh, not where noise blurred them.
+double normalWeight(double noise)
+{
+  constexpr double exact_weight = 2.0;   // against the normal of the same area of the mesh, which is rounded at edges
+  constexpr double blurred_noise = 0.05; // mean edge lengths: 3 degrees of a normal estimated over an edge length
+  const double ratio = noise / blurred_noise;
+  return exact_weight / (1.0 + ratio * ratio);
+}
+
+// Shortens moves that would end farther from the start than a datum may be off: where data contradict each other, as on
+// things not much larger than their noise, vertices would move on and draw the surface out into splinters.
+void keepNearStart(const OptimizationProblem& problem, Positions& move, int threads)
+{
+  parallelFor(move.cols(), threads, [&](Index v) {
+    const Eigen::Vector3d way = problem.x.col(v) + move.col(v) - problem.start.col(v);
+    if (const double length = way.norm(); length > outlier_distance)
+      move.col(v) = problem.start.col(v) + way * (outlier_distance / length) - problem.x.col(v);
+  });
+}
+
+NormalFilteringStep describe(const OptimizationProblem& problem, const QuadraticEnergy& energy, const Positions& move,
+                             int threads)
+{
+  const Positions still = Positions::Zero(3, move.cols());
+  const QuadraticTerms terms = evaluate(energy, problem.graph, problem.x, move, threads);
+  NormalFilteringStep step;
+  step.before = evaluate(energy, problem.graph, problem.x, still, threads).sum();
+  step.after = terms.sum();
+  step.fit = terms.fit;
+  step.smoothness = terms.smoothness;
+  step.tangential = terms.tangential;
+  step.move = rmsMove(move, problem.coverage.vertex, threads);
+  return step;
+}
+
+// One iteration. `noise` is that of the last one, and negative in the first; replaced.
+NormalFilteringStep improve(OptimizationProblem& problem, const NormalFilteringOptions& options, double& noise)
+{
+  constexpr int solver_rounds = 20; // of conjugate gradients: data change their faces before more would pay
+  const int threads = options.threads;
+  const Eigen::Matrix3Xd areas = areaVectors(problem.graph, problem.x, threads);
+  const FacePoints lists = pointsOfFaces(problem.data, problem.graph.faceCount());
+  NormalFilterOptions filter;
+  filter.threads = threads;
+  const double normal_weight = noise < 0.0 ? 0.0 : normalWeight(noise);
+  const Eigen::Matrix3Xf normals =
+      filterNormals(problem.graph, areas, dataNormals(problem, areas, lists, normal_weight, threads), filter);
+  const Eigen::VectorXf residuals = dataResiduals(problem, normals, threads);
+  noise = noiseOf(lists, residuals);
+  const QuadraticEnergy energy =
+      makeEnergy(problem, lists, normals, residuals, weightsFor(problem, noise, options), threads);
+  Positions move = solveMoves(energy, problem.graph, problem.x, solver_rounds, threads);
+  keepNearStart(problem, move, threads);
+  limitMoves(problem.graph, problem.x, normals, move, threads);
+  NormalFilteringStep step = describe(problem, energy, move, threads);
+  for (; step.after > step.before && step.move > 0.0; step = describe(problem, energy, move, threads))
+    move *= 0.5;
+  problem.x += move;
+  relaxInverted(problem.graph, problem.coverage.vertex, problem.x, threads);
+  relaxStuck(problem.graph, problem.coverage.vertex, move, problem.x, threads);
+  return step;
+}
+
+// Data that contradict each other, because of noise as large as the things they show, have no surface to converge to:
+// further steps only cut it into facets.
+bool stagnates(const std::vector<NormalFilteringStep>& steps)
+{
+  constexpr double large_move = 0.05;  // mean edge lengths, RMS: steps on fandisk are smaller from the fourth on
+  constexpr double least_shrink = 0.9; // of the step before: with less the count ends before the steps do
+  const std::size_t n = steps.size();
+  return n > 1 && steps[n - 1].move > large_move && steps[n - 1].move > least_shrink * steps[n - 2].move;
+}
+
+// Iterations over `problem`, then rounds of edge flips; fills what `finish` does not.
+class Filtering {
+public:
+  Filtering(OptimizationProblem& problem, const NormalFilteringOptions& options, NormalFilteringResult& result)
+      : problem_(problem), options_(options), result_(result)
+  {}
+
+  void iterate(const Progress& progress)
+  {
+    for (int i = 0; i < options_.iterations && !result_.converged && !stagnating_; ++i) {
+      report(progress, "optimize", 0.1 + 0.75 * i / options_.iterations);
+      step();
+      stagnating_ = stagnates(result_.steps);
+    }
+  }
+
+  void flip(const Progress& progress)
+  {
+    constexpr int rounds = 12, between = 3; // in all, and from one iteration to the next: few edges flip after these
+    for (int round = 0; round < rounds; ++round) {
+      report(progress, "flip", 0.85 + 0.1 * round / rounds);
+      followFaces(problem_.graph, problem_.x, problem_.data, options_.threads);
+      const Index flipped = flipEdges(problem_, result_.noise, options_.threads);
+      result_.flipped_edges += flipped;
+      if (flipped == 0)
+        break;
+      if ((round + 1) % between == 0 && !stagnating_)
+        step();
+    }
+  }
+
+private:
+  void step()
+  {
+    if (!result_.steps.empty())
+      followFaces(problem_.graph, problem_.x, problem_.data, options_.threads);
+    result_.steps.push_back(improve(problem_, options_, result_.noise));
+    result_.converged = result_.steps.back().move <= options_.tolerance;
+  }
+
+  OptimizationProblem& problem_;
+  const NormalFilteringOptions& options_;
+  NormalFilteringResult& result_;
+  bool stagnating_ = false;
+};
+} // namespace
+
+NormalFilteringResult filterSurface(const TriangleMesh& mesh, const PointSet& points,
+                                    const NormalFilteringOptions& options, const Progress& progress)
+{
+  validateOptions(options.iterations, options.smoothness_weight, options.tangential_weight, options.tolerance);
+  report(progress, "correspondences", 0.0);
+  OptimizationProblem problem = makeProblem(mesh, points, options.threads);
+  NormalFilteringResult result;
+  result.noise = -1.0; // not known yet
+  Filtering filtering(problem, options, result);
+  filtering.iterate(progress);
+  if (options.flip)
+    filtering.flip(progress);
+  report(progress, "check", 0.95);
+  result.noise *= problem.frame.unit;
+  result.iterations = result.steps.size();
+  finish(mesh, problem, options.threads, result);
+  return result;
+}
+} // namespace fresco
