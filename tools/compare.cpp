@@ -25,7 +25,7 @@ Options parse(int argc, char** argv)
       "Distance between two meshes (PLY, OBJ, VTK): max, mean and RMS over the vertices of one of the exact distance\n"
       "to the surface of the other, both ways and symmetric (the larger), absolute and in % of the diagonal of the\n"
       "reference's bounding box; angles between normals; topology. Vertices that no face names do not count.");
-  args.option("json", options.json, "file for all figures");
+  args.option("json", options.json, "file for all these numbers");
   args.option("colored", options.colored,
               "mesh file (PLY) for MESH coloured by error: red = 0, green, blue = large; the distances are its field "
               "\"distance\"");
@@ -50,7 +50,7 @@ Options parse(int argc, char** argv)
     throw UsageError("-samples and -normal_samples want a value of 0 or more");
   if (!options.colored.empty() && extension(options.colored) != ".ply")
     throw UsageError("-colored writes PLY, not '" + options.colored + "'");
-  options.distance.seed = static_cast<std::uint64_t>(options.seed);
+  options.distance.seed = options.seed;
   return options;
 }
 
@@ -63,7 +63,7 @@ TriangleMesh read(const std::string& path, bool need_faces)
 
 void writeColored(const Options& options, TriangleMesh mesh, const MeshDistanceResult& result)
 {
-  const auto largest = static_cast<float>(result.vertices.to_reference.max);
+  const float largest = result.vertices.to_reference.max;
   mesh.colors = errorColors(result.vertex_distances, options.largest > 0.f ? options.largest : largest);
   mesh.fields["distance"] = result.vertex_distances;
   writeMesh(options.colored, mesh);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "compare_report.h"
 #include <cstdio>
+#include <fresco/core/require.h>
 namespace fresco {
 namespace {
 template <typename... Values>
@@ -34,9 +35,9 @@ std::string normalLine(const char* label, const NormalDeviation& n)
 
 std::string topologyLine(const char* label, Index vertices, Index faces, const MeshTopology& t)
 {
-  return format("%-12s V %ld  F %ld  boundary edges %ld  non-manifold edges %ld  components %ld  watertight %s\n",
-                label, static_cast<long>(vertices), static_cast<long>(faces), static_cast<long>(t.boundary_edges),
-                static_cast<long>(t.nonmanifold_edges), static_cast<long>(t.components), t.watertight ? "yes" : "no");
+  return concat(format("%-12s", label), " V ", vertices, "  F ", faces, "  boundary edges ", t.boundary_edges,
+                "  non-manifold edges ", t.nonmanifold_edges, "  components ", t.components, "  watertight ",
+                t.watertight ? "yes" : "no", "\n");
 }
 
 nlohmann::json distanceJson(const DistanceStatistics& d, double diagonal)

@@ -15,6 +15,6 @@ struct Comparison {
 /// The table of distances (absolute and in % of the diagonal), normals and topology, for people.
 std::string comparisonText(const Comparison& comparison);
 
-/// All figures; distances in the unit of the meshes, angles in degrees.
+/// All numbers; distances in the unit of the meshes, angles in degrees.
 nlohmann::json comparisonJson(const Comparison& comparison);
 } // namespace fresco

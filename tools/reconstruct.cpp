@@ -31,10 +31,11 @@ Request parse(int argc, char** argv)
   args.option("samples_per_node", o.samples_per_node,
               "points that a cell needs to sustain its depth, > 0; more = smoother");
   args.option("trim", o.trim,
-              "cut the surface away where the data sustain less than this octree depth; 0 = keep it closed");
-  args.option("trim_levels", o.trim_levels,
-              "the same so many octree levels below what a quarter of the surface sustains, at most below the finest; "
-              "0 = keep it closed");
+              "an octree depth: cut the surface away where the data sustain less than it; 0 = keep it closed");
+  args.option(
+      "trim_levels", o.trim_levels,
+      "octree levels: the same, but so many levels below the depth that the best-sampled quarter of the surface "
+      "reaches; 0 = keep it closed");
   args.flag("confidence", o.confidence,
             "weight the points by their field `confidence`, else by the length of their normals");
   args.option("scale", o.scale, "cube side / longest side of the points' bounding box, 1..100");
@@ -59,7 +60,7 @@ Request parse(int argc, char** argv)
 
 std::string percent(fresco::Index part, fresco::Index whole)
 {
-  return fresco::concat(std::round(1000.0 * static_cast<double>(part) / static_cast<double>(whole)) / 10, " %");
+  return fresco::concat(std::round(1000.0 * part / whole) / 10, " %");
 }
 
 void run(const Request& request)
@@ -67,7 +68,7 @@ void run(const Request& request)
   fresco::PointSet points = fresco::readPoints(request.input);
   const fresco::Index count = points.size();
   if (request.estimate) {
-    std::cout << std::ceil(static_cast<double>(fresco::estimateMemory(points, request.options)) / 1e6) << '\n';
+    std::cout << std::ceil(fresco::estimateMemory(points, request.options) / 1e6) << '\n';
     return;
   }
   const fresco::VolumetricResult result =

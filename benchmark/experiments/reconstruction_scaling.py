@@ -135,8 +135,8 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("what", choices=("growth", "busy", "phases"))
     parser.add_argument("mesh", help="mesh to be sampled, e.g. igea.ply")
-    parser.add_argument("--bin", default=os.path.join(HERE, "..", "build", "bin"), help="folder of the programs")
-    parser.add_argument("--cache", default=os.path.join(HERE, "..", "build", "benchmark_cache"),
+    parser.add_argument("--bin", default=os.path.join(HERE, "..", "..", "build", "bin"), help="folder of the programs")
+    parser.add_argument("--cache", default=os.path.join(HERE, "..", "..", "build", "benchmark_cache"),
                         help="folder of the inputs")
     parser.add_argument("--counts", type=int, nargs="+", help="numbers of samples; busy and phases take the first")
     parser.add_argument("--depth", type=int, default=9)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What benchmark/experiments/trimming.py and benchmark/experiments/thin_rods.py share: surface samples, distances, rods in a truth mesh."""
+"""What trimming.py and thin_rods.py share: surface samples, distances, rods in a truth mesh."""
 import numpy as np
 import open3d as o3d
 

@@ -61,7 +61,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("truth")
     parser.add_argument("cloud", help="PLY points with normals")
-    parser.add_argument("--bin", default=os.path.join(HERE, "..", "build", "bin"), help="folder of the programs")
+    parser.add_argument("--bin", default=os.path.join(HERE, "..", "..", "build", "bin"), help="folder of the programs")
     parser.add_argument("--depth", type=int, default=9)
     parser.add_argument("--threads", type=int, default=2, help="of Open3D")
     parser.add_argument("--levels", type=float, nargs="+", default=[0, 1, 1.5, 2, 2.5, 3, 4])

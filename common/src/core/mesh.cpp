@@ -1,22 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <Eigen/Geometry>
 #include <fresco/core/mesh.h>
 #include <fresco/core/parallel.h>
 #include <fresco/core/require.h>
 namespace fresco {
 namespace {
-Eigen::Vector3d corner(const TriangleMesh& mesh, Index face, int k)
-{
-  return mesh.vertices.col(mesh.faces(k, face)).cast<double>();
-}
-
-/// Twice the area times the unit normal.
-Eigen::Vector3d areaVector(const TriangleMesh& mesh, Index face)
-{
-  const Eigen::Vector3d a = corner(mesh, face, 0);
-  return (corner(mesh, face, 1) - a).cross(corner(mesh, face, 2) - a);
-}
-
 Eigen::Vector3f unitOrZero(const Eigen::Vector3d& v)
 {
   const double length = v.norm();
@@ -87,10 +74,10 @@ double signedVolume(const TriangleMesh& mesh)
 {
   if (mesh.faceCount() == 0)
     return 0;
-  const Eigen::Vector3d center = corner(mesh, 0, 0); // near the mesh, so that large coordinates cancel early
+  const Eigen::Vector3d center = faceCorner(mesh, 0, 0); // near the mesh, so that large coordinates cancel early
   return parallelSum(mesh.faceCount(), 0, 0.0, [&](Index f) {
-    const Eigen::Vector3d a = corner(mesh, f, 0) - center;
-    return a.dot((corner(mesh, f, 1) - center).cross(corner(mesh, f, 2) - center)) / 6.0;
+    const Eigen::Vector3d a = faceCorner(mesh, f, 0) - center;
+    return a.dot((faceCorner(mesh, f, 1) - center).cross(faceCorner(mesh, f, 2) - center)) / 6.0;
   });
 }
 

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <fresco/surface/core/error_colors.h>
-
 #include <algorithm>
 #include <cmath>
 #include <fresco/core/require.h>
+#include <fresco/surface/core/error_colors.h>
 namespace fresco {
 namespace {
 using Color = Eigen::Matrix<std::uint8_t, 3, 1>;
@@ -12,9 +11,7 @@ using Color = Eigen::Matrix<std::uint8_t, 3, 1>;
 Color hueColor(float share)
 {
   const float s = 4.f * std::clamp(share, 0.f, 1.f); // 0 red, 1 yellow, 2 green, 3 cyan, 4 blue
-  const auto channel = [](float value) {
-    return static_cast<std::uint8_t>(std::lround(255.f * std::clamp(value, 0.f, 1.f)));
-  };
+  const auto channel = [](float value) -> std::uint8_t { return std::lround(255.f * std::clamp(value, 0.f, 1.f)); };
   return {channel(2.f - s), channel(s < 2.f ? s : 4.f - s), channel(s - 2.f)};
 }
 } // namespace

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <Eigen/Geometry>
-#include <fresco/surface/core/mesh_distance.h>
-
 #include "distance/mesh_distance_statistics.h"
 #include <algorithm>
 #include <cmath>
+#include <fresco/core/constants.h>
 #include <fresco/core/parallel.h>
 #include <fresco/core/require.h>
 #include <fresco/search/triangle_tree.h>
+#include <fresco/surface/core/mesh_distance.h>
 #include <fresco/surface/core/surface_samples.h>
 #include <limits>
 #include <optional>
@@ -17,7 +16,8 @@ namespace {
 using Eigen::Matrix3Xd;
 using Eigen::Vector3d;
 
-constexpr float largest_coordinate = 1e17f; // squares, and sums of several, stay finite in single precision
+/// Squares, and sums of several, stay finite in single precision.
+constexpr float largest_coordinate = 1e17f;
 
 // One of the two meshes and what the measurements need of it.
 struct Side {
@@ -32,9 +32,9 @@ std::vector<int> countedVertices(const TriangleMesh& mesh)
   for (Index i = 0; i < mesh.faces.size(); ++i)
     counts[mesh.faces.data()[i]] = 1;
   std::vector<int> vertices;
-  for (std::size_t v = 0; v < counts.size(); ++v)
+  for (int v = 0; v < mesh.vertexCount(); ++v)
     if (counts[v])
-      vertices.push_back(static_cast<int>(v));
+      vertices.push_back(v);
   return vertices;
 }
 
@@ -73,15 +73,8 @@ Eigen::VectorXf perVertex(const Side& side, const std::vector<ClosestPoint>& clo
   Eigen::VectorXf distances =
       Eigen::VectorXf::Constant(side.mesh.vertexCount(), std::numeric_limits<float>::quiet_NaN());
   for (std::size_t i = 0; i < closest.size(); ++i)
-    distances[side.vertices[i]] = static_cast<float>(closest[i].distance);
+    distances[side.vertices[i]] = closest[i].distance;
   return distances;
-}
-
-Vector3d areaVector(const TriangleMesh& mesh, Index face)
-{
-  const auto corner = [&](int i) -> Vector3d { return mesh.vertices.col(mesh.faces(i, face)).cast<double>(); };
-  const Vector3d a = corner(0);
-  return (corner(1) - a).cross(corner(2) - a);
 }
 
 Index sampleCount(const MeshDistanceOptions& options)
@@ -102,10 +95,9 @@ SampleAnswers measureSamples(const Side& from, const Side& to, std::uint64_t see
   SampleAnswers answers{closestPoints(*to.surface, samples.points, options.threads), {}};
   answers.angles.resize(answers.closest.size());
   parallelFor(count, options.threads, [&](Index i) {
-    const auto slot = static_cast<std::size_t>(i);
-    const Vector3d a = areaVector(from.mesh, samples.faces[i]), b = areaVector(to.mesh, answers.closest[slot].face);
+    const Vector3d a = areaVector(from.mesh, samples.faces[i]), b = areaVector(to.mesh, answers.closest[i].face);
     const bool defined = a.squaredNorm() > 0.0 && b.squaredNorm() > 0.0;
-    answers.angles[slot] = defined ? std::atan2(a.cross(b).norm(), a.dot(b)) * (180.0 / M_PI) : -1.0;
+    answers.angles[i] = defined ? std::atan2(a.cross(b).norm(), a.dot(b)) * degrees_per_radian : -1.0;
   });
   auto& angles = answers.angles;
   angles.erase(std::remove(angles.begin(), angles.end(), -1.0), angles.end());

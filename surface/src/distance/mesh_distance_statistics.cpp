@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "distance/mesh_distance_statistics.h"
-
 #include <algorithm>
 #include <cmath>
 namespace fresco::distance {
@@ -8,7 +7,7 @@ namespace {
 // Linear between the two values that enclose the rank; reorders `values`, which must not be empty.
 double quantile(std::vector<double>& values, double share)
 {
-  const double rank = share * static_cast<double>(values.size() - 1);
+  const double rank = share * (values.size() - 1);
   const auto lower = values.begin() + static_cast<std::ptrdiff_t>(rank);
   std::nth_element(values.begin(), lower, values.end());
   const double fraction = rank - std::floor(rank);
@@ -21,7 +20,7 @@ double quantile(std::vector<double>& values, double share)
 DistanceStatistics statistics(const std::vector<ClosestPoint>& closest)
 {
   DistanceStatistics result;
-  result.count = static_cast<Index>(closest.size());
+  result.count = closest.size();
   double sum = 0.0, squares = 0.0;
   for (const ClosestPoint& c : closest) {
     result.max = std::max(result.max, c.distance);
@@ -29,8 +28,8 @@ DistanceStatistics statistics(const std::vector<ClosestPoint>& closest)
     squares += c.distance * c.distance;
   }
   if (result.count > 0) {
-    result.mean = sum / static_cast<double>(result.count);
-    result.rms = std::sqrt(squares / static_cast<double>(result.count));
+    result.mean = sum / result.count;
+    result.rms = std::sqrt(squares / result.count);
   }
   return result;
 }
@@ -46,7 +45,7 @@ bool mostlyOpposite(std::vector<double> angles) { return !angles.empty() && quan
 NormalDeviation deviation(std::vector<double> angles, bool turned)
 {
   NormalDeviation result;
-  result.count = static_cast<Index>(angles.size());
+  result.count = angles.size();
   if (angles.empty())
     return result;
   double sum = 0.0;
@@ -56,8 +55,8 @@ NormalDeviation deviation(std::vector<double> angles, bool turned)
     sum += angle;
     above += angle > 20.0;
   }
-  result.mean = sum / static_cast<double>(result.count);
-  result.share_above_20 = static_cast<double>(above) / static_cast<double>(result.count);
+  result.mean = sum / result.count;
+  result.share_above_20 = above / (1.0 * result.count);
   result.median = quantile(angles, 0.5);
   result.percentile95 = quantile(angles, 0.95);
   return result;

@@ -6,7 +6,8 @@
 namespace fresco::distance {
 DistanceStatistics statistics(const std::vector<ClosestPoint>& closest);
 
-/// Seed eq. 4.26 for max, mean and RMS alike.
+/// The larger of both directions, for max, mean and RMS alike: B. Pitzer, Automatic Reconstruction of Textured 3D
+/// Models (PhD thesis, Karlsruhe Institute of Technology), eq. 4.26.
 TwoSidedDistance twoSided(const DistanceStatistics& to_reference, const DistanceStatistics& from_reference);
 
 /// Whether the median angle exceeds 90 degrees.

@@ -1,38 +1,26 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <Eigen/Geometry>
-#include <fresco/surface/core/surface_samples.h>
-
 #include <algorithm>
 #include <cmath>
 #include <fresco/core/parallel.h>
 #include <fresco/core/require.h>
+#include <fresco/surface/core/surface_samples.h>
 #include <vector>
 namespace fresco {
 namespace {
-using Eigen::Vector3d;
-
 // Uniform in [0, 1), a function of its arguments only (SplitMix64: Steele, Lea, Flood 2014).
 double uniform(std::uint64_t seed, std::uint64_t counter)
 {
   std::uint64_t x = seed * 0xd1342543de82ef95u + (counter + 1) * 0x9e3779b97f4a7c15u;
   x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
   x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
-  return static_cast<double>((x ^ (x >> 31)) >> 11) * 0x1.0p-53;
-}
-
-Vector3d corner(const TriangleMesh& mesh, Index face, int i)
-{
-  return mesh.vertices.col(mesh.faces(i, face)).cast<double>();
+  return ((x ^ (x >> 31)) >> 11) * 0x1.0p-53;
 }
 
 // Sums of the areas of the faces up to and including each.
 std::vector<double> areaSums(const TriangleMesh& mesh, int threads)
 {
   std::vector<double> sums(mesh.faceCount());
-  parallelFor(mesh.faceCount(), threads, [&](Index f) {
-    const Vector3d a = corner(mesh, f, 0);
-    sums[f] = 0.5 * (corner(mesh, f, 1) - a).cross(corner(mesh, f, 2) - a).norm();
-  });
+  parallelFor(mesh.faceCount(), threads, [&](Index f) { sums[f] = 0.5 * areaVector(mesh, f).norm(); });
   double sum = 0.0;
   for (double& entry : sums)
     entry = sum += entry;
@@ -50,13 +38,13 @@ SurfaceSamples sampleSurface(const TriangleMesh& mesh, Index count, std::uint64_
   const auto last = std::lower_bound(sums.begin(), sums.end(), area) - sums.begin(); // last face with an area
   SurfaceSamples samples{Eigen::Matrix3Xd(3, count), Eigen::VectorXi(count)};
   parallelFor(count, threads, [&](Index i) {
-    const auto counter = 3 * static_cast<std::uint64_t>(i);
-    const double at = (static_cast<double>(i) + uniform(seed, counter)) / static_cast<double>(count) * area;
+    const std::uint64_t counter = 3 * i;
+    const double at = (i + uniform(seed, counter)) / count * area;
     const Index f = std::min<Index>(std::upper_bound(sums.begin(), sums.end(), at) - sums.begin(), last);
     const double r = std::sqrt(uniform(seed, counter + 1)), s = uniform(seed, counter + 2);
     samples.points.col(i) =
-        (1.0 - r) * corner(mesh, f, 0) + r * (1.0 - s) * corner(mesh, f, 1) + r * s * corner(mesh, f, 2);
-    samples.faces[i] = static_cast<int>(f);
+        (1.0 - r) * faceCorner(mesh, f, 0) + r * (1.0 - s) * faceCorner(mesh, f, 1) + r * s * faceCorner(mesh, f, 2);
+    samples.faces[i] = f;
   });
   return samples;
 }

@@ -7,8 +7,7 @@
 namespace fresco::poisson {
 namespace {
 using Channels = Eigen::Matrix<float, 5, 1>; ///< weight, weight times attributes
-constexpr std::size_t channel_count = 5;
-constexpr float least_weight = 1e-4f;
+constexpr int channel_count = Channels::RowsAtCompileTime;
 using Fields = std::array<NodeField, channel_count>;
 
 Channels channelsOf(const Samples& samples, std::uint32_t i)
@@ -30,6 +29,7 @@ public:
 
   void fillRange(const VertexRange& range, const Points& vertices, Eigen::Matrix4Xf& result) const
   {
+    constexpr float least_weight = 1e-4f; // a sample in a far corner; less is rounding
     std::vector<Channels> nodes;
     if (range.depth == tree_.depth)
       nodes = finestNodes(range.brick);
@@ -58,17 +58,16 @@ private:
     const BrickLevel& level = tree_.levels[d];
     Fields& fields = fields_[d];
     const Array<std::uint32_t> begin = sampleRanges(level, samples_.codes, tree_.depth, threads);
-    for (std::size_t c = 0; c < channel_count; ++c) {
+    for (int c = 0; c < channel_count; ++c) {
       fields[c] = NodeField(level.size(), threads);
       if (d < tree_.depth - 1) {
-        const auto finer = static_cast<std::size_t>(d) + 1;
-        restrictLevel(tree_.levels[finer], fields_[finer][c], level, 1.f, fields[c], threads);
+        restrictLevel(tree_.levels[d + 1], fields_[d + 1][c], level, 1.f, fields[c], threads);
         continue;
       }
       splatBricks(level, begin, fields[c], threads, [&](SplatBlock<1>& block, int b) {
-        for (std::uint32_t i = begin[b]; i < begin[static_cast<std::size_t>(b) + 1]; ++i) {
+        for (std::uint32_t i = begin[b]; i < begin[b + 1]; ++i) {
           const HatWeights w(toBrick(samples_.samples[i].position, d, b));
-          const float value = channelsOf(samples_, i)[static_cast<Index>(c)];
+          const float value = channelsOf(samples_, i)[c];
           for (int k = 0; k < 8; ++k)
             block.at(w.x + (k & 1), w.y + (k >> 1 & 1), w.z + (k >> 2)) += value * w.value[k];
         }
@@ -79,14 +78,14 @@ private:
 
   std::vector<Channels> finestNodes(Index brick) const
   {
-    std::vector<Channels> nodes(brick_nodes * brick_nodes * brick_nodes, Channels::Zero());
+    std::vector<Channels> nodes(nodes_per_brick, Channels::Zero());
     const BrickLevel& level = tree_.levels.back();
     for (const int n : level.neighbors[brick]) {
       if (n < 0)
         continue;
-      for (std::uint32_t i = begin_[n]; i < begin_[static_cast<std::size_t>(n) + 1]; ++i) {
+      for (std::uint32_t i = begin_[n]; i < begin_[n + 1]; ++i) {
         const Eigen::Vector3f p = toBrick(samples_.samples[i].position, tree_.depth, brick);
-        if (p.minCoeff() <= -1.f || p.maxCoeff() >= static_cast<float>(brick_nodes))
+        if (p.minCoeff() <= -1.f || p.maxCoeff() >= brick_nodes)
           continue;
         const HatWeights w(p);
         for (int k = 0; k < 8; ++k) {
@@ -112,8 +111,8 @@ private:
   {
     const HatWeights w = HatWeights::inBrick(toBrick(position, d, b));
     Channels sum;
-    for (std::size_t c = 0; c < channel_count; ++c)
-      sum[static_cast<Index>(c)] = w.interpolate(fields_[d][c].brick(b));
+    for (int c = 0; c < channel_count; ++c)
+      sum[c] = w.interpolate(fields_[d][c].brick(b));
     return sum;
   }
 

@@ -3,9 +3,8 @@
 #include "poisson/isosurface/isosurface.h"
 #include "poisson/samples.h"
 namespace fresco::poisson {
-/// Colour and intensity of each vertex: mean of the samples within a cell,
-/// weighted by distance; where there are none, within a cell of the finest
-/// coarser depth that has some.
+/// Colour and intensity of each vertex: mean of the samples within a cell, weighted by distance. Where there are none,
+/// within a cell of the finest coarser depth that has some.
 /// @return 4xV, colour 0..255 and intensity
 Eigen::Matrix4Xf vertexAttributes(const Octree& tree, const Samples& samples, const IsoSurface& surface, int threads);
 } // namespace fresco::poisson

@@ -16,8 +16,7 @@ struct Usable {
   Cube cube;
 };
 
-/// Points that are finite, have a normal and are no far outliers, and the cube
-/// around them.
+/// Points that are finite, have a normal and are no far outliers, and the cube around them.
 /// @throws std::invalid_argument as reconstructVolumetric()
 Usable usablePoints(const PointSet& set, const VolumetricOptions& options);
 } // namespace fresco::poisson

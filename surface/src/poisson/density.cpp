@@ -4,26 +4,17 @@
 #include <algorithm>
 namespace fresco::poisson {
 namespace {
-/// Weight that the kernel (quadratic B-spline convolved with itself) gathers on
-/// a plane with one sample per face of a cell.
-constexpr float plane_weight = 0.55f;
-/// Least weight that counts as an estimate; about twenty samples within the
-/// kernel.
-constexpr float least_weight = 2.f;
-/// Weight below which there are as good as no samples.
-constexpr float negligible_weight = 0.02f;
-
 void splatWeights(const BrickLevel& level, const SampleLevel& samples, int finest, NodeField& field, int threads)
 {
   const Array<std::uint32_t> begin = sampleRanges(level, samples.codes, samples.depth, threads);
   const float scale = std::ldexp(1.f, level.depth - finest);
   splatBricks(level, begin, field, threads, [&](SplatBlock<1>& block, int b) {
-    const std::array<int, 3> corner = level.corner(b);
-    for (std::uint32_t i = begin[b]; i < begin[static_cast<std::size_t>(b) + 1]; ++i) {
+    const Eigen::Vector3f origin = level.origin(b);
+    for (std::uint32_t i = begin[b]; i < begin[b + 1]; ++i) {
       const CoarseSample& s = samples.samples[i];
-      const QuadraticWeights x(s.position.x() * scale - static_cast<float>(corner[0]));
-      const QuadraticWeights y(s.position.y() * scale - static_cast<float>(corner[1]));
-      const QuadraticWeights z(s.position.z() * scale - static_cast<float>(corner[2]));
+      const QuadraticWeights x(s.position.x() * scale - origin.x());
+      const QuadraticWeights y(s.position.y() * scale - origin.y());
+      const QuadraticWeights z(s.position.z() * scale - origin.z());
       for (int c = 0; c < 3; ++c)
         for (int r = 0; r < 3; ++r) {
           const float w = s.area * z.value[c] * y.value[r];
@@ -54,10 +45,10 @@ float Density::weightAt(int depth, Index brick, const Eigen::Vector3f& position)
   const BrickLevel& level = tree_->levels[depth];
   const NodeField& field = fields_[depth];
   const float scale = std::ldexp(1.f, depth - tree_->depth);
-  const std::array<int, 3> corner = level.corner(brick);
-  const QuadraticWeights x(position.x() * scale - static_cast<float>(corner[0]));
-  const QuadraticWeights y(position.y() * scale - static_cast<float>(corner[1]));
-  const QuadraticWeights z(position.z() * scale - static_cast<float>(corner[2]));
+  const Eigen::Vector3f origin = level.origin(brick);
+  const QuadraticWeights x(position.x() * scale - origin.x());
+  const QuadraticWeights y(position.y() * scale - origin.y());
+  const QuadraticWeights z(position.z() * scale - origin.z());
   float sum = 0;
   for (int c = 0; c < 3; ++c)
     for (int r = 0; r < 3; ++r)
@@ -71,6 +62,10 @@ float Density::weightAt(int depth, Index brick, const Eigen::Vector3f& position)
 
 Density::Estimate Density::at(int depth, Index brick, const Eigen::Vector3f& position) const
 {
+  // The kernel, a quadratic B-spline convolved with itself, gathers this on a plane with one sample per face of a cell.
+  constexpr float plane_weight = 0.55f;
+  constexpr float least_weight = 2.f;        // about twenty samples within the kernel; fewer are no estimate
+  constexpr float negligible_weight = 0.02f; // as good as no samples
   float weight = 0, finer_weight = 0;
   int d = depth;
   for (;; --d) {
@@ -85,12 +80,12 @@ Density::Estimate Density::at(int depth, Index brick, const Eigen::Vector3f& pos
   weight = std::max(weight, 1e-6f * total_weight_);
   const float per_face = weight / plane_weight; // samples per face of a cell of depth d
   Estimate estimate;
-  estimate.depth = static_cast<float>(d) + 0.5f * std::log2(per_face);
+  estimate.depth = d + 0.5f * std::log2(per_face);
   estimate.area = std::ldexp(1.f, 2 * (tree_->depth - d)) / per_face;
   const float finer_per_face = std::max(finer_weight, negligible_weight) / plane_weight;
   estimate.support = estimate.depth;
   if (d < std::max(2, tree_->depth - 1))
-    estimate.support = std::min(estimate.depth, static_cast<float>(d + 1) + 0.5f * std::log2(finer_per_face));
+    estimate.support = std::min(estimate.depth, d + 1 + 0.5f * std::log2(finer_per_face));
   return estimate;
 }
 
@@ -100,7 +95,7 @@ void estimateDensity(const Octree& tree, const Density& density, float samples_p
   const Array<std::uint32_t> begin = sampleRanges(finest, samples.codes, tree.depth, threads);
   const float shift = 0.5f * std::log2(samples_per_node);
   parallelFor(finest.size(), threads, [&](Index b) {
-    for (std::uint32_t i = begin[b]; i < begin[static_cast<std::size_t>(b) + 1]; ++i) {
+    for (std::uint32_t i = begin[b]; i < begin[b + 1]; ++i) {
       Sample& s = samples.samples[i];
       const Density::Estimate estimate = density.at(tree.depth, b, s.position);
       s.depth = estimate.depth - shift;

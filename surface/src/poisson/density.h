@@ -3,8 +3,8 @@
 #include "poisson/octree/octree.h"
 #include "poisson/samples.h"
 namespace fresco::poisson {
-/// Local sampling density, kept as sample weights splatted onto the nodes of
-/// each depth but the finest.
+/// Local sampling density (Kazhdan, Bolitho & Hoppe 2006, section 4.5), kept as sample weights splatted onto the nodes
+/// of each depth but the finest.
 class Density {
 public:
   Density(const Octree& tree, const Samples& samples, int threads);
@@ -12,13 +12,11 @@ public:
   struct Estimate {
     float depth;   ///< octree depth at which a cell's face holds one sample
     float area;    ///< of the surface per unit of weight, in faces of a finest cell
-    float support; ///< as `depth`, but no more than the samples nearby sustain:
-                   ///< small where all samples lie to one side
+    float support; ///< as `depth`, but no more than the samples nearby sustain: small where all lie to one side
   };
 
-  /// @param depth, brick brick of the octree in or next to which the position
-  /// lies
-  /// @param position in cells of the finest depth
+  /// @param depth, brick brick of the octree in or next to which the position lies
+  /// @param position     in cells of the finest depth
   Estimate at(int depth, Index brick, const Eigen::Vector3f& position) const;
 
 private:

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <fresco/core/require.h>
 #include <fresco/core/union_find.h>
@@ -8,12 +7,6 @@
 #include <vector>
 namespace fresco {
 namespace {
-/// Cuts keep this distance from the ends of an edge (edge length 1).
-constexpr float end_margin = 1e-3f;
-
-/// Distance from the level line of values that changed sides.
-constexpr float flipped_margin = 0.1f;
-
 /// Mean of each vertex's value and those of its neighbours.
 Eigen::VectorXf smoothed(const TriangleMesh& mesh, const Eigen::VectorXf& values)
 {
@@ -26,18 +19,10 @@ Eigen::VectorXf smoothed(const TriangleMesh& mesh, const Eigen::VectorXf& values
   return sum.cwiseQuotient(count);
 }
 
-double faceArea(const TriangleMesh& mesh, Index f)
-{
-  const Eigen::Vector3d a = mesh.vertices.col(mesh.faces(0, f)).cast<double>();
-  const Eigen::Vector3d b = mesh.vertices.col(mesh.faces(1, f)).cast<double>();
-  const Eigen::Vector3d c = mesh.vertices.col(mesh.faces(2, f)).cast<double>();
-  return 0.5 * (b - a).cross(c - a).norm();
-}
-
-/// Moves the values of connected patches on one side of `least` to the other
-/// side where the patch is small.
+/// Moves the values of connected patches on one side of `least` to the other side where the patch is small.
 void flipPatches(const TriangleMesh& mesh, float least, double patch_area, Eigen::VectorXf& values)
 {
+  constexpr float flipped_margin = 0.1f; // from `least`: only where a cut meets the patch does it matter
   const auto above = [&](int v) { return values[v] >= least; };
   UnionFind patches(mesh.vertexCount());
   for (Index f = 0; f < mesh.faceCount(); ++f)
@@ -47,8 +32,8 @@ void flipPatches(const TriangleMesh& mesh, float least, double patch_area, Eigen
   std::vector<double> area(mesh.vertexCount(), 0.0);
   for (Index f = 0; f < mesh.faceCount(); ++f)
     for (int k = 0; k < 3; ++k)
-      area[patches.root(mesh.faces(k, f))] += faceArea(mesh, f) / 3;
-  for (int v = 0; v < static_cast<int>(mesh.vertexCount()); ++v)
+      area[patches.root(mesh.faces(k, f))] += 0.5 * areaVector(mesh, f).norm() / 3;
+  for (int v = 0; v < mesh.vertexCount(); ++v)
     if (area[patches.root(v)] < patch_area)
       values[v] = above(v) ? least - flipped_margin : least + flipped_margin;
 }
@@ -84,11 +69,10 @@ private:
 
   int cutVertex(int a, int b)
   {
+    constexpr float end_margin = 1e-3f; // of an edge of length 1: cuts stay off its ends, so no triangle degenerates
     if (a > b)
       std::swap(a, b);
-    const auto key = static_cast<std::uint64_t>(a) << 32 | static_cast<std::uint32_t>(b);
-    const auto [at, added] =
-        cut_of_edge_.try_emplace(key, static_cast<int>(values_.size() + static_cast<Index>(cuts_.size())));
+    const auto [at, added] = cut_of_edge_.try_emplace(std::uint64_t(a) << 32 | b, values_.size() + cuts_.size());
     if (added)
       cuts_.push_back(
           {a, b, std::clamp((least_ - values_[a]) / (values_[b] - values_[a]), end_margin, 1.f - end_margin)});
@@ -105,7 +89,7 @@ Matrix extended(const Matrix& values, const std::vector<Cut>& cuts)
 {
   if (values.cols() == 0)
     return values;
-  Matrix result(values.rows(), values.cols() + static_cast<Index>(cuts.size()));
+  Matrix result(values.rows(), values.cols() + cuts.size());
   result.leftCols(values.cols()) = values;
   Index at = values.cols();
   for (const Cut& cut : cuts)
@@ -133,7 +117,7 @@ TriangleMesh trimMesh(const TriangleMesh& mesh, Eigen::VectorXf values, float le
   cut.colors = extended(mesh.colors, trimmer.cuts_);
   for (const auto& [name, field_values] : mesh.fields)
     cut.fields[name] = extended(Eigen::RowVectorXf(field_values.transpose()), trimmer.cuts_).transpose();
-  cut.faces = Eigen::Map<const Faces>(trimmer.faces_.data(), 3, static_cast<Index>(trimmer.faces_.size()) / 3);
+  cut.faces = Eigen::Map<const Faces>(trimmer.faces_.data(), 3, trimmer.faces_.size() / 3);
   return removeUnreferencedVertices(cut);
 }
 } // namespace fresco

@@ -14,9 +14,8 @@ namespace {
 std::uint64_t cellCode(const Eigen::Vector3f& cell, int depth)
 {
   const float last = (1 << depth) - 1;
-  const Eigen::Vector3f c = cell.cwiseMax(0.f).cwiseMin(last);
-  return mortonCode(static_cast<std::uint32_t>(c.x()), static_cast<std::uint32_t>(c.y()),
-                    static_cast<std::uint32_t>(c.z()));
+  const Eigen::Vector3i c = cell.cwiseMax(0.f).cwiseMin(last).cast<int>();
+  return mortonCode(c.x(), c.y(), c.z());
 }
 
 Eigen::Vector3f toCells(const PointSet& set, Index i, const Cube& cube)
@@ -31,7 +30,7 @@ public:
   SortedPoints(const PointSet& set, const Array<std::uint32_t>& usable, const Cube& cube, int threads)
       : set_(set), cube_(cube)
   {
-    while (static_cast<std::uint64_t>(set.size()) >> index_bits_ != 0)
+    while (set.size() >> index_bits_ != 0)
       ++index_bits_;
     const int code_bits = std::min(3 * cube.depth, 64 - index_bits_);
     dropped_bits_ = 3 * cube.depth - code_bits;
@@ -45,25 +44,24 @@ public:
       sortLowBits();
   }
 
-  std::size_t size() const { return keys_.size(); }
-  Index point(std::size_t k) const { return static_cast<Index>(keys_[k] & ((std::uint64_t(1) << index_bits_) - 1)); }
-  std::uint64_t code(std::size_t k) const { return dropped_bits_ > 0 ? codeOf(point(k)) : keys_[k] >> index_bits_; }
+  Index size() const { return keys_.size(); }
+  Index point(Index k) const { return indexOf(keys_[k]); }
+  std::uint64_t code(Index k) const { return dropped_bits_ > 0 ? codeOf(point(k)) : keys_[k] >> index_bits_; }
 
 private:
+  Index indexOf(std::uint64_t key) const { return key & ((std::uint64_t(1) << index_bits_) - 1); }
   std::uint64_t codeOf(Index i) const { return cellCode(toCells(set_, i, cube_), cube_.depth); }
 
   void sortLowBits()
   {
     const auto order = [&](std::uint64_t a, std::uint64_t b) {
-      const std::uint64_t mask = (std::uint64_t(1) << index_bits_) - 1;
-      const std::uint64_t code_a = codeOf(static_cast<Index>(a & mask)), code_b = codeOf(static_cast<Index>(b & mask));
+      const std::uint64_t code_a = codeOf(indexOf(a)), code_b = codeOf(indexOf(b));
       return code_a != code_b ? code_a < code_b : a < b;
     };
     for (std::size_t begin = 0, end = 0; begin < keys_.size(); begin = end) {
       while (end < keys_.size() && keys_[end] >> index_bits_ == keys_[begin] >> index_bits_)
         ++end;
-      std::sort(keys_.begin() + static_cast<std::ptrdiff_t>(begin), keys_.begin() + static_cast<std::ptrdiff_t>(end),
-                order);
+      std::sort(keys_.begin() + begin, keys_.begin() + end, order);
     }
   }
 
@@ -89,11 +87,10 @@ Attributes attributesOf(const PointSet& set, Index i)
   return a;
 }
 
-Sums sumCell(const PointSet& set, const Weights& weights, const SortedPoints& points, std::size_t begin,
-             std::size_t end)
+Sums sumCell(const PointSet& set, const Weights& weights, const SortedPoints& points, Index begin, Index end)
 {
   Sums sums;
-  for (std::size_t k = begin; k < end; ++k) {
+  for (Index k = begin; k < end; ++k) {
     const Index i = points.point(k);
     const double w = weights.of(set, i);
     sums.weight += w;
@@ -108,30 +105,28 @@ Sums sumCell(const PointSet& set, const Weights& weights, const SortedPoints& po
 Samples gatherSamples(const PointSet& set, const VolumetricOptions& options)
 {
   Samples result;
-  require(static_cast<std::uint64_t>(set.size()) < (std::uint64_t(1) << 32), "volumetric reconstruction: ", set.size(),
-          " points are more than 2^32");
+  require(set.size() < Index(1) << 32, "volumetric reconstruction: ", set.size(), " points are more than 2^32");
   Usable usable = usablePoints(set, options);
   result.cube = usable.cube;
-  result.used_points = static_cast<Index>(usable.points.size());
+  result.used_points = usable.points.size();
   result.left_out_points = set.size() - result.used_points;
   const SortedPoints points(set, usable.points, result.cube, options.threads);
   releaseMemory(usable.points);
-  const auto codeAt = [&](Index k) { return points.code(static_cast<std::size_t>(k)); };
-  const Array<std::uint32_t> runs = runBegins(static_cast<Index>(points.size()), options.threads, codeAt);
+  const auto codeAt = [&](Index k) { return points.code(k); };
+  const Array<std::uint32_t> runs = runBegins(points.size(), options.threads, codeAt);
   const std::size_t n = runs.size() - 1;
   result.codes.resize(n);
   result.samples.resize(n);
   if (set.colors.cols() > 0 || set.intensities.size() > 0)
     result.attributes.resize(n);
-  parallelFor(n, options.threads, [&](Index c) {
-    const auto i = static_cast<std::size_t>(c);
+  parallelFor(n, options.threads, [&](Index i) {
     const Sums sums = sumCell(set, usable.weights, points, runs[i], runs[i + 1]);
     result.codes[i] = points.code(runs[i]);
     Sample& sample = result.samples[i];
     sample.position = ((sums.position / sums.weight - result.cube.corner) / result.cube.cell()).cast<float>();
     const double length = sums.normal.norm();
     sample.normal = (sums.normal / std::max(length, 1e-12)).cast<float>();
-    sample.area = static_cast<float>(sums.weight);
+    sample.area = sums.weight;
     sample.depth = sample.noise = 0.f;
     if (!result.attributes.empty())
       result.attributes[i] = (sums.attributes / sums.weight).cast<float>();
@@ -146,10 +141,9 @@ SampleLevel finestLevel(const Samples& samples, int threads)
   level.codes.resize(samples.codes.size());
   level.samples.resize(samples.samples.size());
   parallelFor(samples.samples.size(), threads, [&](Index i) {
-    const auto at = static_cast<std::size_t>(i);
-    const Sample& s = samples.samples[at];
-    level.codes[at] = samples.codes[at];
-    level.samples[at] = {s.position, s.area, s.noise, s.depth};
+    const Sample& s = samples.samples[i];
+    level.codes[i] = samples.codes[i];
+    level.samples[i] = {s.position, s.area, s.noise, s.depth};
   });
   return level;
 }
@@ -157,25 +151,27 @@ SampleLevel finestLevel(const Samples& samples, int threads)
 SampleLevel coarsen(const SampleLevel& fine, int threads)
 {
   const auto parentOf = [&](Index i) { return fine.codes[i] >> 3; };
-  const Array<std::uint32_t> runs = runBegins(static_cast<Index>(fine.codes.size()), threads, parentOf);
+  const Array<std::uint32_t> runs = runBegins(fine.codes.size(), threads, parentOf);
   SampleLevel coarse;
   coarse.depth = fine.depth - 1;
   coarse.codes.resize(runs.size() - 1);
   coarse.samples.resize(runs.size() - 1);
   parallelFor(coarse.codes.size(), threads, [&](Index c) {
-    const auto at = static_cast<std::size_t>(c);
     Eigen::Vector3d position = Eigen::Vector3d::Zero();
     double area = 0, variance = 0, depth = 0;
-    for (std::uint32_t i = runs[at]; i < runs[at + 1]; ++i) {
+    for (std::uint32_t i = runs[c]; i < runs[c + 1]; ++i) {
       const CoarseSample& s = fine.samples[i];
       position += s.area * s.position.cast<double>();
       area += s.area;
-      depth += static_cast<double>(s.area * s.depth);
-      variance += std::pow(static_cast<double>(s.area * s.noise), 2);
+      depth += s.area * s.depth;
+      variance += std::pow(s.area * s.noise, 2);
     }
-    coarse.codes[at] = parentOf(runs[at]);
-    coarse.samples[at] = {(position / area).cast<float>(), static_cast<float>(area),
-                          static_cast<float>(std::sqrt(variance) / area), static_cast<float>(depth / area)};
+    coarse.codes[c] = parentOf(runs[c]);
+    CoarseSample& joined = coarse.samples[c];
+    joined.position = (position / area).cast<float>();
+    joined.area = area;
+    joined.noise = std::sqrt(variance) / area;
+    joined.depth = depth / area;
   });
   return coarse;
 }
@@ -190,10 +186,10 @@ Array<std::uint32_t> sampleRanges(const BrickLevel& level, const Array<std::uint
     for (Index b = first; b < last; ++b) {
       while (at != codes.end() && isBefore(*at, level.codes[b]))
         ++at;
-      begin[b] = static_cast<std::uint32_t>(at - codes.begin());
+      begin[b] = at - codes.begin();
     }
   });
-  begin.back() = static_cast<std::uint32_t>(codes.size());
+  begin.back() = codes.size();
   return begin;
 }
 } // namespace fresco::poisson

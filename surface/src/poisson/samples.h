@@ -2,6 +2,7 @@
 #pragma once
 #include "poisson/octree/octree.h"
 #include <Eigen/Geometry>
+#include <cmath>
 #include <fresco/core/array.h>
 #include <fresco/core/point_set.h>
 #include <fresco/surface/core/volumetric_reconstruction.h>
@@ -12,18 +13,16 @@ struct Cube {
   double side = 1.0;
   int depth = 0;
 
-  double cell() const { return side / static_cast<double>(Index(1) << depth); }
+  double cell() const { return std::ldexp(side, -depth); }
 };
 
 /// Mean of the points within one finest cell.
 struct Sample {
   Eigen::Vector3f position; ///< in cells of the finest depth, from the cube's corner
-  float area;               ///< surface that it stands for, in faces of a finest cell;
-                            ///< its weight (1 = one point) until known
-  Eigen::Vector3f normal;   ///< unit
-  float depth;              ///< octree depth that the data sustain here
-  float noise;              ///< standard deviation of the position across the surface,
-                            ///< in finest cells
+  float area; ///< surface that it stands for, in faces of a finest cell; its weight (1 = a point) until known
+  Eigen::Vector3f normal; ///< unit
+  float depth;            ///< octree depth that the data sustain here
+  float noise;            ///< standard deviation of the position across the surface, in finest cells
 };
 
 /// Colour 0..255 (three numbers) and intensity.
@@ -33,13 +32,12 @@ struct Samples {
   Cube cube;
   Array<std::uint64_t> codes;   ///< Morton codes of the finest cells, strictly rising
   Array<Sample> samples;        ///< by code
-  Array<Attributes> attributes; ///< by code; empty if the points have
-                                ///< neither colour nor intensity
+  Array<Attributes> attributes; ///< by code; empty if the points have neither colour nor intensity
   Index used_points = 0, left_out_points = 0;
 };
 
-/// Leaves out unusable points and far outliers, fits the cube, sorts along the
-/// Z-order curve and joins the points of a cell.
+/// Leaves out unusable points and far outliers, fits the cube, sorts along the Z-order curve and joins the points of a
+/// cell.
 /// @throws std::invalid_argument as reconstructVolumetric()
 Samples gatherSamples(const PointSet& points, const VolumetricOptions& options);
 
@@ -51,8 +49,7 @@ struct CoarseSample {
   float depth; ///< as Sample::depth
 };
 
-/// Samples of one octree level and the range [begin[b], begin[b + 1]) that lies
-/// in brick b of a level.
+/// Samples joined in the cells of one depth.
 struct SampleLevel {
   Array<std::uint64_t> codes; ///< of cells of `depth`
   Array<CoarseSample> samples;
@@ -62,7 +59,7 @@ struct SampleLevel {
 SampleLevel finestLevel(const Samples& samples, int threads);
 SampleLevel coarsen(const SampleLevel& fine, int threads);
 
-/// First sample of each brick of `level` among sorted codes of depth `depth` >=
-/// the level's, and their count at the end.
+/// First sample of each brick of `level` among sorted codes of a depth no coarser than the level's, and their count at
+/// the end: those of brick b are begin[b] .. begin[b + 1] - 1.
 Array<std::uint32_t> sampleRanges(const BrickLevel& level, const Array<std::uint64_t>& codes, int depth, int threads);
 } // namespace fresco::poisson

@@ -2,8 +2,7 @@
 #pragma once
 #include "poisson/isosurface/isosurface.h"
 namespace fresco::poisson {
-/// Removes the components that are too small to be more than a ripple of chi
-/// around single samples: of fewer faces than a ball four cells across, and far
-/// smaller than the largest component. Ranges and vertex order are kept.
-void removeSpecks(IsoSurface& surface);
+/// Removes the connected components that are too small to be more than a ripple of chi around single samples: of fewer
+/// faces than a ball four cells across, and far smaller than the largest component. Ranges and vertex order are kept.
+void removeSmallComponents(IsoSurface& surface);
 } // namespace fresco::poisson

@@ -6,21 +6,19 @@
 #include "poisson/small_components.h"
 #include "poisson/solver/base_solver.h"
 #include "poisson/solver/constraints.h"
+#include "poisson/solver/level_system.h"
 #include "poisson/solver/low_pass_filter.h"
-#include "poisson/solver/solver.h"
 #include "poisson/solver/transfer.h"
 #include <algorithm>
 #include <cmath>
 #include <fresco/core/parallel.h>
 #include <fresco/core/require.h>
+#include <fresco/core/statistics.h>
 #include <fresco/surface/core/mesh_trimming.h>
 #include <fresco/surface/core/volumetric_reconstruction.h>
 namespace fresco {
 namespace {
 using namespace poisson;
-
-/// Gaps and islands of fewer faces of cells of the trimming depth do not count.
-constexpr double trim_patch = 16;
 
 void validate(const PointSet& points, const VolumetricOptions& options)
 {
@@ -32,9 +30,9 @@ void validate(const PointSet& points, const VolumetricOptions& options)
 /// samples joined in the cells of each depth, by depth
 std::vector<SampleLevel> sampleLevels(const Samples& samples, int threads)
 {
-  std::vector<SampleLevel> levels(static_cast<std::size_t>(samples.cube.depth) + 1);
+  std::vector<SampleLevel> levels(samples.cube.depth + 1);
   levels.back() = finestLevel(samples, threads);
-  for (std::size_t d = levels.size() - 1; d > 2; --d)
+  for (int d = samples.cube.depth; d > 2; --d)
     levels[d - 1] = coarsen(levels[d], threads);
   return levels;
 }
@@ -42,10 +40,8 @@ std::vector<SampleLevel> sampleLevels(const Samples& samples, int threads)
 NodeField interpolateLevel(const BrickLevel& level, const NodeField& coarse, int threads)
 {
   NodeField x(level.size());
-  parallelFor(level.size(), threads, [&](Index b) {
-    const auto i = static_cast<std::size_t>(b);
-    interpolateToChild(coarse.brick(level.parents[i]), static_cast<int>(level.codes[i] & 7), x.brick(b));
-  });
+  parallelFor(level.size(), threads,
+              [&](Index b) { interpolateToChild(coarse.brick(level.parents[b]), level.octant(b), x.brick(b)); });
   return x;
 }
 
@@ -62,28 +58,28 @@ Solution solve(const Octree& tree, Constraints& constraints, const std::vector<S
   for (int d = 2; d <= tree.full_depth; ++d)
     addCoarser(tree, d, options.threads, constraints);
   solution.chi[tree.full_depth] = solveBase(tree, constraints.fine, levels, options.point_weight, options.threads);
-  for (int depth = tree.full_depth + 1; depth <= tree.depth; ++depth) {
-    report(progress, "solve", 0.35 + 0.35 * (depth - tree.full_depth) / (tree.depth - tree.full_depth + 1));
-    const auto d = static_cast<std::size_t>(depth);
-    addCoarser(tree, depth, options.threads, constraints);
+  for (int d = tree.full_depth + 1; d <= tree.depth; ++d) {
+    report(progress, "solve", 0.35 + 0.35 * (d - tree.full_depth) / (tree.depth - tree.full_depth + 1));
+    addCoarser(tree, d, options.threads, constraints);
     const BrickLevel& level = tree.levels[d];
     solution.chi[d] = interpolateLevel(level, solution.chi[d - 1], options.threads);
-    const SampleLevel& joined = levels[std::min(d + 1, levels.size() - 1)];
+    const SampleLevel& joined = levels[std::min(d + 1, tree.depth)];
     const LevelSystem system(level, joined, tree.depth, options.point_weight, options.threads);
     system.smooth(constraints.fine[d], options.iterations, solution.chi[d]);
-    if (depth == tree.depth) {
+    if (d == tree.depth) {
       const LevelSystem::Norms norms = system.residual(constraints.fine[d], solution.chi[d]);
       solution.residual = norms.right > 0 ? std::sqrt(norms.residual / norms.right) : 0;
     } else {
-      system.addPull(solution.chi[d], constraints.own[d]);
+      system.addMultiplierUpdate(solution.chi[d], constraints.own[d]);
     }
-    WaveFilter(level, joined, tree.depth, options.threads).apply(solution.chi[d], constraints.fine[d]);
+    LowPassFilter(level, joined, tree.depth, options.threads).apply(solution.chi[d], constraints.fine[d]);
     constraints.fine[d] = NodeField();
   }
   return solution;
 }
 
-/// Mean of chi over the samples, weighted by their area.
+/// Mean of chi over the samples, weighted by their area (Kazhdan, Bolitho & Hoppe 2006, sections 4.4 and 4.5), kept
+/// below the margin that closeBoundary() gives the cube's boundary, so that the level set stays in the cube.
 float levelSetValue(const Octree& tree, const NodeField& chi, const Samples& samples, int threads)
 {
   const BrickLevel& level = tree.levels.back();
@@ -91,14 +87,14 @@ float levelSetValue(const Octree& tree, const NodeField& chi, const Samples& sam
   const Eigen::Array2d sums = parallelSum(level.size(), threads, Eigen::Array2d(0, 0), [&](Index b) {
     Eigen::Array2d sum(0, 0);
     const Eigen::Vector3f origin = level.origin(b);
-    for (std::uint32_t i = begin[b]; i < begin[static_cast<std::size_t>(b) + 1]; ++i) {
+    for (std::uint32_t i = begin[b]; i < begin[b + 1]; ++i) {
       const Sample& s = samples.samples[i];
       const double value = HatWeights::inBrick(s.position - origin).interpolate(chi.brick(b));
       sum += Eigen::Array2d(s.area * value, s.area);
     }
     return sum;
   });
-  return static_cast<float>(std::clamp(sums[0] / sums[1], -0.05, 0.05));
+  return std::clamp(sums[0] / sums[1], -0.05, 0.05);
 }
 
 Eigen::VectorXf vertexSupport(const Density& density, const IsoSurface& surface, float samples_per_node, int threads)
@@ -113,7 +109,7 @@ Eigen::VectorXf vertexSupport(const Density& density, const IsoSurface& surface,
   return support;
 }
 
-/// What is needed of the points after they have been sampled.
+/// What is still needed of the points after they have been sampled.
 struct Source {
   Eigen::Vector3d origin;
   bool colors, intensities;
@@ -144,14 +140,13 @@ void addAttributes(const Source& source, const Eigen::Matrix4Xf& attributes, Tri
     mesh.fields["intensity"] = attributes.row(3).transpose();
 }
 
-/// Depth below which surface is cut away; see VolumetricOptions::trim_levels.
+/// Depth below which the surface is cut away, 0 = nowhere; see VolumetricOptions::trim_levels.
 float trimDepth(Eigen::VectorXf support, int depth, const VolumetricOptions& options)
 {
   if (options.trim_levels <= 0 || support.size() == 0)
     return options.trim;
-  float* quartile = support.data() + support.size() * 3 / 4;
-  std::nth_element(support.data(), quartile, support.data() + support.size());
-  return std::max(options.trim, std::min(*quartile, static_cast<float>(depth)) - options.trim_levels);
+  const float upper_quartile = rankedValue(support, support.size() * 3 / 4);
+  return std::max(options.trim, std::min<float>(upper_quartile, depth) - options.trim_levels);
 }
 
 VolumetricResult reconstruct(Samples&& samples, const Source& source, const VolumetricOptions& options,
@@ -178,7 +173,7 @@ VolumetricResult reconstruct(Samples&& samples, const Source& source, const Volu
   report(progress, "surface", 0.7);
   const LevelSet level_set{&tree, &solution.chi, levelSetValue(tree, solution.chi.back(), samples, options.threads)};
   IsoSurface surface = extractIsoSurface(level_set, options.threads);
-  removeSpecks(surface);
+  removeSmallComponents(surface);
   report(progress, "attributes", 0.9);
   const Eigen::VectorXf support = vertexSupport(density, surface, options.samples_per_node, options.threads);
   Eigen::Matrix4Xf attributes;
@@ -191,6 +186,7 @@ VolumetricResult reconstruct(Samples&& samples, const Source& source, const Volu
   const float trim = trimDepth(support, result.depth, options);
   if (trim > 0) {
     result.trim_depth = trim;
+    constexpr double trim_patch = 16; // faces of such cells: smaller gaps and islands are below what the depth resolves
     const double trim_cell = samples.cube.side / std::exp2(result.trim_depth);
     result.mesh = trimMesh(result.mesh, support, trim, trim_patch * trim_cell * trim_cell);
   }
@@ -247,9 +243,8 @@ std::size_t estimateMemory(const PointSet& points, const VolumetricOptions& opti
   const int depth = samples.cube.depth;
   std::size_t bricks = 0;
   for (const Index n : countBricks(samples.codes, depth, std::min(options.min_depth, depth)))
-    bricks += static_cast<std::size_t>(n);
+    bricks += n;
   constexpr std::size_t bytes_per_brick = 2000, bytes_per_sample = 150, bytes_per_point = 40;
-  return bricks * bytes_per_brick + samples.codes.size() * bytes_per_sample +
-         static_cast<std::size_t>(points.size()) * bytes_per_point;
+  return bricks * bytes_per_brick + samples.codes.size() * bytes_per_sample + points.size() * bytes_per_point;
 }
 } // namespace fresco

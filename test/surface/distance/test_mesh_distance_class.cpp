@@ -20,14 +20,14 @@ TEST(MeshDistanceClass, EqualsCoreAndColorsTheMesh)
   MeshDistance distance;
   distance.setInputMesh(polygonMesh(mesh));
   distance.setReferenceMesh(polygonMesh(reference));
-  distance.setSamples(1000);
+  distance.setNumberOfSamples(1000);
   distance.setSeed(5);
   distance.setNumberOfThreads(1);
   pcl::PolygonMesh output;
   distance.process(output);
 
   MeshDistanceOptions options;
-  options.samples = distance.getSamples();
+  options.samples = distance.getNumberOfSamples();
   options.seed = distance.getSeed();
   const MeshDistanceResult expected = measureMeshDistance(mesh, reference, options);
   EXPECT_EQ(distance.getResult().vertices.symmetric.rms, expected.vertices.symmetric.rms);
@@ -43,6 +43,23 @@ TEST(MeshDistanceClass, EqualsCoreAndColorsTheMesh)
   pcl::PointCloud<pcl::PointXYZRGB> cloud;
   pcl::fromPCLPointCloud2(output.cloud, cloud); // PCL reads the colours
   EXPECT_EQ(int(cloud[farthest].b), 255);
+}
+
+TEST(MeshDistanceClass, HasTheSettersOfTheOtherClasses)
+{
+  MeshDistance distance;
+  MeshDistanceOptions options;
+  options.samples = 7;
+  distance.setOptions(options);
+  EXPECT_EQ(distance.getNumberOfSamples(), 7);
+  distance.setSamples(8); // old name
+  EXPECT_EQ(distance.getOptions().samples, 8);
+  distance.setThreads(2);
+  EXPECT_EQ(distance.getNumberOfThreads(), 2);
+  distance.setInputMesh(polygonMesh(test::gridCube(2)));
+  distance.setReferenceMesh(polygonMesh(test::gridCube(2)));
+  distance.setProgress([](std::string_view, double) { return false; });
+  EXPECT_THROW(distance.compute(), Cancelled);
 }
 
 TEST(MeshDistanceClass, PolygonsAreTriangulated)

@@ -4,6 +4,7 @@
 #include <fresco/surface/volumetric_reconstruction.h>
 #include <gtest/gtest.h>
 #include <pcl/point_types.h>
+#include <pcl/search/kdtree.h>
 namespace fresco::test {
 namespace {
 template <typename PointT>
@@ -124,6 +125,31 @@ TEST(VolumetricClass, HasEverySetterOfPclPoisson)
   EXPECT_EQ(poisson.getDegree(), 1);
   EXPECT_FALSE(poisson.getManifold());
   EXPECT_EQ(poisson.getThreads(), 2);
+}
+
+TEST(VolumetricClass, HasTheSettersOfTheOtherClasses)
+{
+  VolumetricReconstruction<pcl::PointNormal> poisson;
+  poisson.setNumberOfThreads(3);
+  poisson.setMaximumIterations(9);
+  EXPECT_EQ(poisson.getThreads(), 3);
+  EXPECT_EQ(poisson.getNumberOfThreads(), 3);
+  EXPECT_EQ(poisson.getIterations(), 9);
+  EXPECT_EQ(poisson.getOptions().iterations, 9);
+  poisson.setOptions(atDepth(5));
+  EXPECT_EQ(poisson.getDepth(), 5);
+}
+
+TEST(VolumetricClass, NeedsNoSearchMethod)
+{
+  VolumetricReconstruction<pcl::PointNormal> poisson;
+  poisson.setInputCloud(cloudOf<pcl::PointNormal>(sphere(5000)));
+  poisson.setDepth(5);
+  pcl::PolygonMesh without, with;
+  poisson.reconstruct(without);
+  poisson.setSearchMethod(pcl::make_shared<pcl::search::KdTree<pcl::PointNormal>>());
+  poisson.reconstruct(with);
+  EXPECT_EQ(with.cloud.data, without.cloud.data);
 }
 
 TEST(VolumetricClass, SaysWhatIsWrong)

@@ -44,7 +44,7 @@ TEST(VolumetricLaws, UnscreenedSolutionIsTheIndicatorFunction)
     }
 }
 
-/// Each row of weights sums to one, has the slope of its values, and stands for hat functions averaged evenly: linear
+/// Each row of weights sums to one, has the derivative of its values, and stands for hat functions averaged evenly: linear
 /// functions are kept.
 template <typename Weights>
 void expectSmoothedHats()
@@ -52,18 +52,18 @@ void expectSmoothedHats()
   for (float t = 2.01f; t < 4.f; t += 0.0473f) {
     constexpr float step = 1e-2f;
     const Weights w(t), next(t + step);
-    float sum = 0, slope = 0, mean = 0;
+    float sum = 0, derivative = 0, mean = 0;
     for (std::size_t k = 0; k < Weights::count; ++k) {
       EXPECT_GE(w.value[k], 0.f);
       sum += w.value[k];
-      slope += w.slope[k];
+      derivative += w.derivative[k];
       mean += w.value[k] * static_cast<float>(w.first + static_cast<int>(k));
       if (next.first == w.first) {
-        EXPECT_NEAR((next.value[k] - w.value[k]) / step, 0.5f * (next.slope[k] + w.slope[k]), 1e-3f);
+        EXPECT_NEAR((next.value[k] - w.value[k]) / step, 0.5f * (next.derivative[k] + w.derivative[k]), 1e-3f);
       }
     }
     EXPECT_NEAR(sum, 1.f, 1e-5f);
-    EXPECT_NEAR(slope, 0.f, 1e-5f);
+    EXPECT_NEAR(derivative, 0.f, 1e-5f);
     EXPECT_NEAR(mean, t, 1e-4f);
   }
 }

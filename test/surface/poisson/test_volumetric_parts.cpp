@@ -2,6 +2,7 @@
 #include "poisson/isosurface/isosurface.h"
 #include "poisson/isosurface/polygon.h"
 #include "poisson/octree/radix_sort.h"
+#include "poisson/solver/screening.h"
 #include "poisson/solver/transfer.h"
 #include <algorithm>
 #include <fresco/core/mesh.h>
@@ -61,6 +62,28 @@ TEST(VolumetricParts, InterpolationIsExactForLinearFunctionsAndRestrictionItsTra
       b += back[i] * parent[i];
     EXPECT_NEAR(a, b, 1e-3);
   }
+}
+
+/// Entries of the matrix by which point_weight enters the system: weight B_j(p) B_k(p).
+TEST(VolumetricParts, ScreeningAddsProductsOfHatFunctions)
+{
+  const HatWeights hat(Eigen::Vector3f(1.25f, 2.5f, 0.75f));
+  MatrixRows rows = {};
+  addScreening(hat, 3.f, rows);
+  float sum = 0;
+  for (int j = 0; j < 8; ++j)
+    for (int k = 0; k < 8; ++k) {
+      const int offset = offsetIndex((k & 1) - (j & 1), (k >> 1 & 1) - (j >> 1 & 1), (k >> 2) - (j >> 2));
+      const int own = ownIndex(hat.x + (j & 1), hat.y + (j >> 1 & 1), hat.z + (j >> 2));
+      EXPECT_FLOAT_EQ(rows[offset][own], 3.f * hat.value[j] * hat.value[k]);
+      sum += rows[offset][own];
+    }
+  EXPECT_FLOAT_EQ(sum, 3.f); // hat functions add up to 1
+  MatrixRows none = {};
+  addScreening(hat, 0.f, none);
+  for (const auto& row : none)
+    for (const float entry : row)
+      EXPECT_EQ(entry, 0.f);
 }
 
 TEST(VolumetricParts, BothSidesOfAFaceSeeTheSameSegments)

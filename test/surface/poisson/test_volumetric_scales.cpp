@@ -124,7 +124,7 @@ struct FilterCase {
     for (Index b = 0; b < level.size(); ++b)
       for (int n = 0; n < 125; ++n)
         chi.brick(b)[n] = function(level.origin(b) + Eigen::Vector3i(n % 5, n / 5 % 5, n / 25).cast<float>());
-    WaveFilter(level, finestLevel(samples, 1), 4, 1).apply(chi, spare);
+    LowPassFilter(level, finestLevel(samples, 1), 4, 1).apply(chi, spare);
     return chi;
   }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+#include <Eigen/Geometry>
 #include <fresco/core/export.h>
 #include <fresco/core/types.h>
 #include <map>
@@ -17,6 +18,24 @@ struct FRESCO_EXPORT TriangleMesh {
   Index vertexCount() const { return vertices.cols(); }
   Index faceCount() const { return faces.cols(); }
 };
+
+/// Corner `k` (0..2) of a face, without the mesh's origin.
+inline Eigen::Vector3d faceCorner(const TriangleMesh& mesh, Index face, int k)
+{
+  return mesh.vertices.col(mesh.faces(k, face)).cast<double>();
+}
+
+/// Normal of the triangle a, b, c, which is counter-clockwise seen from its tip; its length is twice the area.
+inline Eigen::Vector3d areaVector(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c)
+{
+  return (b - a).cross(c - a);
+}
+
+/// The same of a face.
+inline Eigen::Vector3d areaVector(const TriangleMesh& mesh, Index face)
+{
+  return areaVector(faceCorner(mesh, face, 0), faceCorner(mesh, face, 1), faceCorner(mesh, face, 2));
+}
 
 /// @throws std::invalid_argument unless every index is in range, every referenced vertex finite, attributes 0 or V
 FRESCO_EXPORT void validateMesh(const TriangleMesh& mesh);

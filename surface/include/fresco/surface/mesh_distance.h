@@ -4,6 +4,7 @@
 #include <fresco/surface/core/mesh_distance.h>
 #include <pcl/surface/processing.h>
 #include <string>
+#include <utility>
 namespace fresco {
 /// PCL face of measureMeshDistance(); setters: see MeshDistanceOptions. process() puts out the input mesh coloured by
 /// its distance to the reference (red = zero, green, blue = large), with the distances as field "distance".
@@ -16,14 +17,27 @@ public:
   pcl::PolygonMeshConstPtr getReferenceMesh() const { return reference_; }
   void setVertexToVertex(bool vertex_to_vertex) { options_.vertex_to_vertex = vertex_to_vertex; }
   bool getVertexToVertex() const { return options_.vertex_to_vertex; }
-  void setSamples(int samples) { options_.samples = samples; }
-  int getSamples() const { return options_.samples; }
-  void setNormalSamples(int samples) { options_.normal_samples = samples; }
-  int getNormalSamples() const { return options_.normal_samples; }
+  void setNumberOfSamples(int samples) { options_.samples = samples; }
+  int getNumberOfSamples() const { return options_.samples; }
+  void setNumberOfNormalSamples(int samples) { options_.normal_samples = samples; }
+  int getNumberOfNormalSamples() const { return options_.normal_samples; }
   void setSeed(std::uint64_t seed) { options_.seed = seed; }
   std::uint64_t getSeed() const { return options_.seed; }
   void setNumberOfThreads(int threads) { options_.threads = threads; }
   int getNumberOfThreads() const { return options_.threads; }
+  /// As setNumberOfThreads().
+  void setThreads(int threads) { options_.threads = threads; }
+  int getThreads() const { return options_.threads; }
+  void setOptions(const MeshDistanceOptions& options) { options_ = options; }
+  const MeshDistanceOptions& getOptions() const { return options_; }
+  /// Called between steps. If it answers false, Cancelled is thrown.
+  void setProgress(Progress progress) { progress_ = std::move(progress); }
+
+  /// Old names of setNumberOfSamples() and setNumberOfNormalSamples(), for one version.
+  void setSamples(int samples) { options_.samples = samples; }
+  int getSamples() const { return options_.samples; }
+  void setNormalSamples(int samples) { options_.normal_samples = samples; }
+  int getNormalSamples() const { return options_.normal_samples; }
 
   /// The distance that is blue; 0 = the largest that occurs.
   void setLargestColor(float largest) { largest_color_ = largest; }
@@ -48,6 +62,7 @@ private:
   TriangleMesh measureInput();
   pcl::PolygonMeshConstPtr reference_;
   MeshDistanceOptions options_;
+  Progress progress_;
   float largest_color_ = 0.f;
   MeshDistanceResult result_;
 };

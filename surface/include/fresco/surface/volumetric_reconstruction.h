@@ -7,9 +7,11 @@
 #include <vector>
 namespace fresco {
 /// PCL face of reconstructVolumetric(), in place of pcl::Poisson: changing the type's name is all a user does. Beyond
-/// it: cell size in the unit of the points, trimming, indices are honoured, unusable points are left out and counted,
-/// colours and intensities of the points are carried to the vertices, progress and cancellation, all cores by default
-/// with the same result for any number of threads. Setters without a comment: see VolumetricOptions.
+/// pcl::Poisson it has a cell size in the unit of the points, trimming, progress and cancellation. It honours indices,
+/// leaves out and counts unusable points, and carries colours and intensities to the vertices. It uses all cores by
+/// default; the result is the same for any number of threads. Setters without a comment: see VolumetricOptions.
+///
+/// setSearchMethod() of the base class is accepted, without effect: the solver searches no neighbours.
 template <typename PointNT>
 class VolumetricReconstruction : public pcl::SurfaceReconstruction<PointNT> {
 public:
@@ -41,10 +43,17 @@ public:
   float getTrim() const { return options_.trim; }
   void setTrimLevels(float levels) { options_.trim_levels = levels; }
   float getTrimLevels() const { return options_.trim_levels; }
-  void setIterations(int iterations) { options_.iterations = iterations; }
-  int getIterations() const { return options_.iterations; }
+  /// Solver sweeps per octree depth.
+  void setMaximumIterations(int iterations) { options_.iterations = iterations; }
+  int getMaximumIterations() const { return options_.iterations; }
+  void setNumberOfThreads(int threads) { options_.threads = threads; }
+  int getNumberOfThreads() const { return options_.threads; }
+  /// As setNumberOfThreads(); pcl::Poisson's name for it.
   void setThreads(int threads) { options_.threads = threads; }
   int getThreads() const { return options_.threads; }
+  /// Old name of setMaximumIterations(), for one version.
+  void setIterations(int iterations) { options_.iterations = iterations; }
+  int getIterations() const { return options_.iterations; }
 
   /// Kept for pcl::Poisson's users, without effect: all depths are solved with the same method.
   void setSolverDivide(int solver_divide) { solver_divide_ = solver_divide; }
@@ -62,12 +71,12 @@ public:
   void setManifold(bool manifold) { manifold_ = manifold; }
   bool getManifold() const { return manifold_; }
 
-  /// Called between steps; answers false to stop, whereupon Cancelled is thrown.
+  /// Called between steps. If it answers false, Cancelled is thrown.
   void setProgress(Progress progress) { progress_ = std::move(progress); }
   void setOptions(const VolumetricOptions& options) { options_ = options; }
   const VolumetricOptions& getOptions() const { return options_; }
 
-  /// Figures of the last reconstruction; its mesh is empty.
+  /// Of the last reconstruction; its mesh is empty.
   const VolumetricResult& getResult() const { return result_; }
 
   /// Bytes that reconstruct() needs at most beside the cloud.

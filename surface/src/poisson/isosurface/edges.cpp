@@ -5,16 +5,14 @@
 #include <fresco/core/parallel.h>
 namespace fresco::poisson {
 namespace {
-/// Vertices keep this distance from the ends of their edge (edge length 1), so
-/// that no two of them coincide.
-constexpr float end_margin = 1e-3f;
+/// Nodes from one end of an edge to the other.
+int stepAlong(int axis) { return axis == 0 ? 1 : axis == 1 ? brick_nodes : brick_nodes * brick_nodes; }
 
-/// Without the processor's instruction, which not every x86-64 has, this is faster than std::bitset.
-int countBits(std::uint64_t v)
+/// Offsets from the k-th of the four cells around an edge, k = 0..3, to the one whose lowest edge it is.
+std::array<int, 3> offsetAround(int axis, int k)
 {
-  v -= v >> 1 & 0x5555555555555555;
-  v = (v & 0x3333333333333333) + (v >> 2 & 0x3333333333333333);
-  return static_cast<int>(((v + (v >> 4)) & 0x0f0f0f0f0f0f0f0f) * 0x0101010101010101 >> 56);
+  const int p = k & 1, q = k >> 1;
+  return {axis == 0 ? 0 : p, axis == 0 ? p : axis == 1 ? 0 : q, axis == 2 ? 0 : q};
 }
 } // namespace
 
@@ -46,7 +44,7 @@ int CrossedEdges::BrickEdges::count() const
 {
   int n = 0;
   for (const std::uint64_t word : bits)
-    n += countBits(word);
+    n += __builtin_popcountll(word);
   return n;
 }
 
@@ -55,8 +53,8 @@ int CrossedEdges::BrickEdges::rank(int axis, int node) const
   const int last = axis * 2 + node / 64;
   int n = 0;
   for (int w = 0; w < last; ++w)
-    n += countBits(bits[w]);
-  return n + countBits(bits[last] & ((std::uint64_t(1) << (node & 63)) - 1));
+    n += __builtin_popcountll(bits[w]);
+  return n + __builtin_popcountll(bits[last] & ((std::uint64_t(1) << (node & 63)) - 1));
 }
 
 CrossedEdges::CrossedEdges(const LevelSet& surface, int threads) : surface_(&surface)
@@ -64,38 +62,36 @@ CrossedEdges::CrossedEdges(const LevelSet& surface, int threads) : surface_(&sur
   const Octree& tree = *surface.tree;
   bricks_.resize(tree.levels.size());
   for (int d = 2; d <= tree.depth; ++d) {
-    const auto i = static_cast<std::size_t>(d);
-    if ((*surface.chi)[i].size() == 0)
+    if ((*surface.chi)[d].size() == 0)
       continue;
-    bricks_[i].resize(tree.levels[i].codes.size());
-    parallelFor(tree.levels[i].size(), threads, [&](Index b) { findCrossings(d, b); });
-    for (BrickEdges& edges : bricks_[i]) {
-      edges.first = static_cast<int>(count_);
+    bricks_[d].resize(tree.levels[d].codes.size());
+    parallelFor(tree.levels[d].size(), threads, [&](Index b) { findCrossings(d, b); });
+    for (BrickEdges& edges : bricks_[d]) {
+      edges.first = count_;
       count_ += edges.count();
     }
   }
 }
 
-void CrossedEdges::findCrossings(int depth, Index brick)
+void CrossedEdges::findCrossings(int depth, int brick)
 {
   if (!surface_->hasLeaves(depth, brick))
     return;
   const float* chi = (*surface_->chi)[depth].brick(brick);
-  bool inside[brick_nodes * brick_nodes * brick_nodes];
+  bool inside[nodes_per_brick];
   int count = 0;
-  for (int i = 0; i < brick_nodes * brick_nodes * brick_nodes; ++i)
+  for (int i = 0; i < nodes_per_brick; ++i)
     count += inside[i] = surface_->inside(chi[i]);
-  if (count == 0 || count == brick_nodes * brick_nodes * brick_nodes)
+  if (count == 0 || count == nodes_per_brick)
     return;
-  const int steps[3] = {1, brick_nodes, brick_nodes * brick_nodes};
   for (int axis = 0; axis < 3; ++axis)
     for (int z = 0; z < brick_nodes - (axis == 2); ++z)
       for (int y = 0; y < brick_nodes - (axis == 1); ++y)
         for (int x = 0; x < brick_nodes - (axis == 0); ++x) {
           const int node = nodeIndex(x, y, z);
-          if (inside[node] == inside[node + steps[axis]])
+          if (inside[node] == inside[node + stepAlong(axis)])
             continue;
-          const EdgePlace edge{depth, static_cast<int>(brick), axis, x, y, z};
+          const EdgePlace edge{depth, brick, axis, x, y, z};
           if (ownerOf(edge).brick == edge.brick && !isSubdivided(edge))
             bricks_[depth][brick].set(axis, node);
         }
@@ -107,28 +103,22 @@ bool CrossedEdges::isSubdivided(const EdgePlace& edge) const
   if (edge.depth == tree.depth)
     return false;
   for (int k = 0; k < 4; ++k) {
-    const int p = k & 1, q = k >> 1;
-    const CellPlace cell = normalized(tree, {edge.depth, edge.brick, edge.x - (edge.axis == 0 ? 0 : p),
-                                             edge.y - (edge.axis == 1   ? 0
-                                                       : edge.axis == 0 ? p
-                                                                        : q),
-                                             edge.z - (edge.axis == 2 ? 0 : q)});
+    const auto [dx, dy, dz] = offsetAround(edge.axis, k);
+    const CellPlace cell = normalized(tree, {edge.depth, edge.brick, edge.x - dx, edge.y - dy, edge.z - dz});
     if (cell.brick >= 0 && childBrick(tree, cell) >= 0)
       return true;
   }
   return false;
 }
 
-/// Of the bricks around the edge, the one highest on the first, then on the
-/// second axis across it.
+/// Of the bricks around the edge, the one highest on the first, then on the second axis across it.
 EdgePlace CrossedEdges::ownerOfFaceEdge(const EdgePlace& edge) const
 {
   const int first = edge.axis == 0 ? 1 : 0, second = edge.axis == 2 ? 1 : 2;
   const int at[3] = {edge.x, edge.y, edge.z};
   const BrickLevel& level = surface_->tree->levels[edge.depth];
   const auto& neighbors = level.neighbors[edge.brick];
-  // Offsets of the upper bricks on both axes; the lower ones are one less where
-  // the edge lies between two bricks.
+  // Offsets of the upper bricks on both axes; the lower ones are one less where the edge lies between two bricks.
   const int up_first = at[first] == brick_cells, up_second = at[second] == brick_cells;
   const int down_first = up_first - (at[first] % brick_cells == 0),
             down_second = up_second - (at[second] % brick_cells == 0);
@@ -149,20 +139,14 @@ EdgePlace CrossedEdges::ownerOfFaceEdge(const EdgePlace& edge) const
   return edge;
 }
 
-/// Replaces a subdivided edge by that half of it which the level set crosses;
-/// false if it is not subdivided.
+/// Replaces a subdivided edge by that half of it which the level set crosses; false if it is not subdivided.
 bool CrossedEdges::finerHalf(EdgePlace& edge) const
 {
   const Octree& tree = *surface_->tree;
   if (edge.depth == tree.depth)
     return false;
   for (int k = 0; k < 4; ++k) {
-    const int p = k & 1, q = k >> 1;
-    const int dx = edge.axis == 0 ? 0 : p,
-              dy = edge.axis == 1   ? 0
-                   : edge.axis == 0 ? p
-                                    : q,
-              dz = edge.axis == 2 ? 0 : q;
+    const auto [dx, dy, dz] = offsetAround(edge.axis, k);
     const CellPlace cell = normalized(tree, {edge.depth, edge.brick, edge.x - dx, edge.y - dy, edge.z - dz});
     const int child = cell.brick < 0 ? -1 : childBrick(tree, cell);
     if (child < 0)
@@ -171,7 +155,7 @@ bool CrossedEdges::finerHalf(EdgePlace& edge) const
                    2 * (cell.z % 2 + dz)};
     const float* chi = (*surface_->chi)[half.depth].brick(child);
     const int node = nodeIndex(half.x, half.y, half.z);
-    const int step = edge.axis == 0 ? 1 : edge.axis == 1 ? brick_nodes : brick_nodes * brick_nodes;
+    const int step = stepAlong(edge.axis);
     if (surface_->inside(chi[node]) == surface_->inside(chi[node + step]))
       (edge.axis == 0 ? half.x : edge.axis == 1 ? half.y : half.z) += 1;
     edge = half;
@@ -191,14 +175,14 @@ int CrossedEdges::vertexOn(EdgePlace edge) const
 
 Eigen::Vector3f CrossedEdges::position(const EdgePlace& edge) const
 {
+  constexpr float end_margin = 1e-3f; // of an edge of length 1: no two vertices coincide
   const float* chi = (*surface_->chi)[edge.depth].brick(edge.brick);
   const int node = nodeIndex(edge.x, edge.y, edge.z);
-  const int step = edge.axis == 0 ? 1 : edge.axis == 1 ? brick_nodes : brick_nodes * brick_nodes;
+  const int step = stepAlong(edge.axis);
   const float a = chi[node], b = chi[node + step];
   const float t = std::clamp((surface_->value - a) / (b - a), end_margin, 1.f - end_margin);
   const auto corner = surface_->tree->levels[edge.depth].corner(edge.brick);
-  Eigen::Vector3f p(static_cast<float>(corner[0] + edge.x), static_cast<float>(corner[1] + edge.y),
-                    static_cast<float>(corner[2] + edge.z));
+  Eigen::Vector3f p(corner[0] + edge.x, corner[1] + edge.y, corner[2] + edge.z);
   p[edge.axis] += t;
   return p * std::ldexp(1.f, surface_->tree->depth - edge.depth);
 }
@@ -206,16 +190,15 @@ Eigen::Vector3f CrossedEdges::position(const EdgePlace& edge) const
 Points CrossedEdges::positions(int threads) const
 {
   Points points(3, count_);
-  for (std::size_t d = 0; d < bricks_.size(); ++d)
-    parallelFor(bricks_[d].size(), threads, [&](Index b) {
+  for (int d = 2; d <= surface_->tree->depth; ++d)
+    parallelFor(bricks_[d].size(), threads, [&](int b) {
       const BrickEdges& edges = bricks_[d][b];
       Index at = edges.first;
       for (int w = 0; w < 6; ++w)
         for (int bit = 0; edges.bits[w] >> bit != 0; ++bit) {
           if (edges.bits[w] >> bit & 1) {
             const int node = (w & 1) * 64 + bit;
-            points.col(at++) =
-                position({static_cast<int>(d), static_cast<int>(b), w / 2, node % 5, node / 5 % 5, node / 25});
+            points.col(at++) = position({d, b, w / 2, node % 5, node / 5 % 5, node / 25});
           }
           if (bit == 63)
             break;

@@ -4,9 +4,8 @@
 #include <Eigen/Core>
 #include <vector>
 namespace fresco::poisson {
-/// chi on the leaves of the octree. Where leaves of different size meet, the
-/// values of the finer one are interpolated from the coarser one, so chi is
-/// continuous and linear along each edge of each leaf.
+/// chi on the leaves of the octree. Where leaves of different size meet, the values of the finer one are interpolated
+/// from the coarser one, so chi is continuous and linear along each edge of each leaf.
 struct LevelSet {
   const Octree* tree;
   const std::vector<NodeField>* chi; ///< by depth; empty where all cells are refined
@@ -16,24 +15,24 @@ struct LevelSet {
   bool hasLeaves(int depth, Index brick) const;
 };
 
-/// A cell or, with an axis, the edge that leaves node (x, y, z) of a brick
-/// towards +axis.
+/// Cell (x, y, z) of a brick.
 struct CellPlace {
   int depth, brick, x, y, z;
 };
+
+/// The edge that leaves node (x, y, z) of a brick towards +axis.
 struct EdgePlace {
   int depth, brick, axis, x, y, z;
 };
 
-/// Brick that holds the cell at (x, y, z), each -4..7 relative to brick
-/// `c.brick`; brick = -1 where there is none.
+/// The same cell, (x, y, z) each -4..7, as one of the brick that holds it; brick = -1 where there is none.
 CellPlace normalized(const Octree& tree, CellPlace c);
 
 /// Brick of the child cells of a cell, -1 if the cell is a leaf.
 int childBrick(const Octree& tree, const CellPlace& c);
 
-/// The edges that the level set crosses, each once: the finest ones where
-/// leaves of different size share an edge. Each carries a vertex.
+/// The edges that the level set crosses, each once: the finest ones where leaves of different size share an edge. Each
+/// carries a vertex.
 class CrossedEdges {
 public:
   CrossedEdges(const LevelSet& surface, int threads);
@@ -46,15 +45,14 @@ public:
   /// Positions of all vertices, in finest cells.
   Points positions(int threads) const;
 
-  /// visit(depth, brick, first vertex, number of vertices) for each brick that
-  /// has vertices.
+  /// visit(depth, brick, first vertex, number of vertices) for each brick that has vertices.
   template <typename Visit>
   void forEachBrick(const Visit& visit) const
   {
     for (std::size_t d = 0; d < bricks_.size(); ++d)
       for (std::size_t b = 0; b < bricks_[d].size(); ++b)
         if (const int n = bricks_[d][b].count(); n > 0)
-          visit(static_cast<int>(d), static_cast<Index>(b), bricks_[d][b].first, n);
+          visit(d, b, bricks_[d][b].first, n);
   }
 
 private:
@@ -66,7 +64,7 @@ private:
     void set(int axis, int node) { bits[axis * 2 + node / 64] |= std::uint64_t(1) << (node & 63); }
     int rank(int axis, int node) const; ///< edges before this one
   };
-  void findCrossings(int depth, Index brick);
+  void findCrossings(int depth, int brick);
   bool isSubdivided(const EdgePlace& edge) const;
   EdgePlace ownerOf(const EdgePlace& edge) const
   {

@@ -4,6 +4,7 @@
 #include <fresco/core/parallel.h>
 namespace fresco::poisson {
 namespace {
+/// One part is what a thread takes at a time: small enough for an even share, few enough to join quickly.
 constexpr Index bricks_per_part = 128;
 
 /// What one range of bricks yields; vertices < 0 are -1 - index into `extra`.
@@ -21,15 +22,15 @@ public:
 
   void marchBrick(int depth, Index brick, Part& part)
   {
-    const std::size_t extra_before = part.extra.size();
-    const auto b = static_cast<int>(brick);
+    const Index extra_before = part.extra.size();
+    const int b = brick;
     for (int z = 0; z < brick_cells; ++z)
       for (int y = 0; y < brick_cells; ++y)
         for (int x = 0; x < brick_cells; ++x)
           if (const CellPlace cell{depth, b, x, y, z}; isCrossed(cell) && childBrick(tree_, cell) < 0)
             marchCell(cell, part);
-    if (const std::size_t n = part.extra.size() - extra_before; n > 0)
-      part.extra_ranges.push_back({depth, brick, static_cast<Index>(extra_before), static_cast<Index>(n)});
+    if (const Index n = part.extra.size() - extra_before; n > 0)
+      part.extra_ranges.push_back({depth, brick, extra_before, n});
   }
 
 private:
@@ -76,8 +77,7 @@ private:
   }
 
   /// Segments on a face of a cell or, where it is refined, of its children.
-  /// @param owner_face face of the cell that is marched; `reversed` if that
-  /// lies on the other side
+  /// @param owner_face face of the cell that is marched; `reversed` if that lies on the other side
   void addFace(const CellPlace& cell, int face, int owner_face, bool reversed)
   {
     const int child = childBrick(tree_, cell);
@@ -140,8 +140,8 @@ void join(const std::vector<Part>& parts, IsoSurface& surface, Index edge_vertic
 {
   Index faces = 0, vertices = edge_vertices;
   for (const Part& part : parts) {
-    faces += static_cast<Index>(part.faces.size()) / 3;
-    vertices += static_cast<Index>(part.extra.size());
+    faces += part.faces.size() / 3;
+    vertices += part.extra.size();
   }
   surface.vertices.conservativeResize(3, vertices);
   surface.faces.resize(3, faces);
@@ -149,7 +149,7 @@ void join(const std::vector<Part>& parts, IsoSurface& surface, Index edge_vertic
   Index at = edge_vertices;
   for (const Part& part : parts) {
     for (const int v : part.faces)
-      *to++ = v >= 0 ? v : static_cast<int>(at) - 1 - v;
+      *to++ = v >= 0 ? v : at - 1 - v;
     for (VertexRange range : part.extra_ranges) {
       range.first += at;
       surface.ranges.push_back(range);
@@ -169,7 +169,7 @@ IsoSurface extractIsoSurface(const LevelSet& surface, int threads)
     result.ranges.push_back({depth, brick, first, count});
   });
   const std::vector<BrickPlace> bricks = bricksWithLeaves(surface);
-  const auto n = static_cast<Index>(bricks.size());
+  const Index n = bricks.size();
   std::vector<Part> parts((n + bricks_per_part - 1) / bricks_per_part);
   parallelRanges(
       n, threads,

@@ -15,10 +15,8 @@ struct IsoSurface {
   std::vector<VertexRange> ranges;
 };
 
-/// Marching cubes over the leaves of the octree; on the faces of a leaf it
-/// takes the polygons' sides from the finest leaves beyond (Kazhdan, Klein,
-/// Dalal, Hoppe 2007, "Unconstrained Isosurface Extraction on Arbitrary
-/// Octrees"). Closed, 2-manifold and consistently oriented, except where the
-/// level set leaves the cube.
+/// Marching cubes over the leaves of the octree. On the faces of a leaf it takes the polygons' sides from the finest
+/// leaves beyond (Kazhdan, Klein, Dalal & Hoppe 2007, "Unconstrained Isosurface Extraction on Arbitrary Octrees").
+/// Closed, 2-manifold and consistently oriented, except where the level set leaves the cube.
 IsoSurface extractIsoSurface(const LevelSet& surface, int threads);
 } // namespace fresco::poisson

@@ -4,9 +4,8 @@
 #include <limits>
 namespace fresco::poisson {
 namespace {
-/// Polygons with more corners get a centre vertex.
+/// Polygons with more corners, which are rare, get a centre vertex: the search for the best triangles takes their cube.
 constexpr std::size_t most_corners = 12;
-constexpr float forbidden = std::numeric_limits<float>::infinity();
 } // namespace
 
 const int face_corners[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
@@ -16,8 +15,8 @@ FaceCrossings crossFace(const float chi[4])
   FaceCrossings crossings;
   const auto inside = [&](int k) { return chi[k & 3] < 0.f; };
   const bool alternating = inside(0) == inside(2) && inside(1) == inside(3) && inside(0) != inside(1);
-  const double even = static_cast<double>(chi[0]) * static_cast<double>(chi[2]);
-  const double odd = static_cast<double>(chi[1]) * static_cast<double>(chi[3]);
+  const double c[4] = {chi[0], chi[1], chi[2], chi[3]};
+  const double even = c[0] * c[2], odd = c[1] * c[3];
   const bool inside_connected = inside(0) ? even > odd : odd > even;
   for (int k = 0; k < 4; ++k) {
     if (!inside(k) || inside(k + 1))
@@ -77,16 +76,18 @@ void CellPolygons::triangulatePolygon(const Eigen::Matrix3Xf& positions, std::ve
     return;
   Eigen::Vector3f center = Eigen::Vector3f::Zero();
   for (const Corner& corner : polygon_)
-    center += positions.col(corner.vertex) / static_cast<float>(n);
+    center += positions.col(corner.vertex) / n;
+  const int index = extra.size();
   extra.push_back(center);
   for (std::size_t i = 0; i < n; ++i)
-    faces.insert(faces.end(), {polygon_[i].vertex, polygon_[(i + 1) % n].vertex, -static_cast<int>(extra.size())});
+    faces.insert(faces.end(), {polygon_[i].vertex, polygon_[(i + 1) % n].vertex, -1 - index});
 }
 
 /// Least total area, by dynamic programming over the corner intervals.
 bool CellPolygons::cheapestTriangles(const Eigen::Matrix3Xf& positions, std::vector<int>& faces) const
 {
-  const auto n = static_cast<int>(polygon_.size());
+  constexpr float forbidden = std::numeric_limits<float>::infinity();
+  const int n = polygon_.size();
   float cost[most_corners][most_corners];
   int middle[most_corners][most_corners];
   Eigen::Vector3f p[most_corners];

@@ -3,8 +3,10 @@
 #include "poisson/octree/octree.h"
 #include <cstdint>
 namespace fresco::poisson {
-/// Nodes -1..4 of a brick on each axis, its own (0..3) and those around it: floats a row (padded), a slice, in all.
+/// Nodes -1..4 of a brick on each axis, its own (0..3) and those around it: floats a row (padded to two vectors), a
+/// slice, in all.
 constexpr int halo_row = 8, halo_slice = 6 * halo_row, halo_size = 6 * halo_slice;
+/// Nodes of a brick that are not on its upper faces.
 constexpr int own_nodes = brick_cells * brick_cells * brick_cells;
 
 constexpr int haloIndex(int x, int y, int z) { return (x + 1) + halo_row * (y + 1) + halo_slice * (z + 1); }

@@ -13,8 +13,7 @@ struct Occupied {
 
 using Masks = std::array<std::uint64_t, 27>;
 
-/// By offsetIndex(): the cells of a brick whose one-cell neighbourhood reaches
-/// the brick at that offset.
+/// By offsetIndex(): the cells of a brick whose one-cell neighbourhood reaches the brick at that offset.
 Masks touchMasks()
 {
   Masks masks{};
@@ -48,7 +47,7 @@ std::vector<Occupied> coarsen(const std::vector<Occupied>& fine)
       bricks.push_back({f.code >> 3, 0});
     for (int g = 0; g < 8; ++g)
       if (f.cells >> (8 * g) & 0xff)
-        bricks.back().cells |= std::uint64_t(1) << ((f.code & 7) * 8 + static_cast<std::uint64_t>(g));
+        bricks.back().cells |= std::uint64_t(1) << ((f.code & 7) * 8 + g);
   }
   return bricks;
 }
@@ -65,8 +64,7 @@ std::vector<std::uint64_t> dilate(const std::vector<Occupied>& bricks, int depth
     for (int o = 0; o < 27; ++o) {
       const int nx = x + o % 3 - 1, ny = y + o / 3 % 3 - 1, nz = z + o / 9 - 1;
       if ((brick.cells & masks[o]) != 0 && std::min({nx, ny, nz}) >= 0 && std::max({nx, ny, nz}) < side)
-        codes.push_back(
-            mortonCode(static_cast<std::uint32_t>(nx), static_cast<std::uint32_t>(ny), static_cast<std::uint32_t>(nz)));
+        codes.push_back(mortonCode(nx, ny, nz));
     }
   }
   std::sort(codes.begin(), codes.end());
@@ -87,11 +85,11 @@ void linkToParents(BrickLevel& coarse, BrickLevel& fine)
 {
   fine.parents.resize(fine.codes.size());
   int parent = 0;
-  for (std::size_t i = 0; i < fine.codes.size(); ++i) {
+  for (int i = 0; i < fine.size(); ++i) {
     while (coarse.codes[parent] != fine.codes[i] >> 3)
       ++parent;
     fine.parents[i] = parent;
-    coarse.children[parent][fine.codes[i] & 7] = static_cast<int>(i);
+    coarse.children[parent][fine.octant(i)] = i;
   }
 }
 
@@ -115,11 +113,11 @@ void linkLevel(Octree& tree, int depth, int threads)
   no_children.fill(-1);
   level.children.assign(level.codes.size(), no_children);
   level.neighbors.resize(level.codes.size());
-  for (std::size_t i = 0; i < level.codes.size(); ++i) {
+  for (int i = 0; i < level.size(); ++i) {
     std::vector<BrickRun>& runs = level.colors[level.codes[i] >> 6 & 7];
     if (i == 0 || level.codes[i] >> 6 != level.codes[i - 1] >> 6)
-      runs.push_back({static_cast<int>(i), static_cast<int>(i)});
-    runs.back().end = static_cast<int>(i) + 1;
+      runs.push_back({i, i});
+    runs.back().end = i + 1;
   }
   if (depth == 2) {
     level.parents.assign(1, -1);
@@ -129,10 +127,8 @@ void linkLevel(Octree& tree, int depth, int threads)
   }
   BrickLevel& coarse = tree.levels[depth - 1];
   linkToParents(coarse, level);
-  parallelFor(level.size(), threads, [&](Index b) {
-    const auto i = static_cast<std::size_t>(b);
-    level.neighbors[i] = findNeighbors(coarse, level.parents[i], static_cast<int>(level.codes[i] & 7));
-  });
+  parallelFor(level.size(), threads,
+              [&](Index b) { level.neighbors[b] = findNeighbors(coarse, level.parents[b], level.octant(b)); });
 }
 } // namespace
 
@@ -151,7 +147,7 @@ Eigen::Vector3f BrickLevel::origin(Index b) const
 Octree linkBricks(std::vector<std::vector<std::uint64_t>> codes, int full_depth, int threads)
 {
   Octree tree;
-  tree.depth = static_cast<int>(codes.size()) - 1;
+  tree.depth = codes.size() - 1;
   tree.full_depth = full_depth;
   tree.levels.resize(codes.size());
   for (int d = 2; d <= tree.depth; ++d) {
@@ -164,7 +160,7 @@ Octree linkBricks(std::vector<std::vector<std::uint64_t>> codes, int full_depth,
 
 Octree buildOctree(const Array<std::uint64_t>& cell_codes, int depth, int full_depth, int threads)
 {
-  std::vector<std::vector<std::uint64_t>> codes(static_cast<std::size_t>(depth) + 1);
+  std::vector<std::vector<std::uint64_t>> codes(depth + 1);
   std::vector<Occupied> occupied = occupiedBricks(cell_codes);
   for (int d = depth; d >= 2; --d) {
     codes[d] = d <= full_depth ? allBricks(d) : dilate(occupied, d);
@@ -175,10 +171,13 @@ Octree buildOctree(const Array<std::uint64_t>& cell_codes, int depth, int full_d
 
 std::vector<Index> countBricks(const Array<std::uint64_t>& cell_codes, int depth, int full_depth)
 {
-  std::vector<Index> counts(static_cast<std::size_t>(depth) + 1, 0);
+  std::vector<Index> counts(depth + 1, 0);
   std::vector<Occupied> occupied = occupiedBricks(cell_codes);
   for (int d = depth; d >= 2; --d) {
-    counts[d] = d <= full_depth ? Index(1) << (3 * (d - 2)) : static_cast<Index>(dilate(occupied, d).size());
+    if (d <= full_depth)
+      counts[d] = Index(1) << (3 * (d - 2));
+    else
+      counts[d] = dilate(occupied, d).size();
     occupied = coarsen(occupied);
   }
   return counts;
@@ -187,7 +186,7 @@ std::vector<Index> countBricks(const Array<std::uint64_t>& cell_codes, int depth
 void NodeField::clear(int threads)
 {
   parallelRanges(size_, threads, [&](Index begin, Index end) {
-    std::memset(brick(begin), 0, static_cast<std::size_t>(end - begin) * brick_stride * sizeof(float));
+    std::memset(brick(begin), 0, (end - begin) * brick_stride * sizeof(float));
   });
 }
 

@@ -4,14 +4,14 @@
 #include <fresco/core/parallel.h>
 namespace fresco::poisson {
 namespace {
+/// 1,024 counts, and the ends of as many runs, stay in the first-level cache.
 constexpr int digit_bits = 10;
 constexpr std::size_t digits = std::size_t(1) << digit_bits;
 using Counts = std::array<std::uint32_t, digits>;
 
 std::size_t digitOf(std::uint64_t item, int shift) { return item >> shift & (digits - 1); }
 
-/// Turns the counts of each chunk into the places where its items of each digit
-/// begin.
+/// Turns the counts of each chunk into the places where its items of each digit begin.
 void placeChunks(std::vector<Counts>& counts)
 {
   std::uint32_t at = 0;
@@ -25,7 +25,7 @@ void placeChunks(std::vector<Counts>& counts)
 
 void sortDigit(const Array<std::uint64_t>& from, Array<std::uint64_t>& to, int shift, int threads)
 {
-  const auto n = static_cast<Index>(from.size());
+  const Index n = from.size();
   const Index chunk = std::max<Index>(1 << 14, (n + 31) / 32);
   std::vector<Counts> counts((n + chunk - 1) / chunk);
   const auto countsOf = [&](Index begin) -> Counts& { return counts[begin / chunk]; };

@@ -10,7 +10,7 @@ template <typename Predicate>
 Array<std::uint32_t> selectIndices(Index n, int threads, const Predicate& holds, bool append_end = false)
 {
   constexpr Index chunk = 1 << 14;
-  std::vector<std::size_t> place(static_cast<std::size_t>((n + chunk - 1) / chunk) + 1, 0);
+  std::vector<std::size_t> place((n + chunk - 1) / chunk + 1, 0);
   const auto placeOf = [&](Index begin) -> std::size_t& { return place[begin / chunk]; };
   parallelRanges(
       n, threads,
@@ -34,11 +34,11 @@ Array<std::uint32_t> selectIndices(Index n, int threads, const Predicate& holds,
         std::size_t at = placeOf(begin);
         for (Index i = begin; i < end; ++i)
           if (holds(i))
-            indices[at++] = static_cast<std::uint32_t>(i);
+            indices[at++] = i;
       },
       chunk);
   if (append_end)
-    indices.back() = static_cast<std::uint32_t>(n);
+    indices.back() = n;
   return indices;
 }
 

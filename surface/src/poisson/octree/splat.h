@@ -8,11 +8,10 @@
 #include <fresco/core/parallel.h>
 #include <vector>
 namespace fresco::poisson {
-/// The three nodes on one axis whose quadratic B-spline reaches a coordinate,
-/// and the spline's values and slopes there.
+/// The three nodes on one axis whose quadratic B-spline reaches a coordinate, and the spline's values there.
 struct QuadraticWeights {
   int first;
-  std::array<float, 3> value, slope;
+  std::array<float, 3> value;
 
   /// @param t coordinate in cells
   explicit QuadraticWeights(float t)
@@ -21,16 +20,15 @@ struct QuadraticWeights {
     const float r = t - nearest;
     first = static_cast<int>(nearest) - 1;
     value = {0.5f * (0.5f - r) * (0.5f - r), 0.75f - r * r, 0.5f * (0.5f + r) * (0.5f + r)};
-    slope = {r - 0.5f, -2.f * r, r + 0.5f};
   }
 };
 
 /// Hat functions averaged over a cell to either side (convolved with a box two cells wide): the four nodes on one axis
-/// whose averaged function reaches a coordinate, and its values and slopes there.
+/// whose averaged function reaches a coordinate, and its values and derivatives there.
 struct BoxWeights {
   static constexpr int count = 4, reach = 1;
   int first;
-  std::array<float, count> value, slope;
+  std::array<float, count> value, derivative;
 
   /// @param t coordinate in cells
   explicit BoxWeights(float t)
@@ -39,7 +37,7 @@ struct BoxWeights {
     const float r = t - base, q = 1.f - r;
     first = static_cast<int>(base) - 1;
     value = {0.25f * q * q, 0.5f - 0.25f * r * r, 0.5f - 0.25f * q * q, 0.25f * r * r};
-    slope = {-0.5f * q, -0.5f * r, 0.5f * q, 0.5f * r};
+    derivative = {-0.5f * q, -0.5f * r, 0.5f * q, 0.5f * r};
   }
 };
 
@@ -47,7 +45,7 @@ struct BoxWeights {
 struct TentWeights {
   static constexpr int count = 6, reach = 2;
   int first;
-  std::array<float, count> value, slope;
+  std::array<float, count> value, derivative;
 
   /// @param t coordinate in cells
   explicit TentWeights(float t)
@@ -57,13 +55,12 @@ struct TentWeights {
     const float r3 = r * r * r / 24.f, q3 = q * q * q / 24.f;
     first = static_cast<int>(base) - 2;
     value = {q3, 0.25f * q + r3, 0.5f - 0.25f * r - 2.f * q3, 0.5f - 0.25f * q - 2.f * r3, 0.25f * r + q3, r3};
-    slope = {-0.125f * q * q,       0.125f * r * r - 0.25f, 0.25f * q * q - 0.25f,
-             0.25f - 0.25f * r * r, 0.25f - 0.125f * q * q, 0.125f * r * r};
+    derivative = {-0.125f * q * q,       0.125f * r * r - 0.25f, 0.25f * q * q - 0.25f,
+                  0.25f - 0.25f * r * r, 0.25f - 0.125f * q * q, 0.125f * r * r};
   }
 };
 
-/// Sums over the nodes -reach..4 + reach of a brick on each axis, before they are handed to the bricks that hold these
-/// nodes.
+/// Sums at the nodes -reach..4 + reach of a brick on each axis, before the bricks that hold these nodes get them.
 template <int reach>
 class SplatBlock {
 public:
@@ -94,10 +91,7 @@ public:
   }
 
 private:
-  static std::size_t index(int x, int y, int z)
-  {
-    return static_cast<std::size_t>(x + reach + side * (y + reach + side * (z + reach)));
-  }
+  static int index(int x, int y, int z) { return x + reach + side * (y + reach + side * (z + reach)); }
   static int first(int d) { return d < 0 ? -reach : d * brick_cells; }
   static int last(int d) { return d < 0 ? -1 : d > 0 ? brick_cells + reach : brick_cells - 1; }
 
@@ -120,9 +114,8 @@ private:
   std::array<float, side * side * side> data_;
 };
 
-/// splat(block, brick) for each brick with samples, added to `field`. Bricks of
-/// one colour share no node, so the sums do not depend on the number of
-/// threads.
+/// splat(block, brick) for each brick with samples, added to `field`. Bricks of one colour share no node, so the sums
+/// do not depend on the number of threads.
 /// @param begin see sampleRanges()
 /// @tparam reach nodes beyond a brick that its samples reach
 template <int reach = 1, typename Splat>
@@ -133,7 +126,7 @@ void splatBricks(const BrickLevel& level, const Array<std::uint32_t>& begin, Nod
     parallelFor(runs.size(), threads, [&](Index r) {
       const BrickRun run = runs[r];
       for (int b = run.begin; b < run.end; ++b) {
-        if (begin[b] == begin[static_cast<std::size_t>(b) + 1])
+        if (begin[b] == begin[b + 1])
           continue;
         SplatBlock<reach> block;
         block.clear();

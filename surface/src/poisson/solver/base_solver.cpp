@@ -6,11 +6,6 @@
 #include <fresco/core/parallel.h>
 namespace fresco::poisson {
 namespace {
-constexpr double tolerance = 1e-5;
-/// Least distance of the boundary values from the level set; chi jumps by 1 at
-/// the surface.
-constexpr double boundary_margin = 0.1;
-
 Eigen::VectorXd gather(const BrickLevel& level, const NodeField& field, const DenseGrid& shape)
 {
   Eigen::VectorXd values = Eigen::VectorXd::Zero(shape.count());
@@ -33,7 +28,7 @@ NodeField scatter(const BrickLevel& level, const DenseGrid& grid)
     for (int z = 0; z < brick_nodes; ++z)
       for (int y = 0; y < brick_nodes; ++y)
         for (int x = 0; x < brick_nodes; ++x)
-          field.brick(b)[nodeIndex(x, y, z)] = static_cast<float>(grid.values[grid.at(cx + x, cy + y, cz + z)]);
+          field.brick(b)[nodeIndex(x, y, z)] = grid.values[grid.at(cx + x, cy + y, cz + z)];
   }
   return field;
 }
@@ -58,29 +53,30 @@ void forEachBoundaryNode(const DenseGrid& grid, const Visit& visit)
           visit(grid.at(x, y, z));
 }
 
+/// Gives the boundary values one sign.
 void closeBoundary(DenseGrid& grid)
 {
+  constexpr double margin = 0.1; // from the level set, which is at -0.05..0.05; chi jumps by 1 at the surface
   double sum = 0;
   forEachBoundaryNode(grid, [&](Index i) { sum += std::clamp(grid.values[i], -0.5, 0.5); });
   const double sign = sum < 0 ? -1 : 1;
-  forEachBoundaryNode(grid, [&](Index i) { grid.values[i] = sign * std::max(sign * grid.values[i], boundary_margin); });
+  forEachBoundaryNode(grid, [&](Index i) { grid.values[i] = sign * std::max(sign * grid.values[i], margin); });
 }
 } // namespace
 
 NodeField solveBase(const Octree& tree, const std::vector<NodeField>& right, const std::vector<SampleLevel>& levels,
                     float point_weight, int threads)
 {
+  constexpr double tolerance = 1e-5; // far below the 1e-2 at which the finer depths stop
+  const auto samplesFor = [&](int d) -> const SampleLevel& { return levels[std::min(d + 1, tree.depth)]; };
   DenseGrid x(2);
   for (int d = 2; d <= tree.full_depth; ++d) {
-    const auto i = static_cast<std::size_t>(d);
     const double scale = std::ldexp(1.0, d - tree.depth);
-    const SampleLevel& samples = levels[std::min(i + 1, levels.size() - 1)];
     x = refine(x);
-    DenseSystem(x.cells, samples, scale, point_weight)
-        .solve(gather(tree.levels[i], right[i], x), tolerance, threads, x);
+    DenseSystem(x.cells, samplesFor(d), scale, point_weight)
+        .solve(gather(tree.levels[d], right[d], x), tolerance, threads, x);
   }
-  const SampleLevel& samples = levels[std::min(static_cast<std::size_t>(tree.full_depth) + 1, levels.size() - 1)];
-  x.values.array() -= meanAtSamples(x, samples, std::ldexp(1.0, tree.full_depth - tree.depth));
+  x.values.array() -= meanAtSamples(x, samplesFor(tree.full_depth), std::ldexp(1.0, tree.full_depth - tree.depth));
   closeBoundary(x);
   return scatter(tree.levels[tree.full_depth], x);
 }

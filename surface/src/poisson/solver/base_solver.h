@@ -4,11 +4,9 @@
 #include "poisson/samples.h"
 #include "poisson/solver/constraints.h"
 namespace fresco::poisson {
-/// Solves the depths at which the octree is complete, one after the other, with
-/// free (Neumann) boundary: conjugate gradients on a dense grid. The solution
-/// is shifted so that its mean over the samples is 0, and its values on the
-/// cube's boundary are made to have one sign, the prevailing one, so that no
-/// level set leaves the cube.
+/// Solves the depths at which the octree is complete, one after the other, with free (Neumann) boundary: conjugate
+/// gradients on a dense grid. The solution is shifted so that its mean over the samples is 0. Its values on the cube's
+/// boundary are made to have one sign, the prevailing one, so that no level set leaves the cube.
 /// @param right  right-hand sides of depths 2..full_depth
 /// @param levels samples by the depth of the cells in which they are joined
 /// @return chi at depth full_depth

@@ -3,12 +3,12 @@
 #include "poisson/octree/octree.h"
 #include "poisson/samples.h"
 namespace fresco::poisson {
-/// Right-hand sides b_i = integral V . grad B_i of all depths, divided by the
-/// depth's cell side. V is the normal field: each sample's normal times its area, spread over a cell of the depth that
-/// its density sustains to either side: then chi is linear across the surface as far as the hat functions around it
-/// reach, and its level set is where theirs is. A box does that with the least blur, for points that are sparse against
-/// the finest cells; where they sustain the finest depth the field is spread twice, which hides the directions of the
-/// grid and costs no detail, because there the points themselves hold the surface.
+/// Right-hand sides b_j = integral V . grad B_j of all depths (Kazhdan, Bolitho & Hoppe 2006, sections 4.2, 4.3 and
+/// 4.5), divided by the depth's cell side. V is the normal field: each sample's normal times its area, spread over a
+/// cell of the depth that its density sustains to either side. Then chi is linear across the surface as far as the hat
+/// functions around it reach, and its level set is where theirs is. A box does that with the least blur, for points
+/// that are sparse against the finest cells. Where they sustain the finest depth the field is spread twice. That hides
+/// the directions of the grid and costs no detail, because there the points themselves hold the surface.
 struct Constraints {
   std::vector<NodeField> fine; ///< by depth: what was splatted at this depth or a finer one
   std::vector<NodeField> own;  ///< by depth: what was splatted at this depth; empty at the finest
@@ -16,7 +16,7 @@ struct Constraints {
 
 Constraints splatNormals(const Octree& tree, const Samples& samples, int threads);
 
-/// Adds to the right-hand side of a depth what was splatted at coarser ones, interpolated; these must be complete, so
+/// Adds to the right-hand side of a depth what was splatted at coarser ones, interpolated. These must be complete, so
 /// depths come in rising order. `own` of the next coarser depth is freed.
 void addCoarser(const Octree& tree, int depth, int threads, Constraints& constraints);
 } // namespace fresco::poisson

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "poisson/solver/dense_solver.h"
-#include "poisson/noise.h"
+#include "poisson/solver/screening.h"
 #include <algorithm>
 #include <cmath>
 #include <fresco/core/parallel.h>
@@ -8,23 +8,21 @@ namespace fresco::poisson {
 namespace {
 using Block = Eigen::Matrix<double, 8, 8>;
 using Corners = Eigen::Matrix<double, 8, 1>;
-constexpr int most_iterations = 300;
-/// Keeps the system regular where no screening fixes the constant.
+/// Keeps the system regular where no screening fixes the constant; far below the stencil's entries, which are about 1.
 constexpr double regularization = 1e-7;
 
-/// Stiffness of the hat functions of a unit cell's corners (bits of the index:
-/// x, y, z).
+/// Stiffness of the hat functions of a unit cell's corners (bits of the index: x, y, z).
 Block stiffness()
 {
   const auto mass = [](int i, int j) { return i == j ? 1.0 / 3.0 : 1.0 / 6.0; };
-  const auto slope = [](int i, int j) { return i == j ? 1.0 : -1.0; };
+  const auto stiff = [](int i, int j) { return i == j ? 1.0 : -1.0; };
   Block block;
   for (int i = 0; i < 8; ++i)
     for (int j = 0; j < 8; ++j) {
       const int a[3] = {i & 1, i >> 1 & 1, i >> 2}, b[3] = {j & 1, j >> 1 & 1, j >> 2};
-      block(i, j) = slope(a[0], b[0]) * mass(a[1], b[1]) * mass(a[2], b[2]) +
-                    mass(a[0], b[0]) * slope(a[1], b[1]) * mass(a[2], b[2]) +
-                    mass(a[0], b[0]) * mass(a[1], b[1]) * slope(a[2], b[2]);
+      block(i, j) = stiff(a[0], b[0]) * mass(a[1], b[1]) * mass(a[2], b[2]) +
+                    mass(a[0], b[0]) * stiff(a[1], b[1]) * mass(a[2], b[2]) +
+                    mass(a[0], b[0]) * mass(a[1], b[1]) * stiff(a[2], b[2]);
     }
   return block;
 }
@@ -50,7 +48,7 @@ std::array<Index, 8> cornerNodes(const DenseGrid& grid, const Eigen::Vector3i& c
   return nodes;
 }
 
-/// Numbers of a vector that one thread takes at a time.
+/// Numbers of a vector that one thread takes at a time: 32 kB of each vector stay in the cache between two operations.
 constexpr Index segment = 4096;
 
 /// visit(first, count) for the segments of a vector.
@@ -84,7 +82,7 @@ struct Residual {
 template <typename Visit>
 void forEachCell(int cells, const Visit& visit)
 {
-  std::size_t index = 0;
+  Index index = 0;
   for (int z = 0; z < cells; ++z)
     for (int y = 0; y < cells; ++y)
       for (int x = 0; x < cells; ++x)
@@ -119,13 +117,13 @@ double interpolate(const DenseGrid& grid, const Eigen::Vector3d& position)
 
 DenseSystem::DenseSystem(int cells, const SampleLevel& samples, double scale, double point_weight) : shape_(cells)
 {
-  block_of_cell_.assign(static_cast<std::size_t>(cells) * static_cast<std::size_t>(cells * cells), -1);
+  block_of_cell_.assign(Index(cells) * cells * cells, -1);
   if (point_weight > 0)
     for (const CoarseSample& sample : samples.samples)
       addSample(sample, scale, point_weight);
   diagonal_ = Eigen::VectorXd::Constant(shape_.count(), regularization);
   const Block base = stiffness();
-  forEachCell(cells, [&](const Eigen::Vector3i& cell, std::size_t index) {
+  forEachCell(cells, [&](const Eigen::Vector3i& cell, Index index) {
     const std::array<Index, 8> nodes = cornerNodes(shape_, cell);
     for (int i = 0; i < 8; ++i)
       diagonal_[nodes[i]] += block_of_cell_[index] < 0 ? base(i, i) : blocks_[block_of_cell_[index]](i, i);
@@ -138,12 +136,11 @@ void DenseSystem::addSample(const CoarseSample& sample, double scale, double poi
   const Eigen::Vector3i cell = cellOf(position, shape_.cells);
   int& block = block_of_cell_[cell.x() + shape_.cells * (cell.y() + shape_.cells * cell.z())];
   if (block < 0) {
-    block = static_cast<int>(blocks_.size());
+    block = blocks_.size();
     blocks_.push_back(stiffness());
   }
   const Corners weights = cornerWeights(position - cell.cast<double>());
-  blocks_[block] += point_weight * screeningWeight(sample.noise * static_cast<float>(scale)) * sample.area * scale *
-                    scale * weights * weights.transpose();
+  blocks_[block] += screeningFactor(sample, scale, point_weight) * weights * weights.transpose();
 }
 
 /// Slices of cells in two colours: those of one colour share no node.
@@ -152,13 +149,13 @@ void DenseSystem::multiply(const Eigen::VectorXd& x, Eigen::VectorXd& y, int thr
   forEachSegment(x.size(), threads, [&](Index i, Index n) { y.segment(i, n) = regularization * x.segment(i, n); });
   for (Index color = 0; color < 2; ++color)
     parallelFor(shape_.cells / 2, shape_.cells < 16 ? 1 : threads,
-                [&](Index pair) { multiplySlice(static_cast<int>(2 * pair + color), x, y); });
+                [&](Index pair) { multiplySlice(2 * pair + color, x, y); });
 }
 
 void DenseSystem::multiplySlice(int z, const Eigen::VectorXd& x, Eigen::VectorXd& y) const
 {
   static const Block base = stiffness();
-  auto index = static_cast<std::size_t>(shape_.cells) * static_cast<std::size_t>(shape_.cells * z);
+  Index index = Index(shape_.cells) * shape_.cells * z;
   for (int cell_y = 0; cell_y < shape_.cells; ++cell_y)
     for (int cell_x = 0; cell_x < shape_.cells; ++cell_x, ++index) {
       const std::array<Index, 8> nodes = cornerNodes(shape_, Eigen::Vector3i(cell_x, cell_y, z));
@@ -175,6 +172,7 @@ void DenseSystem::multiplySlice(int z, const Eigen::VectorXd& x, Eigen::VectorXd
 
 void DenseSystem::solve(const Eigen::VectorXd& b, double tolerance, int threads, DenseGrid& x) const
 {
+  constexpr int most_iterations = 300; // ends a system that rounding keeps from converging
   const Index count = shape_.count();
   Eigen::VectorXd product(count);
   multiply(x.values, product, threads);

@@ -21,16 +21,14 @@ DenseGrid refine(const DenseGrid& coarse);
 /// Value at a position given in cells of the grid.
 double interpolate(const DenseGrid& grid, const Eigen::Vector3d& position);
 
-/// Matrix of the screened Poisson problem for hat functions on a complete grid,
-/// divided by the cell side; free boundary.
+/// Matrix of the screened Poisson system (see screening.h) for hat functions on a complete grid, divided by the cell
+/// side; free boundary.
 class DenseSystem {
 public:
-  /// @param samples      of any depth; `scale` turns their positions into cells
-  /// of the grid, and scale^2 their areas
+  /// @param samples of any depth; `scale` turns their positions into cells of the grid, and scale^2 their areas
   DenseSystem(int cells, const SampleLevel& samples, double scale, double point_weight);
 
-  /// Conjugate gradients with diagonal preconditioning, from the values that
-  /// `x` has, until |r| < tolerance |b|.
+  /// Conjugate gradients with diagonal preconditioning, from the values that `x` has, until |r| < tolerance |b|.
   void solve(const Eigen::VectorXd& b, double tolerance, int threads, DenseGrid& x) const;
 
 private:

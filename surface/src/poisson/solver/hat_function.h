@@ -4,8 +4,8 @@
 #include <Eigen/Core>
 #include <cmath>
 namespace fresco::poisson {
-/// The cell that a position lies in and the values of the hat functions of its
-/// corners there (bits of the index: x, y, z).
+/// The cell that a position lies in and the values of the hat functions of its corners there (bits of the index:
+/// x, y, z).
 struct HatWeights {
   int x, y, z;
   float value[8];
@@ -15,16 +15,15 @@ struct HatWeights {
   {
     const Eigen::Vector3f base = position.array().floor();
     const Eigen::Vector3f t = position - base;
-    x = static_cast<int>(base.x());
-    y = static_cast<int>(base.y());
-    z = static_cast<int>(base.z());
+    x = base.x();
+    y = base.y();
+    z = base.z();
     const float wx[2] = {1 - t.x(), t.x()}, wy[2] = {1 - t.y(), t.y()}, wz[2] = {1 - t.z(), t.z()};
     for (int i = 0; i < 8; ++i)
       value[i] = wx[i & 1] * wy[i >> 1 & 1] * wz[i >> 2];
   }
 
-  /// For a position in a brick, in cells from its corner; the upper faces
-  /// belong to it.
+  /// For a position in a brick, in cells from its corner; the upper faces belong to it.
   static HatWeights inBrick(const Eigen::Vector3f& position)
   {
     constexpr float last = brick_cells * (1 - 1e-6f);

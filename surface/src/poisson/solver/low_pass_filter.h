@@ -5,14 +5,18 @@
 #include <vector>
 namespace fresco::poisson {
 /// Takes waves out of chi that the samples do not sustain: those about as short as the cells of a depth, where samples
-/// are sparse against these cells or noisy. chi becomes chi - w (1 - S)^2 chi with S = (1 2 1) / 4 along each axis and
-/// w the strength at the node's brick: quadratic functions stay, so that curved surfaces do not shrink; of a wave that
-/// changes sign from node to node 1 - w is left. Nodes with a missing cell around them keep their values, so chi stays
-/// continuous across depths.
-class WaveFilter {
+/// are sparse against these cells or noisy. chi becomes
+///
+///   chi - w (1 - S)^2 chi,   S = (1 2 1) / 4 along each axis,
+///
+/// with w the strength at the node's brick. Quadratic functions stay, so that curved surfaces do not shrink. Of a wave
+/// that changes sign from node to node 1 - w is left. Nodes with a missing cell around them keep their values, so chi
+/// stays continuous across depths.
+class LowPassFilter {
 public:
-  /// @param samples of the level's depth or finer; `finest` is the depth whose cells are the unit of their positions
-  WaveFilter(const BrickLevel& level, const SampleLevel& samples, int finest, int threads);
+  /// @param samples of the level's depth or finer
+  /// @param finest  depth whose cells are the unit of the samples' positions
+  LowPassFilter(const BrickLevel& level, const SampleLevel& samples, int finest, int threads);
 
   /// @param spare of the same size as `chi`; overwritten
   void apply(NodeField& chi, NodeField& spare) const;
@@ -22,7 +26,7 @@ public:
 
 private:
   /// result += factor (1 - S) field
-  void addWaves(Index brick, const NodeField& field, float factor, float* result) const;
+  void addHighPass(Index brick, const NodeField& field, float factor, float* result) const;
   const BrickLevel& level_;
   int threads_;
   std::vector<float> strengths_;

@@ -38,7 +38,7 @@ void interpolateToChild(const float* parent, int octant, float* child)
 
 void restrictToParent(const float* child, int octant, float factor, float* parent)
 {
-  float block[brick_nodes * step_z];
+  float block[nodes_per_brick];
   std::memcpy(block, child, sizeof(block));
   for (int z = 1; z < brick_nodes; z += 2)
     for (int i = 0; i < step_z; ++i) {

@@ -2,8 +2,7 @@
 #pragma once
 #include "poisson/octree/octree.h"
 namespace fresco::poisson {
-/// Values at the nodes of a child brick, interpolated trilinearly from the
-/// nodes of its parent.
+/// Values at the nodes of a child brick, interpolated trilinearly from the nodes of its parent.
 /// @param parent 125 nodes
 /// @param child  125 nodes, overwritten
 void interpolateToChild(const float* parent, int octant, float* child);
@@ -12,8 +11,7 @@ void interpolateToChild(const float* parent, int octant, float* child);
 /// @param child 125 nodes
 void restrictToParent(const float* child, int octant, float factor, float* parent);
 
-/// coarse += factor * P^T fine, each node counted once; upper faces of `coarse`
-/// are brought up to date.
+/// coarse += factor * P^T fine, each node counted once; upper faces of `coarse` are brought up to date.
 void restrictLevel(const BrickLevel& fine_level, const NodeField& fine, const BrickLevel& coarse_level, float factor,
                    NodeField& coarse, int threads);
 } // namespace fresco::poisson

@@ -6,9 +6,9 @@
 #include <fresco/core/progress.h>
 #include <string>
 namespace fresco {
-/// Distance between two surfaces as Cignoni, Rocchini, Scopigno 1998, "Metro: measuring error on simplified surfaces":
-/// for points of one, the distance to the closest point of the other, both ways. Vertices that no face names do not
-/// count.
+/// Distance between two surfaces as in Cignoni, Rocchini & Scopigno 1998, "Metro: measuring error on simplified
+/// surfaces": for points of one, the distance to the closest point of the other, both ways. Vertices that no face names
+/// do not count.
 struct MeshDistanceOptions {
   bool vertex_to_vertex = false; ///< measure vertices against the vertices of the other mesh, not against its surface
   int samples = 0;               ///< area-uniform surface samples per mesh that are measured beside the vertices, >= 0
@@ -26,7 +26,7 @@ struct DistanceStatistics {
 struct TwoSidedDistance {
   DistanceStatistics to_reference;   ///< points of the mesh against the reference
   DistanceStatistics from_reference; ///< points of the reference against the mesh
-  DistanceStatistics symmetric;      ///< the larger of the two, figure by figure; the sum of the counts
+  DistanceStatistics symmetric;      ///< the larger of the two for max, mean and RMS; the sum of the counts
 };
 
 /// Angle between the normal of the face a sample lies on and that of the closest face of the other mesh, degrees,
@@ -61,7 +61,6 @@ FRESCO_EXPORT Eigen::VectorXf vertexDistances(const TriangleMesh& mesh, const Tr
 /// @param name        how errors call the mesh
 /// @param need_faces  false for MeshDistanceOptions::vertex_to_vertex: points without faces will do
 /// @throws std::invalid_argument "NAME: reason" if the mesh has no faces, no area, an index out of range, or a vertex
-/// that
-///         counts is not finite
+///         that counts is not finite
 FRESCO_EXPORT void requireMeasurable(const TriangleMesh& mesh, const std::string& name, bool need_faces = true);
 } // namespace fresco

@@ -6,21 +6,22 @@
 #include <fresco/core/point_set.h>
 #include <fresco/core/progress.h>
 namespace fresco {
-/// Screened Poisson reconstruction over an adaptive octree: Kazhdan, Bolitho, Hoppe 2006, "Poisson Surface
-/// Reconstruction"; Kazhdan, Hoppe 2013, "Screened Poisson Surface Reconstruction". The function is a sum of B-splines
-/// of degree 1.
+/// Screened Poisson reconstruction over an adaptive octree: Kazhdan, Bolitho & Hoppe 2006, "Poisson Surface
+/// Reconstruction"; Kazhdan & Hoppe 2013, "Screened Poisson Surface Reconstruction". The function chi is a sum of
+/// B-splines of degree 1.
 struct VolumetricOptions {
-  int depth = 8; ///< octree depth, 2..16; finest cell = cube side / 2^depth
-  double cell_size =
-      0.0;           ///< length unit of the points; side of the finest cell, which then sets the depth; 0 = from depth
-  int min_depth = 5; ///< the octree is complete down to this depth, 2..8
-  float point_weight = 4.f;     ///< weight of passing through the points, >= 0; 0 = unscreened (2006)
-  float scale = 1.1f;           ///< cube side / longest side of the bounding box, >= 1
+  int depth = 8;            ///< octree depth, 2..16; finest cell = cube side / 2^depth
+  double cell_size = 0.0;   ///< side of the finest cell, unit of the points; it then sets the depth; 0 = from `depth`
+  int min_depth = 5;        ///< the octree is complete down to this depth, 2..8
+  float point_weight = 4.f; ///< alpha, the weight of chi = 0 at the points, >= 0; 0 = unscreened (2006)
+  float scale = 1.1f;       ///< cube side / longest side of the bounding box, >= 1
   float samples_per_node = 1.f; ///< samples that a cell needs to sustain its depth, > 0; more = smoother
   bool confidence = false;      ///< samples weighted by PointSet::confidences, else by the length of their normals
-  float trim = 0.f; ///< surface is cut away where the data sustain less than this octree depth; 0 = kept closed
-  /// The same relative to the data: so many levels below what a quarter of the vertices sustain, or below the finest
-  /// depth if that is coarser; >= 0, 0 = kept closed. The higher of both thresholds counts.
+  /// An octree depth: the surface is cut away where the data sustain less than it; >= 0, 0 = kept closed.
+  float trim = 0.f;
+  /// The same relative to the data, in octree levels, >= 0; 0 = kept closed. The surface is cut away where the data
+  /// sustain less than D - trim_levels. D is the depth that the best-sampled quarter of the vertices reaches, but at
+  /// most the finest depth. If `trim` is set, too, the deeper of the two limits holds.
   float trim_levels = 0.f;
   int iterations = 6; ///< smoothing sweeps per octree depth, 1..1000
   int threads = 0;    ///< 0 = all cores; the result does not depend on it
@@ -35,7 +36,7 @@ struct VolumetricResult {
   int depth = 0;             ///< depth used
   double cell_size = 0.0;    ///< side of the finest cell
   double residual = 0.0;     ///< |A x - b| / |b| at the finest depth
-  double trim_depth = 0.0;   ///< depth below which surface was cut away, 0 = nowhere
+  double trim_depth = 0.0;   ///< depth below which the surface was cut away, 0 = nowhere
   Index used_points = 0;     ///< points that took part
   Index left_out_points = 0; ///< not finite, without normal or confidence, or far outliers
   Index cells = 0;           ///< cells of the octree, all depths

@@ -26,7 +26,7 @@ inline TriangleMesh MeshDistance::measureInput()
   require(input_mesh_ != nullptr, "MeshDistance: no input mesh");
   require(reference_ != nullptr, "MeshDistance: no reference mesh");
   TriangleMesh mesh = toTriangleMesh(*input_mesh_);
-  result_ = measureMeshDistance(mesh, toTriangleMesh(*reference_), options_);
+  result_ = measureMeshDistance(mesh, toTriangleMesh(*reference_), options_, progress_);
   return mesh;
 }
 

@@ -73,8 +73,7 @@ void VolumetricReconstruction<PointNT>::performReconstruction(pcl::PointCloud<Po
   polygons.resize(mesh.faceCount());
   for (Index f = 0; f < mesh.faceCount(); ++f) {
     const Eigen::Vector3i face = mesh.faces.col(f);
-    polygons[f].vertices = {static_cast<pcl::index_t>(face[0]), static_cast<pcl::index_t>(face[1]),
-                            static_cast<pcl::index_t>(face[2])};
+    polygons[f].vertices.assign(face.begin(), face.end());
   }
 }
 } // namespace fresco

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include "poisson/octree/octree.h"
+#include "poisson/solver/screening.h"
+namespace fresco::poisson {
+/// The system A x = b of one octree depth (see screening.h), matrix-free: the constant stencil of the Laplacian in hat
+/// functions, divided by the cell side, and the samples in the cells around a node. Nodes with a missing cell around
+/// them are no unknowns: they keep the value interpolated from the coarser depth.
+class LevelSystem {
+public:
+  /// @param samples of the level's depth or finer
+  /// @param finest  depth whose cells are the unit of the samples' positions
+  LevelSystem(const BrickLevel& level, const SampleLevel& samples, int finest, float point_weight, int threads);
+
+  /// Gauss-Seidel sweeps. The bricks of one colour are independent of each other, so the result does not depend on the
+  /// number of threads. Upper faces of `x` are up to date afterwards.
+  void smooth(const NodeField& b, int iterations, NodeField& x) const;
+
+  /// Squared norms of b - A x and of b over the unknowns.
+  struct Norms {
+    double residual = 0, right = 0;
+  };
+  Norms residual(const NodeField& b, const NodeField& x) const;
+
+  /// A step of the method of multipliers (Hestenes 1969, Powell 1969) for the constraints chi(p_i) = 0: adds -weight
+  /// chi(p_i) B_j(p_i) at the nodes j around each sample that is isolated at this depth. The finer depths do not see
+  /// such a sample between their own, so what it still lacks goes into their right-hand sides.
+  void addMultiplierUpdate(const NodeField& x, NodeField& right) const;
+
+private:
+  struct Block;
+  void assemble(Index brick, Block& block) const;
+  void load(Index brick, const NodeField& b, const NodeField& x, Block& block) const;
+  void smoothBrick(Index brick, const NodeField& b, int sweeps, NodeField& x) const;
+  void excludeFixed(Index brick, Block& block) const;
+
+  const BrickLevel& level_;
+  Array<std::uint32_t> begin_; ///< see sampleRanges()
+  Array<ScreenedSample> samples_;
+  MatrixRows laplacian_rows_;
+  int threads_;
+};
+} // namespace fresco::poisson
