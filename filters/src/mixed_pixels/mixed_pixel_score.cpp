@@ -1,19 +1,34 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "mixed_pixels/mixed_pixel_score.h"
-#include "mixed_pixels/mixed_pixel_weights.h"
-#include "mixed_pixels/second_stage_weights.h"
 #include "networks/mlp.h"
 namespace fresco::filters {
 namespace {
-template <typename Weights>
-float score(const NetworkInputs<Weights>& figures)
-{
-  return networkOutput<Weights>(firstSums<Weights>(Weights::of_figures, figures)) + Weights::last_bias[0];
-}
+template <int inputs, int first, int second>
+struct Classifier : Mlp<inputs, first, second> {
+  explicit Classifier(const Weights& weights)
+      : Mlp<inputs, first, second>(weights), first_weights(weights.values("first_weights", {inputs, first})),
+        last_bias(*weights.values("last_bias", {1, 1}))
+  {}
+  float score(const Eigen::Matrix<float, inputs, 1>& features) const
+  {
+    return this->output(this->firstSums(first_weights, features)) + last_bias;
+  }
+  const float* first_weights;
+  float last_bias;
+};
 } // namespace
 
-float veilScore(const VeilFigures& figures) { return score<VeilWeights>(figures); }
-float veilScore(const LikelyFigures& figures) { return score<LikelyWeights>(figures); }
+float veilScore(const VeilFigures& figures)
+{
+  static const Classifier<veil_figures::count, 64, 24> network{Weights(mixedPixelData())};
+  return network.score(figures);
+}
+
+float veilScore(const LikelyFigures& figures)
+{
+  static const Classifier<veil_figures::likely_count, 96, 32> network{Weights(secondStageData())};
+  return network.score(figures);
+}
 
 std::vector<float> firstScores(const BeamScan& scan, const VeilOptions& options)
 {
