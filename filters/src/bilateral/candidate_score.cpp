@@ -3,7 +3,7 @@
 #include "networks/mlp.h"
 namespace fresco::filters {
 namespace {
-constexpr int inputs = DirectionFigures::count, first = DirectionWorth::first_size, second = 16;
+constexpr int inputs = NormalCandidateFeatures::count, first = CandidateScore::first_size, second = 16;
 
 struct Network : Mlp<inputs, first, second> {
   explicit Network(const Weights& weights)
@@ -20,12 +20,12 @@ const Network& network()
 }
 } // namespace
 
-DirectionWorth::DirectionWorth(const DirectionFigures::Figures& own)
+CandidateScore::CandidateScore(const NormalCandidateFeatures::Features& own)
     : from_own_(network().firstSums(network().of_own_normal, own))
 {}
 
-float DirectionWorth::of(const DirectionFigures::Figures& figures) const
+float CandidateScore::of(const NormalCandidateFeatures::Features& features) const
 {
-  return network().output(network().firstSums(network().of_candidate, figures) + from_own_);
+  return network().output(network().firstSums(network().of_candidate, features) + from_own_);
 }
 } // namespace fresco::filters

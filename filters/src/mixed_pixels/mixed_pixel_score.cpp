@@ -18,23 +18,24 @@ struct Classifier : Mlp<inputs, first, second> {
 };
 } // namespace
 
-float veilScore(const VeilFigures& figures)
+float mixedPixelScore(const MixedPixelFeatures& features)
 {
-  static const Classifier<veil_figures::count, 64, 24> network{Weights(mixedPixelData())};
-  return network.score(figures);
+  static const Classifier<mixed_pixel_features::count, 64, 24> network{Weights(mixedPixelData())};
+  return network.score(features);
 }
 
-float veilScore(const LikelyFigures& figures)
+float mixedPixelScore(const SecondStageFeatures& features)
 {
-  static const Classifier<veil_figures::likely_count, 96, 32> network{Weights(secondStageData())};
-  return network.score(figures);
+  static const Classifier<mixed_pixel_features::second_stage_count, 96, 32> network{Weights(secondStageData())};
+  return network.score(features);
 }
 
-std::vector<float> firstScores(const BeamScan& scan, const VeilOptions& options)
+std::vector<float> firstStageScores(const BeamScan& scan, const MixedPixelOptions& options)
 {
-  std::vector<float> scores(scan.columns.size(), least_likely);
-  forVeilCandidates(scan, options,
-                    [&](Index i, const BeamSurroundings& around) { scores[i] = veilScore(veilFigures(around)); });
+  std::vector<float> scores(scan.columns.size(), least_second_stage);
+  forMixedPixelCandidates(scan, options, [&](Index i, const BeamSurroundings& around) {
+    scores[i] = mixedPixelScore(mixedPixelFeatures(around));
+  });
   return scores;
 }
 } // namespace fresco::filters

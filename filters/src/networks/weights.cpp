@@ -9,7 +9,6 @@ extern "C" const char fresco_second_stage_begin[], fresco_second_stage_end[];
 
 namespace fresco::filters {
 namespace {
-constexpr std::string_view magic = "FRESCO\x1aW";
 
 std::string_view between(const char* begin, const char* end) { return {begin, static_cast<std::size_t>(end - begin)}; }
 
@@ -22,6 +21,7 @@ void check(bool ok)
 
 Weights::Weights(std::string_view data)
 {
+  constexpr std::string_view magic = "FRESCO\x1aW";
   std::uint32_t count = 0;
   const std::size_t head = magic.size() + sizeof count;
   check(data.size() >= head && data.substr(0, magic.size()) == magic);
