@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cstring>
 #include <fresco/core/require.h>
+#include <fresco/filters/core/mixed_pixels.h>
 #include <fresco/filters/core/outliers.h>
-#include <fresco/filters/core/veil_points.h>
 #include <fresco/filters/core/voxel_thinning.h>
 #include <fresco/io/cloud_file.h>
 #include <numeric>
@@ -13,7 +13,7 @@ using namespace fresco;
 namespace {
 struct FilterOptions {
   OutlierOptions outliers;
-  VeilOptions veil;
+  MixedPixelOptions mixed_pixels;
   float cell = 0; // metres
   Eigen::Vector3d viewpoint = Eigen::Vector3d::Zero();
   bool centroid = false, keep_organized = false, removed = false;
@@ -33,11 +33,12 @@ void FilterOptions::declare(Args& args)
   args.flag("relative", outliers.relative,
             "for -outliers: judge distances against those of the neighbours, so that sparse parts of a scan stay");
   args.option(
-      "veil", veil.angle,
-      "remove the points in the air that a laser leaves at depth jumps. What a surface could join with most of the "
+      "veil", mixed_pixels.angle,
+      "remove mixed pixels: the points in the air that a laser leaves at depth jumps. What a surface could join with "
+      "most of the "
       "points next to it stays: the way to them leaves its beam at no less than this angle, degrees, above 0 and below "
       "90; 20 is common, more removes more");
-  args.option("noise", veil.noise, "for -veil: deviation of the ranges, metres; 0 = measured from the scan");
+  args.option("noise", mixed_pixels.noise, "for -veil: deviation of the ranges, metres; 0 = measured from the scan");
   args.values("viewpoint", "X Y Z",
               "for -veil: where the scanner stood; default: fields vp_x vp_y vp_z, else the header of the file",
               [this](const std::vector<std::string>& words) {
@@ -58,10 +59,10 @@ void validate(const Args& args, const FilterOptions& options)
 {
   if (args.given("outliers") && options.outliers.k < 1)
     throw UsageError("-outliers: K " + std::to_string(options.outliers.k) + " is below 1");
-  if (!(options.veil.angle > 0 && options.veil.angle < 90))
-    throw UsageError("-veil: " + std::to_string(options.veil.angle) + " is not above 0 and below 90 degrees");
-  if (!(options.veil.noise >= 0))
-    throw UsageError("-noise: " + std::to_string(options.veil.noise) + " is negative");
+  if (!(options.mixed_pixels.angle > 0 && options.mixed_pixels.angle < 90))
+    throw UsageError("-veil: " + std::to_string(options.mixed_pixels.angle) + " is not above 0 and below 90 degrees");
+  if (!(options.mixed_pixels.noise >= 0))
+    throw UsageError("-noise: " + std::to_string(options.mixed_pixels.noise) + " is negative");
   if (args.given("voxel") && !(options.cell > 0))
     throw UsageError("-voxel: " + std::to_string(options.cell) + " is not above 0");
 }
@@ -148,7 +149,7 @@ std::vector<Index> complement(const std::vector<Index>& columns, const std::vect
   return others;
 }
 
-void removeVeil(Remaining& rest, const std::string& file, const Args& args, const FilterOptions& options)
+void removeMixedPixels(Remaining& rest, const std::string& file, const Args& args, const FilterOptions& options)
 {
   if (args.given("viewpoint"))
     rest.set.viewpoints = (options.viewpoint - rest.set.origin).cast<float>();
@@ -156,12 +157,12 @@ void removeVeil(Remaining& rest, const std::string& file, const Args& args, cons
     throw std::runtime_error(file + ": the viewpoint is not known, give -viewpoint X Y Z");
   if (!rest.set.viewpoints.allFinite())
     throw std::runtime_error(file + ": a viewpoint is not finite");
-  rest.keep(withoutVeil(rest.set.points, rest.set.viewpoints, options.veil));
+  rest.keep(withoutMixedPixels(rest.set.points, rest.set.viewpoints, options.mixed_pixels));
 }
 
 void thin(Remaining& rest, pcl::PCLPointCloud2& cloud, const FilterOptions& options)
 {
-  const VoxelThinning thinning = thinByVoxel(rest.set.points, options.cell, options.veil.threads);
+  const VoxelThinning thinning = thinByVoxel(rest.set.points, options.cell, options.mixed_pixels.threads);
   rest.keep(thinning.kept);
   if (options.centroid)
     for (Index i = 0; i < rest.set.size(); ++i)
@@ -188,7 +189,7 @@ void filterCloud(CloudFile& file, const std::string& name, const Args& args, con
     run();
     lines.push_back(std::string(option) + " removed " + std::to_string(before - rest.columns.size()));
   };
-  step("veil", 0.2, [&] { removeVeil(rest, name, args, options); });
+  step("veil", 0.2, [&] { removeMixedPixels(rest, name, args, options); });
   step("outliers", 0.5, [&] { rest.keep(withoutOutliers(rest.set.points, options.outliers)); });
   step("voxel", 0.8, [&] { thin(rest, file.cloud, options); });
   std::vector<Index> columns = options.removed ? complement(rest.columns, finite) : rest.columns;
@@ -207,13 +208,13 @@ int main(int argc, char** argv)
     FilterOptions options;
     CommonOptions common;
     Args args("fresco_filter IN OUT [-outliers K SIGMA] [-veil DEG] [-voxel M] [options]",
-              "Removes isolated points and veil points of a scan, and thins it by voxel.\n"
+              "Removes isolated points and mixed pixels of a scan, and thins it by voxel.\n"
               "IN: PCD, PLY, VTK, OBJ, XYZ; OUT: PCD, PLY, XYZ.");
     options.declare(args);
     common.declare(args);
     const auto files = args.parse(argc, argv, 2);
     validate(args, options);
-    options.outliers.threads = options.veil.threads = common.threads;
+    options.outliers.threads = options.mixed_pixels.threads = common.threads;
     CloudFile file = readCloud(files[0]);
     filterCloud(file, files[0], args, options, common.quiet);
     writeOutputs([&] { writeCloud(files[1], file); });

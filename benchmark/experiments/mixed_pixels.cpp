@@ -3,26 +3,26 @@
 #include "simulation/scene/labels.h"
 #include "support/tool.h"
 #include <cstdio>
-#include <fresco/filters/core/veil_points.h>
+#include <fresco/filters/core/mixed_pixels.h>
 #include <fresco/search/neighbors.h>
 #include <fresco/search/triangle_tree.h>
-/// Veil points of laser scans of a generated room that withoutVeil() finds, and what else it takes, against the labels
+/// Mixed pixels of laser scans of a generated room that withoutMixedPixels() finds, and what else it takes, against the labels
 /// of the generator.
 using namespace fresco;
 using namespace fresco::simulation;
 
 namespace {
-/// How well whoever knows the surfaces finds veil points: those farther off than `deviations` of the noise of the beam.
+/// How well whoever knows the surfaces finds mixed pixels: those farther off than `deviations` of the noise of the beam.
 struct KnownSurfaces {
   double deviations;
-  Index taken = 0, taken_several = 0, taken_veil = 0;
+  Index taken = 0, taken_several = 0, taken_mixed = 0;
 };
 
 struct Counts {
   Index points = 0, several = 0, taken = 0, taken_several = 0;
   KnownSurfaces known[3] = {{2}, {3}, {4}};
   static constexpr double off[4] = {0.01, 0.02, 0.04, 1e30}; ///< metres to the nearest surface: upper bounds
-  Index veil[4] = {0, 0, 0, 0}, found[4] = {0, 0, 0, 0};
+  Index mixed[4] = {0, 0, 0, 0}, found[4] = {0, 0, 0, 0};
   Index clear[2] = {0, 0}, clear_found[2] = {0, 0}; ///< off by more than 1, 2 spacings
 };
 
@@ -33,12 +33,12 @@ double share(Index part, Index whole)
 
 void printRow(const Counts& c)
 {
-  Index veil = 0, found = 0;
+  Index mixed = 0, found = 0;
   for (int b = 0; b < 4; ++b)
-    veil += c.veil[b], found += c.found[b];
-  std::printf("| %ld | %ld | %.3f ", static_cast<long>(c.points), static_cast<long>(veil), share(found, veil));
+    mixed += c.mixed[b], found += c.found[b];
+  std::printf("| %ld | %ld | %.3f ", static_cast<long>(c.points), static_cast<long>(mixed), share(found, mixed));
   for (int b = 0; b < 4; ++b)
-    std::printf("| %.2f of %ld ", share(c.found[b], c.veil[b]), static_cast<long>(c.veil[b]));
+    std::printf("| %.2f of %ld ", share(c.found[b], c.mixed[b]), static_cast<long>(c.mixed[b]));
   for (int b = 0; b < 2; ++b)
     std::printf("| %.2f of %ld ", share(c.clear_found[b], c.clear[b]), static_cast<long>(c.clear[b]));
   std::printf("| %.3f of %ld ", share(c.taken_several, c.taken), static_cast<long>(c.taken));
@@ -48,24 +48,24 @@ void printRow(const Counts& c)
 
 void printKnown(const Counts& c)
 {
-  Index veil = 0;
-  for (const Index points : c.veil)
-    veil += points;
+  Index mixed = 0;
+  for (const Index points : c.mixed)
+    mixed += points;
   std::printf("\n| surfaces known, off by more than | recall | precision | recall of all mixed |\n|---|---|---|---|\n");
   for (const KnownSurfaces& known : c.known)
-    std::printf("| %g deviations | %.3f | %.3f | %.3f |\n", known.deviations, share(known.taken_veil, veil),
+    std::printf("| %g deviations | %.3f | %.3f | %.3f |\n", known.deviations, share(known.taken_mixed, mixed),
                 share(known.taken_several, known.taken), share(known.taken_several, c.several));
 }
 
-/// Adds a veil point. @param range, off from the scanner and the nearest surface @param n points of the scan
-void addVeil(Counts& counts, double range, double off, double n, bool taken)
+/// Adds a mixed pixel. @param range, off from the scanner and the nearest surface @param n points of the scan
+void addMixedPixel(Counts& counts, double range, double off, double n, bool taken)
 {
   // directions from 60 degrees below the horizon to the zenith: 2 pi (1 + sin 60)
   const double spacing = range * std::sqrt(2 * 3.14159265 * 1.8660254 / n);
   int b = 0;
   while (off > Counts::off[b])
     ++b;
-  ++counts.veil[b];
+  ++counts.mixed[b];
   counts.found[b] += taken;
   for (int m = 0; m < 2; ++m)
     if (off > (m + 1) * spacing) {
@@ -79,13 +79,14 @@ void count(const LaserScan& scan, const TriangleTree& surfaces, const Eigen::Mat
   const std::vector<PointLabel> labels = labelPoints(scan, surfaces, T_truth_scan);
   const Points& points = scan.points.points;
   std::vector<char> stays(labels.size(), 0);
-  for (const Index i : withoutVeil(points, scan.points.viewpoints))
+  for (const Index i : withoutMixedPixels(points, scan.points.viewpoints))
     stays[i] = 1;
   const Eigen::Matrix3Xd placed =
       (T_truth_scan.topLeftCorner<3, 3>() * points.cast<double>()).colwise() + T_truth_scan.topRightCorner<3, 1>();
   const std::vector<ClosestPoint> closest = closestPoints(surfaces, placed, 0);
   for (std::size_t i = 0; i < labels.size(); ++i) {
-    const bool taken = stays[i] == 0, several = labels[i] != PointLabel::surface, veil = labels[i] == PointLabel::veil;
+    const bool taken = stays[i] == 0, several = labels[i] != PointLabel::surface,
+               mixed = labels[i] == PointLabel::mixed_pixel;
     ++counts.points;
     counts.several += several;
     counts.taken += taken;
@@ -95,10 +96,10 @@ void count(const LaserScan& scan, const TriangleTree& surfaces, const Eigen::Mat
       if (off > known.deviations * scan.deviations[i]) {
         ++known.taken;
         known.taken_several += several;
-        known.taken_veil += veil;
+        known.taken_mixed += mixed;
       }
-    if (veil)
-      addVeil(counts, points.col(static_cast<Index>(i)).norm(), off, static_cast<double>(labels.size()), taken);
+    if (mixed)
+      addMixedPixel(counts, points.col(static_cast<Index>(i)).norm(), off, static_cast<double>(labels.size()), taken);
   }
 }
 } // namespace
@@ -110,10 +111,10 @@ int main(int argc, char** argv)
     int stations = 1;
     LaserOptions laser;
     CommonOptions common;
-    Args args(
-        "fresco_benchmark_mixed_pixels [options]",
-        "Veil points of generated laser scans: how many withoutVeil() finds and what else it takes, and how many one "
-        "would find who knows the surfaces.");
+    Args args("fresco_benchmark_mixed_pixels [options]",
+              "Mixed pixels of generated laser scans: how many withoutMixedPixels() finds and what else it takes, and "
+              "how many one "
+              "would find who knows the surfaces.");
     args.option("scene", name, "conference_room, apartment or a mesh file");
     args.option("stations", stations, "laser stations");
     args.option("points", laser.points, "laser points per station, about");
@@ -129,8 +130,9 @@ int main(int argc, char** argv)
       const auto [scan, T_room_scan] = room.scanFrom(s, laser);
       count(scan, surfaces, T_room_scan, counts);
     }
-    std::printf("| points | veil | recall | off by 4 deviations - 1 cm | - 2 cm | - 4 cm | more | > 1 spacing | > 2 "
-                "spacings | precision | recall of all mixed |\n|---|---|---|---|---|---|---|---|---|---|---|\n");
+    std::printf(
+        "| points | mixed pixels | recall | off by 4 deviations - 1 cm | - 2 cm | - 4 cm | more | > 1 spacing | > 2 "
+        "spacings | precision | recall of all mixed |\n|---|---|---|---|---|---|---|---|---|---|---|\n");
     printRow(counts);
     printKnown(counts);
   });

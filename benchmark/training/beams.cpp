@@ -9,13 +9,13 @@
 #include <fresco/search/triangle_tree.h>
 #include <mutex>
 #include <numeric>
-/// What withoutVeil() judges, with the truth: the input of mixed_pixels.py.
+/// What withoutMixedPixels() judges, with the truth: the input of mixed_pixels.py.
 using namespace fresco;
 using namespace fresco::simulation;
 using namespace fresco::filters;
 
 namespace {
-/// What stands before the figures of a row.
+/// What stands before the features of a row.
 struct Head {
   float column, label, weight; ///< PointLabel; points of the scan that it stands for
 };
@@ -24,7 +24,7 @@ struct Rows {
   struct Row {
     Index column;
     Head head;
-    Eigen::VectorXf figures;
+    Eigen::VectorXf features;
   };
   std::vector<Row> rows;
   void write(OutputFile& file)
@@ -32,7 +32,7 @@ struct Rows {
     std::sort(rows.begin(), rows.end(), [](const Row& a, const Row& b) { return a.column < b.column; });
     for (const Row& row : rows) {
       file.write(&row.head, sizeof(Head));
-      file.write(row.figures.data(), static_cast<std::size_t>(row.figures.size()) * sizeof(float));
+      file.write(row.features.data(), static_cast<std::size_t>(row.features.size()) * sizeof(float));
     }
   }
 };
@@ -47,20 +47,19 @@ LaserScan thinned(const LaserScan& scan, double share)
       kept.push_back(i);
   some.points = selectPoints(scan.points, kept);
   for (const Index i : kept) {
-    const auto at = static_cast<std::size_t>(i);
-    some.faces.push_back(scan.faces[at]);
-    some.mixed.push_back(scan.mixed[at]);
-    some.deviations.push_back(scan.deviations[at]);
+    some.faces.push_back(scan.faces[i]);
+    some.mixed.push_back(scan.mixed[i]);
+    some.deviations.push_back(scan.deviations[i]);
   }
   return some;
 }
 
 struct Choice {
-  bool likely = false; ///< those worth a second look
-  double part = 1;     ///< of the points of surfaces
+  bool second_stage = false; ///< those that the second network judges
+  double part = 1;           ///< of the points of surfaces
 };
 
-BeamScan beamScan(const LaserScan& scan, const VeilOptions& options)
+BeamScan beamScan(const LaserScan& scan, const MixedPixelOptions& options)
 {
   std::vector<Index> columns(scan.points.size());
   std::iota(columns.begin(), columns.end(), 0);
@@ -70,36 +69,37 @@ BeamScan beamScan(const LaserScan& scan, const VeilOptions& options)
 }
 
 Rows rowsOf(const BeamScan& beams, const std::vector<PointLabel>& labels, const Choice& choice,
-            const VeilOptions& options)
+            const MixedPixelOptions& options)
 {
   Rows rows;
   std::vector<char> seen(labels.size(), 0);
   std::mutex mutex;
-  const auto columnOf = [&](Index i) { return static_cast<std::size_t>(beams.columns[i]); };
+  const auto columnOf = [&](Index i) { return beams.columns[i]; };
   const auto leftOut = [&](std::size_t column) {
     return labels[column] == PointLabel::surface && CounterRandom(7, 7, column).uniform() >= choice.part;
   };
-  const auto add = [&](Index i, const auto& figures) { // () -> figures
+  const auto add = [&](Index i, const auto& features) { // () -> features
     const std::size_t column = columnOf(i);
     seen[column] = 1;
     if (leftOut(column))
       return;
     const Head head{static_cast<float>(column), static_cast<float>(labels[column]),
                     labels[column] == PointLabel::surface ? static_cast<float>(1 / choice.part) : 1.f};
-    Rows::Row row{static_cast<Index>(column), head, figures()};
+    Rows::Row row{static_cast<Index>(column), head, features()};
     const std::lock_guard lock(mutex);
     rows.rows.push_back(std::move(row));
   };
-  if (choice.likely)
-    forLikelyVeil(beams, options, firstScores(beams, options),
-                  [&](Index i, const LikelyFigures& figures) { add(i, [&] { return figures; }); });
+  if (choice.second_stage)
+    forSecondStage(beams, options, firstStageScores(beams, options),
+                   [&](Index i, const SecondStageFeatures& features) { add(i, [&] { return features; }); });
   else
-    forVeilCandidates(beams, options,
-                      [&](Index i, const BeamSurroundings& around) { add(i, [&] { return veilFigures(around); }); });
-  Head others{-1, static_cast<float>(PointLabel::veil), 0};
+    forMixedPixelCandidates(beams, options, [&](Index i, const BeamSurroundings& around) {
+      add(i, [&] { return mixedPixelFeatures(around); });
+    });
+  Head others{-1, static_cast<float>(PointLabel::mixed_pixel), 0};
   for (std::size_t i = 0; i < labels.size(); ++i)
-    others.weight += seen[i] == 0 && labels[i] == PointLabel::veil ? 1.f : 0.f;
-  const Index width = choice.likely ? veil_figures::likely_count : veil_figures::count;
+    others.weight += seen[i] == 0 && labels[i] == PointLabel::mixed_pixel ? 1.f : 0.f;
+  const Index width = choice.second_stage ? mixed_pixel_features::second_stage_count : mixed_pixel_features::count;
   rows.rows.push_back({-1, others, Eigen::VectorXf::Zero(width)});
   return rows;
 }
@@ -117,10 +117,10 @@ int main(int argc, char** argv)
     double keep = 1;
     Args args(
         "fresco_benchmark_beams -o OUT [options]",
-        "Writes the figures of beams that have nearer and farther ones beside them, of generated laser scans: rows "
-        "of floats, point, label, weight, figures. The first row of a scan has point -1; its weight is the number "
-        "of veil points that are not among them.");
-    args.flag("likely", choice.likely, "only those worth a second look, with their figures then");
+        "Writes the features of beams that have nearer and farther ones beside them, of generated laser scans: rows "
+        "of floats, point, label, weight, features. The first row of a scan has point -1; its weight is the number "
+        "of mixed pixels that are not among them.");
+    args.flag("second_stage", choice.second_stage, "only those that the second network judges, with its features");
     args.option("o", output, "file to write");
     args.option("scene", name, "conference_room, apartment or a mesh file");
     args.flag("closed", closed, "a mesh is a closed room in metres, its floor at z = 0");
@@ -143,14 +143,14 @@ int main(int argc, char** argv)
       throw UsageError("-part or -keep is not in 0..1");
     const ScannedRoom room(name, stations, common.threads, closed);
     const TriangleTree surfaces(room.scene.mesh, common.threads);
-    VeilOptions veil;
-    veil.threads = common.threads;
+    MixedPixelOptions options;
+    options.threads = common.threads;
     OutputFile file(output);
     for (Index s = 0; s < room.stations.cols(); ++s) {
       auto [scan, T_room_scan] = room.scanFrom(s, laser);
       if (keep < 1)
         scan = thinned(scan, keep);
-      rowsOf(beamScan(scan, veil), labelPoints(scan, surfaces, T_room_scan), choice, veil).write(file);
+      rowsOf(beamScan(scan, options), labelPoints(scan, surfaces, T_room_scan), choice, options).write(file);
     }
     file.commit();
   });

@@ -13,7 +13,7 @@ namespace {
 /// A row of the file.
 struct Row {
   float point, place, cosine; ///< column, NormalSample::place, to the true normal
-  float figures[DirectionFigures::count];
+  float features[NormalCandidateFeatures::count];
 };
 
 std::vector<Row> rowsOf(const NormalSample& sample, int threads)
@@ -30,20 +30,20 @@ std::vector<Row> rowsOf(const NormalSample& sample, int threads)
   const Points smooth = smoothNormals(set.points, estimateNormals(set, estimation).normals, smoothing).normals;
   const SmoothingField field = makeSmoothingField(set.points, smooth, smoothing);
   std::vector<Row> rows;
-  compareDirections(field, set.viewpoints, field.normals, 1,
-                    [&](Index i, const std::vector<DirectionOffer>& offers, DirectionFigures& figures) {
-                      const int column = field.tree->columns()[i];
-                      if (!sample.truth.col(column).allFinite())
-                        return;
-                      for (const DirectionOffer& offer : offers) {
-                        Row row{static_cast<float>(column),
-                                static_cast<float>(sample.place[column]),
-                                offer.direction.dot(sample.truth.col(column)),
-                                {}};
-                        DirectionFigures::Figures::Map(row.figures) = figures.of(offer);
-                        rows.push_back(row);
-                      }
-                    });
+  forCreaseCandidates(field, set.viewpoints, field.normals, 1,
+                      [&](Index i, const std::vector<NormalCandidate>& candidates, NormalCandidateFeatures& features) {
+                        const int column = field.tree->columns()[i];
+                        if (!sample.truth.col(column).allFinite())
+                          return;
+                        for (const NormalCandidate& candidate : candidates) {
+                          Row row{static_cast<float>(column),
+                                  static_cast<float>(sample.place[column]),
+                                  candidate.direction.dot(sample.truth.col(column)),
+                                  {}};
+                          NormalCandidateFeatures::Features::Map(row.features) = features.of(candidate);
+                          rows.push_back(row);
+                        }
+                      });
   return rows;
 }
 } // namespace
@@ -58,9 +58,10 @@ int main(int argc, char** argv)
     std::string output;
     int seed = 1;
     bool closed = false;
-    Args args("fresco_benchmark_normal_candidates -o OUT [options]",
-              "Writes the figures of the directions that points beside creases are offered, of generated laser scans: "
-              "rows of floats, point, place, cosine to the true normal, figures.");
+    Args args(
+        "fresco_benchmark_normal_candidates -o OUT [options]",
+        "Writes the features of the directions that points beside creases are candidates, of generated laser scans: "
+        "rows of floats, point, place, cosine to the true normal, features.");
     args.option("o", output, "file to write");
     args.option("scene", options.scene, "conference_room, apartment or a mesh file");
     args.flag("closed", closed, "a mesh is a closed room in metres, its floor at z = 0");

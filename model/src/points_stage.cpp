@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <fresco/core/require.h>
 #include <fresco/filters/core/bilateral_normals.h>
+#include <fresco/filters/core/mixed_pixels.h>
 #include <fresco/filters/core/oriented_normals.h>
 #include <fresco/filters/core/outliers.h>
-#include <fresco/filters/core/veil_points.h>
 #include <fresco/io/image_io.h>
 #include <fresco/io/point_io.h>
 #include <fresco/io/pose_file.h>
@@ -32,21 +32,22 @@ PointSet smoothed(const PointSet& set, const ModelOptions& options, const Progre
   return selectPoints(result, kept);
 }
 
-/// Beams of a sparser scan stand too far apart to tell a veil point from an edge: see docs/filters.md.
-constexpr Index least_points_for_veil = 100000;
+/// Beams of a sparser scan stand too far apart to tell a mixed pixel from an edge: see docs/mixed_pixels.md.
+constexpr Index least_points_for_mixed_pixels = 100000;
 
-/// Without veil points at depth jumps and isolated points.
+/// Without mixed pixels at depth jumps and isolated points.
 PointSet cleaned(const PointSet& scan, int threads)
 {
-  VeilOptions veil;
-  veil.threads = threads;
-  const PointSet unveiled =
-      scan.size() < least_points_for_veil ? scan : selectPoints(scan, withoutVeil(scan.points, scan.viewpoints, veil));
+  MixedPixelOptions mixed_pixels;
+  mixed_pixels.threads = threads;
+  const PointSet solid = scan.size() < least_points_for_mixed_pixels
+                             ? scan
+                             : selectPoints(scan, withoutMixedPixels(scan.points, scan.viewpoints, mixed_pixels));
   OutlierOptions outliers;
   outliers.relative = true; // density falls with the distance from the scanner
   outliers.sigma = 3;
   outliers.threads = threads;
-  return selectPoints(unveiled, withoutOutliers(unveiled.points, outliers));
+  return selectPoints(solid, withoutOutliers(solid.points, outliers));
 }
 
 struct PreparedScan {

@@ -1,8 +1,8 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Gradients of the networks that benchmark/ trains are those of finite differences, and what is written is what was
-trained. test_networks.py BENCHMARK_FOLDER; ends with 77 where numpy is missing."""
-import re
+"""Gradients of the networks that benchmark/training trains are those of finite differences, and what is written is what
+was trained. test_networks.py TRAINING_FOLDER; ends with 77 where numpy is missing."""
+import os
 import sys
 import tempfile
 from types import SimpleNamespace
@@ -16,6 +16,7 @@ except ImportError:
 
 import candidate_score
 import mixed_pixels
+import mlp
 
 
 def check_gradients(network, value_and_gradients, random):
@@ -36,14 +37,14 @@ def check_gradients(network, value_and_gradients, random):
             assert abs(numeric - gradient[at]) < 1e-3 * max(1, abs(numeric)), (at, numeric, gradient[at])
 
 
-def test_veil(random):
-    figures = random.normal(size=(60, 7))
-    network = mixed_pixels.Network(figures, (5, 4), random)
-    veil, weight = (random.random(60) < 0.4).astype(float), random.random(60)
+def test_mixed_pixels(random):
+    features = random.normal(size=(60, 7))
+    network = mixed_pixels.Network(features, (5, 4), random)
+    mixed, weight = (random.random(60) < 0.4).astype(float), random.random(60)
 
     def both():
-        loss, gradients = network.gradients(figures, veil, weight)
-        return loss / len(figures), gradients
+        loss, gradients = network.gradients(features, mixed, weight)
+        return loss / len(features), gradients
 
     check_gradients(network, both, random)
 
@@ -51,36 +52,48 @@ def test_veil(random):
 def test_normals(random):
     counts = random.integers(2, 5, 20)
     starts = np.cumsum(counts) - counts
-    offers = SimpleNamespace(figures=random.normal(size=(counts.sum(), 6)), starts=starts, counts=counts,
+    candidates = SimpleNamespace(features=random.normal(size=(counts.sum(), 6)), starts=starts, counts=counts,
                              degrees=random.uniform(0, 90, counts.sum()), at_edge=random.random(20) < 0.5)
-    offers.rows_of = lambda points: candidate_score.Offers.rows_of(offers, points)
-    network = candidate_score.Network(offers, (5, 4), random)
+    candidates.rows_of = lambda points: candidate_score.Candidates.rows_of(candidates, points)
+    network = candidate_score.Network(candidates, (5, 4), random)
 
     def both():
-        degrees, gradients = network.gradients(offers, np.arange(20), 0.3)
+        degrees, gradients = network.gradients(candidates, np.arange(20), 0.3)
         return degrees / candidate_score.MOST_DEGREES, gradients
 
     check_gradients(network, both, random)
 
 
 def test_written_weights(random):
-    figures = random.normal(3, 2, (500, 7)).astype(np.float32)
-    network = mixed_pixels.Network(figures, (5, 4), random)
+    features = random.normal(3, 2, (500, 7)).astype(np.float32)
+    network = mixed_pixels.Network(features, (5, 4), random)
     with tempfile.TemporaryDirectory() as folder:
-        network.write(folder + "/some_weights.h", ["of_figures"], "test_networks.py")
-        with open(folder + "/some_weights.h") as file:
-            text = file.read()
-    assert "struct SomeWeights {" in text
-    values = {name: np.array([float(v.strip().rstrip("f")) for v in body.split(",") if v.strip()])
-              for name, body in re.findall(r"(\w+)\[\d+\] = \{(.*?)\}", text, re.S)}
-    within = np.clip(figures, values["lowest"], values["highest"])
-    a = np.maximum(within @ values["of_figures"].reshape(7, 5) + values["first_bias"], 0)
-    b = np.maximum(a @ values["second_weights"].reshape(5, 4) + values["second_bias"], 0)
-    output = b @ values["last_weights"] + values["last_bias"]
-    assert np.abs(output - network.score(figures)).max() < 1e-3
+        network.write(folder + "/some.bin", ["first_weights"])
+        values = mlp.read_matrices(folder + "/some.bin")
+    assert list(values) == ["lowest", "highest", "first_weights", "first_bias", "second_weights", "second_bias",
+                            "last_weights", "last_bias"]
+    assert np.abs(output(values, "first_weights", features) - network.score(features)).max() < 1e-3
+
+
+def output(values, first, features):
+    within = np.clip(features, values["lowest"], values["highest"])
+    a = np.maximum(within @ values[first] + values["first_bias"], 0)
+    b = np.maximum(a @ values["second_weights"] + values["second_bias"], 0)
+    return (b @ values["last_weights"] + values["last_bias"])[:, 0]
+
+
+def test_weights_of_the_library(_):
+    folder = os.path.join(sys.argv[1], "..", "..", "filters", "data")
+    for name, inputs, first, second in (("mixed_pixels", 154, 64, 24), ("second_stage", 455, 96, 32)):
+        values = mlp.read_matrices(os.path.join(folder, name + ".bin"))
+        assert values["first_weights"].shape == (inputs, first), name
+        assert values["second_weights"].shape == (first, second), name
+        assert np.isfinite(output(values, "first_weights", values["lowest"])).all(), name
+    values = mlp.read_matrices(os.path.join(folder, "candidate_score.bin"))
+    assert values["of_candidate"].shape == values["of_own_normal"].shape == (44, 16)
 
 
 if __name__ == "__main__":
-    for test in (test_veil, test_normals, test_written_weights):
+    for test in (test_mixed_pixels, test_normals, test_written_weights, test_weights_of_the_library):
         test(np.random.default_rng(1))
         print(f"{test.__name__}: passed")

@@ -7,14 +7,14 @@ using namespace fresco::filters;
 namespace fresco {
 namespace {
 using Eigen::Vector3f;
-using Figures = DirectionFigures::Figures;
+using Features = NormalCandidateFeatures::Features;
 
 /// Two planes that meet in a ridge along x, seen from above; the point lies on the one that falls towards +y.
-std::vector<FacedNeighbor> besideRidge(const Vector3f& falling_right, const Vector3f& falling_left)
+std::vector<CandidateNeighbor> besideRidge(const Vector3f& falling_right, const Vector3f& falling_left)
 {
   std::mt19937 generator(1);
   std::normal_distribution<float> noise(0, 0.001f);
-  std::vector<FacedNeighbor> neighbors;
+  std::vector<CandidateNeighbor> neighbors;
   for (int column = -4; column <= 4; ++column)
     for (int row = -4; row <= 4; ++row) {
       const float x = 0.0101f * static_cast<float>(column), y = 0.0103f * static_cast<float>(row) + 0.0147f;
@@ -28,34 +28,34 @@ std::vector<FacedNeighbor> besideRidge(const Vector3f& falling_right, const Vect
 
 const Vector3f right = Vector3f(0, 1, 1).normalized(), left = Vector3f(0, -1, 1).normalized(), down(0, 0, -1);
 
-TEST(DirectionFigures, ChangeNeitherWithTheFrameNorTheUnitNorTheOrder)
+TEST(NormalCandidateFeatures, ChangeNeitherWithTheFrameNorTheUnitNorTheOrder)
 {
-  std::vector<FacedNeighbor> neighbors = besideRidge(right, left);
+  std::vector<CandidateNeighbor> neighbors = besideRidge(right, left);
   const Eigen::Matrix3f turn = test::someMotion().linear();
-  std::vector<FacedNeighbor> moved = neighbors;
-  for (FacedNeighbor& neighbor : moved) {
+  std::vector<CandidateNeighbor> moved = neighbors;
+  for (CandidateNeighbor& neighbor : moved) {
     neighbor.offset = 1000 * (turn * neighbor.offset);
     neighbor.normal = turn * neighbor.normal;
   }
   std::mt19937 generator(2);
   std::shuffle(moved.begin(), moved.end(), generator);
   for (const Vector3f& direction : {right, left, Vector3f(0.3f, 0.2f, 0.933f).normalized()}) {
-    DirectionFigures here, there;
+    NormalCandidateFeatures here, there;
     here.set(neighbors, down, 0.001f);
     there.set(moved, turn * down, 1.f);
     const float to_own = direction.dot(right);
-    const Figures a = here.of({direction, 0.2f, to_own}), b = there.of({turn * direction, 0.2f, to_own});
+    const Features a = here.of({direction, 0.2f, to_own}), b = there.of({turn * direction, 0.2f, to_own});
     EXPECT_TRUE(a.allFinite());
     EXPECT_LT((a - b).cwiseAbs().maxCoeff(), 0.01f) << (a - b).transpose();
   }
 }
 
-TEST(DirectionFigures, CountNeighborsOnThePlane)
+TEST(NormalCandidateFeatures, CountNeighborsOnThePlane)
 {
-  DirectionFigures figures;
-  figures.set(besideRidge(right, left), down, 0.001f);
+  NormalCandidateFeatures features;
+  features.set(besideRidge(right, left), down, 0.001f);
   const int all = 7 + 3 * 6; // inside, held, alike, other, in front, behind: of all neighbours
-  const Figures own = figures.of({right, 0.2f, 1}), other = figures.of({left, 0.2f, 0});
+  const Features own = features.of({right, 0.2f, 1}), other = features.of({left, 0.2f, 0});
   const auto count = [](float logarithm) { return std::exp(logarithm) - 0.5f; };
   EXPECT_NEAR(count(own[all + 1]), 9 * 6 - 1, 1); // rows -1 to 4
   EXPECT_NEAR(count(own[all + 2]), 9 * 6 - 1, 1);
@@ -63,29 +63,29 @@ TEST(DirectionFigures, CountNeighborsOnThePlane)
   EXPECT_GT(count(own[all + 1]), count(other[all + 1]));
 }
 
-TEST(DirectionWorth, IsGreatestForTheSurfaceOfThePointWhateverItsNormalIs)
+TEST(CandidateScore, IsGreatestForTheSurfaceOfThePointWhateverItsNormalIs)
 {
-  DirectionFigures figures;
-  figures.set(besideRidge(right, left), down, 0.001f);
+  NormalCandidateFeatures features;
+  features.set(besideRidge(right, left), down, 0.001f);
   for (const Vector3f& own : {right, left, Vector3f(0.7f, 0.1f, 0.7f).normalized()}) {
-    const DirectionWorth worth(figures.of({own, 0, 1}));
-    const float of_right = worth.of(figures.of({right, 0.3f, own.dot(right) > 0.99f ? 1 : own.dot(right)}));
+    const CandidateScore score(features.of({own, 0, 1}));
+    const float of_right = score.of(features.of({right, 0.3f, own.dot(right) > 0.99f ? 1 : own.dot(right)}));
     for (const Vector3f& direction : {left, Vector3f(0.7f, 0.1f, 0.7f).normalized(), Vector3f(0, 0, 1)})
-      EXPECT_GT(of_right, worth.of(figures.of({direction, 0.3f, std::min(0.99f, own.dot(direction))})));
+      EXPECT_GT(of_right, score.of(features.of({direction, 0.3f, std::min(0.99f, own.dot(direction))})));
   }
 }
 
-TEST(DirectionWorth, IsFiniteForWhatNobodyHasSeen)
+TEST(CandidateScore, IsFiniteForWhatNobodyHasSeen)
 {
-  const std::vector<FacedNeighbor> none, twins(9, {Vector3f::Zero(), Vector3f::UnitZ(), true}),
+  const std::vector<CandidateNeighbor> none, twins(9, {Vector3f::Zero(), Vector3f::UnitZ(), true}),
       far(300, {Vector3f(1e6f, -1e6f, 1e6f), Vector3f::UnitX(), false});
   for (const auto& neighbors : {none, twins, far})
     for (const float noise : {1e-9f, 1e9f}) {
-      DirectionFigures figures;
-      figures.set(neighbors, down, noise);
-      const Figures own = figures.of({Vector3f::UnitZ(), 0, 1});
+      NormalCandidateFeatures features;
+      features.set(neighbors, down, noise);
+      const Features own = features.of({Vector3f::UnitZ(), 0, 1});
       EXPECT_TRUE(own.allFinite()) << own.transpose();
-      EXPECT_TRUE(std::isfinite(DirectionWorth(own).of(own)));
+      EXPECT_TRUE(std::isfinite(CandidateScore(own).of(own)));
     }
 }
 } // namespace

@@ -2,8 +2,8 @@
 #include "filters/virtual_scan.h"
 #include <algorithm>
 #include <array>
+#include <fresco/filters/core/mixed_pixels.h>
 #include <fresco/filters/core/outliers.h>
-#include <fresco/filters/core/veil_points.h>
 #include <fresco/filters/core/voxel_thinning.h>
 #include <fresco/io/point_io.h>
 #include <map>
@@ -67,29 +67,29 @@ TEST(Outliers, OddInput)
   EXPECT_THROW(withoutOutliers(points, options), std::invalid_argument);
 }
 
-TEST(VeilPoints, TheVeilGoesAndLegsAndEdgesStay)
+TEST(MixedPixels, GoAndLegsAndEdgesStay)
 {
-  const auto scan = test::scanWithVeil(0.005f, 0.002f, 1);
-  const auto kept = withoutVeil(scan.points, Eigen::Vector3f::Zero());
-  std::vector<bool> stays(scan.veil.size(), false);
+  const auto scan = test::scanWithMixedPixels(0.005f, 0.002f, 1);
+  const auto kept = withoutMixedPixels(scan.points, Eigen::Vector3f::Zero());
+  std::vector<bool> stays(scan.mixed.size(), false);
   for (const Index i : kept)
     stays[i] = true;
-  Index veil = 0, found = 0, wrong = 0, legs = 0, lost_legs = 0;
+  Index mixed = 0, found = 0, wrong = 0, legs = 0, lost_legs = 0;
   for (std::size_t i = 0; i < stays.size(); ++i) {
-    veil += scan.veil[i];
-    found += scan.veil[i] && !stays[i];
-    wrong += !scan.veil[i] && !stays[i];
+    mixed += scan.mixed[i];
+    found += scan.mixed[i] && !stays[i];
+    wrong += !scan.mixed[i] && !stays[i];
     legs += scan.leg[i];
     lost_legs += scan.leg[i] && !stays[i];
   }
-  EXPECT_GT(veil, 100);
-  EXPECT_GT(found, 0.9 * veil);
+  EXPECT_GT(mixed, 100);
+  EXPECT_GT(found, 0.9 * mixed);
   EXPECT_LT(wrong, 0.05 * found);
   EXPECT_GT(legs, 100);
   EXPECT_EQ(lost_legs, 0);
 }
 
-TEST(VeilPoints, BeamsThatOverlapDoNotHideTheVeil)
+TEST(MixedPixels, AreFoundWhereBeamsOverlap)
 {
   std::mt19937 generator(1);
   std::normal_distribution<float> noise(0, 0.002f);
@@ -112,7 +112,7 @@ TEST(VeilPoints, BeamsThatOverlapDoNotHideTheVeil)
     Index kept[4] = {0, 0, 0, 0}, all[4] = {0, 0, 0, 0};
     for (const int kind : kinds)
       ++all[kind];
-    for (const Index i : withoutVeil(cloud, Eigen::Vector3f::Zero()))
+    for (const Index i : withoutMixedPixels(cloud, Eigen::Vector3f::Zero()))
       ++kept[kinds[i]];
     EXPECT_GT(all[1], 50);
     EXPECT_LT(static_cast<double>(kept[1]), 0.4 * static_cast<double>(all[1])) << step;
@@ -121,9 +121,9 @@ TEST(VeilPoints, BeamsThatOverlapDoNotHideTheVeil)
   }
 }
 
-// Where a border crosses the rows of a scan at a small angle, the share of the board grows from beam to beam: the veil
+// Where a border crosses the rows of a scan at a small angle, the share of the board grows from beam to beam: the mixed
 // is a ramp whose points have neighbours at 1.4 times the distance of the beams.
-TEST(VeilPoints, RampsAlongObliqueBordersGo)
+TEST(MixedPixels, RampsAlongObliqueBordersGo)
 {
   std::mt19937 generator(1);
   std::normal_distribution<float> noise(0, 0.002f);
@@ -145,14 +145,14 @@ TEST(VeilPoints, RampsAlongObliqueBordersGo)
     cloud.col(static_cast<Index>(i)) = points[i];
   const Index all = std::count(ramp.begin(), ramp.end(), true);
   Index kept = 0, others = 0;
-  for (const Index i : withoutVeil(cloud, Eigen::Vector3f::Zero()))
+  for (const Index i : withoutMixedPixels(cloud, Eigen::Vector3f::Zero()))
     ++(ramp[i] ? kept : others);
   EXPECT_GT(all, 30);
   EXPECT_LT(kept, all / 2);
   EXPECT_GT(others, cloud.cols() - all - 20);
 }
 
-TEST(VeilPoints, GrazingSurfacesStay)
+TEST(MixedPixels, GrazingSurfacesStay)
 {
   Points floor = 4 * test::flatSquare(40000, 5).points;
   floor.row(2).setConstant(-0.8f);
@@ -161,50 +161,50 @@ TEST(VeilPoints, GrazingSurfacesStay)
   std::normal_distribution<float> normal(0, 0.002f);
   for (Index i = 0; i < noisy.cols(); ++i)
     noisy.col(i) *= 1 + normal(generator) / noisy.col(i).norm();
-  EXPECT_GT(withoutVeil(noisy, Eigen::Vector3f::Zero()).size(), 39960u);
+  EXPECT_GT(withoutMixedPixels(noisy, Eigen::Vector3f::Zero()).size(), 39960u);
 }
 
-TEST(VeilPoints, FollowMotionThreadsAndViewpoints)
+TEST(MixedPixels, FollowMotionThreadsAndViewpoints)
 {
-  const auto scan = test::scanWithVeil(0.01f, 0.002f, 1);
-  const auto kept = withoutVeil(scan.points, Eigen::Vector3f::Zero());
-  VeilOptions options;
+  const auto scan = test::scanWithMixedPixels(0.01f, 0.002f, 1);
+  const auto kept = withoutMixedPixels(scan.points, Eigen::Vector3f::Zero());
+  MixedPixelOptions options;
   options.threads = 4;
-  EXPECT_EQ(withoutVeil(scan.points, Eigen::Vector3f::Zero(), options), kept);
+  EXPECT_EQ(withoutMixedPixels(scan.points, Eigen::Vector3f::Zero(), options), kept);
   // Two scans from two places: each is judged by itself.
   const Index n = scan.points.cols();
   const Eigen::Isometry3f motion = test::someMotion();
   Points both(3, 2 * n), viewpoints = Points::Zero(3, 2 * n);
   both << scan.points, (motion.linear() * scan.points).colwise() + motion.translation();
   viewpoints.rightCols(n).colwise() = Eigen::Vector3f(motion.translation());
-  const auto two = withoutVeil(both, viewpoints);
+  const auto two = withoutMixedPixels(both, viewpoints);
   const auto first = std::count_if(two.begin(), two.end(), [n](Index i) { return i < n; });
   EXPECT_EQ(first, static_cast<std::ptrdiff_t>(kept.size()));
   EXPECT_NEAR(static_cast<double>(two.size()), 2.0 * static_cast<double>(kept.size()), 4);
 }
 
-TEST(VeilPoints, OddInput)
+TEST(MixedPixels, OddInput)
 {
   const Points origin = Eigen::Vector3f::Zero();
-  EXPECT_TRUE(withoutVeil(Points(3, 0), origin).empty());
-  EXPECT_EQ(withoutVeil(Points::Zero(3, 300), origin).size(), 300u);
-  EXPECT_EQ(withoutVeil(Points::Ones(3, 300), origin).size(), 300u);
+  EXPECT_TRUE(withoutMixedPixels(Points(3, 0), origin).empty());
+  EXPECT_EQ(withoutMixedPixels(Points::Zero(3, 300), origin).size(), 300u);
+  EXPECT_EQ(withoutMixedPixels(Points::Ones(3, 300), origin).size(), 300u);
   Points points = test::randomPoints(300, 1);
   points(0, 7) = nan;
-  const auto kept = withoutVeil(points, points.cwiseAbs().array().isNaN().select(0, points)); // a viewpoint each
+  const auto kept = withoutMixedPixels(points, points.cwiseAbs().array().isNaN().select(0, points)); // a viewpoint each
   EXPECT_EQ(kept.size(), 299u);
-  EXPECT_THROW(withoutVeil(points, Points(3, 0)), std::invalid_argument);
-  EXPECT_THROW(withoutVeil(points, Points::Constant(3, 1, nan)), std::invalid_argument);
+  EXPECT_THROW(withoutMixedPixels(points, Points(3, 0)), std::invalid_argument);
+  EXPECT_THROW(withoutMixedPixels(points, Points::Constant(3, 1, nan)), std::invalid_argument);
   const auto rejects = [&](auto change) {
-    VeilOptions options;
+    MixedPixelOptions options;
     change(options);
-    EXPECT_THROW(withoutVeil(points, origin, options), std::invalid_argument);
+    EXPECT_THROW(withoutMixedPixels(points, origin, options), std::invalid_argument);
   };
-  rejects([](VeilOptions& o) { o.angle = 0; });
-  rejects([](VeilOptions& o) { o.angle = 90; });
-  rejects([](VeilOptions& o) { o.noise = -1; });
-  rejects([](VeilOptions& o) { o.k = 7; });
-  rejects([](VeilOptions& o) { o.k = 65; });
+  rejects([](MixedPixelOptions& o) { o.angle = 0; });
+  rejects([](MixedPixelOptions& o) { o.angle = 90; });
+  rejects([](MixedPixelOptions& o) { o.noise = -1; });
+  rejects([](MixedPixelOptions& o) { o.k = 7; });
+  rejects([](MixedPixelOptions& o) { o.k = 65; });
 }
 
 TEST(VoxelThinning, OnePointPerCellTheNearestToTheCentroid)
@@ -251,11 +251,11 @@ TEST(VoxelThinning, OddInput)
   EXPECT_EQ(thinByVoxel(points, 0.3f, 1).kept, thinByVoxel(points, 0.3f, 4).kept);
 }
 
-TEST(VeilPoints, RealScanLosesFewPoints)
+TEST(MixedPixels, RealScanLosesFewPoints)
 {
   FRESCO_NEED_DATA("lobby/room_scan1.pcd");
   const PointSet set = readPoints(test::dataFolder() + "/lobby/room_scan1.pcd");
-  const auto kept = withoutVeil(set.points, set.viewpoints);
+  const auto kept = withoutMixedPixels(set.points, set.viewpoints);
   EXPECT_GT(kept.size(), 0.95 * static_cast<double>(set.size()));
   EXPECT_LT(kept.size(), static_cast<std::size_t>(set.size()));
 }

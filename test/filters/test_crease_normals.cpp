@@ -106,7 +106,7 @@ Errors errorsOfRacks(float noise)
   return errors;
 }
 
-TEST(SurfaceChoice, BoardsGetTheDirectionsOfTheRoom)
+TEST(CreaseNormals, BoardsGetTheDirectionsOfTheRoom)
 {
   for (const float noise : {0.002f, 0.004f}) {
     const Errors errors = errorsOfRacks(noise);
@@ -116,14 +116,14 @@ TEST(SurfaceChoice, BoardsGetTheDirectionsOfTheRoom)
 }
 
 /// Without noise a lone row of beams on a board is on every plane through it.
-TEST(SurfaceChoice, ExactScansHardlyGetWorse)
+TEST(CreaseNormals, ExactScansHardlyGetWorse)
 {
   const Errors errors = errorsOfRacks(0);
   EXPECT_LT(errors.fronts_with, 0.8 * errors.fronts_without);
   EXPECT_LT(errors.all_with, 1.05 * errors.all_without);
 }
 
-TEST(SurfaceChoice, DoesNotDependOnTheFrame)
+TEST(CreaseNormals, DoesNotDependOnTheFrame)
 {
   const Scan scan = scanOfRack(0.002f, 2);
   const Eigen::Isometry3f motion = test::someMotion();
@@ -137,7 +137,7 @@ TEST(SurfaceChoice, DoesNotDependOnTheFrame)
   EXPECT_NEAR(there, here, 0.05 * here);
 }
 
-TEST(SurfaceChoice, RoundThingsStayRound)
+TEST(CreaseNormals, RoundThingsStayRound)
 {
   const test::Cloud ball = test::unitSphere(20000, 3);
   const Vector3f viewer(0, 0, 4);
@@ -159,7 +159,7 @@ TEST(SurfaceChoice, RoundThingsStayRound)
   }
 }
 
-TEST(SurfaceChoice, NeedsNormalsThatFaceTheViewer)
+TEST(CreaseNormals, NeedsNormalsThatFaceTheViewer)
 {
   const Scan scan = scanOfRack(0.002f, 5);
   const Points raw = estimated(scan.set);
@@ -172,7 +172,7 @@ TEST(SurfaceChoice, NeedsNormalsThatFaceTheViewer)
   EXPECT_EQ(smoothNormals(unknown, raw).normals, smoothNormals(scan.set.points, raw).normals);
 }
 
-TEST(SurfaceChoice, OneViewpointIsAsGoodAsOnePerPointAndThreadsDoNotCount)
+TEST(CreaseNormals, OneViewpointIsAsGoodAsOnePerPointAndThreadsDoNotCount)
 {
   const Scan scan = scanOfRack(0.002f, 6);
   const Points raw = estimated(scan.set);
@@ -188,7 +188,7 @@ TEST(SurfaceChoice, OneViewpointIsAsGoodAsOnePerPointAndThreadsDoNotCount)
   EXPECT_THROW(smoothNormals(each, raw, one), std::invalid_argument);
 }
 
-TEST(SurfaceChoice, FewPointsAndNonFiniteOnes)
+TEST(CreaseNormals, FewPointsAndNonFiniteOnes)
 {
   PointSet few;
   few.points = Points::Random(3, 5);
@@ -205,7 +205,7 @@ TEST(SurfaceChoice, FewPointsAndNonFiniteOnes)
   EXPECT_EQ(smoothNormals(PointSet{}, Points(3, 0)).normals.cols(), 0);
 }
 
-TEST(SurfaceChoice, ClassIsTheCoreWhereAViewpointIsSet)
+TEST(CreaseNormals, ClassIsTheCoreWhereAViewpointIsSet)
 {
   const Scan scan = scanOfRack(0.002f, 7);
   const Points raw = estimated(scan.set);

@@ -8,6 +8,7 @@
 #include <pcl/features/normal_3d.h>
 #include <pcl/filters/statistical_outlier_removal.h>
 #include <pcl/point_types.h>
+#include <pcl/search/kdtree.h>
 namespace fresco {
 namespace {
 using test::nan;
@@ -98,7 +99,7 @@ TEST(OrientedNormalEstimation, IndicesSurfaceAndNonFinitePoints)
 
 TEST(OrientedNormalEstimation, OrganizedEmptyAndContradictoryInput)
 {
-  const Cloud::Ptr cloud = toCloud(test::scanWithVeil(0.01f, 0, 1).points);
+  const Cloud::Ptr cloud = toCloud(test::scanWithMixedPixels(0.01f, 0, 1).points);
   cloud->height = 10;
   cloud->width = static_cast<std::uint32_t>(cloud->size() / 10);
   cloud->resize(std::size_t{cloud->width} * 10);
@@ -139,6 +140,109 @@ NormalCloud::Ptr noisyCube()
   (*cloud)[5].x = nan;
   cloud->is_dense = false;
   return cloud;
+}
+
+/// Planes through the same neighbours; where two are equally far but for rounding, one of them may differ.
+void expectSameNormals(const pcl::PointCloud<pcl::Normal>& a, const pcl::PointCloud<pcl::Normal>& b)
+{
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    ASSERT_EQ(pcl::isNormalFinite(a[i]), pcl::isNormalFinite(b[i])) << i;
+    if (pcl::isNormalFinite(a[i])) {
+      EXPECT_LT(test::angleBetween(a[i].getNormalVector3fMap(), b[i].getNormalVector3fMap()), 0.5f) << i; // degrees
+      EXPECT_NEAR(a[i].curvature, b[i].curvature, 1e-4f) << i;
+    }
+  }
+}
+
+TEST(OrientedNormalEstimation, TakesNeighborsFromTheSearchMethod)
+{
+  const Cloud::Ptr cloud = toCloud(test::unitSphere(2000, 1).points);
+  (*cloud)[8].x = nan;
+  cloud->is_dense = false;
+  const auto indices = pcl::make_shared<pcl::Indices>(pcl::Indices{9, 8, 100, 9, 1500});
+  const auto some = pcl::make_shared<Cloud>(*cloud, *indices);
+  for (const bool by_radius : {false, true})
+    for (const bool on_surface : {false, true}) {
+      OrientedNormalEstimation<pcl::PointXYZ, pcl::Normal> ours, theirs;
+      theirs.setSearchMethod(pcl::make_shared<pcl::search::KdTree<pcl::PointXYZ>>());
+      pcl::PointCloud<pcl::Normal> a, b;
+      for (auto* estimation : {&ours, &theirs}) {
+        by_radius ? estimation->setRadiusSearch(0.15) : estimation->setKSearch(12);
+        estimation->setViewPoint(0, 0, 5);
+        estimation->setInputCloud(on_surface ? some : cloud);
+        if (on_surface)
+          estimation->setSearchSurface(cloud);
+        estimation->compute(estimation == &ours ? a : b);
+      }
+      expectSameNormals(a, b);
+      if (on_surface)
+        continue;
+      for (auto* estimation : {&ours, &theirs}) {
+        estimation->setIndices(indices);
+        estimation->compute(estimation == &ours ? a : b);
+      }
+      EXPECT_EQ(a.size(), 5u);
+      expectSameNormals(a, b);
+    }
+}
+
+/// A search that always finds the same points.
+struct Stubborn : pcl::search::KdTree<pcl::PointXYZ> {
+  int nearestKSearch(const pcl::PointXYZ&, int k, pcl::Indices& indices, std::vector<float>& squared) const override
+  {
+    indices = {0, 1, 2};
+    squared.assign(3, 0.f);
+    return k < 3 ? k : 3;
+  }
+};
+
+TEST(OrientedNormalEstimation, HasNoNeighborsBesideThoseOfTheSearchMethod)
+{
+  const Cloud::Ptr cloud = toCloud(test::unitSphere(500, 1).points);
+  OrientedNormalEstimation<pcl::PointXYZ, pcl::Normal> estimation;
+  estimation.setInputCloud(cloud);
+  estimation.setKeepEdges(false);
+  estimation.setSearchMethod(pcl::make_shared<Stubborn>());
+  estimation.setViewPointUnknown();
+  pcl::PointCloud<pcl::Normal> output;
+  estimation.compute(output);
+  const Eigen::Vector3f a = (*cloud)[0].getVector3fMap(), b = (*cloud)[1].getVector3fMap(),
+                        c = (*cloud)[2].getVector3fMap(), plane = (b - a).cross(c - a).normalized();
+  for (const pcl::Normal& normal : output)
+    EXPECT_GT(std::abs(plane.dot(normal.getNormalVector3fMap())), 0.999f);
+}
+
+template <typename Filter>
+void expectCommonSetters(Filter& filter)
+{
+  filter.setThreads(3);
+  EXPECT_EQ(filter.getNumberOfThreads(), 3);
+  EXPECT_EQ(filter.getOptions().threads, 3);
+  auto options = filter.getOptions();
+  options.threads = 1;
+  filter.setOptions(options);
+  EXPECT_EQ(filter.getThreads(), 1);
+  filter.setProgress([](std::string_view, double) { return false; });
+}
+
+TEST(FilterClasses, HaveSettersOfOneKindAndStopWhenAsked)
+{
+  const NormalCloud::Ptr cloud = noisyCube();
+  NormalCloud output;
+  BilateralNormalFilter<pcl::PointXYZRGBNormal> smoothing;
+  VeilPointRemoval<pcl::PointXYZRGBNormal> removal;
+  OrientedNormalEstimation<pcl::PointXYZRGBNormal, pcl::PointXYZRGBNormal> estimation;
+  const auto expectStopped = [&](auto& filter, const auto& run) {
+    expectCommonSetters(filter);
+    filter.setViewPoint(0, 0, 5);
+    filter.useSensorOriginAsViewPoint();
+    filter.setInputCloud(cloud);
+    EXPECT_THROW(run(), Cancelled);
+  };
+  expectStopped(smoothing, [&] { smoothing.filter(output); });
+  expectStopped(removal, [&] { removal.filter(output); });
+  expectStopped(estimation, [&] { estimation.compute(output); });
 }
 
 TEST(BilateralNormalFilterClass, IsTheCoreAndKeepsTheRest)
@@ -191,11 +295,11 @@ TEST(BilateralNormalFilterClass, HonoursIndices)
 
 TEST(VeilPointRemovalClass, IsTheCoreInAllModes)
 {
-  Points points = test::scanWithVeil(0.01f, 0.002f, 1).points;
+  Points points = test::scanWithMixedPixels(0.01f, 0.002f, 1).points;
   points.col(40).setConstant(nan);
   const Cloud::Ptr cloud = toCloud(points);
   cloud->is_dense = false;
-  const auto kept = withoutVeil(points, Eigen::Vector3f::Zero());
+  const auto kept = withoutMixedPixels(points, Eigen::Vector3f::Zero());
   const Index gone = points.cols() - static_cast<Index>(kept.size());
   VeilPointRemoval<pcl::PointXYZ> filter(true);
   filter.setInputCloud(cloud);
@@ -225,7 +329,7 @@ TEST(VeilPointRemovalClass, IsTheCoreInAllModes)
 TEST(VeilPointRemovalClass, TakesTheViewpointFromTheCloudAndHonoursIndices)
 {
   const Eigen::Isometry3f motion = test::someMotion();
-  const Points points = test::scanWithVeil(0.01f, 0.002f, 1).points;
+  const Points points = test::scanWithMixedPixels(0.01f, 0.002f, 1).points;
   const Cloud::Ptr cloud = toCloud((motion.linear() * points).colwise() + motion.translation());
   cloud->sensor_origin_.head<3>() = motion.translation();
   VeilPointRemoval<pcl::PointXYZ> filter;
@@ -233,7 +337,7 @@ TEST(VeilPointRemovalClass, TakesTheViewpointFromTheCloudAndHonoursIndices)
   pcl::Indices indices;
   filter.filter(indices);
   EXPECT_NEAR(static_cast<double>(indices.size()),
-              static_cast<double>(withoutVeil(points, Eigen::Vector3f::Zero()).size()), 3);
+              static_cast<double>(withoutMixedPixels(points, Eigen::Vector3f::Zero()).size()), 3);
   const auto some = pcl::make_shared<pcl::Indices>(pcl::Indices{5, 6, 7});
   filter.setIndices(some);
   filter.filter(indices);

@@ -35,59 +35,60 @@ BeamScan scanOf(const Points& points, const Vector3f& viewpoint)
   return scan;
 }
 
-std::map<Index, VeilFigures> candidatesOf(const BeamScan& scan)
+std::map<Index, MixedPixelFeatures> candidatesOf(const BeamScan& scan)
 {
-  std::map<Index, VeilFigures> found;
-  VeilOptions options;
+  std::map<Index, MixedPixelFeatures> found;
+  MixedPixelOptions options;
   options.threads = 1;
-  forVeilCandidates(scan, options,
-                    [&](Index i, const BeamSurroundings& around) { found[scan.columns[i]] = veilFigures(around); });
+  forMixedPixelCandidates(scan, options, [&](Index i, const BeamSurroundings& around) {
+    found[scan.columns[i]] = mixedPixelFeatures(around);
+  });
   return found;
 }
 
-std::map<Index, LikelyFigures> likelyOf(const BeamScan& scan, float score)
+std::map<Index, SecondStageFeatures> secondStageOf(const BeamScan& scan, float score)
 {
-  std::map<Index, LikelyFigures> found;
-  VeilOptions options;
+  std::map<Index, SecondStageFeatures> found;
+  MixedPixelOptions options;
   options.threads = 1;
   const std::vector<float> scores(scan.columns.size(), score);
-  forLikelyVeil(scan, options, scores,
-                [&](Index i, const LikelyFigures& figures) { found[scan.columns[i]] = figures; });
+  forSecondStage(scan, options, scores,
+                 [&](Index i, const SecondStageFeatures& features) { found[scan.columns[i]] = features; });
   return found;
 }
 
-/// That figures of the board are finite and nearly all the same after a motion and in another unit: some beams lie as
+/// That features of the board are finite and nearly all the same after a motion and in another unit: some beams lie as
 /// near to one beam as to another, or at a threshold.
-/// @param figuresOf scan -> figures by column
-template <typename FiguresOf>
-void expectSameAfterMotion(const FiguresOf& figuresOf, double share)
+/// @param featuresOf scan -> features by column
+template <typename FeaturesOf>
+void expectSameAfterMotion(const FeaturesOf& featuresOf, double share)
 {
   const Points points = boardBeforeWall(0.002f);
   const Eigen::Isometry3f motion = test::someMotion();
   const Points moved = 1000 * ((motion.linear() * points).colwise() + motion.translation());
-  const auto here = figuresOf(scanOf(points, Vector3f::Zero()));
-  const auto there = figuresOf(scanOf(moved, 1000 * motion.translation()));
+  const auto here = featuresOf(scanOf(points, Vector3f::Zero()));
+  const auto there = featuresOf(scanOf(moved, 1000 * motion.translation()));
   EXPECT_GT(here.size(), 30u);
   std::size_t same = 0;
-  for (const auto& [column, figures] : here) {
-    EXPECT_TRUE(figures.allFinite());
+  for (const auto& [column, features] : here) {
+    EXPECT_TRUE(features.allFinite());
     const auto found = there.find(column);
-    same += found != there.end() && (found->second - figures).cwiseAbs().maxCoeff() < 0.05f;
+    same += found != there.end() && (found->second - features).cwiseAbs().maxCoeff() < 0.05f;
   }
   EXPECT_GE(static_cast<double>(same), share * static_cast<double>(here.size()));
 }
 
-TEST(VeilFigures, ChangeNeitherWithTheFrameNorTheUnit)
+TEST(MixedPixelFeatures, ChangeNeitherWithTheFrameNorTheUnit)
 {
   expectSameAfterMotion(candidatesOf, 0.95);
-  expectSameAfterMotion([](const BeamScan& scan) { return likelyOf(scan, 1); }, 0.9);
+  expectSameAfterMotion([](const BeamScan& scan) { return secondStageOf(scan, 1); }, 0.9);
 }
 
-TEST(VeilFigures, TellHowWideTheVeilOfTheScanIs)
+TEST(MixedPixelFeatures, TellHowManyNeighborsAreMixed)
 {
   const BeamScan scan = scanOf(boardBeforeWall(0.002f), Vector3f::Zero());
-  const auto widthAt = [&](float score) { return likelyOf(scan, score).begin()->second.tail<2>().eval(); };
-  EXPECT_EQ(widthAt(-1), Eigen::Vector2f(2, 2)); // nothing is taken for veil: as usual
+  const auto widthAt = [&](float score) { return secondStageOf(scan, score).begin()->second.tail<2>().eval(); };
+  EXPECT_EQ(widthAt(-1), Eigen::Vector2f(2, 2)); // nothing is taken for a mixed pixel: as usual
   EXPECT_EQ(widthAt(-2), widthAt(-1));
   EXPECT_GT(widthAt(1).minCoeff(), 7); // everything is: all 8 around
 }
@@ -96,7 +97,7 @@ TEST(BeamScan, ListsTheNearestOfSomeBeams)
 {
   const BeamScan scan = scanOf(boardBeforeWall(0.002f, 40000), Vector3f::Zero());
   ASSERT_TRUE(scan.thinned);
-  const int k = VeilOptions().k;
+  const int k = MixedPixelOptions().k;
   int m = 0;
   for (Index i = 0; i < scan.directions.cols(); ++i)
     for (const int* j = scan.lists.first(i) + 1; j != scan.lists.last(i); ++j)
@@ -119,26 +120,26 @@ TEST(BeamScan, ListsTheNearestOfSomeBeams)
   }
 }
 
-TEST(VeilFigures, OfASecondLookAreTheSameWhereNothingIsLeftOut)
+TEST(MixedPixelFeatures, OfTheSecondStageAreTheSameWhereNothingIsLeftOut)
 {
-  using veil_figures::bearings, veil_figures::of_rings;
+  using mixed_pixel_features::bearings, mixed_pixel_features::of_rings;
   for (const Index beams : {2500, 40000}) {
     const BeamScan scan = scanOf(boardBeforeWall(0.002f, beams), Vector3f::Zero());
     EXPECT_EQ(scan.thinned, beams == 40000);
     const auto first = candidatesOf(scan);
-    const auto second = likelyOf(scan, -1);
+    const auto second = secondStageOf(scan, -1);
     ASSERT_EQ(first.size(), second.size());
-    for (const auto& [column, figures] : second) {
-      EXPECT_EQ(figures.head<veil_figures::count>(), first.at(column));
-      EXPECT_EQ(figures.segment<veil_figures::count>(veil_figures::count), first.at(column));
-      EXPECT_TRUE((figures.segment<2 * bearings + 1>(2 * veil_figures::count).array() == -1).all());
-      EXPECT_TRUE((figures.tail<of_rings / 2 + 2>().head<of_rings / 2>().array() == -1).all());
+    for (const auto& [column, features] : second) {
+      EXPECT_EQ(features.head<mixed_pixel_features::count>(), first.at(column));
+      EXPECT_EQ(features.segment<mixed_pixel_features::count>(mixed_pixel_features::count), first.at(column));
+      EXPECT_TRUE((features.segment<2 * bearings + 1>(2 * mixed_pixel_features::count).array() == -1).all());
+      EXPECT_TRUE((features.tail<of_rings / 2 + 2>().head<of_rings / 2>().array() == -1).all());
     }
-    EXPECT_TRUE(likelyOf(scan, least_likely).empty());
+    EXPECT_TRUE(secondStageOf(scan, least_second_stage).empty());
   }
 }
 
-TEST(VeilFigures, AreFiniteAndScoredWhateverTheBeamsAre)
+TEST(MixedPixelFeatures, AreFiniteAndScoredWhateverTheBeamsAre)
 {
   BeamWindow window;
   window.range = 2;
@@ -150,10 +151,11 @@ TEST(VeilFigures, AreFiniteAndScoredWhateverTheBeamsAre)
   for (const BeamWindow* wide : {&window, &one})
     for (const float noise : {1e-9f, 1.f, 1e9f}) {
       const BeamSurroundings around{window, *wide, noise};
-      const VeilFigures figures = veilFigures(around);
-      EXPECT_TRUE(figures.allFinite());
-      EXPECT_TRUE(std::isfinite(veilScore(figures)));
-      EXPECT_TRUE((scoresAround(around, std::vector<float>(8, -100)).array() == veil_figures::least_score).all());
+      const MixedPixelFeatures features = mixedPixelFeatures(around);
+      EXPECT_TRUE(features.allFinite());
+      EXPECT_TRUE(std::isfinite(mixedPixelScore(features)));
+      EXPECT_TRUE(
+          (scoresAround(around, std::vector<float>(8, -100)).array() == mixed_pixel_features::least_score).all());
     }
 }
 

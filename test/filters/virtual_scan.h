@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include "filters/clouds.h"
-/// A small laser scan with veil points, made from three distances.
+/// A small laser scan with mixed pixels, made from three distances.
 namespace fresco::test {
 struct LabelledScan {
-  Points points;          ///< seen from (0, 0, 0)
-  std::vector<bool> veil; ///< ranges between two surfaces
-  std::vector<bool> leg;  ///< points of a leg that is one or two beams wide
+  Points points;           ///< seen from (0, 0, 0)
+  std::vector<bool> mixed; ///< ranges between two surfaces
+  std::vector<bool> leg;   ///< points of a leg that is one or two beams wide
 };
 
 /// A wall at x = 4, a board at x = 2 and a leg at x = 3; beams are one step wide, so that at borders ranges mix.
-inline LabelledScan scanWithVeil(float step, float noise, unsigned seed)
+inline LabelledScan scanWithMixedPixels(float step, float noise, unsigned seed)
 {
   std::mt19937 generator(seed);
   std::normal_distribution<float> normal(0, noise);
@@ -35,7 +35,7 @@ inline LabelledScan scanWithVeil(float step, float noise, unsigned seed)
       }
       const Eigen::Vector3f beam = Eigen::Vector3f(1, std::tan(azimuth), std::tan(elevation));
       points.push_back(beam * (range + normal(generator)));
-      scan.veil.push_back(mixed);
+      scan.mixed.push_back(mixed);
       scan.leg.push_back(!mixed && range == 3);
     }
   scan.points.resize(3, static_cast<Index>(points.size()));

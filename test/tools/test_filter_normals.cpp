@@ -4,8 +4,8 @@
 #include <cstdlib>
 #include <cstring>
 #include <fresco/core/require.h>
+#include <fresco/filters/core/mixed_pixels.h>
 #include <fresco/filters/core/oriented_normals.h>
-#include <fresco/filters/core/veil_points.h>
 #include <fresco/io/cloud_file.h>
 #include <fresco/io/file.h>
 #include <fresco/io/point_io.h>
@@ -69,9 +69,9 @@ TEST_F(FilterTools, FilterKeepsEveryFieldOfThePointsThatStay)
   const std::string in = scanFile("scan.pcd");
   ASSERT_EQ(run("filter", in + " " + path("result.pcd") + " -veil 15"), 0) << errors();
   const PointSet before = readPoints(in), after = readPoints(path("result.pcd"));
-  VeilOptions options;
+  MixedPixelOptions options;
   options.angle = 15;
-  const PointSet truth = selectPoints(before, withoutVeil(before.points, before.viewpoints, options));
+  const PointSet truth = selectPoints(before, withoutMixedPixels(before.points, before.viewpoints, options));
   EXPECT_TRUE(test::same(after.points, truth.points));
   EXPECT_TRUE((after.colors.array() == truth.colors.array()).all());
   EXPECT_TRUE(test::same(after.intensities, truth.intensities));

@@ -12,7 +12,6 @@
 namespace fresco {
 using namespace filters;
 namespace {
-constexpr int comparisons = 2; // after the first rounds; a third changes hardly anything
 
 /// With what changes from round to round.
 struct Field : SmoothingField {
@@ -123,6 +122,7 @@ Points moveOnce(const Field& field, const Points& normals, int threads)
 BilateralResult smooth(const Points& points, const Points& viewpoints, const Points& normals,
                        const BilateralOptions& options, const Progress& progress)
 {
+  constexpr int comparisons = 2; // after the first rounds; a third changes hardly anything
   validate(points, normals, options);
   if (options.rounds == 0 && options.move_rounds == 0)
     return {points, normals};
@@ -137,7 +137,7 @@ BilateralResult smooth(const Points& points, const Points& viewpoints, const Poi
     else
       field.moved = moveOnce(field, smooth, options.threads);
     if (round < std::min(options.rounds, comparisons) && options.edges && viewpoints.cols() > 0)
-      smooth = chooseSurfaces(field, viewpoints, smooth, options.threads);
+      smooth = selectCreaseNormals(field, viewpoints, smooth, options.threads);
   }
   const std::vector<int> columns = field.tree->columns();
   const Points moved = std::move(field.moved);

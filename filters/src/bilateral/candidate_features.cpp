@@ -12,16 +12,12 @@ using Eigen::Vector3f;
 namespace {
 constexpr Index nearest = 8, wide = 24; // neighbours across the beam
 constexpr int ring_count = 4;
-constexpr Index rings[] = {8, 16, 32}; // nearest neighbours counted apart, then all
-constexpr float least_noise = 0.05f;   // spacings: surfaces between beams are not flatter, however exact these are
-constexpr int placings = 4;            // of the plane
+constexpr Index rings[] = {8, 16, 32};                   // nearest neighbours counted apart, then all
 constexpr float held = 2.5f, close = 1.2f, beyond = 4.f; // deviations of the noise
-constexpr float fading = 16.f; // squared spacings across the beam at which a neighbour places a plane by half
-constexpr float alike = 0.9f;  // cosine
 
-// Where figures stand; the first are of the offer and the place of its plane.
+// Where features stand; the first are of the candidate and the place of its plane.
 constexpr int from_rings = 7, from_spread = from_rings + 6 * ring_count, from_fit = from_spread + 6;
-static_assert(from_fit + 7 == DirectionFigures::count);
+static_assert(from_fit + 7 == NormalCandidateFeatures::count);
 
 /// ln(n + 1/2)
 float logCount(float count)
@@ -36,8 +32,10 @@ float logCount(float count)
 }
 } // namespace
 
-void DirectionFigures::set(const std::vector<FacedNeighbor>& neighbors, const Vector3f& beam, float noise)
+void NormalCandidateFeatures::set(const std::vector<CandidateNeighbor>& neighbors, const Vector3f& beam, float noise)
 {
+  constexpr float least_noise = 0.05f; // spacings: surfaces between beams are not flatter, however exact these are
+  constexpr float fading = 16.f;       // squared spacings across the beam at which a neighbour places a plane by half
   sortIntoRings(neighbors);
   const auto n = static_cast<Index>(neighbors.size());
   beam_ = beam;
@@ -45,7 +43,7 @@ void DirectionFigures::set(const std::vector<FacedNeighbor>& neighbors, const Ve
   normals_.resize(3, n);
   at_crease_.resize(n);
   for (Index j = 0; j < n; ++j) {
-    const FacedNeighbor& neighbor = neighbors[order_[j].second];
+    const CandidateNeighbor& neighbor = neighbors[order_[j].second];
     offsets_.col(j) = neighbor.offset;
     normals_.col(j) = neighbor.normal;
     at_crease_[j] = neighbor.at_crease;
@@ -60,7 +58,7 @@ void DirectionFigures::set(const std::vector<FacedNeighbor>& neighbors, const Ve
 }
 
 /// Those of each ring before those of the next, in no order within it.
-void DirectionFigures::sortIntoRings(const std::vector<FacedNeighbor>& neighbors)
+void NormalCandidateFeatures::sortIntoRings(const std::vector<CandidateNeighbor>& neighbors)
 {
   order_.clear();
   for (std::size_t j = 0; j < neighbors.size(); ++j)
@@ -74,7 +72,7 @@ void DirectionFigures::sortIntoRings(const std::vector<FacedNeighbor>& neighbors
 }
 
 /// Harmonic mean of the distances of the nearest across the beam: some of them lie far across it.
-void DirectionFigures::measureSpacing()
+void NormalCandidateFeatures::measureSpacing()
 {
   float inverse = 0, found = 0;
   for (Index j = 0; j < std::min(nearest, across_.size()); ++j)
@@ -86,7 +84,7 @@ void DirectionFigures::measureSpacing()
 }
 
 /// Marks those nearest across the beam.
-void DirectionFigures::markNearestAcross()
+void NormalCandidateFeatures::markNearestAcross()
 {
   sorted_.assign(across_.data(), across_.data() + across_.size());
   auto end = sorted_.end();
@@ -105,8 +103,9 @@ void DirectionFigures::markNearestAcross()
 }
 
 /// Height of the plane that most of the neighbours are on, starting at the point, in deviations.
-float DirectionFigures::placeOfPlane() const
+float NormalCandidateFeatures::placeOfPlane() const
 {
+  constexpr int placings = 4; // of the plane
   float place = 0;
   for (int k = 0; k < placings; ++k) {
     const ArrayXf weights = ((height_ - place).abs() < held).cast<float>() * placing_;
@@ -118,30 +117,31 @@ float DirectionFigures::placeOfPlane() const
   return place;
 }
 
-DirectionFigures::Figures DirectionFigures::of(const DirectionOffer& offer)
+NormalCandidateFeatures::Features NormalCandidateFeatures::of(const NormalCandidate& candidate)
 {
-  const float cosine = -offer.direction.dot(beam_);
+  const float cosine = -candidate.direction.dot(beam_);
   thickness_ = noise_ * cosine;
-  height_ = (offer.direction.transpose() * offsets_.matrix()).transpose().array() / thickness_;
+  height_ = (candidate.direction.transpose() * offsets_.matrix()).transpose().array() / thickness_;
   const float place = placeOfPlane();
   height_ -= place;
   held_ = (height_.abs() < held).cast<float>();
-  Figures figures;
-  figures[0] = offer.to_own > 0.97f;
-  figures[1] = offer.to_own;
-  figures[2] = std::clamp(place, -4.f, 4.f);
-  figures[3] = std::abs(figures[2]);
-  figures[4] = std::log(offer.share + 0.003f);
-  figures[5] = std::log(cosine);
-  figures[6] = std::log(thickness_ / spacing_ + 0.001f);
-  countRings(offer.direction, figures);
-  measureSpread(offer.direction, figures);
-  measureFit(offer.direction, figures);
-  return figures;
+  Features features;
+  features[0] = candidate.to_own > 0.97f;
+  features[1] = candidate.to_own;
+  features[2] = std::clamp(place, -4.f, 4.f);
+  features[3] = std::abs(features[2]);
+  features[4] = std::log(candidate.share + 0.003f);
+  features[5] = std::log(cosine);
+  features[6] = std::log(thickness_ / spacing_ + 0.001f);
+  countRings(candidate.direction, features);
+  measureSpread(candidate.direction, features);
+  measureFit(candidate.direction, features);
+  return features;
 }
 
-void DirectionFigures::countRings(const Vector3f& direction, Figures& figures)
+void NormalCandidateFeatures::countRings(const Vector3f& direction, Features& features)
 {
+  constexpr float alike = 0.9f; // cosine
   const ArrayXf inside = (height_.abs() < close).cast<float>();
   const ArrayXf same = ((direction.transpose() * normals_.matrix()).transpose().array() > alike).cast<float>() * held_;
   const ArrayXf other = (held_ - same) * (1 - at_crease_);
@@ -151,12 +151,12 @@ void DirectionFigures::countRings(const Vector3f& direction, Figures& figures)
     const Index end = ring < ring_count - 1 ? std::min(rings[ring], held_.size()) : held_.size();
     for (const ArrayXf* counted :
          std::initializer_list<const ArrayXf*>{&inside, &held_, &same, &other, &front, &behind})
-      figures[at++] = logCount(counted->head(end).sum());
+      features[at++] = logCount(counted->head(end).sum());
   }
 }
 
 /// Of the neighbours held: the nearest across the beam, and deviations within the plane, in spacings.
-void DirectionFigures::measureSpread(const Vector3f& direction, Figures& figures)
+void NormalCandidateFeatures::measureSpread(const Vector3f& direction, Features& features)
 {
   float gap = across_.size() > 0 ? across_.maxCoeff() : 1.f;
   for (Index j = 0; j < across_.size(); ++j)
@@ -172,24 +172,24 @@ void DirectionFigures::measureSpread(const Vector3f& direction, Figures& figures
   const float ab = (held_ * a * b).sum() / total - mean_a * mean_b;
   const float middle = (aa + bb) / 2, apart = std::hypot((aa - bb) / 2, ab);
   const float longer = std::sqrt(std::max(0.f, middle + apart)), shorter = std::sqrt(std::max(0.f, middle - apart));
-  figures[from_spread] = std::log(gap + 0.1f);
-  figures[from_spread + 1] = std::log(longer + 0.1f);
-  figures[from_spread + 2] = std::log(shorter + 0.1f);
-  figures[from_spread + 3] = std::log(std::max(shorter * spacing_ / thickness_, 0.1f));
-  figures[from_spread + 4] = std::log(noise_ / spacing_);
-  figures[from_spread + 5] = std::log(static_cast<float>(across_.size()) + 1.f);
+  features[from_spread] = std::log(gap + 0.1f);
+  features[from_spread + 1] = std::log(longer + 0.1f);
+  features[from_spread + 2] = std::log(shorter + 0.1f);
+  features[from_spread + 3] = std::log(std::max(shorter * spacing_ / thickness_, 0.1f));
+  features[from_spread + 4] = std::log(noise_ / spacing_);
+  features[from_spread + 5] = std::log(static_cast<float>(across_.size()) + 1.f);
 }
 /// How far the neighbours are from the plane, and how far those that it holds agree with it.
-void DirectionFigures::measureFit(const Vector3f& direction, Figures& figures)
+void NormalCandidateFeatures::measureFit(const Vector3f& direction, Features& features)
 {
   const ArrayXf off = height_.abs().min(beyond);
   const float total = std::max(1.f, held_.sum());
-  figures[from_fit] = logCount((held_ * near_across_).sum());
-  figures[from_fit + 1] = (off * near_across_).sum() / std::max(1.f, near_across_.sum());
-  figures[from_fit + 2] = (off * wide_across_).sum() / std::max(1.f, wide_across_.sum());
-  figures[from_fit + 3] = std::sqrt((held_ * height_.square()).sum() / total);
-  figures[from_fit + 4] = (held_ * (direction.transpose() * normals_.matrix()).transpose().array()).sum() / total;
-  figures[from_fit + 5] = (height_.max(-beyond).min(beyond) * wide_across_).sum() / std::max(1.f, wide_across_.sum());
-  figures[from_fit + 6] = at_crease_.size() > 0 ? at_crease_.mean() : 0.f;
+  features[from_fit] = logCount((held_ * near_across_).sum());
+  features[from_fit + 1] = (off * near_across_).sum() / std::max(1.f, near_across_.sum());
+  features[from_fit + 2] = (off * wide_across_).sum() / std::max(1.f, wide_across_.sum());
+  features[from_fit + 3] = std::sqrt((held_ * height_.square()).sum() / total);
+  features[from_fit + 4] = (held_ * (direction.transpose() * normals_.matrix()).transpose().array()).sum() / total;
+  features[from_fit + 5] = (height_.max(-beyond).min(beyond) * wide_across_).sum() / std::max(1.f, wide_across_.sum());
+  features[from_fit + 6] = at_crease_.size() > 0 ? at_crease_.mean() : 0.f;
 }
 } // namespace fresco::filters

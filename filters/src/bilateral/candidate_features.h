@@ -5,40 +5,40 @@
 #include <vector>
 namespace fresco::filters {
 /// A neighbour of a point.
-struct FacedNeighbor {
+struct CandidateNeighbor {
   Eigen::Vector3f offset; ///< from the point
   Eigen::Vector3f normal; ///< unit
   bool at_crease;         ///< its own neighbours have different normals
 };
 
-/// A direction that the normal of a point may have.
-struct DirectionOffer {
+/// A candidate for the normal of a point.
+struct NormalCandidate {
   Eigen::Vector3f direction; ///< unit, facing the viewer
-  float share;               ///< of the directions around, 0..1
+  float share;               ///< of the weight of all normals around, 0..1
   float to_own;              ///< cosine to the normal the point has
 };
 
-/// Numbers that tell how well directions fit a point beside a crease, from its neighbours and the noise of the beams.
+/// Features that tell how well candidates fit a point beside a crease, from its neighbours and the noise of the beams.
 /// They change neither with the frame nor with the unit of length.
-class DirectionFigures {
+class NormalCandidateFeatures {
 public:
   static constexpr int count = 44;
-  using Figures = Eigen::Matrix<float, count, 1>;
+  using Features = Eigen::Matrix<float, count, 1>;
 
   /// @param neighbors without the point itself
   /// @param beam unit, towards the point
   /// @param noise deviation along the beam, length, > 0
-  void set(const std::vector<FacedNeighbor>& neighbors, const Eigen::Vector3f& beam, float noise);
-  Figures of(const DirectionOffer& offer);
+  void set(const std::vector<CandidateNeighbor>& neighbors, const Eigen::Vector3f& beam, float noise);
+  Features of(const NormalCandidate& candidate);
 
 private:
-  void sortIntoRings(const std::vector<FacedNeighbor>& neighbors);
+  void sortIntoRings(const std::vector<CandidateNeighbor>& neighbors);
   void measureSpacing();
   void markNearestAcross();
   float placeOfPlane() const;
-  void countRings(const Eigen::Vector3f& direction, Figures& figures);
-  void measureFit(const Eigen::Vector3f& direction, Figures& figures);
-  void measureSpread(const Eigen::Vector3f& direction, Figures& figures);
+  void countRings(const Eigen::Vector3f& direction, Features& features);
+  void measureFit(const Eigen::Vector3f& direction, Features& features);
+  void measureSpread(const Eigen::Vector3f& direction, Features& features);
 
   Eigen::Vector3f beam_;
   float noise_ = 0, spacing_ = 1;            ///< of the beams, lengths

@@ -2,15 +2,16 @@
 #pragma once
 #include "bilateral/candidate_features.h"
 namespace fresco::filters {
-/// How well directions fit a point, beside the normal it has: a network of two layers that benchmark/training/candidate_score.py
-/// trains with scans of generated rooms. Worths of one point can be compared.
-class DirectionWorth {
+/// How well candidates fit a point, beside the normal it has: a multilayer perceptron over the features of a candidate and
+/// those of the own normal, trained by benchmark/training/candidate_score.py with scans of generated rooms. Scores of one
+/// point can be compared.
+class CandidateScore {
 public:
   static constexpr int first_size = 16;
   using First = Eigen::Matrix<float, first_size, 1>;
-  /// @param own figures of the normal that the point has
-  explicit DirectionWorth(const DirectionFigures::Figures& own);
-  float of(const DirectionFigures::Figures& figures) const;
+  /// @param own features of the normal that the point has
+  explicit CandidateScore(const NormalCandidateFeatures::Features& own);
+  float of(const NormalCandidateFeatures::Features& features) const;
 
 private:
   First from_own_; ///< of the first layer

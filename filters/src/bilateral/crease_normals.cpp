@@ -8,16 +8,11 @@
 #include <fresco/core/parallel.h>
 namespace fresco::filters {
 namespace {
-constexpr float agreeing = 0.94f;      // cosine between normals of one surface
-constexpr float same = 0.97f;          // cosine between directions that are one
-constexpr float grazing = 0.08f;       // cosine to the beam at least
-constexpr float cell_spacings = 64.f;  // edge of the cells in which directions are counted
-constexpr float part_at_crease = 0.3f; // that a normal counts for a direction where its neighbours do not agree
-constexpr std::size_t fewest = 8;      // neighbours that tell the noise
+constexpr float cell_spacings = 64.f; // edge of the cells in which directions are counted
 
-class SurfaceChoice {
+class CreaseNormals {
 public:
-  SurfaceChoice(const SmoothingField& field, const Points& viewpoints, const Points& normals, int threads)
+  CreaseNormals(const SmoothingField& field, const Points& viewpoints, const Points& normals, int threads)
       : field_(field), viewpoints_(viewpoints), normals_(normals),
         grid_(cell_spacings * std::sqrt(typicalArea(field.areas)))
   {
@@ -25,16 +20,16 @@ public:
     grid_.finish(threads);
   }
 
-  void compare(int threads, const UseOffers& use) const;
+  void compare(int threads, const UseNormalCandidates& use) const;
 
 private:
   static float typicalArea(const Eigen::VectorXf& areas);
   void markCreases(int threads);
   float noiseAt(Index i, const std::vector<int>& list) const;
   Eigen::Vector3f beam(Index i) const;
-  void setNeighbors(Index i, const std::vector<int>& list, std::vector<FacedNeighbor>& near) const;
-  void setOffers(Index i, const Eigen::Vector3f& ray, const DirectionGrid::Surroundings& around,
-                 std::vector<DirectionOffer>& all) const;
+  void setNeighbors(Index i, const std::vector<int>& list, std::vector<CandidateNeighbor>& near) const;
+  void setCandidates(Index i, const Eigen::Vector3f& ray, const DirectionGrid::Surroundings& around,
+                     std::vector<NormalCandidate>& all) const;
 
   const SmoothingField& field_;
   const Points& viewpoints_;
@@ -43,7 +38,7 @@ private:
   std::vector<char> at_crease_; ///< by position
 };
 
-float SurfaceChoice::typicalArea(const Eigen::VectorXf& areas)
+float CreaseNormals::typicalArea(const Eigen::VectorXf& areas)
 {
   std::vector<float> sorted;
   for (const float area : areas)
@@ -56,14 +51,15 @@ float SurfaceChoice::typicalArea(const Eigen::VectorXf& areas)
 }
 
 /// From the viewer to the point, unit; zero where unknown.
-Eigen::Vector3f SurfaceChoice::beam(Index i) const
+Eigen::Vector3f CreaseNormals::beam(Index i) const
 {
   return -viewDirection(viewpoints_, field_.tree->columns()[i], field_.tree->point(i)).normalized();
 }
 
 /// Deviation of the neighbours across the plane of a point, along its beam; 0 where the beam grazes.
-float SurfaceChoice::noiseAt(Index i, const std::vector<int>& list) const
+float CreaseNormals::noiseAt(Index i, const std::vector<int>& list) const
 {
+  constexpr std::size_t fewest = 8; // neighbours that tell the noise
   const Eigen::Vector3f normal = normals_.col(i);
   const float cosine = -normal.dot(beam(i));
   if (cosine < 0.3f || list.size() <= fewest)
@@ -78,8 +74,10 @@ float SurfaceChoice::noiseAt(Index i, const std::vector<int>& list) const
   return static_cast<float>(std::sqrt(std::max(0.0, squares / count - sum * sum / (count * count))) / cosine);
 }
 
-void SurfaceChoice::markCreases(int threads)
+void CreaseNormals::markCreases(int threads)
 {
+  constexpr float agreeing = 0.94f;      // cosine between normals of one surface
+  constexpr float part_at_crease = 0.3f; // that a normal counts for a direction where its neighbours do not agree
   at_crease_.assign(normals_.cols(), 0);
   std::vector<float> noises(at_crease_.size());
   parallelFor(field_.lists.size(), threads, [&](Index range) {
@@ -102,7 +100,7 @@ void SurfaceChoice::markCreases(int threads)
   }
 }
 
-void SurfaceChoice::setNeighbors(Index i, const std::vector<int>& list, std::vector<FacedNeighbor>& near) const
+void CreaseNormals::setNeighbors(Index i, const std::vector<int>& list, std::vector<CandidateNeighbor>& near) const
 {
   near.clear();
   for (const int j : list)
@@ -111,9 +109,11 @@ void SurfaceChoice::setNeighbors(Index i, const std::vector<int>& list, std::vec
 }
 
 /// The own normal first; none where it does not face the viewer or the noise is unknown.
-void SurfaceChoice::setOffers(Index i, const Eigen::Vector3f& ray, const DirectionGrid::Surroundings& around,
-                              std::vector<DirectionOffer>& all) const
+void CreaseNormals::setCandidates(Index i, const Eigen::Vector3f& ray, const DirectionGrid::Surroundings& around,
+                                  std::vector<NormalCandidate>& all) const
 {
+  constexpr float same = 0.97f;    // cosine between directions that are one
+  constexpr float grazing = 0.08f; // cosine to the beam at least
   const Eigen::Vector3f own = normals_.col(i);
   all.clear();
   if (!(around.noise > 0) || -own.dot(ray) < grazing)
@@ -129,52 +129,52 @@ void SurfaceChoice::setOffers(Index i, const Eigen::Vector3f& ray, const Directi
   }
 }
 
-void SurfaceChoice::compare(int threads, const UseOffers& use) const
+void CreaseNormals::compare(int threads, const UseNormalCandidates& use) const
 {
   parallelFor(field_.lists.size(), threads, [&](Index range) {
     const CompactLists& lists = field_.lists[range];
     CompactReader reader(lists);
     std::vector<int> list;
-    std::vector<DirectionOffer> offered;
-    std::vector<FacedNeighbor> near;
-    DirectionFigures figures;
+    std::vector<NormalCandidate> candidates;
+    std::vector<CandidateNeighbor> near;
+    NormalCandidateFeatures features;
     for (Index i = lists.begin; i < lists.end; ++i) {
       reader.next(list);
       if (!at_crease_[i])
         continue;
       const Eigen::Vector3f ray = beam(i);
       const DirectionGrid::Surroundings& around = grid_.at(field_.tree->point(i));
-      setOffers(i, ray, around, offered);
-      if (offered.size() < 2)
+      setCandidates(i, ray, around, candidates);
+      if (candidates.size() < 2)
         continue;
       setNeighbors(i, list, near);
-      figures.set(near, ray, around.noise);
-      use(i, offered, figures);
+      features.set(near, ray, around.noise);
+      use(i, candidates, features);
     }
   });
 }
 } // namespace
 
-void compareDirections(const SmoothingField& field, const Points& viewpoints, const Points& normals, int threads,
-                       const UseOffers& use)
+void forCreaseCandidates(const SmoothingField& field, const Points& viewpoints, const Points& normals, int threads,
+                         const UseNormalCandidates& use)
 {
-  SurfaceChoice(field, viewpoints, normals, threads).compare(threads, use);
+  CreaseNormals(field, viewpoints, normals, threads).compare(threads, use);
 }
 
-Points chooseSurfaces(const SmoothingField& field, const Points& viewpoints, const Points& normals, int threads)
+Points selectCreaseNormals(const SmoothingField& field, const Points& viewpoints, const Points& normals, int threads)
 {
   Points chosen = normals;
-  compareDirections(field, viewpoints, normals, threads,
-                    [&](Index i, const std::vector<DirectionOffer>& offered, DirectionFigures& figures) {
-                      const DirectionFigures::Figures own = figures.of(offered.front());
-                      const DirectionWorth worth(own);
-                      float most = worth.of(own);
-                      for (std::size_t k = 1; k < offered.size(); ++k)
-                        if (const float its = worth.of(figures.of(offered[k])); its > most) {
-                          most = its;
-                          chosen.col(i) = offered[k].direction;
-                        }
-                    });
+  forCreaseCandidates(field, viewpoints, normals, threads,
+                      [&](Index i, const std::vector<NormalCandidate>& candidates, NormalCandidateFeatures& features) {
+                        const NormalCandidateFeatures::Features own = features.of(candidates.front());
+                        const CandidateScore score(own);
+                        float most = score.of(own);
+                        for (std::size_t k = 1; k < candidates.size(); ++k)
+                          if (const float its = score.of(features.of(candidates[k])); its > most) {
+                            most = its;
+                            chosen.col(i) = candidates[k].direction;
+                          }
+                      });
   return chosen;
 }
 } // namespace fresco::filters

@@ -4,12 +4,7 @@
 #include <cmath>
 #include <fresco/core/parallel.h>
 namespace fresco::filters {
-namespace {
-constexpr float one_direction = 0.985f; // cosine between normals of one direction, within a cell
-constexpr float same_around = 0.97f;    // the same between directions of neighbouring cells
-constexpr float least_share = 0.05f;    // of the weight: of round things no direction has more
-constexpr Index enough = 10;            // points that tell the noise
-} // namespace
+namespace {} // namespace
 
 std::array<std::int32_t, 3> DirectionGrid::placeOf(const Eigen::Vector3f& point) const
 {
@@ -41,6 +36,7 @@ void DirectionGrid::join(std::vector<Direction>& directions, const Direction& ad
 
 void DirectionGrid::add(const Sample& sample)
 {
+  constexpr float one_direction = 0.985f; // cosine between normals of one direction, within a cell
   const auto place = placeOf(sample.point);
   const auto [found, is_new] = numbers_.try_emplace(key(place), cells_.size());
   if (is_new)
@@ -53,6 +49,9 @@ void DirectionGrid::add(const Sample& sample)
 
 DirectionGrid::Surroundings DirectionGrid::surroundingsOf(const Cell& cell) const
 {
+  constexpr float same_around = 0.97f; // the same between directions of neighbouring cells
+  constexpr float least_share = 0.05f; // of the weight: of round things no direction has more
+  constexpr Index enough = 10;         // points that tell the noise
   std::vector<Direction> all;
   double noise = 0;
   Index measured = 0;

@@ -5,7 +5,8 @@
 #include <fresco/core/types.h>
 namespace fresco::filters {
 /// values[i] = exp(values[i]) for values <= 0, relative error below 2e-7; below -87 exactly 0. A loop that compilers
-/// turn into vector code: 2^n exp(f ln 2) with f in -0.5..0.5 and the Taylor polynomial of degree 7.
+/// turn into vector code: 2^n exp(f ln 2) with f in -0.5..0.5 and the Taylor polynomial of degree 7. Eigen's exp has
+/// other bits than plane_kernels_avx2.cpp, and results must not depend on the processor.
 inline void exponential(float* values, Index count)
 {
   for (Index i = 0; i < count; ++i) {

@@ -5,7 +5,6 @@
 #include <fresco/filters/core/local_sampling.h>
 namespace fresco::filters {
 namespace {
-constexpr int most = 256; // neighbours of a point
 
 bool usable(const Eigen::Vector3f& normal) { return normal.allFinite() && normal.squaredNorm() > 0; }
 
@@ -24,6 +23,7 @@ std::unique_ptr<PointTree> usableTree(const Points& points, const Points& normal
 
 SmoothingField makeSmoothingField(const Points& points, const Points& normals, const BilateralOptions& options)
 {
+  constexpr int most = 256; // neighbours of a point
   SmoothingField field;
   field.tree = usableTree(points, normals, options.threads);
   field.areas = sampleAreas(*field.tree, 8, options.threads);

@@ -9,7 +9,6 @@
 #include <limits>
 namespace fresco {
 namespace {
-constexpr std::uint64_t no_cell = std::numeric_limits<std::uint64_t>::max();
 constexpr int axis_bits = 21;
 
 Eigen::AlignedBox3f finiteBounds(const Points& points, int threads)
@@ -34,6 +33,7 @@ struct Entry {
 /// Finite points with their cells, sorted by cell, then point.
 std::vector<Entry> sortedByCell(const Points& points, const Eigen::AlignedBox3f& box, float cell, int threads)
 {
+  constexpr std::uint64_t no_cell = std::numeric_limits<std::uint64_t>::max();
   std::vector<Entry> entries(points.cols());
   const Eigen::Vector3d low = box.min().cast<double>();
   parallelFor(points.cols(), threads, [&](Index i) {

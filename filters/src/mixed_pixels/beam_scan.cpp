@@ -8,11 +8,11 @@ namespace fresco::filters {
 namespace {
 /// Radians between beams that see jumps apart: about the width of a laser beam at common ranges.
 constexpr float least_spacing = 0.003f;
-constexpr Index spacing_samples = 1024;
 
 /// Median distance between neighbouring beams, radians.
 float beamSpacing(const PointTree& directions)
 {
+  constexpr Index spacing_samples = 1024;
   constexpr int around = 8;
   std::vector<float> squared;
   std::vector<Neighbor> found;
@@ -96,7 +96,7 @@ void SomeBeams::list(Index i, int count, std::vector<PointTree::Key>& found)
 }
 
 /// As nearestLists() of every m-th beam, without those closer than half of least_spacing; the beam itself comes first.
-NeighborLists thinnedLists(const PointTree& directions, Index m, const VeilOptions& options)
+NeighborLists thinnedLists(const PointTree& directions, Index m, const MixedPixelOptions& options)
 {
   Points every(3, (directions.size() + m - 1) / m);
   for (Index i = 0; i < every.cols(); ++i)
@@ -125,7 +125,7 @@ NeighborLists thinnedLists(const PointTree& directions, Index m, const VeilOptio
 } // namespace
 
 BeamScan makeBeamScan(const Points& points, const Eigen::Vector3f& viewpoint, const std::vector<Index>& columns,
-                      const VeilOptions& options)
+                      const MixedPixelOptions& options)
 {
   const auto n = static_cast<Index>(columns.size());
   Points directions(3, n);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include <fresco/filters/core/veil_points.h>
+#include <fresco/filters/core/mixed_pixels.h>
 #include <fresco/search/neighbors.h>
 #include <memory>
 #include <vector>
@@ -26,5 +26,5 @@ struct BeamScan {
 
 /// The points of `columns`, seen from one viewpoint, without noise yet.
 BeamScan makeBeamScan(const Points& points, const Eigen::Vector3f& viewpoint, const std::vector<Index>& columns,
-                      const VeilOptions& options);
+                      const MixedPixelOptions& options);
 } // namespace fresco::filters

@@ -8,12 +8,8 @@
 namespace fresco::filters {
 namespace {
 constexpr int most_beams = 64;          // of a window
-constexpr float largest_rms = 1.6f;     // deviations, of beams that lie on a plane
-constexpr float grazing = 0.05f;        // cosine of the incidence beyond which ranges tell nothing
 constexpr float largest_leverage = 9.f; // variance of a continuation / variance of a range
 constexpr std::size_t eighth = 7;       // beam, in a grid a diagonal away
-constexpr float twin = 0.3f;            // of the distance of the eighth beam: nearer ones are left out
-constexpr float least_noise = 1e-6f;    // deviation / range, of ranges that have none
 
 using Places = std::array<const BeamWindow::Beam*, most_beams>;
 
@@ -88,6 +84,7 @@ float spacingOf(const std::vector<BeamWindow::Beam>& beams)
 /// Leaves out beams that are much nearer to the middle than others: in a grid none is.
 void leaveOutTwins(std::vector<BeamWindow::Beam>& beams)
 {
+  constexpr float twin = 0.3f; // of the distance of the eighth beam: nearer ones are left out
   if (beams.size() <= eighth)
     return;
   const float least = twin * beams[eighth].place.norm();
@@ -119,6 +116,8 @@ void fillWindow(const BeamScan& scan, Index i, const int* first, const int* last
 
 std::optional<Continuation> continueSide(const BeamWindow& window, const WindowSide& side, float noise)
 {
+  constexpr float largest_rms = 1.6f; // deviations, of beams that lie on a plane
+  constexpr float grazing = 0.05f;    // cosine of the incidence beyond which ranges tell nothing
   Places beams{};
   int count = 0;
   for (const BeamWindow::Beam& beam : window.beams)
@@ -145,6 +144,7 @@ std::optional<Continuation> continueSide(const BeamWindow& window, const WindowS
 
 RangeNoise measureNoise(const BeamScan& scan, int threads)
 {
+  constexpr float least_noise = 1e-6f; // deviation / range, of ranges that have none
   constexpr int around = 12;
   constexpr std::size_t groups = 16, fewest = 500;                       // beams of a group
   std::vector<std::pair<float, float>> differences(scan.columns.size()); // range on the plane, difference

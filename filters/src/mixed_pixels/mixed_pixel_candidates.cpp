@@ -3,17 +3,18 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <fresco/core/constants.h>
 #include <fresco/core/parallel.h>
 namespace fresco::filters {
 namespace {
-constexpr float clear = 3;           // deviations
-constexpr std::size_t beside = 12;   // nearest beams
-constexpr float most_joined = 0.75f; // share of the nearer half of the beams around
-constexpr Index reach = 64;          // nearest beams of a second look
+constexpr float clear = 3;         // deviations: what noise hardly reaches
+constexpr std::size_t beside = 12; // nearest beams: those around one in a grid, and four more for beams in no order
+constexpr Index reach = 64;        // nearest beams of the second network: four rings of a grid, nearly
 
 /// Whether a point has nearer and farther ones beside it, and few that a surface could join it with.
 bool isBetween(const BeamWindow& window, float noise, float slope)
 {
+  constexpr float most_joined = 0.75f; // share of the nearer half of the beams around
   bool front = false, behind = false;
   for (std::size_t k = 0; k < window.beams.size() && k < beside; ++k) {
     front |= window.beams[k].range < window.range - clear * noise;
@@ -25,8 +26,8 @@ bool isBetween(const BeamWindow& window, float noise, float slope)
 /// The windows of one beam after the other.
 class BeamWindows {
 public:
-  BeamWindows(const BeamScan& scan, const VeilOptions& options)
-      : scan_(scan), k_(options.k), slope_(1 / std::tan(options.angle * 0.017453293f))
+  BeamWindows(const BeamScan& scan, const MixedPixelOptions& options)
+      : scan_(scan), k_(options.k), slope_(1 / std::tan(options.angle * static_cast<float>(radians_per_degree)))
   {}
 
   /// @return whether it is a candidate
@@ -112,11 +113,12 @@ void BeamWindows::fillWithout(Index i, const std::vector<float>& scores)
     fillFromList(i, wide_);
 }
 
-/// How wide the veil of a scan is: beams that score above 0 of the nearest in 8 directions, of `near`, then of `wide`,
-/// on average over the beams that do so themselves. Where these are few, mostly what is usual.
-Eigen::Vector2f veilWidth(const BeamScan& scan, const VeilOptions& options, const std::vector<float>& scores)
+/// How many neighbours of a mixed pixel are mixed pixels: beams that score above 0 among the nearest in 8 directions, of
+/// `near`, then of `wide`, on average over the beams that do so themselves. Where these are few, mostly what is usual.
+Eigen::Vector2f mixedNeighborCounts(const BeamScan& scan, const MixedPixelOptions& options,
+                                    const std::vector<float>& scores)
 {
-  constexpr int half = veil_figures::bearings;
+  constexpr int half = mixed_pixel_features::bearings;
   constexpr float usual = 2, as_many = 4;
   std::atomic<Index> near{0}, wide{0}, beams{0};
   parallelRanges(scan.ranges.size(), options.threads, [&](Index begin, Index end) {
@@ -134,7 +136,7 @@ Eigen::Vector2f veilWidth(const BeamScan& scan, const VeilOptions& options, cons
 }
 } // namespace
 
-void forVeilCandidates(const BeamScan& scan, const VeilOptions& options, const UseCandidate& use)
+void forMixedPixelCandidates(const BeamScan& scan, const MixedPixelOptions& options, const UseMixedPixelCandidate& use)
 {
   parallelRanges(scan.ranges.size(), options.threads, [&](Index begin, Index end) {
     BeamWindows windows(scan, options);
@@ -144,24 +146,24 @@ void forVeilCandidates(const BeamScan& scan, const VeilOptions& options, const U
   });
 }
 
-void forLikelyVeil(const BeamScan& scan, const VeilOptions& options, const std::vector<float>& scores,
-                   const UseLikely& use)
+void forSecondStage(const BeamScan& scan, const MixedPixelOptions& options, const std::vector<float>& scores,
+                    const UseSecondStage& use)
 {
-  const Eigen::Vector2f width = veilWidth(scan, options, scores);
+  const Eigen::Vector2f width = mixedNeighborCounts(scan, options, scores);
   parallelRanges(scan.ranges.size(), options.threads, [&](Index begin, Index end) {
     BeamWindows windows(scan, options);
     for (Index i = begin; i < end; ++i) {
       const float score = scores[i];
-      if (!(score > least_likely) || !windows.fill(i))
+      if (!(score > least_second_stage) || !windows.fill(i))
         continue;
-      const VeilFigures before = veilFigures(windows.around());
+      const MixedPixelFeatures before = mixedPixelFeatures(windows.around());
       const auto around = scoresAround(windows.around(), scores);
       const auto rings = windows.rings(i, scores);
       windows.fillWithout(i, scores);
-      LikelyFigures figures;
-      figures << before, veilFigures(windows.around()), std::max(score, veil_figures::least_score), around, rings,
-          width;
-      use(i, figures);
+      SecondStageFeatures features;
+      features << before, mixedPixelFeatures(windows.around()), std::max(score, mixed_pixel_features::least_score),
+          around, rings, width;
+      use(i, features);
     }
   });
 }

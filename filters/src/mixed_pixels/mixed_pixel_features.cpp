@@ -3,18 +3,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <fresco/core/constants.h>
 namespace fresco::filters {
-using namespace veil_figures;
+using namespace mixed_pixel_features;
 namespace {
-constexpr float circle = 6.2831853f;
-constexpr float step = circle / bearings;
-constexpr float half_disc = 0.16997f, quarter_disc = 0.65998f; // cosines to the middle: 80 and 49 degrees
-constexpr float clear = 4.f;                                   // deviations that noise does not reach
-constexpr std::size_t beside = 8;                              // nearest beams
-constexpr std::size_t least_differences = 6;                   // of ranges
-constexpr float most_counted = 8.f;                            // deviations, where directions are sought
-constexpr float slope = 2.7474774f;   // of surfaces that join points: their way leaves a beam at 20 degrees
-constexpr float shortest_way = 1e-9f; // across beams, length
+constexpr float circle = 2 * pi;
+constexpr float clear = 4.f;          // deviations that noise does not reach: one normal value in 16,000
+constexpr std::size_t beside = 8;     // nearest beams: those around one in a grid
+constexpr float most_counted = 8.f;   // deviations, where directions are sought: no single jump decides
+constexpr float shortest_way = 1e-9f; // across beams, length: against division by zero
 
 /// Grows with the value near 0 and with its logarithm far from it.
 float flattened(float value) { return std::asinh(std::clamp(value, -1e4f, 1e4f)); }
@@ -32,7 +29,7 @@ public:
     sideways_ = sides < 0 ? Eigen::Vector2f(-across) : across;
   }
   const Eigen::Vector2f& forward() const { return forward_; } ///< where ranges grow, unit
-  Eigen::Vector2f way(int b) const { return wayAt(static_cast<float>(b) * step); }
+  Eigen::Vector2f way(int b) const { return wayAt(static_cast<float>(b) * (circle / bearings)); }
   Eigen::Vector2f wayAt(float angle) const { return std::cos(angle) * forward_ + std::sin(angle) * sideways_; }
 
 private:
@@ -61,6 +58,7 @@ const BeamWindow::Beam& beamAt(const BeamWindow& window, const Eigen::Vector2f& 
 /// What lies in one direction: ranges at three distances, and where surfaces continued from there meet the beam.
 float* measureWay(const BeamWindow& window, float noise, const Eigen::Vector2f& way, float* at)
 {
+  constexpr float half_disc = 0.16997f, quarter_disc = 0.65998f; // cosines to the middle: 80 and 49 degrees
   for (const float radius : {1.f, 2.f, 3.f}) {
     const BeamWindow::Beam& beam = beamAt(window, way, radius);
     *at++ = flattened((beam.range - window.range) / noise);
@@ -77,28 +75,33 @@ float* measureWay(const BeamWindow& window, float noise, const Eigen::Vector2f& 
 
 float* measureWindow(const BeamWindow& window, float noise, const Compass& compass, float* at)
 {
+  constexpr float slope = 2.7474774f; // of surfaces that join points: 1 / tan(20 degrees), as in training
   for (int b = 0; b < bearings; ++b)
     at = measureWay(window, noise, compass.way(b), at);
   float front = 0, behind = 0, same = 0, gap = 1e9f, second = 1e9f;
   for (std::size_t k = 0; k < window.beams.size(); ++k) {
     const BeamWindow::Beam& beam = window.beams[k];
     const float ahead = beam.range - window.range, off = ahead / noise, distance = std::hypot(ahead, beam.sideways);
-    if (k < beside)
-      front += off<-clear, behind += off> clear, same += std::abs(off) <= clear;
+    if (k < beside) {
+      front += off < -clear ? 1.f : 0.f;
+      behind += off > clear ? 1.f : 0.f;
+      same += std::abs(off) <= clear ? 1.f : 0.f;
+    }
     second = std::min(second, std::max(gap, distance));
     gap = std::min(gap, distance);
   }
   const float across = std::max(window.spacing * window.range, shortest_way);
-  for (const float figure :
+  for (const float feature :
        {front, behind, same, joinedShare(window, noise, slope), std::log(gap / across + 0.1f),
         std::log(second / across + 0.1f), std::log(window.spacing + 1e-5f), std::log(across / noise + 0.01f)})
-    *at++ = figure;
+    *at++ = feature;
   return at;
 }
 
 /// Differences between ranges, in deviations: the least, and those to the nearest clearly in front and behind.
 float* measureDifferences(const BeamSurroundings& around, float* at)
 {
+  constexpr std::size_t least_differences = 6; // of ranges
   std::vector<float> differences;
   for (const BeamWindow::Beam& beam : around.near.beams)
     differences.push_back(std::abs(beam.range - around.near.range) / around.noise);
@@ -131,19 +134,19 @@ float joinedShare(const BeamWindow& window, float noise, float slope)
   return static_cast<float>(joined) / static_cast<float>(std::max<std::size_t>(1, half));
 }
 
-VeilFigures veilFigures(const BeamSurroundings& around)
+MixedPixelFeatures mixedPixelFeatures(const BeamSurroundings& around)
 {
-  VeilFigures figures;
+  MixedPixelFeatures features;
   const Compass near(around.near, around.noise), wide(around.wide, around.noise);
-  float* at = measureWindow(around.near, around.noise, near, figures.data());
+  float* at = measureWindow(around.near, around.noise, near, features.data());
   if (&around.wide == &around.near)
-    at = std::copy_n(figures.data(), of_window, at);
+    at = std::copy_n(features.data(), of_window, at);
   else
     at = measureWindow(around.wide, around.noise, wide, at);
   at = measureDifferences(around, at);
   *at++ = std::log(around.noise / around.near.range);
   *at++ = std::acos(std::clamp(near.forward().dot(wide.forward()), -1.f, 1.f));
-  return figures;
+  return features;
 }
 
 Eigen::Matrix<float, 2 * bearings, 1> scoresAround(const BeamSurroundings& around, const std::vector<float>& scores)

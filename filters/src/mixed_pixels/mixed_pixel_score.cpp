@@ -1,25 +1,41 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "mixed_pixels/mixed_pixel_score.h"
-#include "mixed_pixels/mixed_pixel_weights.h"
-#include "mixed_pixels/second_stage_weights.h"
 #include "networks/mlp.h"
 namespace fresco::filters {
 namespace {
-template <typename Weights>
-float score(const NetworkInputs<Weights>& figures)
-{
-  return networkOutput<Weights>(firstSums<Weights>(Weights::of_figures, figures)) + Weights::last_bias[0];
-}
+template <int inputs, int first, int second>
+struct Classifier : Mlp<inputs, first, second> {
+  explicit Classifier(const Weights& weights)
+      : Mlp<inputs, first, second>(weights), first_weights(weights.values("first_weights", {inputs, first})),
+        last_bias(*weights.values("last_bias", {1, 1}))
+  {}
+  float score(const Eigen::Matrix<float, inputs, 1>& features) const
+  {
+    return this->output(this->firstSums(first_weights, features)) + last_bias;
+  }
+  const float* first_weights;
+  float last_bias;
+};
 } // namespace
 
-float veilScore(const VeilFigures& figures) { return score<VeilWeights>(figures); }
-float veilScore(const LikelyFigures& figures) { return score<LikelyWeights>(figures); }
-
-std::vector<float> firstScores(const BeamScan& scan, const VeilOptions& options)
+float mixedPixelScore(const MixedPixelFeatures& features)
 {
-  std::vector<float> scores(scan.columns.size(), least_likely);
-  forVeilCandidates(scan, options,
-                    [&](Index i, const BeamSurroundings& around) { scores[i] = veilScore(veilFigures(around)); });
+  static const Classifier<mixed_pixel_features::count, 64, 24> network{Weights(mixedPixelData())};
+  return network.score(features);
+}
+
+float mixedPixelScore(const SecondStageFeatures& features)
+{
+  static const Classifier<mixed_pixel_features::second_stage_count, 96, 32> network{Weights(secondStageData())};
+  return network.score(features);
+}
+
+std::vector<float> firstStageScores(const BeamScan& scan, const MixedPixelOptions& options)
+{
+  std::vector<float> scores(scan.columns.size(), least_second_stage);
+  forMixedPixelCandidates(scan, options, [&](Index i, const BeamSurroundings& around) {
+    scores[i] = mixedPixelScore(mixedPixelFeatures(around));
+  });
   return scores;
 }
 } // namespace fresco::filters

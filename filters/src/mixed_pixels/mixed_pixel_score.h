@@ -3,11 +3,11 @@
 #include "mixed_pixels/mixed_pixel_candidates.h"
 #include <vector>
 namespace fresco::filters {
-/// Logarithms of the odds that a point lies in the air, as far as scans of generated rooms tell: networks of two layers
-/// that benchmark/training/mixed_pixels.py trains.
-float veilScore(const VeilFigures& figures);
-float veilScore(const LikelyFigures& figures);
+/// Logarithm of the odds that a point is a mixed pixel: networks with two hidden layers, trained by
+/// benchmark/training/mixed_pixels.py with scans of generated rooms.
+float mixedPixelScore(const MixedPixelFeatures& features);
+float mixedPixelScore(const SecondStageFeatures& features);
 
-/// Scores of all beams by VeilFigures, by position; least_likely for what is no candidate. forLikelyVeil() goes on.
-std::vector<float> firstScores(const BeamScan& scan, const VeilOptions& options);
+/// Scores of all beams by MixedPixelFeatures, by position; least_second_stage for what is no candidate.
+std::vector<float> firstStageScores(const BeamScan& scan, const MixedPixelOptions& options);
 } // namespace fresco::filters

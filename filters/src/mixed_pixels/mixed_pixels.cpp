@@ -4,28 +4,27 @@
 #include <array>
 #include <cmath>
 #include <fresco/core/require.h>
-#include <fresco/filters/core/veil_points.h>
+#include <fresco/filters/core/mixed_pixels.h>
 namespace fresco {
 using namespace filters;
 namespace {
-constexpr Index fewest = 12; // points of a viewpoint that can be judged
-// Scores of veil points. Beams that overlap tell so much that with -1 few are missed and few points taken wrongly; else
-// thin things stay when in doubt.
-constexpr float least_score = 0, least_of_overlapping = -1;
 
-/// Marks the columns of veil points.
-void judge(BeamScan scan, const VeilOptions& options, std::vector<char>& veil)
+/// Marks the columns of mixed pixels.
+void judge(BeamScan scan, const MixedPixelOptions& options, std::vector<char>& mixed)
 {
+  constexpr Index fewest = 12; // points of a viewpoint that can be judged
   if (static_cast<Index>(scan.columns.size()) <= fewest)
     return;
   if (options.noise > 0)
     scan.noise = {{0}, {options.noise}};
   else
     scan.noise = measureNoise(scan, options.threads);
-  const std::vector<float> scores = firstScores(scan, options);
-  const float least = scan.thinned ? least_of_overlapping : least_score;
-  forLikelyVeil(scan, options, scores,
-                [&](Index i, const LikelyFigures& figures) { veil[scan.columns[i]] = veilScore(figures) > least; });
+  const std::vector<float> scores = firstStageScores(scan, options);
+  // Log odds: more likely in the air than not. Beams that overlap tell so much that with -1 few points are taken wrongly.
+  const float least = scan.thinned ? -1.f : 0.f;
+  forSecondStage(scan, options, scores, [&](Index i, const SecondStageFeatures& features) {
+    mixed[scan.columns[i]] = mixedPixelScore(features) > least;
+  });
 }
 
 /// `columns` without repetitions of the same point; `first` gets for each column the one that stays.
@@ -66,33 +65,35 @@ std::vector<std::vector<Index>> groupByViewpoint(const Points& points, const Poi
   return groups;
 }
 
-void validate(const Points& points, const Points& viewpoints, const VeilOptions& options)
+void validate(const Points& points, const Points& viewpoints, const MixedPixelOptions& options)
 {
-  require(viewpoints.cols() == 1 || viewpoints.cols() == points.cols(), "veil points: ", viewpoints.cols(),
+  require(viewpoints.cols() == 1 || viewpoints.cols() == points.cols(), "mixed pixels: ", viewpoints.cols(),
           " viewpoints for ", points.cols(), " points");
-  require(viewpoints.allFinite(), "veil points: a viewpoint is not finite");
-  require(options.angle > 0 && options.angle < 90, "veil points: angle ", options.angle, " is not in 0..90 degrees");
-  require(options.noise >= 0 && std::isfinite(options.noise), "veil points: noise ", options.noise,
+  require(viewpoints.allFinite(), "mixed pixels: a viewpoint is not finite");
+  require(options.angle > 0 && options.angle < 90, "mixed pixels: angle ", options.angle, " is not in 0..90 degrees");
+  require(options.noise >= 0 && std::isfinite(options.noise), "mixed pixels: noise ", options.noise,
           " is negative or not finite");
-  require(options.k >= 8 && options.k <= 64, "veil points: k ", options.k, " is not in 8..64");
+  require(options.k >= 8 && options.k <= 64, "mixed pixels: k ", options.k, " is not in 8..64");
 }
 } // namespace
 
-std::vector<Index> withoutVeil(const Points& points, const Points& viewpoints, const VeilOptions& options)
+std::vector<Index> withoutMixedPixels(const Points& points, const Points& viewpoints, const MixedPixelOptions& options,
+                                      const Progress& progress)
 {
   validate(points, viewpoints, options);
-  std::vector<char> veil(points.cols(), 0);
+  std::vector<char> mixed(points.cols(), 0);
   const auto groups = groupByViewpoint(points, viewpoints);
   std::vector<Index> first(points.cols(), -1);
-  for (const auto& group : groups) {
-    const std::vector<Index> single = withoutRepetitions(points, group, first);
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    report(progress, "judge points", static_cast<double>(g) / static_cast<double>(groups.size()));
+    const std::vector<Index> single = withoutRepetitions(points, groups[g], first);
     if (!single.empty())
       judge(makeBeamScan(points, viewpoints.col(viewpoints.cols() == 1 ? 0 : single.front()), single, options), options,
-            veil);
+            mixed);
   }
   std::vector<Index> kept;
   for (Index i = 0; i < points.cols(); ++i)
-    if (first[i] >= 0 && veil[first[i]] == 0)
+    if (first[i] >= 0 && mixed[first[i]] == 0)
       kept.push_back(i);
   return kept;
 }

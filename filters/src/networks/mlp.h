@@ -1,33 +1,53 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+#include "networks/weights.h"
 #include <Eigen/Core>
-/// Networks of two layers of rectifiers over figures. Weights are structs that benchmark/training/mlp.py writes; matrices
-/// lie there row by row, a row for each input.
 namespace fresco::filters {
-template <typename Weights>
-using NetworkInputs = Eigen::Matrix<float, Weights::inputs, 1>;
-template <typename Weights>
-using FirstLayer = Eigen::Matrix<float, Weights::first, 1>;
+/// A multilayer perceptron with two hidden layers of rectified linear units and one output:
+///
+///   f = clip(features, lowest, highest)   (what lies beyond the training data counts as its limits)
+///   a = max(0, W1' f + b1),   b = max(0, W2' a + b2),   output = w3 . b + b3
+///
+/// Matrices have a row per input. The first layer may have several matrices, one for each set of features.
+template <int inputs, int first, int second>
+class Mlp {
+public:
+  using Features = Eigen::Matrix<float, inputs, 1>;
+  using Sums = Eigen::Matrix<float, first, 1>;
 
-/// What the first layer gets from figures by one of its matrices; figures beyond what was seen in training count as its
-/// limits.
-template <typename Weights>
-FirstLayer<Weights> firstSums(const float* matrix, const NetworkInputs<Weights>& figures)
-{
-  using Limits = Eigen::Map<const NetworkInputs<Weights>>;
-  const NetworkInputs<Weights> within = figures.cwiseMax(Limits(Weights::lowest)).cwiseMin(Limits(Weights::highest));
-  return Eigen::Map<const Eigen::Matrix<float, Weights::first, Weights::inputs>>(matrix) * within;
-}
+  /// @param weights lowest, highest, first_bias, second_weights, second_bias, last_weights; last_bias is left to callers
+  /// @throws std::runtime_error if one is missing or has another shape
+  explicit Mlp(const Weights& weights)
+      : lowest_(weights.values("lowest", {1, inputs})), highest_(weights.values("highest", {1, inputs})),
+        first_bias_(weights.values("first_bias", {1, first})),
+        second_weights_(weights.values("second_weights", {first, second})),
+        second_bias_(weights.values("second_bias", {1, second})),
+        last_weights_(weights.values("last_weights", {second, 1}))
+  {}
 
-/// @param sums of the first layer, without its bias
-template <typename Weights>
-float networkOutput(const FirstLayer<Weights>& sums)
-{
-  using Second = Eigen::Matrix<float, Weights::second, 1>;
-  using Values = Eigen::Map<const Second>;
-  const Eigen::Map<const Eigen::Matrix<float, Weights::second, Weights::first>> W(Weights::second_weights);
-  const FirstLayer<Weights> a = (sums + Eigen::Map<const FirstLayer<Weights>>(Weights::first_bias)).cwiseMax(0.f);
-  const Second b = (W * a + Values(Weights::second_bias)).cwiseMax(0.f);
-  return b.dot(Values(Weights::last_weights));
-}
+  /// W1' f of one of the matrices of the first layer.
+  /// @param matrix inputs x first, row by row
+  Sums firstSums(const float* matrix, const Features& features) const
+  {
+    const Features within = features.cwiseMax(lowest_).cwiseMin(highest_);
+    return Eigen::Map<const Eigen::Matrix<float, first, inputs>>(matrix) * within;
+  }
+
+  /// w3 . b.
+  /// @param sums of the first layer, without its bias
+  float output(const Sums& sums) const
+  {
+    const Sums a = (sums + first_bias_).cwiseMax(0.f);
+    const Eigen::Matrix<float, second, 1> b = (second_weights_ * a + second_bias_).cwiseMax(0.f);
+    return b.dot(last_weights_);
+  }
+
+private:
+  template <int rows, int columns>
+  using Map = Eigen::Map<const Eigen::Matrix<float, rows, columns>>;
+  Map<inputs, 1> lowest_, highest_;
+  Map<first, 1> first_bias_;
+  Map<second, first> second_weights_;
+  Map<second, 1> second_bias_, last_weights_;
+};
 } // namespace fresco::filters

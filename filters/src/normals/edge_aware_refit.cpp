@@ -9,13 +9,6 @@
 #include <utility>
 namespace fresco::filters {
 namespace {
-constexpr float clearly_flatter = 2.5f;  // ratio of the variances of two fits that tells an edge from chance
-constexpr float flatter = 1.6f;          // the same where normals around tell of an edge and rays tell the sides apart
-constexpr float as_flat = 3.f;           // ratio of the variances of the two sides of a crease at most
-constexpr float holding = 16.f;          // squared distance of a point that a plane holds / variance at most
-constexpr float same_side = 0.866f;      // cosine between planes that form no crease
-constexpr float half_same_side = 0.966f; // planes that differ from a third by no more form no crease
-constexpr float grazing = 0.1f;          // cosine between ray and normal; below, the ray tells nothing
 constexpr int passes = 3, passes_without_rays = 2;
 
 /// Points with planes of their own, in two arrays for the sake of memory.
@@ -83,6 +76,9 @@ float score(const Plane& plane, const Eigen::Vector3f& point)
 /// The code of the best plane to the other side of a crease that is as flat and holds the point; -1 if there is none.
 int GroupPass::otherSide(const GroupLists& lists, Index i, const Plane& first) const
 {
+  constexpr float as_flat = 3.f;      // ratio of the variances of the two sides of a crease at most
+  constexpr float holding = 16.f;     // squared distance of a point that a plane holds / variance at most
+  constexpr float same_side = 0.866f; // cosine between planes that form no crease
   const Eigen::Vector3f here = all_.point(i);
   int second = -1;
   float best_score = std::numeric_limits<float>::infinity();
@@ -109,6 +105,7 @@ Eigen::Vector3f towardsViewer(const Plane& plane, const Eigen::Vector3f& ray)
 /// @param ray unit, away from the viewer
 bool seesSecond(const Plane& a, const Plane& b, const Eigen::Vector3f& point, const Eigen::Vector3f& ray)
 {
+  constexpr float grazing = 0.1f; // cosine between ray and normal; below, the ray tells nothing
   const Eigen::Vector3f a_normal = towardsViewer(a, ray), b_normal = towardsViewer(b, ray);
   const float a_over_b = b_normal.dot(a.center - b.center), b_over_a = a_normal.dot(b.center - a.center);
   const float a_facing = a_normal.dot(ray), b_facing = b_normal.dot(ray);
@@ -122,6 +119,9 @@ bool seesSecond(const Plane& a, const Plane& b, const Eigen::Vector3f& point, co
 /// The code of the plane that the point lies on, or its own.
 int GroupPass::choose(const GroupLists& lists, Index i) const
 {
+  constexpr float clearly_flatter = 2.5f; // ratio of the variances of two fits that tells an edge from chance
+  constexpr float flatter = 1.6f;         // the same where normals around tell of an edge and rays tell the sides apart
+  constexpr float half_same_side = 0.966f; // planes that differ from a third by no more form no crease
   const int self = lists.codeOf(i);
   const Plane& own = near_[self];
   if (!std::isfinite(own.variance) || lists.count(i) == 0)

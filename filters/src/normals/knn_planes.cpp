@@ -6,22 +6,14 @@
 namespace fresco::filters {
 namespace {
 constexpr std::size_t most_leaves = 65536; // around a group; beyond, each point is searched for alone
-constexpr Index noise_samples = 2048;
-constexpr float least_width = 6.f;   // radius of a neighbourhood / deviation of the points from the surface
-constexpr float reach_margin = 1.5f; // how far to look for neighbours / distance expected
-constexpr int spread = 3;            // times the neighbours of a point are kept in dense parts
+constexpr float least_width = 6.f;         // radius of a neighbourhood / deviation of the points from the surface
+constexpr int spread = 3;                  // times the neighbours of a point are kept in dense parts
 // Sums of the lesser two variances of a neighbourhood over the squared deviation:
-constexpr float least_breadth = 3.f;  // below, it is a line
-constexpr float row_breadth = 6.f;    // below, it is a line if it has no thickness, as a row of beams
-constexpr float clear_breadth = 12.f; // that of the wider one that takes its place
-constexpr float thinnest = 0.1f;      // least variance / squared deviation, of what has a thickness
-constexpr float thickest = 2.25f;     // of a plane that takes the place of a line
-constexpr float others = 4.5f;        // of a thin thing and what is around it
-constexpr int doublings = 4;          // of the radius around a line
 
 /// Deviation of the points from their surfaces: the median of planes through the k nearest.
 float surfaceNoise(const PointTree& tree, int k, int threads)
 {
+  constexpr Index noise_samples = 2048;
   const Index count = std::min(noise_samples, tree.size());
   std::vector<float> deviations(count);
   parallelRanges(count, threads, [&](Index begin, Index end) {
@@ -59,6 +51,9 @@ std::pair<float, float> lesserVariances(const Moments& moments)
 /// @param variance of the points, across their surfaces
 bool isLine(const Moments& moments, float variance)
 {
+  constexpr float least_breadth = 3.f; // below, it is a line
+  constexpr float row_breadth = 6.f;   // below, it is a line if it has no thickness, as a row of beams
+  constexpr float thinnest = 0.1f;     // least variance / squared deviation, of what has a thickness
   const auto [both, least] = lesserVariances(moments);
   return both < least_breadth * variance || (both < row_breadth * variance && least < thinnest * variance);
 }
@@ -108,6 +103,9 @@ void GroupFitter::take(Index i, float weight, const float* sums)
 /// @return false if wider ones may have it
 bool GroupFitter::settled(Index i, float radius)
 {
+  constexpr float clear_breadth = 12.f; // that of the wider one that takes its place
+  constexpr float thickest = 2.25f;     // of a plane that takes the place of a line
+  constexpr float others = 4.5f;        // of a thin thing and what is around it
   const std::size_t found = wide_.keptWithin(i, radius), k = evenly_.size();
   float sums[10];
   const int* codes = wide_.sum(sums);
@@ -130,6 +128,7 @@ bool GroupFitter::settled(Index i, float radius)
 
 void GroupFitter::widenLines(Index first_leaf, Index end_leaf)
 {
+  constexpr int doublings = 4; // of the radius around a line
   float radius = width_;
   for (const Index i : lines_)
     radius = std::max(radius, std::sqrt(fits_.reaches[i]));
@@ -180,6 +179,7 @@ void GroupFitter::fitNearest(Index i)
 /// @param codes of the first point of the tree
 GroupLists GroupFitter::fit(Index first_leaf, Index end_leaf, std::uint16_t* codes)
 {
+  constexpr float reach_margin = 1.5f; // how far to look for neighbours / distance expected
   group_.enter(first_leaf, end_leaf);
   encoder_.begin(group_.begin(), group_.end());
   const float expected = group_.expectedReach(k_);

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <cmath>
+#include <fresco/core/constants.h>
 #include <fresco/core/parallel.h>
 #include <fresco/core/require.h>
 #include <fresco/filters/core/local_sampling.h>
 #include <fresco/search/batch_knn.h>
 namespace fresco {
 namespace {
-constexpr float pi = 3.14159265f;
 
 float smallestPositive(const Eigen::VectorXf& values)
 {
@@ -29,7 +29,7 @@ float areaOf(const PointTree& tree, Index i, const int* near, Index count)
 {
   const Index others = count - 1;
   const float squared = others > 0 ? (tree.point(near[count - 1]) - tree.point(i)).squaredNorm() : 0.f;
-  return others > 0 && std::isfinite(squared) ? pi * squared / static_cast<float>(others) : 0.f;
+  return others > 0 && std::isfinite(squared) ? static_cast<float>(pi) * squared / static_cast<float>(others) : 0.f;
 }
 } // namespace
 

@@ -10,8 +10,6 @@
 namespace fresco {
 using namespace filters;
 namespace {
-constexpr int neighbors = 11; // of the graph, the point included
-constexpr int levels = 4096;  // of the cost of an edge
 
 /// The points with normals, in the order of a tree.
 struct Field {
@@ -24,6 +22,7 @@ struct Field {
 
 Field makeField(const Points& points, const Points& normals, int threads)
 {
+  constexpr int neighbors = 11; // of the graph, the point included
   Points counted = points;
   for (Index i = 0; i < points.cols(); ++i)
     if (!normals.col(i).allFinite())
@@ -61,6 +60,7 @@ Agreement compare(const Field& field, Index i, Index j)
 /// Entries of all lists sorted by the cost of their edge, equal ones in their order.
 std::vector<std::int64_t> entriesByCost(const Field& field, int threads)
 {
+  constexpr int levels = 4096; // of the cost of an edge
   std::vector<std::uint16_t> costs(field.lists.index.size());
   parallelFor(field.lists.size(), threads, [&](Index i) {
     for (auto e = field.lists.begin[i]; e < field.lists.begin[i + 1]; ++e) {
@@ -78,9 +78,9 @@ std::vector<std::int64_t> entriesByCost(const Field& field, int threads)
 }
 
 /// Kruskal's algorithm; the sign of a point against the root of its part is kept along.
-SignedSets spanningForest(const Field& field, int threads)
+ParityUnionFind spanningForest(const Field& field, int threads)
 {
-  SignedSets parts(field.points.cols());
+  ParityUnionFind parts(field.points.cols());
   const Index each =
       std::max<Index>(1, field.lists.size() > 0 ? field.lists.count(0) : 1); // all lists are equally long
   for (const auto entry : entriesByCost(field, threads)) {
@@ -93,7 +93,7 @@ SignedSets spanningForest(const Field& field, int threads)
 
 /// Turns that make the volume of each part positive (its flux; about the part's own mean, so that position does not
 /// matter), or, of parts that enclose none, the largest component of the mean normal.
-std::vector<char> partTurns(const Field& field, const SignedSets& parts)
+std::vector<char> partTurns(const Field& field, const ParityUnionFind& parts)
 {
   struct Part {
     double area = 0, flux = 0, size = 0;
@@ -140,7 +140,7 @@ void orientByNeighbors(const Points& points, Points& normals, int threads)
 {
   require(points.cols() == normals.cols(), "normals: ", points.cols(), " points, ", normals.cols(), " normals");
   const Field field = makeField(points, normals, threads);
-  const SignedSets parts = spanningForest(field, threads);
+  const ParityUnionFind parts = spanningForest(field, threads);
   const std::vector<char> turns = partTurns(field, parts);
   for (Index i = 0; i < field.points.cols(); ++i)
     if ((parts.sign(i) < 0) != (turns[parts.root(i)] != 0))

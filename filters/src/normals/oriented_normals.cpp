@@ -13,8 +13,7 @@
 namespace fresco {
 using namespace filters;
 namespace {
-constexpr int fewest = 6; // neighbours within a radius; below, the nearest are taken
-constexpr int most = 256; // neighbours within a radius; beyond, evenly chosen
+constexpr int fewest = 6; // neighbours within a radius; below, the nearest are taken: a plane with as much again
 void validate(const PointSet& set, const NormalOptions& options)
 {
   validatePointSet(set);
@@ -29,6 +28,7 @@ void validate(const PointSet& set, const NormalOptions& options)
 
 NeighborLists listsWithin(const PointTree& tree, const NormalOptions& options)
 {
+  constexpr int most = 256; // neighbours within a radius; beyond, evenly chosen
   const NeighborLists nearest = nearestLists(tree, fewest, options.threads);
   Eigen::VectorXf radii = Eigen::VectorXf::Constant(tree.size(), options.radius);
   parallelFor(tree.size(), options.threads, [&](Index i) {
@@ -38,8 +38,8 @@ NeighborLists listsWithin(const PointTree& tree, const NormalOptions& options)
   return radiusLists(tree, radii, most, options.threads);
 }
 
-/// Lists of an image, in the order of its pixels.
-void findInImage(const PointSet& set, const NormalOptions& options, Neighborhoods& all)
+/// Lists by column, in that order.
+void useLists(const PointSet& set, const NeighborLists& lists, int threads, Neighborhoods& all)
 {
   all.image_columns.resize(set.size());
   std::iota(all.image_columns.begin(), all.image_columns.end(), 0);
@@ -47,13 +47,13 @@ void findInImage(const PointSet& set, const NormalOptions& options, Neighborhood
   for (Index i = 0; i < set.size(); ++i)
     for (Index axis = 0; axis < 3; ++axis)
       all.image_coordinates[i / 8 * 24 + 8 * axis + i % 8] = set.points(axis, i);
-  encodeLists(imageLists(set.points, options.image_width, options.k, options.threads), options.threads, all);
+  encodeLists(lists, threads, all);
 }
 
 Fits findAndFit(const PointSet& set, const NormalOptions& options, Neighborhoods& all)
 {
   if (options.image_width > 1 && options.radius == 0) {
-    findInImage(set, options, all);
+    useLists(set, imageLists(set.points, options.image_width, options.k, options.threads), options.threads, all);
     return fitLists(all, options.threads);
   }
   all.tree = std::make_unique<PointTree>(set.points, options.threads);
@@ -138,14 +138,10 @@ NormalField toField(const PointSet& set, Neighborhoods& all, const Fits& fits, i
   });
   return field;
 }
-} // namespace
-
-NormalField estimateNormals(const PointSet& set, const NormalOptions& options, const Progress& progress)
+/// What is left to do with the planes.
+NormalField finish(const PointSet& set, const NormalOptions& options, Neighborhoods& all, Fits fits,
+                   const Progress& progress)
 {
-  validate(set, options);
-  report(progress, "find neighbours", 0.0);
-  Neighborhoods all;
-  Fits fits = findAndFit(set, options, all);
   toConfidences(all, fits.reaches, options.threads);
   report(progress, "fit planes", 0.6);
   if (options.edges)
@@ -155,5 +151,32 @@ NormalField estimateNormals(const PointSet& set, const NormalOptions& options, c
   if (set.viewpoints.cols() == 0)
     orientByNeighbors(set.points, field.normals, options.threads);
   return field;
+}
+} // namespace
+
+NormalField estimateNormals(const PointSet& set, const NormalOptions& options, const Progress& progress)
+{
+  validate(set, options);
+  report(progress, "find neighbours", 0.0);
+  Neighborhoods all;
+  Fits fits = findAndFit(set, options, all);
+  return finish(set, options, all, std::move(fits), progress);
+}
+
+NormalField estimateNormalsFromNeighbors(const PointSet& set, const NeighborLists& neighbors,
+                                         const NormalOptions& options, const Progress& progress)
+{
+  validate(set, options);
+  require(neighbors.size() == set.size(), "normals: ", neighbors.size(), " lists of neighbours for ", set.size(),
+          " points");
+  for (Index i = 0; i < set.size(); ++i)
+    require(neighbors.count(i) <= Neighborhoods::most_neighbors, "normals: point ", i, " has ", neighbors.count(i),
+            " neighbours, more than ", Neighborhoods::most_neighbors);
+  for (const int j : neighbors.index)
+    require(j >= 0 && j < set.size(), "normals: neighbour ", j, " is not in 0..", set.size() - 1);
+  Neighborhoods all;
+  useLists(set, neighbors, options.threads, all);
+  Fits fits = fitLists(all, options.threads);
+  return finish(set, options, all, std::move(fits), progress);
 }
 } // namespace fresco

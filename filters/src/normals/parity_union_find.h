@@ -7,9 +7,10 @@
 namespace fresco::filters {
 /// Disjoint sets (union by size, so that paths stay short) of elements that also have a sign against the root
 /// of their set.
-class SignedSets {
+class ParityUnionFind {
 public:
-  explicit SignedSets(Index n) : parent_(static_cast<std::size_t>(n)), size_(parent_.size(), 1), turned_(parent_.size())
+  explicit ParityUnionFind(Index n)
+      : parent_(static_cast<std::size_t>(n)), size_(parent_.size(), 1), turned_(parent_.size())
   {
     for (Index i = 0; i < n; ++i)
       parent_[i] = static_cast<int>(i);

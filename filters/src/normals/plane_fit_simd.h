@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#ifndef FRESCO_LANE_CODE
-#define FRESCO_LANE_CODE // attributes of functions that are compiled for certain processors
+#ifndef FRESCO_SIMD_TARGET
+#define FRESCO_SIMD_TARGET // attributes of functions that are compiled for certain processors
 #endif
 namespace fresco::filters {
 namespace {
 /// cos(acos(-x) / 3) for x in -1..1: the polynomial of degree 10 that interpolates cos(2/3 acos(s)) at the Chebyshev
 /// nodes of 0..1, s = sqrt((1 - x) / 2); error below 1e-10.
 template <typename T>
-FRESCO_LANE_CODE inline T cosineOfThird(const T& x)
+FRESCO_SIMD_TARGET inline T cosineOfThird(const T& x)
 {
   constexpr double terms[] = {-2.027307162548327e-07, 7.119253601992817e-07,   -1.9904683341565033e-06,
                               7.385892490739046e-06,  -2.8940260509409523e-05, 0.00011649489083714378,
@@ -22,7 +22,7 @@ FRESCO_LANE_CODE inline T cosineOfThird(const T& x)
 }
 
 template <typename T>
-struct PlaneLanes {
+struct SimdPlanes {
   T normal[3], center[3], variance, curvature;
   T trace;   ///< sum of the three variances
   T second;  ///< about the share of the middle one
@@ -33,9 +33,9 @@ struct PlaneLanes {
 /// covariances (Smith 1961, "Eigenvalues of a symmetric 3 x 3 matrix").
 /// @param sums x, y, z, xx, xy, xz, yy, yz, zz
 template <typename T>
-FRESCO_LANE_CODE inline PlaneLanes<T> fitLanes(const T& weight, const T* sums)
+FRESCO_SIMD_TARGET inline SimdPlanes<T> fitPlanes(const T& weight, const T* sums)
 {
-  PlaneLanes<T> fit;
+  SimdPlanes<T> fit;
   const T share = T(1.0) / weight, x = sums[0] * share, y = sums[1] * share, z = sums[2] * share;
   T xx = sums[3] * share - x * x, xy = sums[4] * share - x * y, xz = sums[5] * share - x * z;
   T yy = sums[6] * share - y * y, yz = sums[7] * share - y * z, zz = sums[8] * share - z * z;

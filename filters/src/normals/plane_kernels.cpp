@@ -21,7 +21,7 @@ void fit(const EightMoments& moments, EightPlanes& planes)
     double sums[9];
     for (int s = 0; s < 9; ++s)
       sums[s] = static_cast<double>(moments.sums[s][i]);
-    const auto lanes = fitLanes<double>(static_cast<double>(moments.weight[i]), sums);
+    const auto lanes = fitPlanes<double>(static_cast<double>(moments.weight[i]), sums);
     for (int axis = 0; axis < 3; ++axis) {
       planes.normal[axis][i] = static_cast<float>(lanes.normal[axis]);
       planes.center[axis][i] = static_cast<float>(lanes.center[axis]);

@@ -3,25 +3,25 @@
 // functions of external linkage may be used here: the linker could keep their AVX2 code for the whole program.
 #include "normals/plane_kernels.h"
 #if defined(__x86_64__) && defined(__GNUC__)
-#define FRESCO_LANE_CODE __attribute__((target("avx2")))
+#define FRESCO_SIMD_TARGET __attribute__((target("avx2")))
 #include <immintrin.h>
 namespace fresco::filters {
 namespace {
 /// Four numbers in double precision.
 struct Four {
   __m256d v;
-  FRESCO_LANE_CODE Four() : v(_mm256_setzero_pd()) {}
-  FRESCO_LANE_CODE Four(__m256d values) : v(values) {}
-  FRESCO_LANE_CODE explicit Four(double value) : v(_mm256_set1_pd(value)) {}
+  FRESCO_SIMD_TARGET Four() : v(_mm256_setzero_pd()) {}
+  FRESCO_SIMD_TARGET Four(__m256d values) : v(values) {}
+  FRESCO_SIMD_TARGET explicit Four(double value) : v(_mm256_set1_pd(value)) {}
 };
-FRESCO_LANE_CODE inline Four operator+(const Four& a, const Four& b) { return _mm256_add_pd(a.v, b.v); }
-FRESCO_LANE_CODE inline Four operator-(const Four& a, const Four& b) { return _mm256_sub_pd(a.v, b.v); }
-FRESCO_LANE_CODE inline Four operator*(const Four& a, const Four& b) { return _mm256_mul_pd(a.v, b.v); }
-FRESCO_LANE_CODE inline Four operator/(const Four& a, const Four& b) { return _mm256_div_pd(a.v, b.v); }
-FRESCO_LANE_CODE inline Four squareRoot(const Four& a) { return _mm256_sqrt_pd(a.v); }
-FRESCO_LANE_CODE inline Four least(const Four& a, const Four& b) { return _mm256_min_pd(a.v, b.v); }
-FRESCO_LANE_CODE inline Four most(const Four& a, const Four& b) { return _mm256_max_pd(a.v, b.v); }
-FRESCO_LANE_CODE inline Four ifLess(const Four& a, const Four& b, const Four& yes, const Four& no)
+FRESCO_SIMD_TARGET inline Four operator+(const Four& a, const Four& b) { return _mm256_add_pd(a.v, b.v); }
+FRESCO_SIMD_TARGET inline Four operator-(const Four& a, const Four& b) { return _mm256_sub_pd(a.v, b.v); }
+FRESCO_SIMD_TARGET inline Four operator*(const Four& a, const Four& b) { return _mm256_mul_pd(a.v, b.v); }
+FRESCO_SIMD_TARGET inline Four operator/(const Four& a, const Four& b) { return _mm256_div_pd(a.v, b.v); }
+FRESCO_SIMD_TARGET inline Four squareRoot(const Four& a) { return _mm256_sqrt_pd(a.v); }
+FRESCO_SIMD_TARGET inline Four least(const Four& a, const Four& b) { return _mm256_min_pd(a.v, b.v); }
+FRESCO_SIMD_TARGET inline Four most(const Four& a, const Four& b) { return _mm256_max_pd(a.v, b.v); }
+FRESCO_SIMD_TARGET inline Four ifLess(const Four& a, const Four& b, const Four& yes, const Four& no)
 {
   return _mm256_blendv_pd(no.v, yes.v, _mm256_cmp_pd(a.v, b.v, _CMP_LT_OQ));
 }
@@ -30,10 +30,13 @@ FRESCO_LANE_CODE inline Four ifLess(const Four& a, const Four& b, const Four& ye
 #include "normals/plane_fit_simd.h"
 namespace fresco::filters {
 namespace {
-FRESCO_LANE_CODE inline Four load(const float* values) { return _mm256_cvtps_pd(_mm_loadu_ps(values)); }
-FRESCO_LANE_CODE inline void store(float* values, const Four& four) { _mm_storeu_ps(values, _mm256_cvtpd_ps(four.v)); }
+FRESCO_SIMD_TARGET inline Four load(const float* values) { return _mm256_cvtps_pd(_mm_loadu_ps(values)); }
+FRESCO_SIMD_TARGET inline void store(float* values, const Four& four)
+{
+  _mm_storeu_ps(values, _mm256_cvtpd_ps(four.v));
+}
 
-FRESCO_LANE_CODE void fit(const EightMoments& moments, EightPlanes& planes)
+FRESCO_SIMD_TARGET void fit(const EightMoments& moments, EightPlanes& planes)
 {
   planes.planes = 0;
   const __m256d infinity = _mm256_set1_pd(__builtin_inf());
@@ -41,7 +44,7 @@ FRESCO_LANE_CODE void fit(const EightMoments& moments, EightPlanes& planes)
     Four sums[9];
     for (int s = 0; s < 9; ++s)
       sums[s] = load(moments.sums[s] + half);
-    const auto lanes = fitLanes<Four>(load(moments.weight + half), sums);
+    const auto lanes = fitPlanes<Four>(load(moments.weight + half), sums);
     for (int axis = 0; axis < 3; ++axis) {
       store(planes.normal[axis] + half, lanes.normal[axis]);
       store(planes.center[axis] + half, lanes.center[axis]);
@@ -58,7 +61,7 @@ FRESCO_LANE_CODE void fit(const EightMoments& moments, EightPlanes& planes)
 }
 
 /// Rows to columns.
-FRESCO_LANE_CODE inline void transpose(const __m256 (&row)[8], __m256 (&column)[8])
+FRESCO_SIMD_TARGET inline void transpose(const __m256 (&row)[8], __m256 (&column)[8])
 {
   __m256 pairs[8], fours[8];
   for (int i = 0; i < 8; i += 2) {
@@ -77,13 +80,13 @@ FRESCO_LANE_CODE inline void transpose(const __m256 (&row)[8], __m256 (&column)[
   }
 }
 
-FRESCO_LANE_CODE inline __m256 dot(__m256 ax, __m256 bx, __m256 ay, __m256 by, __m256 az, __m256 bz)
+FRESCO_SIMD_TARGET inline __m256 dot(__m256 ax, __m256 bx, __m256 ay, __m256 by, __m256 az, __m256 bz)
 {
   return _mm256_add_ps(_mm256_add_ps(_mm256_mul_ps(ax, bx), _mm256_mul_ps(ay, by)), _mm256_mul_ps(az, bz));
 }
 
-FRESCO_LANE_CODE BestPlane best(const float* planes, const std::uint16_t* list, std::size_t count, const float* own,
-                                const float* point)
+FRESCO_SIMD_TARGET BestPlane best(const float* planes, const std::uint16_t* list, std::size_t count, const float* own,
+                                  const float* point)
 {
   const __m256 px = _mm256_broadcast_ss(point), py = _mm256_broadcast_ss(point + 1);
   const __m256 pz = _mm256_broadcast_ss(point + 2), half = _mm256_set1_ps(0.5f), sign = _mm256_set1_ps(-0.f);
@@ -122,7 +125,7 @@ FRESCO_LANE_CODE BestPlane best(const float* planes, const std::uint16_t* list, 
 }
 
 /// As exponential().
-FRESCO_LANE_CODE inline __m256 exponential(__m256 values)
+FRESCO_SIMD_TARGET inline __m256 exponential(__m256 values)
 {
   const __m256 lowest = _mm256_set1_ps(-87.f), round = _mm256_set1_ps(12582912.f);
   const __m256 normal = _mm256_cmp_ps(values, lowest, _CMP_GT_OQ), clamped = _mm256_blendv_ps(lowest, values, normal);
@@ -138,14 +141,14 @@ FRESCO_LANE_CODE inline __m256 exponential(__m256 values)
   return _mm256_and_ps(_mm256_mul_ps(p, _mm256_castsi256_ps(bits)), normal);
 }
 
-FRESCO_LANE_CODE inline float total(__m256 v)
+FRESCO_SIMD_TARGET inline float total(__m256 v)
 {
   const __m128 four = _mm_add_ps(_mm256_castps256_ps128(v), _mm256_extractf128_ps(v, 1));
   const __m128 two = _mm_add_ps(four, _mm_movehl_ps(four, four));
   return _mm_cvtss_f32(_mm_add_ss(two, _mm_movehdup_ps(two)));
 }
 
-FRESCO_LANE_CODE void weightedSums(const WeightedPoints& points, const float* plane, float scale, float* sums)
+FRESCO_SIMD_TARGET void weightedSums(const WeightedPoints& points, const float* plane, float scale, float* sums)
 {
   const __m256 a = _mm256_broadcast_ss(plane), b = _mm256_broadcast_ss(plane + 1), c = _mm256_broadcast_ss(plane + 2);
   const __m256 height = _mm256_broadcast_ss(plane + 3), factor = _mm256_set1_ps(scale);

@@ -12,7 +12,8 @@ std::vector<PointLabel> labelPoints(const LaserScan& scan, const TriangleTree& t
       continue;
     const Eigen::Vector3d point = scan.points.points.col(static_cast<Index>(i)).cast<double>();
     const double distance = truth.closest((T_truth_scan * point.homogeneous()).head<3>()).distance;
-    labels[i] = distance > veil_deviations * scan.deviations[i] ? PointLabel::veil : PointLabel::mixed;
+    labels[i] =
+        distance > mixed_pixel_deviations * scan.deviations[i] ? PointLabel::mixed_pixel : PointLabel::near_surface;
   }
   return labels;
 }

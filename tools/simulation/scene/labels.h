@@ -5,11 +5,11 @@
 namespace fresco::simulation {
 /// What a laser point is.
 enum class PointLabel : std::uint32_t {
-  surface = 0, ///< its beam met one surface
-  mixed = 1,   ///< it met several, but the point lies where the noise of that beam puts points of a surface too
-  veil = 2     ///< it met several, and the point lies in the air: farther than `veil_deviations` from every surface
+  surface = 0,      ///< its beam met one surface
+  near_surface = 1, ///< it met several, but the point lies where the noise of that beam puts points of a surface too
+  mixed_pixel = 2   ///< it met several, and the point lies in the air, farther than this from every surface:
 };
-constexpr double veil_deviations = 4; ///< of the range noise of that beam
+constexpr double mixed_pixel_deviations = 4; ///< of the range noise of that beam: one normal value in 16,000
 
 /// @param truth        surfaces of the scene, in the frame of mesh.vertices
 /// @param T_truth_scan 4x4 rigid

@@ -31,12 +31,21 @@ public:
   float getSigmaN() const { return options_.sigma_n; }
   void setMoveRounds(int rounds) { options_.move_rounds = rounds; } ///< 0 = points stay where they are
   int getMoveRounds() const { return options_.move_rounds; }
-  /// Where the cloud was seen from, and its normals point to: normals beside creases are then compared with those
+  /// Where the cloud was seen from, and its normals point to: points beside creases then select among the normals
   /// around.
-  void setViewPoint(float x, float y, float z) { viewpoint_ = Eigen::Vector3f(x, y, z); }
-  void setViewPointUnknown() { viewpoint_.reset(); }                   ///< the default: the bilateral filter alone
+  void setViewPoint(float x, float y, float z) { viewpoint_ = Eigen::Vector3f(x, y, z), known_ = true; }
+  void useSensorOriginAsViewPoint() { viewpoint_.reset(), known_ = true; } ///< vp_x vp_y vp_z, else sensor_origin_
+  void setViewPointUnknown() { viewpoint_.reset(), known_ = false; }       ///< the default: the bilateral filter alone
+  void setOptions(const BilateralOptions& options) { options_ = options; }
+  const BilateralOptions& getOptions() const { return options_; }
   void setNumberOfThreads(int threads) { options_.threads = threads; } ///< 0 = all cores
   int getNumberOfThreads() const { return options_.threads; }
+  void setThreads(int threads) { setNumberOfThreads(threads); } ///< as pcl::Poisson has it
+  int getThreads() const { return getNumberOfThreads(); }
+  void setProgress(const Progress& progress)
+  {
+    progress_ = progress;
+  } ///< filter() throws Cancelled where it returns false
 
 protected:
   void applyFilter(PointCloud& output) override;
@@ -44,6 +53,8 @@ protected:
 private:
   BilateralOptions options_;
   std::optional<Eigen::Vector3f> viewpoint_;
+  bool known_ = false;
+  Progress progress_;
 };
 } // namespace fresco
 #include <fresco/filters/impl/bilateral_normal_filter.hpp>

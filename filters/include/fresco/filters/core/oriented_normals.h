@@ -3,6 +3,7 @@
 #include <fresco/core/export.h>
 #include <fresco/core/point_set.h>
 #include <fresco/core/progress.h>
+#include <fresco/search/neighbors.h>
 namespace fresco {
 struct NormalOptions {
   int k = 16; ///< neighbours of the plane fit, the point included, 3..1000; where `radius` is 0: the nearest, or, where
@@ -30,4 +31,11 @@ struct NormalField {
 /// @throws Cancelled
 FRESCO_EXPORT NormalField estimateNormals(const PointSet& set, const NormalOptions& options = {},
                                           const Progress& progress = {});
+
+/// As above with neighbours that were found elsewhere; options.k, radius and image_width have no effect.
+/// @param neighbors of each point, by column: columns, the point included, at most 1000; none = no normal
+/// @throws std::invalid_argument also if there are not as many lists as points, or a list is longer
+FRESCO_EXPORT NormalField estimateNormalsFromNeighbors(const PointSet& set, const NeighborLists& neighbors,
+                                                       const NormalOptions& options = {},
+                                                       const Progress& progress = {});
 } // namespace fresco

@@ -10,9 +10,9 @@ void BilateralNormalFilter<PointNT>::applyFilter(PointCloud& output)
   PointSet set = toPointSet(*this->input_, *this->indices_);
   if (viewpoint_)
     set.viewpoints = *viewpoint_;
-  else
+  else if (!known_)
     set.viewpoints.resize(3, 0);
-  const BilateralResult result = smoothNormals(set, set.normals, options_);
+  const BilateralResult result = smoothNormals(set, set.normals, options_, progress_);
   if (this->fake_indices_)
     output = *this->input_;
   else

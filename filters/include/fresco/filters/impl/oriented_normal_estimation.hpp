@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+#include <fresco/core/parallel.h>
 #include <fresco/core/pcl_conversions.h>
 #include <fresco/core/require.h>
 #include <fresco/filters/oriented_normal_estimation.h>
@@ -7,7 +8,7 @@
 #include <pcl/common/copy_point.h>
 #include <pcl/common/point_tests.h>
 namespace fresco {
-/// As the base class does, but without a tree, and with a default of k.
+/// As the base class does, but without a tree of its own, and with a default of k.
 template <typename PointInT, typename PointOutT>
 bool OrientedNormalEstimation<PointInT, PointOutT>::initCompute()
 {
@@ -53,6 +54,50 @@ std::vector<Index> OrientedNormalEstimation<PointInT, PointOutT>::placesOnSurfac
   return places;
 }
 
+/// Those that our own search finds, too: within the radius at least 6 and at most 256, evenly chosen.
+template <typename PointInT, typename PointOutT>
+pcl::Indices OrientedNormalEstimation<PointInT, PointOutT>::searchNeighbors(const PointInT& point,
+                                                                            const NormalOptions& options) const
+{
+  constexpr std::size_t fewest = 6, most = 256;
+  pcl::Indices found;
+  std::vector<float> squared;
+  if (options.radius == 0) {
+    this->tree_->nearestKSearch(point, options.k, found, squared);
+    return found;
+  }
+  this->tree_->radiusSearch(point, options.radius, found, squared);
+  if (found.size() < fewest)
+    this->tree_->nearestKSearch(point, fewest, found, squared);
+  if (found.size() <= most)
+    return found;
+  pcl::Indices some;
+  for (std::size_t j = 0; j < most; ++j)
+    some.push_back(found[j * found.size() / most]);
+  return some;
+}
+
+/// By setSearchMethod(), of the points of the surface.
+template <typename PointInT, typename PointOutT>
+NeighborLists OrientedNormalEstimation<PointInT, PointOutT>::searchAllNeighbors(const NormalOptions& options) const
+{
+  const auto& surface = *this->surface_;
+  if (this->tree_->getInputCloud() != this->surface_)
+    this->tree_->setInputCloud(this->surface_);
+  std::vector<pcl::Indices> found(surface.size());
+  parallelFor(found.size(), options.threads, [&](Index i) {
+    if (pcl::isXYZFinite(surface[i]))
+      found[i] = searchNeighbors(surface[i], options);
+  });
+  NeighborLists lists;
+  lists.begin.assign(1, 0);
+  for (const pcl::Indices& list : found) {
+    lists.index.insert(lists.index.end(), list.begin(), list.end());
+    lists.begin.push_back(lists.index.size());
+  }
+  return lists;
+}
+
 template <typename PointInT, typename PointOutT>
 void OrientedNormalEstimation<PointInT, PointOutT>::computeFeature(PointCloudOut& output)
 {
@@ -60,12 +105,14 @@ void OrientedNormalEstimation<PointInT, PointOutT>::computeFeature(PointCloudOut
   if (this->search_radius_ != 0)
     options.radius = static_cast<float>(this->search_radius_);
   else if (this->k_ != 0)
-    options.k = this->k_;
+    options.k = this->k_, options.radius = 0;
   if (this->surface_->isOrganized())
     options.image_width = this->surface_->width;
   const PointSet surface = scanOf(*this->surface_);
   const std::vector<Index> places = placesOnSurface(surface);
-  const NormalField field = estimateNormals(surface, options);
+  const NormalField field = this->tree_
+                                ? estimateNormalsFromNeighbors(surface, searchAllNeighbors(options), options, progress_)
+                                : estimateNormals(surface, options, progress_);
   output.sensor_origin_ = this->input_->sensor_origin_;
   output.sensor_orientation_ = this->input_->sensor_orientation_;
   confidences_.setZero(static_cast<Index>(places.size()));

@@ -9,7 +9,7 @@ void VeilPointRemoval<PointT>::applyFilter(pcl::Indices& indices)
   const PointSet set = toPointSet(*this->input_, *this->indices_);
   const Points viewpoints = viewpoint_ ? Points(*viewpoint_) : set.viewpoints;
   std::vector<char> stays(set.size(), 0);
-  for (const Index i : withoutVeil(set.points, viewpoints, options_))
+  for (const Index i : withoutMixedPixels(set.points, viewpoints, options_, progress_))
     stays[i] = 1;
   indices.clear();
   this->removed_indices_->clear();
