@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Registration of places that look alike: pairs held together rightly and wrongly.
 #include "experiments/registration_input.h"
-#include "registration/look_alike_scenes.h"
 #include "pair/pair_alignment.h"
 #include "pair/self_alignment.h"
+#include "registration/look_alike_scenes.h"
 #include "support/tool.h"
 #include <iomanip>
 #include <iostream>
@@ -33,8 +33,8 @@ void printPairs(const fresco::test::LookAlikeScene& place)
         const auto error = fresco::benchmark::errorOf(hypothesis.T_a_b, truth, Eigen::Vector3d::Zero());
         std::cout << "    off by " << error.distance << " m, " << error.degrees << " degrees; overlap "
                   << hypothesis.check.overlap << ", violation " << hypothesis.check.violation << ", colour "
-                  << hypothesis.check.color.value_or(NAN) << ", votes " << hypothesis.votes << (hypothesis.has_alias ? ", has an alias" : "")
-                  << '\n';
+                  << hypothesis.check.color.value_or(NAN) << ", votes " << hypothesis.votes
+                  << (hypothesis.has_alias ? ", has an alias" : "") << '\n';
       }
     }
 }

@@ -43,8 +43,7 @@ Thinning thinningForFeatures(const RegistrationInput& input)
   return {input.voxel, size, narrowness};
 }
 
-std::vector<PreparedScan> prepareAll(const RegistrationInput& input,
-                                                           const Thinning& thinning)
+std::vector<PreparedScan> prepareAll(const RegistrationInput& input, const Thinning& thinning)
 {
   std::vector<PreparedScan> scans;
   for (const fresco::PointSet& scan : input.scans)
@@ -53,13 +52,10 @@ std::vector<PreparedScan> prepareAll(const RegistrationInput& input,
 }
 
 /// Of two scans at their true relative pose.
-double trueOverlap(const std::vector<PreparedScan>& scans, const RegistrationInput& input,
-                   std::size_t a, std::size_t b)
+double trueOverlap(const std::vector<PreparedScan>& scans, const RegistrationInput& input, std::size_t a, std::size_t b)
 {
   const Eigen::Isometry3d T_a(Eigen::Translation3d(scans[a].center)), T_b(Eigen::Translation3d(scans[b].center));
-  return checkPair(scans[a], scans[b], T_a.inverse() * input.relative(a, b) * T_b,
-                                         check_level)
-      .overlap;
+  return checkPair(scans[a], scans[b], T_a.inverse() * input.relative(a, b) * T_b, check_level).overlap;
 }
 
 void countPair(const PairAlignment& pair, const PoseError& error, Class& own)
@@ -104,8 +100,8 @@ void measurePairs(const RegistrationInput& input, const std::string& overlap_fil
   for (const Class& c : classes)
     std::cout << "> " << std::setw(3) << 100.0 * c.least << " %  " << std::setw(5) << c.pairs << "  " << std::setw(5)
               << c.right << "  " << std::setw(19) << c.certain_right << "  " << std::setw(5) << c.certain_wrong << '\n';
-  std::cout << "processor time: preparation " << (prepared - start) / scans.size()
-            << " s a scan, alignment " << aligning / tried << " s a pair\n";
+  std::cout << "processor time: preparation " << (prepared - start) / scans.size() << " s a scan, alignment "
+            << aligning / tried << " s a pair\n";
 }
 
 /// Relative poses of all scans in one group, by their true overlap.
@@ -138,8 +134,7 @@ void measureMap(const RegistrationInput& input)
 /// @param tolerance of success, metres and degrees
 void measureConvergence(const RegistrationInput& input, const PoseError& tolerance)
 {
-  const std::vector<PreparedScan> scans =
-      prepareAll(input, Thinning(input.voxel));
+  const std::vector<PreparedScan> scans = prepareAll(input, Thinning(input.voxel));
   int tried = 0, good = 0;
   double worst = 0.0;
   fresco::benchmark::Disturbances disturbances(0.3, 15.0);

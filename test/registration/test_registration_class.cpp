@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "registration/registration_scene.h"
+#include <atomic>
 #include <fresco/registration/point_to_plane_registration.h>
 #include <fresco/registration/scan_registration.h>
 #include <gtest/gtest.h>
-#include <atomic>
 #include <pcl/point_types.h>
 namespace fresco {
 namespace {

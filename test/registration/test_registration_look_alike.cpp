@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "registration/look_alike_scenes.h"
 #include "pair/self_alignment.h"
+#include "registration/look_alike_scenes.h"
 #include <fresco/registration/core/point_to_plane_registration.h>
 #include <gtest/gtest.h>
 using namespace fresco::registration;
@@ -96,7 +96,7 @@ TEST(LookAlikes, EqualRoomsThatSeeEachOtherAreNotMerged)
   }
 }
 
-TEST(SelfAlignment, EqualRoomsBehindDoorsAreGlimpsed)
+TEST(SelfAlignment, EqualRoomsBehindDoorsArePartialAliases)
 {
   Eigen::Isometry3d half_turn(Eigen::Translation3d(10, 4, 0) * Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitZ()));
   for (const bool equal : {true, false}) {

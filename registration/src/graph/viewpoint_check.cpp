@@ -32,8 +32,8 @@ std::vector<ViewpointEvidence> collectEvidence(Index scan_count, const std::vect
 
 bool isNarrow(const PreparedScan& scan)
 {
-  constexpr double narrow_view =
-      0.4; // share of the sphere: a scanner that saw more stood where it is said to have stood
+  // Share of the sphere: a scanner that saw more stood where it is said to have stood.
+  constexpr double narrow_view = 0.4;
   return !scan.free_space.empty() && scan.free_space.coverage() < narrow_view;
 }
 } // namespace

@@ -3,7 +3,7 @@
 #include "pair/sc2_pcr.h"
 namespace fresco::registration {
 constexpr double alias_distance = 0.5; ///< of a scan's size: nearer places that look alike are one place
-constexpr double alias_color = 0.6;    ///< correlation of colours from which two places look alike
+constexpr double alias_color = 0.6;    ///< correlation of two places: below, their colours differ more than light does
 
 /// Motions other than the identity that map a part of a scan onto another part of it: it saw two places that look
 /// alike, such as the next bay of a corridor. Where there is such a motion S, a pose T of another scan has the

@@ -57,8 +57,8 @@ void findCutoff(float voxel, DirectedPair& pair)
 
 PairSystem accumulate(const LevelPair& level, const SampleRange& range, const DirectedPair& pair)
 {
-  constexpr double plain_variation =
-      0.01; // of both neighbourhoods together: halves the weight, noisy surfaces say less
+  // Of both neighbourhoods together: halves the weight, noisy surfaces say less.
+  constexpr double plain_variation = 0.01;
   const ScanLevel &source = level.source, &target = level.target;
   PairSystem system;
   for (Index k = range.begin; k < range.end; ++k) {

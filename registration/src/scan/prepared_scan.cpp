@@ -59,8 +59,8 @@ void distrustViewpoint(PreparedScan& scan)
 PreparedScan prepareScan(const PointSet& scan, const Thinning& thinning, int threads,
                          const std::shared_ptr<NeighborSearch>& search)
 {
-  constexpr double coherence_limit =
-      0.7; // of the free space: from a wrong viewpoint, one direction meets many surfaces
+  // Of the free space: from a wrong viewpoint, one direction meets many surfaces.
+  constexpr double coherence_limit = 0.7;
   PreparedScan prepared;
   prepared.center = workingCenter(scan);
   prepared.size = scanSize(scan);

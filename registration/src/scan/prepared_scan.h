@@ -48,8 +48,8 @@ struct PreparedScan {
 };
 
 constexpr Index fewest_points = 50; ///< thinned points of a scan: below, a pose has hardly any redundancy
-constexpr float variation_limit =
-    0.1f; ///< of a neighbourhood: beyond a third of the largest possible, its plane means little
+/// Of a neighbourhood: beyond a third of the largest possible, its plane means little.
+constexpr float variation_limit = 0.1f;
 
 /// Level on which two scans are compared: fine enough for furniture, coarser than the errors of a measured pose.
 constexpr int check_level = level_count - 2;

@@ -9,8 +9,8 @@ struct RawScan {
   Points colors;             ///< 3xN, or 3x0 where the scan has none
 };
 
-constexpr int level_count =
-    4; ///< resolutions: cells of the coarsest, 8 times the finest, still show walls and furniture
+/// Resolutions: the coarsest cells, 8 times the finest, still show walls and furniture.
+constexpr int level_count = 4;
 constexpr double voxels_per_size = 100.0; ///< finest thinning: a room of 3 m radius in 3 cm cells
 
 /// The first finite viewpoint; the scan's origin where none is known.

@@ -58,8 +58,8 @@ private:
   Progress progress_;
   float voxel_ = 0.f;
   float prepared_voxel_ = 0.f;
-  typename Base::KdTreePtr own_tree_;                     ///< of the base class: not the user's
-  typename Base::KdTreeReciprocalPtr own_reciprocal_tree_; ///< the same for the source
+  typename Base::KdTreePtr own_tree_;                             ///< of the base class: not the user's
+  typename Base::KdTreeReciprocalPtr own_reciprocal_tree_;        ///< the same for the source
   typename Base::PointCloudTargetConstPtr prepared_target_cloud_; ///< that prepared_target_ was made of
   typename Base::KdTreePtr prepared_tree_;                        ///< with this tree
   std::shared_ptr<const registration::PreparedScan> prepared_source_, prepared_target_;

@@ -82,8 +82,8 @@ void PointToPlaneRegistration<PointSource, PointTarget>::computeTransformation(P
   const detail::SearchInputGuard<PointTarget> target_input(this->tree_);
   const detail::SearchInputGuard<PointSource> source_input(this->tree_reciprocal_);
   prepare();
-  result_ = alignPointToPlane({*prepared_source_, *prepared_target_, guess.template cast<double>()}, getOptions(),
-                              progress_);
+  result_ =
+      alignPointToPlane({*prepared_source_, *prepared_target_, guess.template cast<double>()}, getOptions(), progress_);
   this->final_transformation_ = result_.T_target_source.template cast<typename Matrix4::Scalar>();
   this->transformation_ = this->final_transformation_ * guess.inverse();
   this->nr_iterations_ = result_.iterations;
