@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "support/tool.h"
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
+#include <fresco/core/constants.h>
 #include <fresco/core/require.h>
 #include <fresco/io/file.h>
 #include <fresco/io/point_io.h>
@@ -93,7 +93,7 @@ Json scanJson(const std::string& file, const fresco::ScanResult& scan, const fre
   json["problem"] = scan.problem;
   json["rms"] = scan.rms;
   json["translation_deviation"] = scan.translation_deviation;
-  json["rotation_deviation_deg"] = scan.rotation_deviation * 180.0 / M_PI;
+  json["rotation_deviation_deg"] = scan.rotation_deviation * 180.0 / fresco::pi;
   if (scan.free_motion)
     json["free_motion"] = {{"translation", toJson(scan.free_motion->translation)},
                            {"rotation", toJson(scan.free_motion->rotation)}};
@@ -152,8 +152,8 @@ void run(int argc, char** argv)
   const std::vector<fresco::Pose> start = startPoses(request);
   fresco::makeFolder(request.folder);
   const fresco::Progress progress = fresco::printProgress(request.common.quiet);
-  const fresco::ScanSource scans{static_cast<fresco::Index>(request.files.size()),
-                                 [&](fresco::Index i) { return fresco::readPoints(request.files[i]); }};
+  const fresco::ScanSource scans(request.files.size(),
+                                 [&](fresco::Index i) { return fresco::readPoints(request.files[i]); });
   fresco::report(progress, "read", 0.0);
   const auto result = fresco::registerScans(scans, start, request.options, fresco::subProgress(progress, 0.0, 0.9));
   const auto placed = std::count_if(result.scans.begin(), result.scans.end(), [](const auto& s) { return s.placed; });

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Registration of places that look alike: pairs held together rightly and wrongly.
 #include "experiments/registration_input.h"
+#include "pair/pair_alignment.h"
+#include "pair/self_alignment.h"
 #include "registration/look_alike_scenes.h"
-#include "scan/self_alignment.h"
 #include "support/tool.h"
 #include <iomanip>
 #include <iostream>
@@ -13,27 +14,27 @@ using fresco::benchmark::processorSeconds;
 /// What is found for each pair of scans by itself.
 void printPairs(const fresco::test::LookAlikeScene& place)
 {
-  std::vector<fresco::registration::PreparedScan> scans;
-  std::vector<fresco::registration::ScanFeatures> features;
+  std::vector<PreparedScan> scans;
+  std::vector<ScanFeatures> features;
   float voxel = 0.f;
   for (const fresco::PointSet& scan : place.scene.scans)
     voxel = std::max(voxel, fresco::registrationVoxel(scan));
   for (const fresco::PointSet& scan : place.scene.scans) {
-    scans.push_back(fresco::registration::prepareScan(scan, fresco::registration::Thinning(voxel), 0));
-    features.push_back(fresco::registration::describeScan(scans.back(), {}));
-    scans.back().twins = fresco::registration::findSelfMotions(scans.back(), features.back());
+    scans.push_back(prepareScan(scan, Thinning(voxel), 0));
+    features.push_back(describeScan(scans.back(), {}));
+    scans.back().aliases = findAliases(scans.back(), features.back());
   }
   for (std::size_t a = 0; a < scans.size(); ++a)
     for (std::size_t b = a + 1; b < scans.size(); ++b) {
-      const auto pair = fresco::registration::alignPair(scans[a], scans[b], features[a], features[b], {});
+      const auto pair = alignPair({scans[a], features[a]}, {scans[b], features[b]}, {});
       std::cout << a << ' ' << b << (pair.ambiguous ? " ambiguous" : "") << '\n';
       const Eigen::Isometry3d truth = place.scene.truth[a].inverse() * place.scene.truth[b];
-      for (const fresco::registration::PairMode& mode : pair.modes) {
-        const auto error = fresco::benchmark::errorOf(mode.T_a_b, truth, Eigen::Vector3d::Zero());
+      for (const VerifiedHypothesis& hypothesis : pair.hypotheses) {
+        const auto error = fresco::benchmark::errorOf(hypothesis.T_a_b, truth, Eigen::Vector3d::Zero());
         std::cout << "    off by " << error.distance << " m, " << error.degrees << " degrees; overlap "
-                  << mode.check.overlap << ", violation " << mode.check.violation << ", colour "
-                  << mode.check.color.value_or(NAN) << ", votes " << mode.votes << (mode.twin ? ", has a twin" : "")
-                  << '\n';
+                  << hypothesis.check.overlap << ", violation " << hypothesis.check.violation << ", colour "
+                  << hypothesis.check.color.value_or(NAN) << ", votes " << hypothesis.votes
+                  << (hypothesis.has_alias ? ", has an alias" : "") << '\n';
       }
     }
 }

@@ -3,7 +3,7 @@
 // (converge).
 #include "experiments/registration_input.h"
 #include "pair/pair_alignment.h"
-#include "scan/self_alignment.h"
+#include "pair/self_alignment.h"
 #include "support/tool.h"
 #include <fresco/io/file.h>
 #include <fresco/registration/core/scan_registration.h>
@@ -16,9 +16,8 @@ using fresco::benchmark::PoseError;
 using fresco::benchmark::processorSeconds;
 using fresco::benchmark::RegistrationInput;
 
-constexpr double right_distance = 0.2, right_degrees = 6.0; // of poses found: metres, degrees
-
-bool isRight(const PoseError& error) { return error.distance < right_distance && error.degrees < right_degrees; }
+// Near enough for refinement: metres, degrees.
+bool isRight(const PoseError& error) { return error.distance < 0.2 && error.degrees < 6.0; }
 
 /// Counts of one class of overlap.
 struct Class {
@@ -34,39 +33,35 @@ Class& classOf(std::vector<Class>& classes, double overlap)
 }
 
 /// As registerScans() thins.
-fresco::registration::Thinning thinningForFeatures(const RegistrationInput& input)
+Thinning thinningForFeatures(const RegistrationInput& input)
 {
   double size = 0.0, narrowness = 0.0;
   for (const fresco::PointSet& scan : input.scans) {
-    size = std::max(size, fresco::registration::scanSize(scan));
-    narrowness += fresco::registration::narrowness(scan) / static_cast<double>(input.scans.size());
+    size = std::max(size, scanSize(scan));
+    narrowness += fresco::registration::narrowness(scan) / input.scans.size();
   }
   return {input.voxel, size, narrowness};
 }
 
-std::vector<fresco::registration::PreparedScan> prepareAll(const RegistrationInput& input,
-                                                           const fresco::registration::Thinning& thinning)
+std::vector<PreparedScan> prepareAll(const RegistrationInput& input, const Thinning& thinning)
 {
-  std::vector<fresco::registration::PreparedScan> scans;
+  std::vector<PreparedScan> scans;
   for (const fresco::PointSet& scan : input.scans)
-    scans.push_back(fresco::registration::prepareScan(scan, thinning, 0));
+    scans.push_back(prepareScan(scan, thinning, 0));
   return scans;
 }
 
 /// Of two scans at their true relative pose.
-double trueOverlap(const std::vector<fresco::registration::PreparedScan>& scans, const RegistrationInput& input,
-                   std::size_t a, std::size_t b)
+double trueOverlap(const std::vector<PreparedScan>& scans, const RegistrationInput& input, std::size_t a, std::size_t b)
 {
   const Eigen::Isometry3d T_a(Eigen::Translation3d(scans[a].center)), T_b(Eigen::Translation3d(scans[b].center));
-  return fresco::registration::checkPair(scans[a], scans[b], T_a.inverse() * input.relative(a, b) * T_b,
-                                         fresco::registration::check_level)
-      .overlap;
+  return checkPair(scans[a], scans[b], T_a.inverse() * input.relative(a, b) * T_b, check_level).overlap;
 }
 
-void countPair(const fresco::registration::PairAlignment& pair, const PoseError& error, Class& own)
+void countPair(const PairAlignment& pair, const PoseError& error, Class& own)
 {
   ++own.pairs;
-  if (pair.modes.empty())
+  if (pair.hypotheses.empty())
     return;
   own.right += isRight(error) ? 1 : 0;
   own.certain_right += isRight(error) && !pair.ambiguous ? 1 : 0;
@@ -76,11 +71,11 @@ void countPair(const fresco::registration::PairAlignment& pair, const PoseError&
 void measurePairs(const RegistrationInput& input, const std::string& overlap_file)
 {
   const double start = processorSeconds();
-  std::vector<fresco::registration::PreparedScan> scans = prepareAll(input, thinningForFeatures(input));
-  std::vector<fresco::registration::ScanFeatures> features;
-  for (fresco::registration::PreparedScan& scan : scans) {
-    features.push_back(fresco::registration::describeScan(scan, {}));
-    scan.twins = fresco::registration::findSelfMotions(scan, features.back());
+  std::vector<PreparedScan> scans = prepareAll(input, thinningForFeatures(input));
+  std::vector<ScanFeatures> features;
+  for (PreparedScan& scan : scans) {
+    features.push_back(describeScan(scan, {}));
+    scan.aliases = findAliases(scan, features.back());
   }
   const double prepared = processorSeconds();
   std::vector<Class> classes = overlapClasses();
@@ -90,13 +85,13 @@ void measurePairs(const RegistrationInput& input, const std::string& overlap_fil
   for (std::size_t a = 0; a < scans.size(); ++a)
     for (std::size_t b = a + 1; b < scans.size(); ++b, ++tried) {
       const double before = processorSeconds();
-      const auto pair = fresco::registration::alignPair(scans[a], scans[b], features[a], features[b], {});
+      const auto pair = alignPair({scans[a], features[a]}, {scans[b], features[b]}, {});
       aligning += processorSeconds() - before;
       const double overlap = trueOverlap(scans, input, a, b);
       overlaps += fresco::concat(a, " ", b, " ", overlap, "\n");
       const Eigen::Isometry3d T_a(Eigen::Translation3d(scans[a].center)), T_b(Eigen::Translation3d(scans[b].center));
       const Eigen::Isometry3d found =
-          pair.modes.empty() ? Eigen::Isometry3d::Identity() : T_a * pair.modes[0].T_a_b * T_b.inverse();
+          pair.hypotheses.empty() ? Eigen::Isometry3d::Identity() : T_a * pair.hypotheses[0].T_a_b * T_b.inverse();
       countPair(pair, errorOf(found, input.relative(a, b), input.middles[b]), classOf(classes, overlap));
     }
   if (!overlap_file.empty())
@@ -105,8 +100,8 @@ void measurePairs(const RegistrationInput& input, const std::string& overlap_fil
   for (const Class& c : classes)
     std::cout << "> " << std::setw(3) << 100.0 * c.least << " %  " << std::setw(5) << c.pairs << "  " << std::setw(5)
               << c.right << "  " << std::setw(19) << c.certain_right << "  " << std::setw(5) << c.certain_wrong << '\n';
-  std::cout << "processor time: preparation " << (prepared - start) / static_cast<double>(scans.size())
-            << " s a scan, alignment " << aligning / tried << " s a pair\n";
+  std::cout << "processor time: preparation " << (prepared - start) / scans.size() << " s a scan, alignment "
+            << aligning / tried << " s a pair\n";
 }
 
 /// Relative poses of all scans in one group, by their true overlap.
@@ -115,7 +110,7 @@ void measureMap(const RegistrationInput& input)
   const double start = processorSeconds();
   const auto result = fresco::registerScans(input.scans);
   const double spent = processorSeconds() - start;
-  const std::vector<fresco::registration::PreparedScan> scans = prepareAll(input, thinningForFeatures(input));
+  const std::vector<PreparedScan> scans = prepareAll(input, thinningForFeatures(input));
   std::vector<Class> classes = overlapClasses();
   for (std::size_t a = 0; a < scans.size(); ++a)
     for (std::size_t b = a + 1; b < scans.size(); ++b) {
@@ -139,8 +134,7 @@ void measureMap(const RegistrationInput& input)
 /// @param tolerance of success, metres and degrees
 void measureConvergence(const RegistrationInput& input, const PoseError& tolerance)
 {
-  const std::vector<fresco::registration::PreparedScan> scans =
-      prepareAll(input, fresco::registration::Thinning(input.voxel));
+  const std::vector<PreparedScan> scans = prepareAll(input, Thinning(input.voxel));
   int tried = 0, good = 0;
   double worst = 0.0;
   fresco::benchmark::Disturbances disturbances(0.3, 15.0);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <ctime>
+#include <fresco/core/constants.h>
 #include <fresco/core/require.h>
 #include <fresco/io/point_io.h>
 #include <fresco/io/pose_file.h>
@@ -13,7 +14,7 @@
 namespace fresco::benchmark {
 using Poses = std::vector<Eigen::Isometry3d, Eigen::aligned_allocator<Eigen::Isometry3d>>;
 
-inline double processorSeconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
+inline double processorSeconds() { return 1.0 * std::clock() / CLOCKS_PER_SEC; }
 
 struct PoseError {
   double distance = 0.0, degrees = 0.0;
@@ -23,7 +24,7 @@ struct PoseError {
 inline PoseError errorOf(const Eigen::Isometry3d& found, const Eigen::Isometry3d& truth, const Eigen::Vector3d& middle)
 {
   return {(found * middle - truth * middle).norm(),
-          Eigen::AngleAxisd(truth.linear().transpose() * found.linear()).angle() * 180.0 / M_PI};
+          Eigen::AngleAxisd(truth.linear().transpose() * found.linear()).angle() * degrees_per_radian};
 }
 
 /// Scans with their true poses.
@@ -62,7 +63,7 @@ inline RegistrationInput readRegistrationInput(const std::vector<std::string>& w
 /// Motions of a given size in random directions about random axes; the same for every method.
 class Disturbances {
 public:
-  Disturbances(double distance, double degrees) : distance_(distance), angle_(degrees * M_PI / 180.0) {}
+  Disturbances(double distance, double degrees) : distance_(distance), angle_(degrees * radians_per_degree) {}
   Eigen::Isometry3d next()
   {
     const Eigen::Vector3d shift = unit(), axis = unit();

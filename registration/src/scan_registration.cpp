@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "graph/global_alignment.h"
-#include "registration_state.h"
+#include "refinement/registration_result.h"
+#include "scan/scan_survey.h"
 #include <algorithm>
 #include <cmath>
 #include <fresco/core/parallel.h>
@@ -10,14 +11,11 @@
 namespace fresco {
 using namespace registration;
 namespace {
-constexpr float distance_voxels = 20.f; // basin of start poses
-constexpr double size_ratio = 100.0;    // between scans of one job: above, one of them is in millimetres
-
 void validate(const ScanSource& scans, const std::vector<Pose>& start, const ScanRegistrationOptions& options)
 {
   require(scans.count > 0, "registration: no scans");
-  const auto count = static_cast<std::size_t>(scans.count);
-  require(start.empty() || start.size() == count, "registration: ", count, " scans, ", start.size(), " start poses");
+  const Index count = scans.count, starts = start.size(), names = options.names.size();
+  require(start.empty() || starts == count, "registration: ", count, " scans, ", starts, " start poses");
   require(options.voxel >= 0.f && std::isfinite(options.voxel), "registration: voxel ", options.voxel,
           " is negative or NaN");
   require(options.max_distance >= 0.f && std::isfinite(options.max_distance), "registration: max_distance ",
@@ -27,55 +25,9 @@ void validate(const ScanSource& scans, const std::vector<Pose>& start, const Sca
   require(options.max_violation >= 0.f && options.max_violation <= 1.f, "registration: max_violation ",
           options.max_violation, " is not in 0..1");
   require(options.max_iterations >= 1, "registration: max_iterations ", options.max_iterations, " is below 1");
-  require(options.names.empty() || options.names.size() == count, "registration: ", count, " scans, ",
-          options.names.size(), " names");
+  require(options.names.empty() || names == count, "registration: ", count, " scans, ", names, " names");
   for (const Pose& pose : start)
     require(!pose || pose->allFinite(), "registration: a start pose is not finite");
-}
-
-// The median of the scans' sizes.
-double commonSize(const std::vector<double>& sizes, const ScanRegistrationOptions& options)
-{
-  std::vector<double> sorted;
-  std::copy_if(sizes.begin(), sizes.end(), std::back_inserter(sorted), [](double size) { return size > 0.0; });
-  if (sorted.empty())
-    return 0.0;
-  std::sort(sorted.begin(), sorted.end());
-  const double median = sorted[(sorted.size() - 1) / 2];
-  for (std::size_t i = 0; i < sizes.size(); ++i)
-    require(!(sizes[i] > 0.0) || (sizes[i] < size_ratio * median && median < size_ratio * sizes[i]),
-            scanName(options, static_cast<Index>(i)), ": reaches ", sizes[i], " from its viewpoint, the others ",
-            median, ": are they in the same unit?");
-  return median;
-}
-
-// What is known of the scans before they are thinned.
-struct Survey {
-  std::vector<double> sizes, voxels; // that suit each scan
-  double narrowness = 0.0;           // mean over the scans
-};
-
-Survey surveyScans(const ScanSource& scans)
-{
-  Survey survey;
-  for (Index i = 0; i < scans.count; ++i) {
-    const PointSet scan = scans.read(i);
-    validatePointSet(scan);
-    survey.sizes.push_back(scanSize(scan));
-    survey.narrowness += narrowness(scan) / static_cast<double>(scans.count);
-    const double size = survey.sizes.back();
-    survey.voxels.push_back(size > 0.0 ? fittingVoxel(scan, size / voxels_per_size) : 0.0);
-  }
-  return survey;
-}
-
-float chooseVoxel(const Survey& survey, double size)
-{
-  std::vector<double> voxels;
-  for (const double voxel : survey.voxels)
-    voxels.push_back(std::max(voxel, size / voxels_per_size));
-  std::nth_element(voxels.begin(), voxels.begin() + static_cast<std::ptrdiff_t>(voxels.size() / 2), voxels.end());
-  return static_cast<float>(voxels[voxels.size() / 2]);
 }
 
 Eigen::Isometry3d workingToScan(const PreparedScan& scan)
@@ -88,7 +40,7 @@ std::vector<PreparedScan> prepareAll(const ScanSource& scans, const Thinning& th
 {
   std::vector<PreparedScan> prepared;
   for (Index i = 0; i < scans.count; ++i) {
-    report(progress, "prepare", static_cast<double>(i) / static_cast<double>(scans.count));
+    report(progress, "prepare", 1.0 * i / scans.count);
     prepared.push_back(prepareScan(scans.read(i), thinning, threads));
   }
   return prepared;
@@ -97,11 +49,12 @@ std::vector<PreparedScan> prepareAll(const ScanSource& scans, const Thinning& th
 ScanCluster startCluster(const std::vector<PreparedScan>& scans, const std::vector<Pose>& start)
 {
   ScanCluster cluster;
-  for (std::size_t i = 0; i < start.size(); ++i)
+  const Index n = start.size();
+  for (Index i = 0; i < n; ++i)
     if (scans[i].problem.empty() && start[i]) {
       Eigen::Isometry3d pose(*start[i]);
-      pose.linear() = Eigen::Quaterniond(pose.linear()).normalized().toRotationMatrix();
-      cluster.scans.push_back(static_cast<Index>(i));
+      pose.linear() = normalized(pose.linear());
+      cluster.scans.push_back(i);
       cluster.poses.push_back(pose * workingToScan(scans[i]));
     }
   return cluster;
@@ -112,8 +65,10 @@ std::vector<ScanCluster> findClusters(std::vector<PreparedScan>& scans, const st
                                       const ScanRegistrationOptions& options, const Progress& progress)
 {
   const ScanCluster known = startCluster(scans, start);
-  const auto usable = std::count_if(scans.begin(), scans.end(), [](const auto& scan) { return scan.problem.empty(); });
-  if (static_cast<Index>(known.scans.size()) == usable)
+  const Index usable =
+      std::count_if(scans.begin(), scans.end(), [](const PreparedScan& scan) { return scan.problem.empty(); });
+  const Index started = known.scans.size();
+  if (started == usable)
     return usable > 0 ? std::vector<ScanCluster>{known} : std::vector<ScanCluster>{};
   return alignGlobally(scans, known, options, progress).graph.clusters;
 }
@@ -128,13 +83,13 @@ Placement toPlacement(const ScanCluster& cluster, const std::vector<PreparedScan
   std::iota(order.begin(), order.end(), std::size_t(0));
   std::sort(order.begin(), order.end(),
             [&](std::size_t x, std::size_t y) { return cluster.scans[x] < cluster.scans[y]; });
-  const auto first = static_cast<std::size_t>(cluster.scans[order[0]]);
+  const Index first = cluster.scans[order[0]];
   const Eigen::Isometry3d T_first_frame = workingToScan(scans[first]) * cluster.poses[order[0]].inverse();
   Placement placement;
   placement.look_alike = cluster.look_alike;
   for (const std::size_t k : order) {
     if (hasStart(cluster.scans[k]))
-      placement.anchors.push_back(static_cast<Index>(placement.members.size()));
+      placement.anchors.push_back(placement.members.size());
     placement.members.push_back(cluster.scans[k]);
     placement.poses.push_back(started ? cluster.poses[k] : T_first_frame * cluster.poses[k]);
   }
@@ -150,15 +105,15 @@ std::string scanName(const ScanRegistrationOptions& options, Index scan)
 ScanRegistrationResult registerScans(const std::vector<PointSet>& scans, const std::vector<Pose>& start,
                                      const ScanRegistrationOptions& options, const Progress& progress)
 {
-  return registerScans(ScanSource{static_cast<Index>(scans.size()), [&](Index i) { return scans[i]; }}, start, options,
-                       progress);
+  return registerScans(ScanSource(scans.size(), [&](Index i) { return scans[i]; }), start, options, progress);
 }
 
 ScanRegistrationResult registerScans(const ScanSource& scans, const std::vector<Pose>& start,
                                      const ScanRegistrationOptions& given, const Progress& progress)
 {
+  constexpr float distance_voxels = 20.f; // the reach of refinement, a fifth of the scans' range
   validate(scans, start, given);
-  const Survey survey = surveyScans(scans);
+  const ScanSurvey survey = surveyScans(scans);
   const double size = commonSize(survey.sizes, given);
   ScanRegistrationOptions options = given;
   if (!(options.voxel > 0.f))
@@ -170,9 +125,9 @@ ScanRegistrationResult registerScans(const ScanSource& scans, const std::vector<
 
   const std::vector<ScanCluster> clusters = findClusters(prepared, start, options, subProgress(progress, 0.3, 0.6));
   std::vector<Placement> placements;
+  const double step = 1.0 / clusters.size();
   for (const ScanCluster& cluster : clusters) {
-    const double done = static_cast<double>(placements.size()) / static_cast<double>(clusters.size());
-    const double step = 1.0 / static_cast<double>(clusters.size());
+    const double done = placements.size() * step;
     placements.push_back(toPlacement(cluster, prepared, start));
     refinePlacement(prepared, options, placements.back(),
                     subProgress(progress, 0.6 + 0.4 * done, 0.6 + 0.4 * (done + step)));

@@ -65,7 +65,7 @@ TEST(PoseGraph, ClosingTheLoopSpreadsTheError)
   EXPECT_EQ(poses[0].matrix(), ring.chained[0].matrix());
 }
 
-TEST(PoseGraph, OneWrongEdgeLosesItsSay)
+TEST(PoseGraph, OneWrongEdgeHasLittleWeight)
 {
   Ring ring = makeRing(8, 0.0);
   ring.edges.push_back({0, 4, ring.truth[1], 1.0});

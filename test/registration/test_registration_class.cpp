@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "registration/registration_scene.h"
+#include <atomic>
 #include <fresco/registration/point_to_plane_registration.h>
 #include <fresco/registration/scan_registration.h>
 #include <gtest/gtest.h>
@@ -80,6 +81,84 @@ TEST(PointToPlaneClass, NoOverlapDoesNotConverge)
   Cloud aligned;
   pair.align(aligned, away);
   EXPECT_FALSE(pair.hasConverged());
+}
+
+/// PCL's tree, which counts its searches.
+class CountingTree : public pcl::search::KdTree<pcl::PointXYZ> {
+public:
+  using Base = pcl::search::KdTree<pcl::PointXYZ>;
+  using Base::nearestKSearch;
+  int nearestKSearch(const pcl::PointXYZ& point, int k, pcl::Indices& indices,
+                     std::vector<float>& squared) const override
+  {
+    ++searches;
+    return Base::nearestKSearch(point, k, indices, squared);
+  }
+  mutable std::atomic<int> searches{0};
+};
+
+TEST(PointToPlaneClass, SearchMethodsOfPclGiveTheSame)
+{
+  Pair own, given;
+  const pcl::shared_ptr<CountingTree> target_tree(new CountingTree), source_tree(new CountingTree);
+  given.setSearchMethodTarget(target_tree);
+  given.setSearchMethodSource(source_tree);
+  const Cloud::Ptr source = cloudOf(1), target = cloudOf(0);
+  Cloud aligned;
+  for (Pair* pair : {&own, &given}) {
+    pair->setInputSource(source);
+    pair->setInputTarget(target);
+    pair->align(aligned, guessOf(1, 0));
+    EXPECT_TRUE(pair->hasConverged());
+  }
+  EXPECT_GT(target_tree->searches, 10000);
+  EXPECT_GT(source_tree->searches, 10000);
+  EXPECT_LT((own.getFinalTransformation() - given.getFinalTransformation()).norm(), 1e-5f);
+  EXPECT_NEAR(own.getResult().overlap, given.getResult().overlap, 1e-3);
+  EXPECT_EQ(target_tree->getInputCloud(), target); // as pcl::Registration left it
+  EXPECT_NEAR(own.getFitnessScore(), given.getFitnessScore(), 1e-5);
+  const Eigen::Matrix4f first = given.getFinalTransformation();
+  given.align(aligned, guessOf(1, 0));
+  EXPECT_EQ(given.getFinalTransformation(), first); // the prepared target is used again
+}
+
+TEST(PointToPlaneClass, OneTreeForBothCloudsServesTheTarget)
+{
+  Pair own, given;
+  const pcl::search::KdTree<pcl::PointXYZ>::Ptr tree(new pcl::search::KdTree<pcl::PointXYZ>);
+  given.setSearchMethodTarget(tree);
+  given.setSearchMethodSource(tree);
+  Cloud aligned;
+  for (Pair* pair : {&own, &given}) {
+    pair->setInputSource(cloudOf(1));
+    pair->setInputTarget(cloudOf(0));
+    pair->align(aligned, guessOf(1, 0));
+  }
+  EXPECT_LT((own.getFinalTransformation() - given.getFinalTransformation()).norm(), 1e-5f);
+}
+
+TEST(PointToPlaneClass, OptionsAndProgress)
+{
+  Pair pair;
+  PointToPlaneOptions options;
+  options.max_distance = 0.3f;
+  options.max_iterations = 7;
+  options.min_motion = 0.002f;
+  options.samples = 900;
+  options.threads = 2;
+  pair.setOptions(options);
+  EXPECT_EQ(pair.getMaximumIterations(), 7);
+  EXPECT_EQ(pair.getThreads(), 2);
+  EXPECT_FLOAT_EQ(pair.getOptions().max_distance, 0.3f);
+  EXPECT_FLOAT_EQ(pair.getOptions().min_motion, 0.002f);
+  EXPECT_EQ(pair.getOptions().samples, 900);
+  pair.setOptions({});
+  EXPECT_EQ(pair.getOptions().max_distance, 0.f);
+  pair.setProgress([](std::string_view, double) { return false; });
+  pair.setInputSource(cloudOf(1));
+  pair.setInputTarget(cloudOf(0));
+  Cloud aligned;
+  EXPECT_THROW(pair.align(aligned, guessOf(1, 0)), std::runtime_error);
 }
 
 TEST(PointToPlaneClass, TooFewPointsThrow)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "pair/self_alignment.h"
 #include "registration/look_alike_scenes.h"
-#include "scan/self_alignment.h"
 #include <fresco/registration/core/point_to_plane_registration.h>
 #include <gtest/gtest.h>
 using namespace fresco::registration;
@@ -26,41 +26,41 @@ Outcome registered(const LookAlikeScene& place)
   return outcome;
 }
 
-SelfMotions selfMotions(const PointSet& set)
+ScanAliases aliasesOf(const PointSet& set)
 {
   const PreparedScan scan = prepareScan(set, {registrationVoxel(set), scanSize(set), narrowness(set)}, 0);
-  return findSelfMotions(scan, describeScan(scan, {}));
+  return findAliases(scan, describeScan(scan, {}));
 }
 
-bool anyCertain(const SelfMotions& motions)
+bool anyCertain(const ScanAliases& aliases)
 {
-  return std::any_of(motions.begin(), motions.end(), [](const SelfMotion& motion) { return motion.certain; });
+  return std::any_of(aliases.begin(), aliases.end(), [](const ScanAlias& alias) { return alias.certain; });
 }
 
 // A corridor of equal bays maps onto itself by whole bays; by nothing else does it without contradiction.
-TEST(SelfSimilarity, EqualBaysAreFound)
+TEST(SelfAlignment, EqualBaysAreFound)
 {
   const LookAlikeScene place = test::bays({true, false});
   int found = 0;
   for (std::size_t i = 0; i < place.scene.scans.size(); ++i) {
-    const SelfMotions motions = selfMotions(place.scene.scans[i]);
-    found += anyCertain(motions) ? 1 : 0;
-    for (const SelfMotion& motion : motions)
-      if (motion.certain) {
-        const double bays = motion.T.translation().norm() / 3.0;
+    const ScanAliases aliases = aliasesOf(place.scene.scans[i]);
+    found += anyCertain(aliases) ? 1 : 0;
+    for (const ScanAlias& alias : aliases)
+      if (alias.certain) {
+        const double bays = alias.T.translation().norm() / 3.0;
         EXPECT_NEAR(bays, std::round(bays), 0.03);
-        EXPECT_LT(Eigen::AngleAxisd(motion.T.linear()).angle(), 0.02);
+        EXPECT_LT(Eigen::AngleAxisd(alias.T.linear()).angle(), 0.02);
       }
   }
   EXPECT_GE(found, 1);
 }
 
-TEST(SelfSimilarity, FurnishedRoomsHaveNone)
+TEST(SelfAlignment, FurnishedRoomsHaveNone)
 {
   for (const PointSet& scan : test::scanTwoRooms(30000).scans)
-    EXPECT_FALSE(anyCertain(selfMotions(scan)));
+    EXPECT_FALSE(anyCertain(aliasesOf(scan)));
   for (const PointSet& scan : test::bays({false, false}).scene.scans)
-    EXPECT_FALSE(anyCertain(selfMotions(scan)));
+    EXPECT_FALSE(anyCertain(aliasesOf(scan)));
 }
 
 // What nothing tells apart is left in groups, and the report says why.
@@ -96,20 +96,20 @@ TEST(LookAlikes, EqualRoomsThatSeeEachOtherAreNotMerged)
   }
 }
 
-TEST(SelfSimilarity, EqualRoomsBehindDoorsAreGlimpsed)
+TEST(SelfAlignment, EqualRoomsBehindDoorsArePartialAliases)
 {
   Eigen::Isometry3d half_turn(Eigen::Translation3d(10, 4, 0) * Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitZ()));
   for (const bool equal : {true, false}) {
     const test::ScannedScene scene = test::facingRooms({equal, false, false, test::Paint::none}).scene;
-    int glimpsed = 0;
+    int partial = 0;
     for (std::size_t i = 0; i < scene.scans.size(); ++i)
-      for (const SelfMotion& motion : selfMotions(scene.scans[i]))
-        if (motion.glimpsed) {
-          ++glimpsed;
-          const Eigen::Isometry3d moved = scene.truth[i] * motion.T * scene.truth[i].inverse();
+      for (const ScanAlias& alias : aliasesOf(scene.scans[i]))
+        if (alias.partial) {
+          ++partial;
+          const Eigen::Isometry3d moved = scene.truth[i] * alias.T * scene.truth[i].inverse();
           EXPECT_LT(poseDistance(moved, half_turn, 2.0), 0.5);
         }
-    EXPECT_EQ(glimpsed > 0, equal);
+    EXPECT_EQ(partial > 0, equal);
   }
 }
 

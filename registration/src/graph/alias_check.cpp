@@ -4,103 +4,92 @@
 #include <fresco/core/parallel.h>
 namespace fresco::registration {
 namespace {
-constexpr double leg_overlap = 0.3;  // of a leg / of the contested pair: less is no rival
-constexpr double mode_overlap = 0.4; // of a mode / of the best mode of its pair
-
-// A relative pose of two clusters by a mode of one pair.
-struct Leg {
-  std::size_t from, to; // clusters
+// A relative pose of two clusters by a hypothesis of one pair: half of a chain.
+struct ChainLink {
+  Index from, to; // clusters
   Eigen::Isometry3d T_from_to;
-  double overlap, violation;
 };
-using Legs = std::vector<Leg, Eigen::aligned_allocator<Leg>>;
+using ChainLinks = std::vector<ChainLink, Eigen::aligned_allocator<ChainLink>>;
 
-struct Place {
-  std::size_t cluster = 0, position = 0;
-};
-
-std::vector<Place> placesOf(const std::vector<ScanCluster>& clusters, std::size_t scan_count)
+// Hypotheses that stand comparison with the best of their pair.
+VerifiedHypotheses soundHypotheses(const PairAlignment& pair)
 {
-  std::vector<Place> places(scan_count);
-  for (std::size_t c = 0; c < clusters.size(); ++c)
-    for (std::size_t k = 0; k < clusters[c].scans.size(); ++k)
-      places[clusters[c].scans[k]] = {c, k};
-  return places;
-}
-
-// Modes that stand comparison with the best of their pair.
-PairModes soundModes(const PairAlignment& pair)
-{
+  constexpr double sound_overlap = 0.4; // of the best overlap: twins of a room are seen as well as the room itself
   double overlap = 0.0, violation = 1.0;
-  for (const PairMode& mode : pair.modes)
-    overlap = std::max(overlap, mode.check.overlap);
-  for (const PairMode& mode : pair.modes)
-    if (mode.check.overlap > mode_overlap * overlap)
-      violation = std::min(violation, mode.check.violation);
-  PairModes sound;
-  for (const PairMode& mode : pair.modes)
-    if (mode.check.overlap > mode_overlap * overlap && !clearlyWorse(mode.check.violation, violation))
-      sound.push_back(mode);
+  for (const VerifiedHypothesis& hypothesis : pair.hypotheses)
+    overlap = std::max(overlap, hypothesis.check.overlap);
+  for (const VerifiedHypothesis& hypothesis : pair.hypotheses)
+    if (hypothesis.check.overlap > sound_overlap * overlap)
+      violation = std::min(violation, hypothesis.check.violation);
+  VerifiedHypotheses sound;
+  for (const VerifiedHypothesis& hypothesis : pair.hypotheses)
+    if (hypothesis.check.overlap > sound_overlap * overlap && !clearlyWorse(hypothesis.check.violation, violation))
+      sound.push_back(hypothesis);
   return sound;
 }
 
-class Contest {
-public:
-  Contest(const std::vector<PreparedScan>& scans, const std::vector<ScanCluster>& clusters, const ClusterJoin& join,
-          const GraphOptions& options)
-      : scans_(scans), clusters_(clusters), join_(join), options_(options)
-  {}
-
-  bool run(const std::vector<PairAlignment>& pairs);
-
-private:
-  Legs legsFrom(std::size_t cluster, const std::vector<PairAlignment>& pairs) const;
-  bool rivals(const Leg& out, const Leg& back) const;
-  double violation(std::size_t first, std::size_t second, const Eigen::Isometry3d& T) const
-  {
-    return worstViolation(scans_, clusters_[first], clusters_[second], T, options_.threads);
-  }
-
-  const std::vector<PreparedScan>& scans_;
-  const std::vector<ScanCluster>& clusters_;
-  const ClusterJoin& join_;
-  const GraphOptions& options_;
-};
-
-// To clusters other than the two to be joined. Scans without free space cannot speak for a rival.
-Legs Contest::legsFrom(std::size_t cluster, const std::vector<PairAlignment>& pairs) const
+// Whether a pose of the second cluster is another place than that of the join.
+bool isElsewhere(const GraphInput& input, const ScanCluster& first, const ClusterJoin& join, const Eigen::Isometry3d& T)
 {
-  const std::vector<Place> places = placesOf(clusters_, scans_.size());
-  Legs legs;
-  for (const PairAlignment& pair : pairs) {
-    const auto a = static_cast<std::size_t>(pair.a), b = static_cast<std::size_t>(pair.b);
-    const std::size_t one = places[a].cluster, other = places[b].cluster, far = one == cluster ? other : one;
-    if ((one != cluster && other != cluster) || far == join_.first || far == join_.second ||
-        scans_[a].free_space.empty() || scans_[b].free_space.empty())
-      continue;
-    for (const PairMode& mode : soundModes(pair)) {
-      const Eigen::Isometry3d T_one_other =
-          clusters_[one].poses[places[a].position] * mode.T_a_b * clusters_[other].poses[places[b].position].inverse();
-      if (mode.check.overlap > leg_overlap * join_.overlap)
-        legs.push_back({cluster, far, one == cluster ? T_one_other : Eigen::Isometry3d(T_one_other.inverse()),
-                        mode.check.overlap, mode.check.violation});
-    }
-  }
-  return legs;
+  const double size = input.scans[first.scans[0]].size;
+  return poseDistance(T, join.T_first_second, size) >= std::max<double>(3.0 * input.options.tolerance, 0.5 * size);
 }
 
-// Whether the way over the third cluster leads to a place that free space does not rule out more than that of the join.
-bool Contest::rivals(const Leg& out, const Leg& back) const
+class ChainCheck {
+public:
+  ChainCheck(const GraphInput& input, const std::vector<ScanCluster>& clusters, const ClusterJoin& join)
+      : input_(input), clusters_(clusters), join_(join)
+  {}
+
+  bool run() const;
+
+private:
+  ChainLinks linksFrom(Index cluster) const;
+  bool isAlias(const ChainLink& out, const ChainLink& back) const;
+  double violation(Index first, Index second, const Eigen::Isometry3d& T) const
+  {
+    return worstViolation(input_, clusters_[first], clusters_[second], T);
+  }
+
+  const GraphInput& input_;
+  const std::vector<ScanCluster>& clusters_;
+  const ClusterJoin& join_;
+};
+
+// To clusters other than the two to be joined. Scans without free space cannot speak for an alias.
+ChainLinks ChainCheck::linksFrom(Index cluster) const
+{
+  constexpr double least_overlap = 0.3; // of a link / of the join: less is no evidence against it
+  const std::vector<ClusterPlace> places = placesOf(clusters_, input_.scans.size());
+  ChainLinks links;
+  for (const PairAlignment& pair : input_.pairs) {
+    const ClusterPlace &a = places[pair.a], &b = places[pair.b];
+    const Index far = a.cluster == cluster ? b.cluster : a.cluster;
+    if ((a.cluster != cluster && b.cluster != cluster) || far == join_.first || far == join_.second ||
+        input_.scans[pair.a].free_space.empty() || input_.scans[pair.b].free_space.empty())
+      continue;
+    for (const VerifiedHypothesis& hypothesis : soundHypotheses(pair)) {
+      const Eigen::Isometry3d T =
+          clusters_[a.cluster].poses[a.position] * hypothesis.T_a_b * clusters_[b.cluster].poses[b.position].inverse();
+      if (hypothesis.check.overlap > least_overlap * join_.overlap)
+        links.push_back({cluster, far, a.cluster == cluster ? T : Eigen::Isometry3d(T.inverse())});
+    }
+  }
+  return links;
+}
+
+// Whether the chain over the third cluster leads to a place that free space does not rule out more than that of the
+// join.
+bool ChainCheck::isAlias(const ChainLink& out, const ChainLink& back) const
 {
   const Eigen::Isometry3d T = out.T_from_to * back.T_from_to.inverse();
-  const double size = scans_[clusters_[join_.first].scans[0]].size;
-  if (poseDistance(T, join_.T_first_second, size) < std::max<double>(3.0 * options_.tolerance, 0.5 * size))
+  if (!isElsewhere(input_, clusters_[join_.first], join_, T))
     return false;
   const double there = std::max({violation(join_.first, join_.second, T), violation(join_.first, out.to, out.T_from_to),
                                  violation(join_.second, out.to, back.T_from_to)});
-  if (there > options_.max_violation)
+  if (there > input_.options.max_violation)
     return false;
-  // With the join, the third cluster can hold to one of its two legs.
+  // With the join, the third cluster can hold to one of its two links.
   const Eigen::Isometry3d T_second_first = join_.T_first_second.inverse();
   const double here = std::max(violation(join_.first, join_.second, join_.T_first_second),
                                std::min(violation(join_.second, out.to, T_second_first * out.T_from_to),
@@ -108,28 +97,42 @@ bool Contest::rivals(const Leg& out, const Leg& back) const
   return !clearlyWorse(there, here);
 }
 
-bool Contest::run(const std::vector<PairAlignment>& pairs)
+bool ChainCheck::run() const
 {
-  const Legs out = legsFrom(join_.first, pairs), back = legsFrom(join_.second, pairs);
-  for (const Leg& first : out)
-    for (const Leg& second : back)
-      if (first.to == second.to && rivals(first, second))
+  const ChainLinks out = linksFrom(join_.first), back = linksFrom(join_.second);
+  for (const ChainLink& first : out)
+    for (const ChainLink& second : back)
+      if (first.to == second.to && isAlias(first, second))
         return true;
   return false;
 }
+
+// Poses of the second cluster at the other places of the certain aliases of one of the two.
+IsometryVector aliasPoses(const GraphInput& input, const ScanCluster& cluster, const ClusterJoin& join, bool is_first)
+{
+  IsometryVector poses;
+  for (std::size_t k = 0; k < cluster.scans.size(); ++k)
+    for (const ScanAlias& alias : input.scans[cluster.scans[k]].aliases)
+      if (alias.certain)
+        for (const Eigen::Isometry3d& S : {alias.T, alias.T.inverse()}) {
+          const Eigen::Isometry3d own = cluster.poses[k] * S * cluster.poses[k].inverse();
+          poses.push_back(is_first ? own * join.T_first_second : join.T_first_second * own);
+        }
+  return poses;
+}
 } // namespace
 
-double worstViolation(const std::vector<PreparedScan>& scans, const ScanCluster& first, const ScanCluster& second,
-                      const Eigen::Isometry3d& T_first_second, int threads)
+double worstViolation(const GraphInput& input, const ScanCluster& first, const ScanCluster& second,
+                      const Eigen::Isometry3d& T_first_second)
 {
-  const std::size_t n = first.scans.size(), m = second.scans.size();
+  const Index n = first.scans.size(), m = second.scans.size();
   std::vector<double> violations(n * m, 0.0);
   parallelFor(
-      n * m, threads,
+      n * m, input.options.threads,
       [&](Index k) {
-        const std::size_t i = static_cast<std::size_t>(k) / m, j = static_cast<std::size_t>(k) % m;
-        const PreparedScan& a = scans[first.scans[i]];
-        const PreparedScan& b = scans[second.scans[j]];
+        const Index i = k / m, j = k % m;
+        const PreparedScan& a = input.scans[first.scans[i]];
+        const PreparedScan& b = input.scans[second.scans[j]];
         const Eigen::Isometry3d T_a_b = first.poses[i].inverse() * T_first_second * second.poses[j];
         violations[k] = checkPair(a, b, T_a_b, check_level).violation;
       },
@@ -137,37 +140,25 @@ double worstViolation(const std::vector<PreparedScan>& scans, const ScanCluster&
   return *std::max_element(violations.begin(), violations.end());
 }
 
-bool isContested(const std::vector<PreparedScan>& scans, const std::vector<PairAlignment>& pairs,
-                 const std::vector<ScanCluster>& clusters, const ClusterJoin& join, const GraphOptions& options)
+bool hasAliasByChain(const GraphInput& input, const std::vector<ScanCluster>& clusters, const ClusterJoin& join)
 {
-  return Contest(scans, clusters, join, options).run(pairs);
+  return ChainCheck(input, clusters, join).run();
 }
 
-bool hasTwin(const std::vector<PreparedScan>& scans, const std::vector<ScanCluster>& clusters, const ClusterJoin& join,
-             const GraphOptions& options)
+bool hasAliasByScan(const GraphInput& input, const std::vector<ScanCluster>& clusters, const ClusterJoin& join)
 {
   const ScanCluster &first = clusters[join.first], &second = clusters[join.second];
-  IsometryVector elsewhere;
-  const auto collect = [&](const ScanCluster& cluster, bool is_first) {
-    for (std::size_t k = 0; k < cluster.scans.size(); ++k)
-      for (const SelfMotion& motion : scans[cluster.scans[k]].twins)
-        if (motion.certain)
-          for (const Eigen::Isometry3d& S : {motion.T, motion.T.inverse()}) {
-            const Eigen::Isometry3d own = cluster.poses[k] * S * cluster.poses[k].inverse();
-            elsewhere.push_back(is_first ? own * join.T_first_second : join.T_first_second * own);
-          }
-  };
-  collect(first, true);
-  collect(second, false);
+  IsometryVector elsewhere = aliasPoses(input, first, join, true);
+  for (const Eigen::Isometry3d& T : aliasPoses(input, second, join, false))
+    elsewhere.push_back(T);
   if (elsewhere.empty())
     return false;
-  const double size = scans[first.scans[0]].size;
-  const double here = worstViolation(scans, first, second, join.T_first_second, options.threads);
+  const double here = worstViolation(input, first, second, join.T_first_second);
   return std::any_of(elsewhere.begin(), elsewhere.end(), [&](const Eigen::Isometry3d& T) {
-    if (poseDistance(T, join.T_first_second, size) < std::max<double>(3.0 * options.tolerance, 0.5 * size))
+    if (!isElsewhere(input, first, join, T))
       return false;
-    const double there = worstViolation(scans, first, second, T, options.threads);
-    return there <= options.max_violation && !clearlyWorse(there, here);
+    const double there = worstViolation(input, first, second, T);
+    return there <= input.options.max_violation && !clearlyWorse(there, here);
   });
 }
 } // namespace fresco::registration

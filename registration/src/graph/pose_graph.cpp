@@ -4,23 +4,10 @@
 #include <cmath>
 namespace fresco::registration {
 namespace {
-constexpr double least_gain = 1e-9; // relative fall of the energy that is still worth a step
-constexpr double most_damping = 1e8;
-
-Eigen::Matrix3d cross(const Eigen::Vector3d& v)
-{
-  Eigen::Matrix3d matrix;
-  matrix << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
-  return matrix;
-}
-
 Eigen::Isometry3d motion(const Vector6d& step, double size)
 {
-  const Eigen::Vector3d w = step.head<3>() / size;
-  const double angle = w.norm();
   Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
-  if (angle > 0.0)
-    T.linear() = Eigen::AngleAxisd(angle, w / angle).toRotationMatrix();
+  T.linear() = rotation(step.head<3>() / size);
   T.translation() = step.tail<3>();
   return T;
 }
@@ -31,7 +18,7 @@ public:
   IsometryVector run(IsometryVector poses) const;
 
 private:
-  bool fixed(std::size_t i) const { return options_.fixed.empty() ? i == 0 : options_.fixed[i] != 0; }
+  bool fixed(Index i) const { return options_.fixed.empty() ? i == 0 : options_.fixed[i] != 0; }
   Vector6d error(const IsometryVector& poses, const PoseEdge& edge) const;
   double energy(const IsometryVector& poses) const;
   Eigen::VectorXd step(const IsometryVector& poses, double damping) const;
@@ -64,7 +51,7 @@ double PoseGraph::energy(const IsometryVector& poses) const
 
 Eigen::VectorXd PoseGraph::step(const IsometryVector& poses, double damping) const
 {
-  const Index n = 6 * static_cast<Index>(poses.size());
+  const Index n = 6 * poses.size();
   const double c = options_.tolerance * options_.tolerance;
   std::vector<Eigen::Triplet<double>> entries;
   Eigen::VectorXd g = Eigen::VectorXd::Zero(n), diagonal = Eigen::VectorXd::Zero(n);
@@ -80,7 +67,7 @@ Eigen::VectorXd PoseGraph::step(const IsometryVector& poses, double damping) con
     // The error moves with b and against a motion of a carried over to the frame of b.
     Matrix6d J = Matrix6d::Zero();
     J.topLeftCorner<3, 3>() = J.bottomRightCorner<3, 3>() = -T.linear();
-    J.bottomLeftCorner<3, 3>() = -cross(T.translation()) * T.linear() / options_.size;
+    J.bottomLeftCorner<3, 3>() = -skew(T.translation()) * T.linear() / options_.size;
     add(edge.a, edge.a, weight * J.transpose() * J);
     add(edge.a, edge.b, weight * J.transpose());
     add(edge.b, edge.a, weight * J);
@@ -95,11 +82,9 @@ Eigen::VectorXd PoseGraph::step(const IsometryVector& poses, double damping) con
   Eigen::SparseMatrix<double> H(n, n);
   H.setFromTriplets(entries.begin(), entries.end());
   // Rows of fixed poses become those of the identity.
-  H.prune([&](Index row, Index column, double) {
-    return !fixed(static_cast<std::size_t>(row / 6)) && !fixed(static_cast<std::size_t>(column / 6));
-  });
+  H.prune([&](Index row, Index column, double) { return !fixed(row / 6) && !fixed(column / 6); });
   for (Index k = 0; k < n; ++k)
-    if (fixed(static_cast<std::size_t>(k / 6))) {
+    if (fixed(k / 6)) {
       H.coeffRef(k, k) = 1.0;
       g[k] = 0.0;
     }
@@ -109,16 +94,19 @@ Eigen::VectorXd PoseGraph::step(const IsometryVector& poses, double damping) con
 IsometryVector PoseGraph::moved(const IsometryVector& poses, const Eigen::VectorXd& x) const
 {
   IsometryVector result = poses;
-  for (std::size_t i = 0; i < poses.size(); ++i)
+  const Index n = poses.size();
+  for (Index i = 0; i < n; ++i)
     if (!fixed(i)) {
-      result[i] = poses[i] * motion(x.segment<6>(6 * static_cast<Index>(i)), options_.size);
-      result[i].linear() = Eigen::Quaterniond(result[i].linear()).normalized().toRotationMatrix();
+      result[i] = poses[i] * motion(x.segment<6>(6 * i), options_.size);
+      result[i].linear() = normalized(result[i].linear());
     }
   return result;
 }
 
 IsometryVector PoseGraph::run(IsometryVector poses) const
 {
+  constexpr double least_gain = 1e-9;  // relative fall of the energy: less is rounding
+  constexpr double most_damping = 1e8; // steps are then a hundred millionth of what they were
   double damping = 1e-6, now = energy(poses);
   for (int k = 0; k < options_.max_iterations && damping < most_damping; ++k) {
     const Eigen::VectorXd x = step(poses, damping);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include "refinement/joint_refinement.h"
-#include <vector>
+#include "refinement/rigid_motion.h"
+#include <fresco/core/types.h>
 namespace fresco::registration {
 /// A measured relative pose of two scans.
 struct PoseEdge {
@@ -19,7 +19,7 @@ struct PoseGraphOptions {
 };
 
 /// Poses that agree best with all edges: spreads the errors of loops over their edges. Levenberg-Marquardt over rigid
-/// motions with the weights of Geman & McClure 1985, under which single wrong edges lose their say.
+/// motions with the weights of Geman & McClure 1985, under which single wrong edges have little weight.
 /// @param poses world from scan, near enough that most edges are within a few tolerances
 IsometryVector optimizePoseGraph(IsometryVector poses, const PoseEdges& edges, const PoseGraphOptions& options);
 } // namespace fresco::registration

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include "pair/pair_alignment.h"
-#include "refinement/joint_refinement.h"
+#include "refinement/rigid_motion.h"
 namespace fresco::registration {
 /// Scans in one common frame.
 struct ScanCluster {
@@ -9,6 +9,14 @@ struct ScanCluster {
   IsometryVector poses;    ///< frame of the cluster from working frame
   bool look_alike = false; ///< whether it fits to other clusters in several ways between which nothing decides
 };
+
+/// Where a scan is.
+struct ClusterPlace {
+  Index cluster = 0, position = 0;
+};
+
+/// Place of each scan, {0, 0} for those in no cluster.
+std::vector<ClusterPlace> placesOf(const std::vector<ScanCluster>& clusters, Index scan_count);
 
 struct ScanGraph {
   std::vector<ScanCluster> clusters; ///< every usable scan in one of them, largest first, but `known` before all
@@ -21,10 +29,16 @@ struct GraphOptions {
   int threads = 0;
 };
 
+/// What graphs are made of.
+struct GraphInput {
+  const std::vector<PreparedScan>& scans;
+  const std::vector<PairAlignment>& pairs;
+  GraphOptions options;
+};
+
 /// Joins scans to clusters by the relative poses of pairs, the best first. Two clusters are joined only if no scan of
-/// one lies in space that a scan of the other saw through. Of an ambiguous pair a mode is used only if it is the one
-/// that the clusters' other scans do not contradict. `scans` without a problem take part.
+/// one lies in space that a scan of the other saw through. Of an ambiguous pair a hypothesis is used only if it is the
+/// one that the clusters' other scans do not contradict. Scans without a problem take part.
 /// @param known scans that already share a frame; may be empty
-ScanGraph buildScanGraph(const std::vector<PreparedScan>& scans, const std::vector<PairAlignment>& pairs,
-                         const ScanCluster& known, const GraphOptions& options);
+ScanGraph buildScanGraph(const GraphInput& input, const ScanCluster& known);
 } // namespace fresco::registration

@@ -11,51 +11,52 @@ double overlapShare(const ScanLevel& source, const ScanLevel& target, const Eige
   Index found = 0;
   for (Index k = 0; k < count; ++k) {
     const Index i = source.samples[k];
-    const auto hit = target.tree->nearest(T_target_source * source.points.col(i), test.distance);
+    const auto hit = target.nearest(T_target_source * source.points.col(i), test.distance);
     if (hit.index < 0)
       continue;
     const float cosine = target.normals.col(hit.index).dot(T_target_source.linear() * source.normals.col(i));
     found += (test.oriented ? cosine : std::abs(cosine)) > least_cosine ? 1 : 0;
   }
-  return count > 0 ? static_cast<double>(found) / static_cast<double>(count) : 0.0;
+  return count > 0 ? 1.0 * found / count : 0.0;
 }
 
 namespace {
-constexpr Index color_samples = 3000, fewest_colored = 300;
-constexpr double least_variance = 3 * 6.0 * 6.0; // of 8-bit colours, sum of the channels: below, noise decides
-constexpr int neighbor_count = 8;                // of a violating point
-constexpr int fewest_violating = 6; // of them: mixed points at edges violate alone, misplaced surfaces all over
-
-double violationShare(const FreeSpace& space, const ScanLevel& level, const Eigen::Isometry3f& T_space_level)
+// Share of the comparable points of a level that lie, together with their neighbours, in space that was seen through.
+double violationShare(const ScanFreeSpace& space, const ScanLevel& level, const Eigen::Isometry3f& T_space_level)
 {
+  constexpr int neighbor_count = 8;
+  constexpr int fewest_violating = 6; // of them: mixed pixels at edges violate alone, misplaced surfaces all over
   if (space.empty())
     return 0.0;
   const auto verdicts = space.judge(level.points, T_space_level, {1.5f * level.voxel, 0.02f});
   Index comparable = 0, violating = 0;
   std::vector<Neighbor> hits;
   for (Index i = 0; i < level.points.cols(); ++i) {
-    comparable += verdicts[i] != FreeSpace::Verdict::unknown ? 1 : 0;
-    if (verdicts[i] != FreeSpace::Verdict::violates)
+    comparable += verdicts[i] != ScanFreeSpace::Verdict::unknown ? 1 : 0;
+    if (verdicts[i] != ScanFreeSpace::Verdict::violates)
       continue;
-    level.tree->nearest(level.points.col(i), neighbor_count, hits);
+    level.nearest(level.points.col(i), neighbor_count, hits);
     const auto around = std::count_if(hits.begin(), hits.end(), [&](const Neighbor& hit) {
-      return verdicts[hit.index] == FreeSpace::Verdict::violates;
+      return verdicts[hit.index] == ScanFreeSpace::Verdict::violates;
     });
     violating += around >= fewest_violating ? 1 : 0;
   }
-  return static_cast<double>(violating) / static_cast<double>(std::max<Index>(1, comparable));
+  return 1.0 * violating / std::max<Index>(1, comparable);
 }
+
 // Pearson's correlation, pooled over the three channels: blind to gain and offset of each scan.
 std::optional<double> colorCorrelation(const ScanLevel& source, const ScanLevel& target,
                                        const Eigen::Isometry3f& T_target_source, float distance)
 {
+  constexpr Index most_samples = 3000, fewest_samples = 300; // the correlation is then known to 0.02 and 0.06
+  constexpr double least_variance = 3 * 6.0 * 6.0; // of 8-bit colours, sum of the channels: below, noise decides
   if (source.colors.cols() == 0 || target.colors.cols() == 0)
     return {};
   Eigen::Array3d sx(0, 0, 0), sy(0, 0, 0), sxx(0, 0, 0), syy(0, 0, 0), sxy(0, 0, 0);
   Index count = 0;
-  for (Index k = 0; k < std::min(color_samples, static_cast<Index>(source.samples.size())); ++k) {
+  for (Index k = 0; k < std::min(most_samples, static_cast<Index>(source.samples.size())); ++k) {
     const Index i = source.samples[k];
-    const auto hit = target.tree->nearest(T_target_source * source.points.col(i), distance);
+    const auto hit = target.nearest(T_target_source * source.points.col(i), distance);
     if (hit.index < 0)
       continue;
     const Eigen::Array3d x = source.colors.col(i).cast<double>(), y = target.colors.col(hit.index).cast<double>();
@@ -68,7 +69,7 @@ std::optional<double> colorCorrelation(const ScanLevel& source, const ScanLevel&
   }
   const double n = count;
   const double vx = (sxx - sx * sx / n).sum() / n, vy = (syy - sy * sy / n).sum() / n;
-  if (count < fewest_colored || vx < least_variance || vy < least_variance)
+  if (count < fewest_samples || vx < least_variance || vy < least_variance)
     return {};
   return (sxy - sx * sy / n).sum() / n / std::sqrt(vx * vy);
 }
@@ -79,6 +80,8 @@ PairCheck checkPair(const PreparedScan& a, const PreparedScan& b, const Eigen::I
   const ScanLevel& level_a = a.levels[level];
   const ScanLevel& level_b = b.levels[level];
   const Eigen::Isometry3f T_ab = T_a_b.cast<float>(), T_ba = T_a_b.inverse().cast<float>();
+  level_a.prepareSearch();
+  level_b.prepareSearch();
   OverlapTest test;
   test.distance = 2.f * std::max(level_a.voxel, level_b.voxel);
   test.oriented = a.oriented && b.oriented;

@@ -4,30 +4,30 @@
 #include <Eigen/Geometry>
 #include <optional>
 namespace fresco::registration {
-/// Share of the first `most` samples of `source` that have a point of `target` closer than `distance` with a normal
-/// that differs by less than `max_angle` (radians), 0..1.
-/// @param oriented whether the signs of both normals mean something
+/// When a point has a counterpart in another scan.
 struct OverlapTest {
-  float distance = 0.f;
-  float max_angle = 0.8f;
-  Index most = 2000;
-  bool oriented = true;
+  float distance = 0.f;   ///< of the counterpart, below, length
+  float max_angle = 0.8f; ///< between the normals, below, radians
+  Index most = 2000;      ///< samples that are tested: the share is then known to about 1 %
+  bool oriented = true;   ///< whether the signs of both normals mean something
 };
+
+/// Share of the first samples of `source` that have a counterpart in `target`, 0..1.
 double overlapShare(const ScanLevel& source, const ScanLevel& target, const Eigen::Isometry3f& T_target_source,
                     const OverlapTest& test);
 
 /// What a pair of scans says about their relative pose.
 struct PairCheck {
-  double overlap = 0.0;   ///< larger of the two shares of points with a counterpart, 0..1
-  double violation = 0.0; ///< larger share of comparable points that lie, together with their neighbours, in space
-                          ///< that the other scan saw through, 0..1
+  double overlap = 0.0; ///< larger of the two shares of points with a counterpart, 0..1
+  /// Larger share of comparable points that lie, together with their neighbours, in space that the other scan saw
+  /// through, 0..1.
+  double violation = 0.0;
   double violation_a = 0.0, violation_b = 0.0; ///< what a's and what b's free space says of the other
-  std::optional<double>
-      color; ///< correlation of the colours of corresponding points, -1..1; absent without enough of them
+  /// Pearson's correlation of the colours of corresponding points, -1..1; absent without enough of them.
+  std::optional<double> color;
 };
 
 /// @param level index into PreparedScan::levels: the finer, the smaller the errors of the pose and the misplaced
-/// surfaces that
-///              count as violations
+/// surfaces that count as violations
 PairCheck checkPair(const PreparedScan& a, const PreparedScan& b, const Eigen::Isometry3d& T_a_b, int level);
 } // namespace fresco::registration

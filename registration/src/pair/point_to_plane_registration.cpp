@@ -9,8 +9,6 @@
 namespace fresco {
 using namespace registration;
 namespace {
-constexpr float distance_voxels = 20.f; // basin of the guess
-
 void validate(const Eigen::Matrix4d& guess, const PointToPlaneOptions& options)
 {
   require(guess.allFinite(), "point-to-plane registration: the guess is not finite");
@@ -27,14 +25,14 @@ void summarize(const JointResult& joint, const PreparedScan& source, PointToPlan
 {
   double squares = 0.0;
   for (const JointPair& pair : joint.pairs) {
-    squares += static_cast<double>(pair.matches) * pair.rms * pair.rms;
+    squares += pair.matches * pair.rms * pair.rms;
     result.matches += pair.matches;
   }
   result.converged = joint.converged && result.matches > 0;
   result.iterations = joint.iterations;
   if (result.matches == 0)
     return;
-  result.rms = std::sqrt(squares / static_cast<double>(result.matches));
+  result.rms = std::sqrt(squares / result.matches);
   result.free_motion =
       describeUncertainty(joint.information[1], result.rms, source, joint.poses[1].linear()).free_motion;
 }
@@ -44,23 +42,26 @@ float registrationVoxel(const PointSet& scan)
 {
   const double size = scanSize(scan);
   require(size > 0.0, "point-to-plane registration: no finite point away from the viewpoint");
-  return static_cast<float>(fittingVoxel(scan, size / voxels_per_size));
+  return fittingVoxel(scan, size / voxels_per_size);
 }
 
-std::shared_ptr<const PreparedScan> prepareForRegistration(const PointSet& scan, float voxel, int threads)
+std::shared_ptr<const PreparedScan> prepareForRegistration(const PointSet& scan, float voxel, int threads,
+                                                           const std::shared_ptr<NeighborSearch>& search)
 {
   validatePointSet(scan);
   require(voxel > 0.f && std::isfinite(voxel), "point-to-plane registration: voxel ", voxel, " is not positive");
-  // coarse cells also of narrow views: no features are needed, but a wide reach
-  auto prepared = std::make_shared<PreparedScan>(prepareScan(scan, Thinning(voxel), threads));
+  // Coarse cells also of narrow views: no features are needed, but a wide reach.
+  auto prepared = std::make_shared<PreparedScan>(prepareScan(scan, Thinning(voxel), threads, search));
   require(prepared->problem.empty(), "point-to-plane registration: ", prepared->problem);
   return prepared;
 }
 
-PointToPlaneResult alignPointToPlane(const PreparedScan& source, const PreparedScan& target,
-                                     const Eigen::Matrix4d& guess, const PointToPlaneOptions& options)
+PointToPlaneResult alignPointToPlane(const PreparedPair& pair, const PointToPlaneOptions& options,
+                                     const Progress& progress)
 {
-  validate(guess, options);
+  constexpr float distance_voxels = 20.f; // the reach of refinement, a fifth of the scans' range
+  validate(pair.guess, options);
+  const PreparedScan &source = pair.source, &target = pair.target;
   JointOptions joint;
   joint.max_distance = options.max_distance > 0.f ? options.max_distance : distance_voxels * target.levels.back().voxel;
   joint.min_overlap = 0.f;
@@ -70,7 +71,7 @@ PointToPlaneResult alignPointToPlane(const PreparedScan& source, const PreparedS
   joint.threads = options.threads;
   const Eigen::Isometry3d T_source(Eigen::Translation3d(source.center)), T_target(Eigen::Translation3d(target.center));
   const JointResult aligned =
-      refineJointly({&target, &source}, {T_target, Eigen::Isometry3d(guess) * T_source}, joint, {});
+      refineJointly({&target, &source}, {T_target, Eigen::Isometry3d(pair.guess) * T_source}, joint, progress);
   PointToPlaneResult result;
   const Eigen::Isometry3d T_target_source = aligned.poses[1] * T_source.inverse();
   result.T_target_source = T_target_source.matrix();
@@ -79,6 +80,12 @@ PointToPlaneResult alignPointToPlane(const PreparedScan& source, const PreparedS
   result.overlap = check.overlap;
   result.violation = check.violation;
   return result;
+}
+
+PointToPlaneResult alignPointToPlane(const PreparedScan& source, const PreparedScan& target,
+                                     const Eigen::Matrix4d& guess, const PointToPlaneOptions& options)
+{
+  return alignPointToPlane(PreparedPair{source, target, guess}, options);
 }
 
 PointToPlaneResult alignPointToPlane(const PointSet& source, const PointSet& target, const Eigen::Matrix4d& guess,

@@ -1,15 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+#include "refinement/rigid_motion.h"
 #include "scan/prepared_scan.h"
-#include <Eigen/Geometry>
 #include <fresco/core/progress.h>
 #include <utility>
-#include <vector>
 namespace fresco::registration {
 using ScanPointers = std::vector<const PreparedScan*>;
-using IsometryVector = std::vector<Eigen::Isometry3d, Eigen::aligned_allocator<Eigen::Isometry3d>>;
-using Matrix6d = Eigen::Matrix<double, 6, 6>;
-using Vector6d = Eigen::Matrix<double, 6, 1>;
 
 struct JointOptions {
   float max_distance = 0.f;  ///< between corresponding points in the first iterations, length
@@ -20,8 +16,7 @@ struct JointOptions {
   int max_iterations = 40;   ///< per level
   float min_motion = 0.f;    ///< a level ends once no scan moves further, length; 0 = voxel / 500
   std::vector<std::pair<Index, Index>> excluded; ///< pairs not to use
-  std::vector<Index>
-      anchors; ///< rising; the first of them in a connected group keeps its pose, else the group's first scan
+  std::vector<Index> anchors; ///< rising; the first in a connected group keeps its pose, else the group's first scan
   int threads = 0;
 };
 
@@ -33,16 +28,16 @@ struct JointPair {
 };
 
 struct JointResult {
-  IsometryVector poses;                                                  ///< world from working frame
-  std::vector<JointPair> pairs;                                          ///< both directions of each pair
-  std::vector<Matrix6d, Eigen::aligned_allocator<Matrix6d>> information; ///< per scan, all others held: rotation
-      ///< (about the scan's centre, axes of the world) first; weights of one match sum up
+  IsometryVector poses;         ///< world from working frame
+  std::vector<JointPair> pairs; ///< both directions of each pair
+  /// Per scan, all others held: rotation (about the scan's centre, axes of the world) first; weights of one match sum up.
+  std::vector<Matrix6d, Eigen::aligned_allocator<Matrix6d>> information;
   int iterations = 0;
   bool converged = false;
 };
 
 /// Moves all scans at once so that points of each lie on the surfaces of the others: point-to-plane distances of all
-/// overlapping pairs in both directions (Chen & Medioni 1992), Tukey weights, Levenberg-damped Gauss-Newton, coarse to
+/// overlapping pairs in both directions (Chen & Medioni 1992, see PairSystem), Tukey weights, Levenberg-damped Gauss-Newton, coarse to
 /// fine. Each connected group of scans keeps the pose of one of them.
 JointResult refineJointly(const ScanPointers& scans, IsometryVector poses, const JointOptions& options,
                           const Progress& progress);

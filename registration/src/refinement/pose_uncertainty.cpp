@@ -4,8 +4,6 @@
 #include <cmath>
 namespace fresco::registration {
 namespace {
-constexpr double free_limit = 4e-3; // information of a direction / that of one in which every normal points
-
 double largestDeviation(const Eigen::Matrix3d& covariance)
 {
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
@@ -17,7 +15,7 @@ double largestDeviation(const Eigen::Matrix3d& covariance)
 Matrix6d movedInformation(const Matrix6d& information, const Eigen::Vector3d& middle)
 {
   Matrix6d M = Matrix6d::Identity();
-  M.topRightCorner<3, 3>() << 0, middle.z(), -middle.y(), -middle.z(), 0, middle.x(), middle.y(), -middle.x(), 0;
+  M.topRightCorner<3, 3>() = skew(-middle);
   return M * information * M.transpose();
 }
 } // namespace
@@ -25,6 +23,8 @@ Matrix6d movedInformation(const Matrix6d& information, const Eigen::Vector3d& mi
 PoseUncertainty describeUncertainty(const Matrix6d& about_center, double rms, const PreparedScan& scan,
                                     const Eigen::Matrix3d& R_world_scan)
 {
+  constexpr double free_limit = 4e-3; // information of a direction / that of one in which every normal points: below,
+                                      // errors in it are more than 15 times as large
   const Eigen::Vector3d middle = scan.levels.front().points.cast<double>().rowwise().mean();
   const Matrix6d information = movedInformation(about_center, R_world_scan * middle);
   const double size = scan.size;

@@ -5,8 +5,6 @@
 #include <fresco/registration/core/scan_registration.h>
 namespace fresco {
 namespace {
-constexpr double large_coordinate = 1000.0; // beyond, a float has less than a tenth of a millimetre in metres
-
 std::vector<Index> finiteColumns(const PointSet& scan)
 {
   std::vector<Index> finite;
@@ -49,18 +47,19 @@ PointSet placedScan(const PointSet& scan, const Eigen::Matrix4d& T_world_scan, c
 
 PointSet mergeScans(const std::vector<PointSet>& scans, const std::vector<Pose>& poses, int threads)
 {
-  return mergeScans(ScanSource{static_cast<Index>(scans.size()), [&](Index i) { return scans[i]; }}, poses, threads);
+  return mergeScans(ScanSource(scans.size(), [&](Index i) { return scans[i]; }), poses, threads);
 }
 
 PointSet mergeScans(const ScanSource& scans, const std::vector<Pose>& poses, int threads)
 {
-  require(static_cast<std::size_t>(scans.count) == poses.size(), "merge: ", scans.count, " scans, ", poses.size(),
-          " poses");
+  constexpr double large_coordinate = 1000.0; // beyond, a float resolves less than a tenth of a millimetre in metres
+  const Index count = poses.size();
+  require(scans.count == count, "merge: ", scans.count, " scans, ", poses.size(), " poses");
   PointSet merged;
-  for (std::size_t i = 0; i < poses.size(); ++i) {
+  for (Index i = 0; i < count; ++i) {
     if (!poses[i])
       continue;
-    const PointSet scan = scans.read(static_cast<Index>(i));
+    const PointSet scan = scans.read(i);
     validatePointSet(scan);
     if (scan.size() == 0)
       continue;

@@ -6,14 +6,14 @@
 namespace fresco::registration {
 /// What a scan says of the space along its rays: a cube map of ranges around every place it was seen from.
 /// A point well in front of all ranges of its direction lies where the scanner saw through.
-class FreeSpace {
+class ScanFreeSpace {
 public:
-  FreeSpace() = default;
+  ScanFreeSpace() = default;
 
   /// @param points     3xN, finite
   /// @param viewpoints 3xN or 3x1
   /// @param grain      viewpoints nearer to each other than this share a map, length
-  FreeSpace(const Points& points, const Points& viewpoints, float grain);
+  ScanFreeSpace(const Points& points, const Points& viewpoints, float grain);
 
   /// What the scan says of one point.
   enum class Verdict : signed char {

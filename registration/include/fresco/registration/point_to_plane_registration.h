@@ -8,8 +8,10 @@ namespace fresco {
 /// or the cloud's sensor_origin_), so that PointSource and PointTarget need none. Honours setIndices() and leaves out
 /// non-finite points. setMaxCorrespondenceDistance() is the reach at the start (without it: 20 voxels),
 /// setMaximumIterations() counts per resolution, setTransformationEpsilon() is the square of the motion that ends a
-/// resolution. RANSAC and fitness epsilons, minimum correspondences and the search methods are accepted and without
-/// effect on align(); getFitnessScore() uses the target's search method.
+/// resolution. Neighbours are searched with the trees of setSearchMethodTarget() and setSearchMethodSource(), without
+/// them with PointTree. A tree holds the thinned points while align() runs, and the user's afterwards; one tree given
+/// for both clouds serves the target. RANSAC and fitness epsilons and minimum correspondences are accepted and without
+/// effect.
 template <typename PointSource, typename PointTarget>
 class PointToPlaneRegistration : public pcl::Registration<PointSource, PointTarget> {
 public:
@@ -27,6 +29,14 @@ public:
   Index getNumberOfSamples() const { return options_.samples; }
   void setNumberOfThreads(int threads) { options_.threads = threads; }
   int getNumberOfThreads() const { return options_.threads; }
+  void setThreads(int threads) { setNumberOfThreads(threads); } ///< the name that pcl::Poisson has
+  int getThreads() const { return getNumberOfThreads(); }
+  void setProgress(Progress progress) { progress_ = std::move(progress); }
+  const Progress& getProgress() const { return progress_; }
+
+  /// All options at once, those of pcl::Registration included.
+  void setOptions(const PointToPlaneOptions& options);
+  PointToPlaneOptions getOptions() const;
 
   /// Of the last align(); its transform is the one of getFinalTransformation().
   const PointToPlaneResult& getResult() const { return result_; }
@@ -39,13 +49,19 @@ protected:
   void computeTransformation(PointCloudSource& output, const Matrix4& guess) override;
 
 private:
+  std::shared_ptr<NeighborSearch> targetSearch() const;
+  std::shared_ptr<NeighborSearch> sourceSearch() const;
   void prepare();
 
   PointToPlaneOptions options_;
   PointToPlaneResult result_;
+  Progress progress_;
   float voxel_ = 0.f;
   float prepared_voxel_ = 0.f;
+  typename Base::KdTreePtr own_tree_;                             ///< of the base class: not the user's
+  typename Base::KdTreeReciprocalPtr own_reciprocal_tree_;        ///< the same for the source
   typename Base::PointCloudTargetConstPtr prepared_target_cloud_; ///< that prepared_target_ was made of
+  typename Base::KdTreePtr prepared_tree_;                        ///< with this tree
   std::shared_ptr<const registration::PreparedScan> prepared_source_, prepared_target_;
 };
 } // namespace fresco

@@ -38,9 +38,16 @@ public:
   int getMaximumIterations() const { return options_.max_iterations; }
   void setNumberOfThreads(int threads) { options_.threads = threads; }
   int getNumberOfThreads() const { return options_.threads; }
+  void setThreads(int threads) { setNumberOfThreads(threads); } ///< the name that pcl::Poisson has
+  int getThreads() const { return getNumberOfThreads(); }
+  void setOptions(const ScanRegistrationOptions& options) { options_ = options; }
+  const ScanRegistrationOptions& getOptions() const { return options_; }
+  void setProgress(Progress progress) { progress_ = std::move(progress); }
+  const Progress& getProgress() const { return progress_; }
 
   /// @throws see registerScans()
-  const ScanRegistrationResult& compute(const Progress& progress = {});
+  const ScanRegistrationResult& compute() { return compute(progress_); }
+  const ScanRegistrationResult& compute(const Progress& progress); ///< once with another progress
 
   bool isPlaced(std::size_t scan) const { return result_.poses.at(scan).has_value(); }
   /// World from scan.
@@ -56,6 +63,7 @@ private:
   std::vector<PointCloudConstPtr> clouds_;
   std::vector<Pose> start_;
   ScanRegistrationOptions options_;
+  Progress progress_;
   ScanRegistrationResult result_;
 };
 } // namespace fresco

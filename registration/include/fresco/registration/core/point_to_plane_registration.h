@@ -2,6 +2,8 @@
 #pragma once
 #include <fresco/core/export.h>
 #include <fresco/core/point_set.h>
+#include <fresco/core/progress.h>
+#include <fresco/registration/core/neighbor_search.h>
 #include <fresco/registration/core/scan_registration.h>
 #include <memory>
 #include <optional>
@@ -34,16 +36,25 @@ struct PointToPlaneResult {
 FRESCO_EXPORT float registrationVoxel(const PointSet& scan);
 
 /// A scan thinned to `voxel` and coarser, with normals and search trees: what alignPointToPlane() works on.
-/// @param voxel length, > 0
+/// @param voxel  length, > 0
+/// @param search the caller's own search for neighbours, not shared with another scan; null = PointTree
 /// @throws std::invalid_argument if the scan is malformed, voxel is out of range or fewer than 50 points are usable
-FRESCO_EXPORT std::shared_ptr<const registration::PreparedScan> prepareForRegistration(const PointSet& scan,
-                                                                                       float voxel, int threads = 0);
+FRESCO_EXPORT std::shared_ptr<const registration::PreparedScan>
+prepareForRegistration(const PointSet& scan, float voxel, int threads = 0,
+                       const std::shared_ptr<NeighborSearch>& search = nullptr);
+
+/// Two scans that were prepared with the same voxel, and where they lie about.
+struct PreparedPair {
+  const registration::PreparedScan &source, &target;
+  Eigen::Matrix4d guess; ///< 4x4 rigid, target from source
+};
 
 /// Local registration of two scans: points of each onto the tangent planes of the other (Chen & Medioni 1992, "Object
-/// modelling by registration of multiple range images"), Tukey weights, coarse to fine. Both must have been prepared
-/// with the same voxel.
-/// @param guess 4x4 rigid, target from source
+/// modelling by registration of multiple range images"), Tukey weights, coarse to fine.
 /// @throws std::invalid_argument if an option is out of range or the guess is not finite
+/// @throws std::runtime_error if `progress` asks to stop
+FRESCO_EXPORT PointToPlaneResult alignPointToPlane(const PreparedPair& pair, const PointToPlaneOptions& options = {},
+                                                   const Progress& progress = {});
 FRESCO_EXPORT PointToPlaneResult alignPointToPlane(const registration::PreparedScan& source,
                                                    const registration::PreparedScan& target,
                                                    const Eigen::Matrix4d& guess,

@@ -25,8 +25,7 @@ struct ScanRegistrationOptions {
 /// Scans that need not be in memory all at once.
 struct ScanSource {
   Index count;
-  std::function<PointSet(Index)>
-      read; ///< for one scan after the other; registerScans() calls it more than once for each
+  std::function<PointSet(Index)> read; ///< for one scan after the other; called more than once for each
 
   ScanSource(Index scan_count, std::function<PointSet(Index)> reader) : count(scan_count), read(std::move(reader)) {}
 };
@@ -36,13 +35,12 @@ FRESCO_EXPORT std::string scanName(const ScanRegistrationOptions& options, Index
 
 /// One pair of scans at the end.
 struct PairResult {
-  Index a = 0, b = 0;   ///< a < b
-  double overlap = 0.0; ///< larger of the shares of points of one scan with a counterpart in the other, 0..1
-  double violation =
-      0.0;               ///< larger of the shares of comparable surfaces in space that the other scan saw through, 0..1
-  double rms = 0.0;      ///< point-to-plane distance of the corresponding points, length
-  Index matches = 0;     ///< corresponding points
-  bool accepted = false; ///< holds the two scans together
+  Index a = 0, b = 0;     ///< a < b
+  double overlap = 0.0;   ///< larger of the shares of points of one scan with a counterpart in the other, 0..1
+  double violation = 0.0; ///< larger of the shares of comparable surfaces in space that the other saw through, 0..1
+  double rms = 0.0;       ///< point-to-plane distance of the corresponding points, length
+  Index matches = 0;      ///< corresponding points
+  bool accepted = false;  ///< holds the two scans together
 };
 
 /// A motion of a scan that its surfaces leave free, such as along a corridor without features.
@@ -74,14 +72,12 @@ struct ScanRegistrationResult {
   bool converged = false;
 };
 
+/// The first scan of a group keeps its start pose. Without any, the first scan of the largest group is the world.
 /// @param scans one or more; each in its own frame. The viewpoint of a scan without `viewpoints` is its frame's origin.
 /// @param start world from scan, one per scan, off by up to max_distance; or empty. Scans without one are aligned
 /// globally.
-///              The first scan of a group keeps its start pose; without any, the first scan of the largest group is the
-///              world.
 /// @throws std::invalid_argument if there is no scan, sizes differ, an attribute is malformed, an option is out of
-/// range or
-///         the scans differ in size so much that their units must differ
+/// range or the scans differ in size so much that their units must differ
 FRESCO_EXPORT ScanRegistrationResult registerScans(const std::vector<PointSet>& scans,
                                                    const std::vector<Pose>& start = {},
                                                    const ScanRegistrationOptions& options = {},

@@ -1,18 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "registration_state.h"
+#include "refinement/placement.h"
 #include "pair/pair_overlap.h"
 #include <algorithm>
 #include <cmath>
 #include <fresco/core/parallel.h>
 namespace fresco::registration {
 namespace {
-constexpr int most_rounds = 4; // of leaving out contradicting pairs
-
 JointOptions jointOptions(const ScanRegistrationOptions& options)
 {
   JointOptions joint;
   joint.max_distance = options.max_distance;
-  joint.min_overlap = static_cast<float>(0.5 * options.min_overlap);
+  joint.min_overlap = 0.5 * options.min_overlap;
   joint.max_iterations = options.max_iterations;
   joint.threads = options.threads;
   return joint;
@@ -27,7 +25,7 @@ std::vector<PairResult> checkPairs(const std::vector<PreparedScan>& scans, const
   parallelFor(
       n * n, options.threads,
       [&](Index k) {
-        const auto a = static_cast<std::size_t>(k / n), b = static_cast<std::size_t>(k % n);
+        const Index a = k / n, b = k % n;
         if (a >= b)
           return;
         PairResult& pair = all[k];
@@ -43,14 +41,14 @@ std::vector<PairResult> checkPairs(const std::vector<PreparedScan>& scans, const
   for (const JointPair& joint : placement.joint.pairs) {
     const Index a = std::min(joint.source, joint.target), b = std::max(joint.source, joint.target);
     PairResult& pair = all[a * n + b];
-    pair.rms += static_cast<double>(joint.matches) * joint.rms * joint.rms;
+    pair.rms += joint.matches * joint.rms * joint.rms;
     pair.matches += joint.matches;
   }
   std::vector<PairResult> kept;
   for (PairResult& pair : all) {
     if (pair.a == pair.b || (pair.overlap < 0.5 * options.min_overlap && pair.violation <= options.max_violation))
       continue;
-    pair.rms = std::sqrt(pair.rms / static_cast<double>(std::max<Index>(1, pair.matches)));
+    pair.rms = std::sqrt(pair.rms / std::max<Index>(1, pair.matches));
     pair.accepted = pair.overlap >= options.min_overlap && pair.violation <= options.max_violation && pair.matches > 0;
     kept.push_back(pair);
   }
@@ -66,6 +64,7 @@ Index memberOf(const Placement& placement, Index scan)
 void refinePlacement(const std::vector<PreparedScan>& scans, const ScanRegistrationOptions& options,
                      Placement& placement, const Progress& progress)
 {
+  constexpr int most_rounds = 4; // of leaving out contradicting pairs: bounds the time
   ScanPointers members;
   for (const Index i : placement.members)
     members.push_back(&scans[i]);

@@ -1,26 +1,23 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "refinement/registration_result.h"
 #include "refinement/pose_uncertainty.h"
-#include "registration_state.h"
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <fresco/core/union_find.h>
 namespace fresco::registration {
 namespace {
 using Groups = std::vector<std::vector<Index>>;
 
 // Members held together by accepted pairs, largest group first, each in rising order.
-Groups acceptedGroups(const Placement& placement, std::size_t scan_count)
+Groups acceptedGroups(const Placement& placement, Index scan_count)
 {
-  std::vector<Index> label(scan_count);
-  std::iota(label.begin(), label.end(), Index(0));
-  for (const PairResult& pair : placement.pairs) {
-    const Index a = label[pair.a], b = label[pair.b];
+  UnionFind held(scan_count);
+  for (const PairResult& pair : placement.pairs)
     if (pair.accepted)
-      std::replace(label.begin(), label.end(), std::max(a, b), std::min(a, b));
-  }
+      held.join(pair.a, pair.b);
   Groups groups(scan_count);
   for (const Index scan : placement.members)
-    groups[label[scan]].push_back(scan);
+    groups[held.root(scan)].push_back(scan);
   groups.erase(std::remove_if(groups.begin(), groups.end(), [](const auto& g) { return g.empty(); }), groups.end());
   std::stable_sort(groups.begin(), groups.end(), [](const auto& a, const auto& b) { return a.size() > b.size(); });
   return groups;
@@ -31,8 +28,8 @@ double pooledRms(const std::vector<PairResult>& pairs, Index scan)
   double squares = 0.0, count = 0.0;
   for (const PairResult& pair : pairs)
     if (pair.accepted && (scan < 0 || pair.a == scan || pair.b == scan)) {
-      squares += static_cast<double>(pair.matches) * pair.rms * pair.rms;
-      count += static_cast<double>(pair.matches);
+      squares += pair.matches * pair.rms * pair.rms;
+      count += pair.matches;
     }
   return count > 0.0 ? std::sqrt(squares / count) : 0.0;
 }

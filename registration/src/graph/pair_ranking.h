@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include "pair/sc2_pcr.h"
+namespace fresco::registration {
+struct RankedPair {
+  Index a = 0, b = 0;
+  Index votes = 0; ///< features that agree on a pose
+};
+
+/// Sorts pairs by the votes of the best pose from their most distinctive features, most first.
+void rankPairs(std::vector<RankedPair>& pairs, const std::vector<PreparedScan>& scans,
+               const std::vector<ScanFeatures>& features, int threads);
+
+/// The best pairs not yet tried, a few of each scan; they are taken out of `pairs`.
+std::vector<RankedPair> takeRound(std::vector<RankedPair>& pairs, Index scan_count);
+} // namespace fresco::registration

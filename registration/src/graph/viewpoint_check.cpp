@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "graph/viewpoint_check.h"
+#include <algorithm>
+namespace fresco::registration {
+namespace {
+// What the pairs say of the free space of one scan.
+struct ViewpointEvidence {
+  double violations = 0.0; // sum over pairs of what the scan's free space says of the other
+  int pairs = 0;
+
+  bool contradicts(double limit) const
+  {
+    constexpr int fewest_pairs = 2; // one may be wrong itself
+    return pairs >= fewest_pairs && violations > pairs * limit;
+  }
+};
+
+std::vector<ViewpointEvidence> collectEvidence(Index scan_count, const std::vector<PairAlignment>& pairs)
+{
+  std::vector<ViewpointEvidence> evidence(scan_count);
+  for (const PairAlignment& pair : pairs) {
+    const VerifiedHypotheses& hypotheses = pair.rejected.empty() ? pair.hypotheses : pair.rejected;
+    if (hypotheses.empty() || hypotheses[0].votes < many_votes)
+      continue;
+    evidence[pair.a].violations += hypotheses[0].check.violation_a;
+    evidence[pair.b].violations += hypotheses[0].check.violation_b;
+    ++evidence[pair.a].pairs;
+    ++evidence[pair.b].pairs;
+  }
+  return evidence;
+}
+
+bool isNarrow(const PreparedScan& scan)
+{
+  // Share of the sphere: a scanner that saw more stood where it is said to have stood.
+  constexpr double narrow_view = 0.4;
+  return !scan.free_space.empty() && scan.free_space.coverage() < narrow_view;
+}
+} // namespace
+
+std::vector<char> wrongViewpoints(const std::vector<PreparedScan>& scans, const std::vector<PairAlignment>& pairs,
+                                  double max_violation)
+{
+  constexpr double narrow_share = 0.25; // of max_violation: mean violation from which a viewpoint is wrong, and
+  constexpr double wide_share = 2.0;    // of a scanner of wide view, which must contradict nearly all it meets
+  const Index n = scans.size();
+  const std::vector<ViewpointEvidence> evidence = collectEvidence(n, pairs);
+  std::vector<char> wrong(n, 0);
+  Index known_wrong = 0;
+  for (Index i = 0; i < n; ++i) {
+    const bool without = scans[i].free_space.empty();
+    const double share = isNarrow(scans[i]) ? narrow_share : wide_share;
+    wrong[i] = !without && evidence[i].contradicts(share * max_violation);
+    known_wrong += wrong[i] || (scans[i].problem.empty() && without) ? 1 : 0;
+  }
+  // Where most are wrong, the rest comes from the same source.
+  if (2 * known_wrong > n)
+    for (Index i = 0; i < n; ++i)
+      wrong[i] = wrong[i] || isNarrow(scans[i]);
+  return wrong;
+}
+} // namespace fresco::registration

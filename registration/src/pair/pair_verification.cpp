@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "pair/pair_verification.h"
+#include "refinement/joint_refinement.h"
+#include <algorithm>
+#include <cmath>
+namespace fresco::registration {
+namespace {
+constexpr double violation_scale = 0.005; // of violations that costs a factor e: little contradiction outweighs much
+                                          // overlap
+
+double quickOverlap(const PreparedScan& a, const PreparedScan& b, const Eigen::Isometry3d& T_a_b)
+{
+  const ScanLevel &level_a = a.levels.front(), &level_b = b.levels.front();
+  OverlapTest test;
+  test.distance = 2.f * level_a.voxel;
+  test.most = 300; // the share is known to 3 %: enough to drop the worst
+  test.oriented = a.oriented && b.oriented;
+  return std::max(overlapShare(level_b, level_a, T_a_b.cast<float>(), test),
+                  overlapShare(level_a, level_b, T_a_b.inverse().cast<float>(), test));
+}
+
+void keepBest(PoseHypotheses& hypotheses, std::size_t most)
+{
+  std::stable_sort(hypotheses.begin(), hypotheses.end(),
+                   [](const auto& x, const auto& y) { return x.score > y.score; });
+  hypotheses.resize(std::min(most, hypotheses.size()));
+}
+
+Eigen::Isometry3d refined(const PreparedScan& a, const PreparedScan& b, const Eigen::Isometry3d& T_a_b)
+{
+  JointOptions options;
+  options.max_distance = 2.f * a.levels.front().voxel;
+  options.samples = 1000;
+  options.max_iterations = 20;
+  options.last_level = 1;
+  options.min_overlap = 0.f;
+  options.threads = 1;
+  return refineJointly({&a, &b}, {Eigen::Isometry3d::Identity(), T_a_b}, options, {}).poses[1];
+}
+
+// The hypotheses worth refining, best first.
+void rankHypotheses(const PairGeometry& pair, std::size_t most, PoseHypotheses& hypotheses)
+{
+  constexpr double rough_scale = 0.03; // as violation_scale, but before refinement, when right poses violate too
+  for (PoseHypothesis& hypothesis : hypotheses)
+    hypothesis.score = quickOverlap(pair.a, pair.b, hypothesis.T_a_b);
+  keepBest(hypotheses, most);
+  for (PoseHypothesis& hypothesis : hypotheses) {
+    const PairCheck check = checkPair(pair.a, pair.b, hypothesis.T_a_b, 0);
+    hypothesis.score = check.overlap * std::exp(-check.violation / rough_scale);
+  }
+  keepBest(hypotheses, most);
+}
+
+// Distinct refined hypotheses, checked at the finest level.
+VerifiedHypotheses refineHypotheses(const PairGeometry& pair, const PoseHypotheses& hypotheses, std::size_t most)
+{
+  VerifiedHypotheses verified;
+  for (const PoseHypothesis& hypothesis : hypotheses) {
+    const auto known = [&](const Eigen::Isometry3d& T, double factor) {
+      return std::any_of(verified.begin(), verified.end(), [&](const VerifiedHypothesis& other) {
+        return poseDistance(other.T_a_b, T, pair.size) < factor * pair.grain;
+      });
+    };
+    if (verified.size() >= most)
+      break;
+    if (known(hypothesis.T_a_b, 3.0))
+      continue;
+    const VerifiedHypothesis next = verifyHypothesis(pair, hypothesis);
+    if (!known(next.T_a_b, 1.0))
+      verified.push_back(next);
+  }
+  return verified;
+}
+} // namespace
+
+PairGeometry::PairGeometry(const PreparedScan& scan_a, const PreparedScan& scan_b)
+    : a(scan_a), b(scan_b), size(std::sqrt(a.size * b.size)), grain(4.0 * a.levels[1].voxel)
+{}
+
+double alignmentScore(const PairCheck& check)
+{
+  const double color = check.color ? std::max(0.1, *check.color) : 1.0;
+  return check.overlap * color * std::exp(-check.violation / violation_scale);
+}
+
+bool clearlyWorse(double violation, double other)
+{
+  constexpr double clear_difference = 0.002; // of violations: mixed pixels do not cause it
+  return violation > std::max(2.0 * other, other + clear_difference);
+}
+
+bool comparable(const VerifiedHypothesis& best, const VerifiedHypothesis& other)
+{
+  constexpr double comparable_overlap = 0.3; // share of the best support: less, and mere chance explains it
+  constexpr double color_difference = 0.3;   // of correlations: sampling does not cause it, so colours decide
+  const PairCheck &first = best.check, &second = other.check;
+  if (first.color && second.color && std::abs(*first.color - *second.color) > color_difference)
+    return false;
+  if (best.has_alias && other.has_alias)
+    return !clearlyWorse(second.violation, first.violation);
+  return second.violation <= std::max(2.0 * first.violation, first.violation + violation_scale) &&
+         other.support > comparable_overlap * best.support;
+}
+
+VerifiedHypothesis verifyHypothesis(const PairGeometry& pair, const PoseHypothesis& hypothesis)
+{
+  VerifiedHypothesis verified;
+  verified.T_a_b = refined(pair.a, pair.b, hypothesis.T_a_b);
+  verified.votes = hypothesis.votes;
+  verified.check = checkPair(pair.a, pair.b, verified.T_a_b, check_level);
+  // Without free space on both sides, features are the only other witnesses.
+  const bool blind = pair.a.free_space.empty() || pair.b.free_space.empty();
+  const double trust = blind ? std::min(1.0, 1.0 * verified.votes / many_votes) : 1.0;
+  verified.support = trust * verified.check.overlap;
+  verified.score = trust * alignmentScore(verified.check);
+  return verified;
+}
+
+VerifiedHypotheses verifyHypotheses(const PairGeometry& pair, PoseHypotheses hypotheses,
+                                    const VerificationOptions& options)
+{
+  rankHypotheses(pair, options.checked, hypotheses);
+  VerifiedHypotheses accepted;
+  for (const VerifiedHypothesis& verified : refineHypotheses(pair, hypotheses, options.refined))
+    if (verified.check.overlap >= options.min_overlap && verified.check.violation <= options.max_violation)
+      accepted.push_back(verified);
+  sortByScore(accepted);
+  return accepted;
+}
+
+void sortByScore(VerifiedHypotheses& hypotheses)
+{
+  std::stable_sort(hypotheses.begin(), hypotheses.end(),
+                   [](const VerifiedHypothesis& x, const VerifiedHypothesis& y) { return x.score > y.score; });
+}
+} // namespace fresco::registration

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include "pair/pair_overlap.h"
+#include "pair/sc2_pcr.h"
+namespace fresco::registration {
+/// A relative pose of two scans, refined and checked on their points.
+struct VerifiedHypothesis {
+  Eigen::Isometry3d T_a_b = Eigen::Isometry3d::Identity();
+  PairCheck check;
+  Index votes = 0;        ///< features that agree
+  double support = 0.0;   ///< overlap; less where few features agree and no free space bears witness, 0..1
+  double score = 0.0;     ///< support, discounted by violations; larger is better
+  bool has_alias = false; ///< one of several places that look alike to a scan: little overlap says nothing against it
+};
+using VerifiedHypotheses = std::vector<VerifiedHypothesis, Eigen::aligned_allocator<VerifiedHypothesis>>;
+
+constexpr Index many_votes = 40; ///< agreeing features: hardly by chance
+
+/// Two scans, and what makes their poses comparable.
+struct PairGeometry {
+  PairGeometry(const PreparedScan& a, const PreparedScan& b);
+  const PreparedScan &a, &b;
+  double size;  ///< of the scans, length
+  double grain; ///< poses nearer to each other are the same, length
+};
+
+struct VerificationOptions {
+  float min_overlap = 0.1f;
+  float max_violation = 0.04f;
+  std::size_t checked = 20; ///< hypotheses that are checked for violations
+  std::size_t refined = 8;  ///< hypotheses that are refined
+};
+
+/// Discount of an overlap by violations.
+double alignmentScore(const PairCheck& check);
+
+/// Whether free space speaks clearly against a pose with `violation` when another one has `other`.
+bool clearlyWorse(double violation, double other);
+
+/// Whether `other` explains two scans about as well as `best` does.
+bool comparable(const VerifiedHypothesis& best, const VerifiedHypothesis& other);
+
+/// Refined and checked.
+VerifiedHypothesis verifyHypothesis(const PairGeometry& pair, const PoseHypothesis& hypothesis);
+
+/// The hypotheses that pass the checks, refined, distinct, best first.
+VerifiedHypotheses verifyHypotheses(const PairGeometry& pair, PoseHypotheses hypotheses,
+                                    const VerificationOptions& options);
+
+/// Best first.
+void sortByScore(VerifiedHypotheses& hypotheses);
+} // namespace fresco::registration

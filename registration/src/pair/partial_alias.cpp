@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "pair/partial_alias.h"
+#include "pair/self_alignment.h"
+#include "refinement/joint_refinement.h"
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+namespace fresco::registration {
+namespace {
+constexpr double least_overlap = 0.1; // of a scan with itself: less is no evidence of a second place
+
+// Features that are far from every place the scan was seen from.
+std::vector<Index> farFeatures(const ScanFeatures& features, const PreparedScan& scan)
+{
+  constexpr double far_range = 1.5; // of the scan's size: what lies beyond may have been seen through an opening
+  std::vector<Index> far;
+  const float range = far_range * scan.size;
+  const Points& viewpoints = scan.levels.front().viewpoints;
+  for (Index i = 0; i < features.points.cols(); ++i)
+    if ((viewpoints.colwise() - features.points.col(i)).colwise().squaredNorm().minCoeff() > range * range)
+      far.push_back(i);
+  return far;
+}
+
+Eigen::Isometry3d refined(const PreparedScan& scan, const Eigen::Isometry3d& T, int first_level, int last_level)
+{
+  JointOptions options;
+  options.max_distance = 2.f * scan.levels[first_level].voxel;
+  options.samples = 2000;
+  options.max_iterations = 20;
+  options.first_level = first_level;
+  options.last_level = last_level;
+  options.min_overlap = 0.f;
+  options.threads = 1;
+  return refineJointly({&scan, &scan}, {Eigen::Isometry3d::Identity(), T}, options, {}).poses[1];
+}
+
+// Direction in which the surfaces that a motion brings together say least of it.
+Eigen::Vector3d weakestDirection(const ScanLevel& level, const Eigen::Isometry3d& motion)
+{
+  const Eigen::Isometry3f T = motion.cast<float>();
+  Eigen::Matrix3d normals = Eigen::Matrix3d::Zero();
+  for (Index i = 0; i < level.points.cols(); ++i) {
+    const auto hit = level.nearest(T * level.points.col(i), level.voxel);
+    const Eigen::Vector3f n = T.linear() * level.normals.col(i);
+    if (hit.index >= 0 && level.normals.col(hit.index).dot(n) > 0.7f)
+      normals += (n * n.transpose()).cast<double>();
+  }
+  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(normals).eigenvectors().col(0);
+}
+
+// The little that is seen of a second place leaves a direction nearly free, in which refinement drifts: the best place
+// along it.
+Eigen::Isometry3d bestAlongWeakest(const PreparedScan& scan, const Eigen::Isometry3d& T)
+{
+  constexpr int steps = 4; // of half a voxel to either side: how far refinement drifts
+  const Eigen::Vector3d step = 0.5 * scan.levels[1].voxel * weakestDirection(scan.levels[1], T);
+  Eigen::Isometry3d best = T;
+  double most = -1.0;
+  for (int k = -steps; k <= steps; ++k) {
+    const Eigen::Isometry3d shifted = Eigen::Translation3d(k * step) * T;
+    const double score = alignmentScore(checkPair(scan, scan, shifted, 1));
+    if (score > most) {
+      most = score;
+      best = shifted;
+    }
+  }
+  return best;
+}
+
+bool isElsewhere(const PreparedScan& scan, const Eigen::Isometry3d& T)
+{
+  const float apart = alias_distance * scan.size;
+  return poseDistance(T, Eigen::Isometry3d::Identity(), scan.size) > apart;
+}
+
+bool fitsPartially(const PreparedScan& scan, const Eigen::Isometry3d& T)
+{
+  constexpr double most_violation = 0.002; // what noise causes: a place of which little is seen must fit
+  if (!isElsewhere(scan, T))
+    return false;
+  const PairCheck check = checkPair(scan, scan, T, check_level);
+  return check.overlap >= least_overlap && check.violation < most_violation && check.color.value_or(1.0) > alias_color;
+}
+
+// Poses that bring what is far onto what is near, the best first.
+PoseHypotheses farToNear(const PreparedScan& scan, const ScanFeatures& features, const Sc2PcrOptions& sc2_pcr)
+{
+  constexpr double next_door = 3.0;        // of the scan's size: a place further off is seen too badly to be told
+  constexpr int matches_a_feature = 6;     // places of the near part that look like a far feature's
+  constexpr std::size_t most_refined = 15; // bounds the time
+  const float apart = alias_distance * scan.size;
+  const std::vector<Correspondence> matches =
+      matchToSelf(features, {farFeatures(features, scan), apart, 0.5f * apart, matches_a_feature});
+  PoseHypotheses hypotheses = runSc2Pcr(features, features, matches, sc2_pcr);
+  const auto too_far = [&](const PoseHypothesis& hypothesis) {
+    return hypothesis.T_a_b.translation().norm() > next_door * scan.size;
+  };
+  hypotheses.erase(std::remove_if(hypotheses.begin(), hypotheses.end(), too_far), hypotheses.end());
+  for (PoseHypothesis& hypothesis : hypotheses)
+    hypothesis.score = alignmentScore(checkPair(scan, scan, hypothesis.T_a_b, 0));
+  std::stable_sort(hypotheses.begin(), hypotheses.end(),
+                   [](const PoseHypothesis& x, const PoseHypothesis& y) { return x.score > y.score; });
+  hypotheses.resize(std::min(most_refined, hypotheses.size()));
+  return hypotheses;
+}
+
+bool isKnown(const PreparedScan& scan, const Eigen::Isometry3d& T)
+{
+  return std::any_of(scan.aliases.begin(), scan.aliases.end(), [&](const ScanAlias& own) {
+    return own.certain && poseDistance(own.T, T, scan.size) < alias_distance * scan.size;
+  });
+}
+
+// A partial alias of one scan as others have it that were taken in the same place, or in one that looks alike.
+class SharedAlias {
+public:
+  SharedAlias(const std::vector<PreparedScan>& scans, const std::vector<PairAlignment>& pairs, Index scan,
+              const ScanAlias& alias)
+  {
+    constexpr double same_place = 0.25;           // overlap of two scans that look at one room from two places
+    constexpr double rejecting_violation = 0.005; // of another scan taken there: more than twice what noise causes
+    for (const PairAlignment& pair : pairs) {
+      if ((pair.a != scan && pair.b != scan) || pair.hypotheses.empty() ||
+          pair.hypotheses[0].check.overlap < same_place)
+        continue;
+      const Eigen::Isometry3d T_a_b = pair.hypotheses[0].T_a_b, T = pair.a == scan ? T_a_b.inverse() : T_a_b;
+      const Index other = pair.a == scan ? pair.b : pair.a;
+      shared_.push_back({other, alias});
+      shared_.back().second.T = T * alias.T * T.inverse();
+      const PreparedScan& seen = scans[other];
+      rejected_ =
+          rejected_ || checkPair(seen, seen, shared_.back().second.T, check_level).violation > rejecting_violation;
+    }
+  }
+
+  bool rejected() const { return rejected_; }
+
+  void addTo(std::vector<PreparedScan>& scans) const
+  {
+    for (const auto& [scan, alias] : shared_)
+      if (!isKnown(scans[scan], alias.T))
+        scans[scan].aliases.push_back(alias);
+  }
+
+private:
+  std::vector<std::pair<Index, ScanAlias>> shared_;
+  bool rejected_ = false;
+};
+} // namespace
+
+ScanAliases findPartialAliases(const PreparedScan& scan, const ScanFeatures& features, const Sc2PcrOptions& sc2_pcr)
+{
+  constexpr double hopeless_violation = 0.02; // before the last refinement: ten times what may be left after it
+  ScanAliases found;
+  IsometryVector tried;
+  for (const PoseHypothesis& hypothesis : farToNear(scan, features, sc2_pcr)) {
+    const Eigen::Isometry3d rough = refined(scan, hypothesis.T_a_b, 0, 1);
+    const PairCheck check = checkPair(scan, scan, rough, 1);
+    const bool known = std::any_of(tried.begin(), tried.end(), [&](const Eigen::Isometry3d& other) {
+      return poseDistance(rough, other, scan.size) < scan.levels[1].voxel;
+    });
+    if (known || check.violation > hopeless_violation || check.overlap < least_overlap || !isElsewhere(scan, rough))
+      continue;
+    tried.push_back(rough);
+    for (const Eigen::Isometry3d& start : {rough, bestAlongWeakest(scan, rough)}) {
+      const Eigen::Isometry3d T = refined(scan, start, check_level, level_count - 1);
+      if (fitsPartially(scan, T)) {
+        found.push_back({T, true, 0.0, true});
+        break;
+      }
+    }
+  }
+  return found;
+}
+
+void sharePartialAliases(std::vector<PreparedScan>& scans, const std::vector<PairAlignment>& pairs)
+{
+  std::vector<SharedAlias> shared;
+  for (std::size_t i = 0; i < scans.size(); ++i) {
+    ScanAliases kept;
+    for (const ScanAlias& alias : scans[i].aliases) {
+      if (alias.partial)
+        shared.emplace_back(scans, pairs, i, alias);
+      if (!alias.partial || !shared.back().rejected())
+        kept.push_back(alias);
+    }
+    scans[i].aliases = kept;
+  }
+  for (const SharedAlias& alias : shared)
+    if (!alias.rejected())
+      alias.addTo(scans);
+}
+} // namespace fresco::registration
