@@ -37,7 +37,9 @@ void declare(Args& args, TextureOptions& options, ToolOptions& tool)
   args.flag("no_consistency", tool.no_consistency, "do not avoid photographs that differ from what most show");
   args.flag("no_level", tool.no_level, "leave the steps of colour at seams");
   args.flag("no_examples", tool.no_examples, "colour unseen parts smoothly, without structure");
-  args.option("strip", options.strip, "pixels over which one photograph passes into the next at a seam, 0..100");
+  args.option("blend_width", options.blend_width,
+              "pixels over which one photograph passes into the next at a seam, 0..100");
+  args.option("strip", options.blend_width, "old name of -blend_width");
   args.option("rounds", options.rounds,
               "how often texels are corrected by all photographs, where these agree within half a pixel, 0..100");
   args.option(
@@ -75,7 +77,7 @@ std::string maskPath(const std::string& model, std::size_t index, std::size_t co
   return stem + (count > 1 ? concat("_mask_", index, ".png") : "_mask.png");
 }
 
-void printFigures(const TextureResult& result, std::size_t views, bool quiet)
+void printResult(const TextureResult& result, std::size_t views, bool quiet)
 {
   for (const std::string& warning : result.warnings)
     inform(quiet, "warning: " + warning);
@@ -147,7 +149,7 @@ void run(int argc, char** argv)
     if (!tool.cameras_out.empty())
       writeColmap(tool.cameras_out, usedCameras(set, result));
   });
-  printFigures(result, views.size(), common.quiet);
+  printResult(result, views.size(), common.quiet);
 }
 } // namespace
 

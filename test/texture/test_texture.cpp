@@ -262,7 +262,7 @@ TEST(Texture, BadArgumentsAreRefused)
   refuses([](TextureOptions& o, TextureView&) { o.margin = std::nan(""); });
   refuses([](TextureOptions& o, TextureView&) { o.depth_tolerance = 1; });
   refuses([](TextureOptions& o, TextureView&) { o.memory = 0; });
-  refuses([](TextureOptions& o, TextureView&) { o.strip = -1; });
+  refuses([](TextureOptions& o, TextureView&) { o.blend_width = -1; });
   refuses([](TextureOptions& o, TextureView&) { o.threads = -1; });
   refuses([](TextureOptions&, TextureView& v) { v.camera.fx = 0; });
   refuses([](TextureOptions&, TextureView& v) { v.camera.k1 = std::nan(""); });

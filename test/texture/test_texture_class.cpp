@@ -60,7 +60,7 @@ TEST(TextureReconstruction, SettersReachTheOptions)
   texture.setBackProjectionRounds(2);
   texture.setUseExamples(false);
   texture.setMemory(64);
-  texture.setThreads(2);
+  texture.setNumberOfThreads(2);
   EXPECT_EQ(texture.getTexelSize(), 0.01);
   EXPECT_EQ(texture.getAtlasSize(), 1024);
   EXPECT_EQ(texture.getBorder(), 3);
@@ -70,7 +70,11 @@ TEST(TextureReconstruction, SettersReachTheOptions)
   EXPECT_EQ(texture.getBackProjectionRounds(), 2);
   EXPECT_FALSE(texture.getUseExamples());
   EXPECT_EQ(texture.getMemory(), 64);
-  EXPECT_EQ(texture.getThreads(), 2);
+  EXPECT_EQ(texture.getNumberOfThreads(), 2);
+  texture.setBlendStrip(4); // the old name
+  EXPECT_EQ(texture.getBlendWidth(), 4);
+  texture.setOptions(TextureOptions());
+  EXPECT_EQ(texture.getOptions().border, defaults.border);
 }
 
 TEST(TextureReconstruction, WithoutMeshItSaysSo)

@@ -6,12 +6,11 @@
 #include <algorithm>
 #include <cmath>
 #include <fresco/core/parallel.h>
+#include <fresco/core/statistics.h>
 namespace fresco::texture {
 namespace {
 constexpr int shared_count = 11; // mount: 3 turn, 3 shift; focal, cx, cy, k1, k2
 constexpr int pose_count = 6;    // 3 turn, 3 shift
-constexpr int most_steps = 15;
-constexpr double least_gain = 1e-4; // relative, of the cost
 
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 using SharedVector = Eigen::Matrix<double, shared_count, 1>;
@@ -106,18 +105,12 @@ Eigen::Vector2d residual(const PhotoMatch& match, const CameraState& state)
   return project(state.cameras[state.group[match.to]], q) - match.pixel_to;
 }
 
-double medianOf(std::vector<double> values)
-{
-  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
-  return values[values.size() / 2];
-}
-
 class Adjustment {
 public:
   Adjustment(const std::vector<PhotoMatch>& matches, const CameraState& initial, const AdjustmentPrior& prior,
              int threads)
-      : matches_(matches), initial_(initial), groups_(static_cast<int>(initial.cameras.size())),
-        views_(static_cast<int>(initial.group.size())), threads_(threads)
+      : matches_(matches), initial_(initial), groups_(initial.cameras.size()), views_(initial.group.size()),
+        threads_(threads)
   {
     SharedVector shared;
     shared << Eigen::Vector3d::Constant(prior.mount_turn), Eigen::Vector3d::Constant(prior.mount_shift), prior.focal,
@@ -138,7 +131,7 @@ public:
     constexpr int passes = 3;
     CameraState state = stateOf(x_);
     for (int pass = 0; pass < passes; ++pass) {
-      scale_ = std::max(0.5, 1.5 * medianOf(matchErrors(matches_, state)));
+      scale_ = std::max(0.5, 1.5 * median(matchErrors(matches_, state)));
       descend(state);
     }
     return state;
@@ -169,6 +162,8 @@ private:
 
   void descend(CameraState& state)
   {
+    constexpr int most_steps = 15;      // a bound: the descent ends by itself
+    constexpr double least_gain = 1e-4; // relative, of the cost: what is left is below the scatter of the matches
     double damping = 1e-4, cost = costOf(state, x_);
     for (int step = 0; step < most_steps; ++step) {
       const double before = cost;
@@ -230,8 +225,8 @@ private:
                      b = projectAll(state.cameras[to], state.T_camera_mesh[match.to], point);
     Eigen::Matrix3d M;
     M << a.by_point, match.normal.transpose();
-    const Eigen::Matrix<double, 2, 3> slide = b.by_point * M.inverse();
-    const Eigen::Matrix<double, 2, shared_count> by_from = -slide.leftCols<2>() * a.by_shared;
+    const Eigen::Matrix<double, 2, 3> transfer = b.by_point * M.inverse();
+    const Eigen::Matrix<double, 2, shared_count> by_from = -transfer.leftCols<2>() * a.by_shared;
     row.J << by_from, b.by_shared, by_from.leftCols<pose_count>(), b.by_shared.leftCols<pose_count>();
     row.weight = row.J.allFinite() ? 1 / (1 + row.r.squaredNorm() / (scale_ * scale_)) : 0;
     return row;
@@ -244,13 +239,13 @@ private:
     const int column[4] = {0, shared_count, 2 * shared_count, 2 * shared_count + pose_count};
     const int count[4] = {shared_count, shared_count, pose_count, pose_count};
     const Eigen::Matrix<double, 2 * (shared_count + pose_count), 2> weighted = row.weight * row.J.transpose();
-    const Eigen::Matrix<double, 2 * (shared_count + pose_count), 2 * (shared_count + pose_count)> product =
+    const Eigen::Matrix<double, 2 * (shared_count + pose_count), 2 * (shared_count + pose_count)> JTJ =
         weighted * row.J;
-    const Eigen::Matrix<double, 2 * (shared_count + pose_count), 1> slope = weighted * row.r;
+    const Eigen::Matrix<double, 2 * (shared_count + pose_count), 1> JTr = weighted * row.r;
     for (int i = 0; i < 4; ++i) {
-      gradient_.segment(at[i], count[i]) += slope.segment(column[i], count[i]);
+      gradient_.segment(at[i], count[i]) += JTr.segment(column[i], count[i]);
       for (int j = 0; j < 4; ++j)
-        H_.block(at[i], at[j], count[i], count[j]) += product.block(column[i], column[j], count[i], count[j]);
+        H_.block(at[i], at[j], count[i], count[j]) += JTJ.block(column[i], column[j], count[i], count[j]);
     }
   }
 

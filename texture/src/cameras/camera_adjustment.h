@@ -6,8 +6,7 @@ namespace fresco::texture {
 struct AdjustmentPrior {
   double pose_shift = 0.02; ///< mesh units, each view
   double pose_turn = 0.01;  ///< radians, each view
-  double mount_shift =
-      0.1; ///< mesh units, all views of a camera alike: it sits beside the sensor whose poses are given
+  double mount_shift = 0.1; ///< mesh units, all views of a camera alike: it sits beside the sensor with the given poses
   double mount_turn = 0.05; ///< radians, likewise
   double focal = 0.15;      ///< share of the focal length
   double center = 0.03;     ///< share of the image's width

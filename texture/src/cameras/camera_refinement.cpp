@@ -3,16 +3,10 @@
 #include "cameras/camera_adjustment.h"
 #include <algorithm>
 #include <fresco/core/parallel.h>
+#include <fresco/core/statistics.h>
 #include <tuple>
 namespace fresco::texture {
 namespace {
-constexpr Index most_pixels = 1 << 20, least_pixels = 1 << 16; // of a photograph that is searched
-constexpr int pyramid_levels = 4, corner_cells = 200;
-constexpr double searches[] = {0.06, 0.025, 0.0125, 0.008}; // of the image's width, round by round
-constexpr double agreement = 0.5;                           // pixels: cameras that agree so well are left alone
-constexpr double least_gain = 0.9;                          // of the error
-constexpr Index least_matches = 50;
-
 auto numbersOf(const CameraModel& c)
 {
   return std::tie(c.width, c.height, c.fx, c.fy, c.cx, c.cy, c.k1, c.k2, c.p1, c.p2);
@@ -24,7 +18,7 @@ CameraState stateOf(const TriangleMesh& mesh, const std::vector<TextureView>& vi
   for (const TextureView& view : views) {
     const auto same = [&](const CameraModel& c) { return numbersOf(c) == numbersOf(view.camera); };
     const auto at = std::find_if(state.cameras.begin(), state.cameras.end(), same);
-    state.group.push_back(static_cast<int>(at - state.cameras.begin()));
+    state.group.push_back(at - state.cameras.begin());
     if (at == state.cameras.end())
       state.cameras.push_back(view.camera);
     state.T_camera_mesh.push_back(view.T_camera_world * Eigen::Translation3d(mesh.origin));
@@ -35,15 +29,19 @@ CameraState stateOf(const TriangleMesh& mesh, const std::vector<TextureView>& vi
 /// Grey copies take at most half of what may be kept of the photographs; the rest keeps what they are made of.
 std::vector<MatchPhoto> prepare(PhotoStore& photos, Index count, int threads)
 {
+  constexpr Index most_pixels = 1 << 20;  // of a photograph that is searched: bounds the time
+  constexpr Index least_pixels = 1 << 16; // coarser, half a pixel is too much of the photograph
+  constexpr int levels = 4;               // the widest search becomes one of few pixels
+  constexpr int corner_cells = 200;       // per photograph: many times the unknowns of a camera
   constexpr double with_halvings = 4.0 / 3;
-  const double share = 0.5 * static_cast<double>(photos.mostBytes()) / (with_halvings * static_cast<double>(count));
-  const auto pixels = static_cast<Index>(std::clamp<double>(share, least_pixels, most_pixels));
-  photos.setAside(static_cast<std::size_t>(with_halvings * static_cast<double>(pixels * count)));
+  const double share = 0.5 * photos.mostBytes() / (with_halvings * count);
+  const Index pixels = std::clamp<double>(share, least_pixels, most_pixels);
+  photos.setAside(with_halvings * (pixels * count));
   std::vector<MatchPhoto> out(count);
   parallelFor(
       count, threads,
       [&](Index v) {
-        out[v].pyramid = buildPyramid(*photos.get(v), pixels, pyramid_levels);
+        out[v].pyramid = buildPyramid(*photos.get(v), pixels, levels);
         out[v].corners = findCorners(out[v].pyramid.levels[0], corner_cells);
       },
       1);
@@ -53,7 +51,7 @@ std::vector<MatchPhoto> prepare(PhotoStore& photos, Index count, int threads)
 /// Spread over all pairs of views; more would not make the cameras better.
 std::vector<PhotoMatch> thinned(const std::vector<PhotoMatch>& matches, std::size_t views)
 {
-  constexpr std::size_t per_view = 200;
+  constexpr std::size_t per_view = 200; // many times the 6 unknowns of a pose
   const std::size_t most = per_view * views;
   if (matches.size() <= most)
     return matches;
@@ -63,12 +61,9 @@ std::vector<PhotoMatch> thinned(const std::vector<PhotoMatch>& matches, std::siz
   return out;
 }
 
-double medianOf(std::vector<double> values)
+double medianError(const std::vector<PhotoMatch>& matches, const CameraState& state)
 {
-  if (values.empty())
-    return 0;
-  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
-  return values[values.size() / 2];
+  return median(matchErrors(matches, state));
 }
 
 double medianDistance(const std::vector<PhotoMatch>& matches, const CameraState& state)
@@ -76,7 +71,7 @@ double medianDistance(const std::vector<PhotoMatch>& matches, const CameraState&
   std::vector<double> distances;
   for (const PhotoMatch& match : matches)
     distances.push_back((state.T_camera_mesh[match.from] * match.point).z());
-  return medianOf(distances);
+  return median(distances);
 }
 
 /// Shifts scale with the distance of what is seen, because the mesh's unit is unknown.
@@ -97,39 +92,42 @@ int widestOf(const CameraState& state)
 }
 } // namespace
 
-RefinedCameras refineCameras(const TriangleMesh& mesh, const RayScene& scene, const std::vector<TextureView>& views,
-                             PhotoStore& photos, int threads, const Progress& progress)
+RefinedCameras refineCameras(const RefinementInput& input, int threads, const Progress& progress)
 {
-  const CameraState initial = stateOf(mesh, views);
+  constexpr double searches[] = {0.06, 0.025, 0.0125, 0.008}; // of the image's width: shrinks with what is left to find
+  constexpr double least_gain = 0.9;                          // of the error: a smaller gain may be chance
+  constexpr Index least_matches = 50;                         // for a median, and for priors not to be all that decides
+  const Index views = input.views.size();
+  const CameraState initial = stateOf(input.mesh, input.views);
   CameraState state = initial;
   RefinedCameras out;
-  const std::vector<MatchPhoto> prepared = prepare(photos, static_cast<Index>(views.size()), threads);
+  const std::vector<MatchPhoto> prepared = prepare(input.photos, views, threads);
   MatchOptions options;
   options.threads = threads;
   double done = 0;
   for (const double search : searches) {
     report(progress, "camera refinement", done);
     options.search = search * widestOf(state);
-    const std::vector<PhotoMatch> matches = matchPhotos(scene, prepared, state, options);
-    out.matches = static_cast<Index>(matches.size());
+    const std::vector<PhotoMatch> matches = matchPhotos(input.scene, prepared, state, options);
+    out.matches = matches.size();
     if (out.matches < least_matches)
       break;
-    out.before = medianOf(matchErrors(matches, initial));
-    if (done == 0 && out.before < agreement) {
+    out.before = medianError(matches, initial);
+    if (done == 0 && out.before < agreement_pixels) {
       out.after = out.before;
       break;
     }
-    state = adjustCameras(thinned(matches, views.size()), initial, priorFor(medianDistance(matches, initial)), threads);
-    out.after = medianOf(matchErrors(matches, state));
+    state = adjustCameras(thinned(matches, views), initial, priorFor(medianDistance(matches, initial)), threads);
+    out.after = medianError(matches, state);
     done += 1.0 / std::size(searches);
   }
-  photos.setAside(0);
+  input.photos.setAside(0);
   out.changed = out.matches >= least_matches && out.after < least_gain * out.before;
   if (!out.changed)
     state = initial;
-  for (std::size_t v = 0; v < views.size(); ++v) {
+  for (Index v = 0; v < views; ++v) {
     out.cameras.push_back(state.cameras[state.group[v]]);
-    out.T_camera_world.push_back(state.T_camera_mesh[v] * Eigen::Translation3d(-mesh.origin));
+    out.T_camera_world.push_back(state.T_camera_mesh[v] * Eigen::Translation3d(-input.mesh.origin));
   }
   return out;
 }

@@ -4,16 +4,12 @@
 #include <cmath>
 namespace fresco::texture {
 namespace {
-constexpr int corner_radius = 3;   // pixels, window of the structure tensor
-constexpr int corner_border = 12;  // pixels: room for a patch around the corner
-constexpr double least_change = 4; // grey levels per pixel, RMS in the direction of least change
-
 Image greyOf(const Image& photo)
 {
   Image out(photo.width, photo.height, 1);
   for (std::size_t i = 0; i < out.data.size(); ++i) {
     const std::uint8_t* p = photo.data.data() + 3 * i;
-    out.data[i] = static_cast<std::uint8_t>((299 * p[0] + 587 * p[1] + 114 * p[2] + 500) / 1000);
+    out.data[i] = (299 * p[0] + 587 * p[1] + 114 * p[2] + 500) / 1000;
   }
   return out;
 }
@@ -23,15 +19,16 @@ Image halved(const Image& in)
   Image out(in.width / 2, in.height / 2, 1);
   for (int y = 0; y < out.height; ++y)
     for (int x = 0; x < out.width; ++x)
-      *out.pixel(x, y) = static_cast<std::uint8_t>((*in.pixel(2 * x, 2 * y) + *in.pixel(2 * x + 1, 2 * y) +
-                                                    *in.pixel(2 * x, 2 * y + 1) + *in.pixel(2 * x + 1, 2 * y + 1) + 2) /
-                                                   4);
+      *out.pixel(x, y) = (*in.pixel(2 * x, 2 * y) + *in.pixel(2 * x + 1, 2 * y) + *in.pixel(2 * x, 2 * y + 1) +
+                          *in.pixel(2 * x + 1, 2 * y + 1) + 2) /
+                         4;
   return out;
 }
 
 /// Mean square change of grey in the direction of least change.
 double cornerness(const Image& image, int x, int y)
 {
+  constexpr int corner_radius = 3; // pixels, window of the structure tensor: more than noise, less than a patch
   double xx = 0, xy = 0, yy = 0;
   for (int j = y - corner_radius; j <= y + corner_radius; ++j)
     for (int i = x - corner_radius; i <= x + corner_radius; ++i) {
@@ -49,14 +46,14 @@ double cornerness(const Image& image, int x, int y)
 GreyPyramid buildPyramid(const Image& photo, Index most_pixels, int levels)
 {
   GreyPyramid out;
+  const std::size_t most = most_pixels, count = levels;
   Image level = greyOf(photo);
-  while (static_cast<Index>(level.width) * level.height > most_pixels) {
+  while (level.data.size() > most) {
     level = halved(level);
     out.scale *= 0.5;
   }
   out.levels.push_back(std::move(level));
-  while (static_cast<int>(out.levels.size()) < levels &&
-         std::min(out.levels.back().width, out.levels.back().height) >= 64)
+  while (out.levels.size() < count && std::min(out.levels.back().width, out.levels.back().height) >= 64)
     out.levels.push_back(halved(out.levels.back()));
   return out;
 }
@@ -64,7 +61,7 @@ GreyPyramid buildPyramid(const Image& photo, Index most_pixels, int levels)
 float greyAt(const Image& image, float x, float y)
 {
   const float u = x - 0.5f, v = y - 0.5f;
-  const int i = static_cast<int>(u), j = static_cast<int>(v);
+  const int i = u, j = v;
   const float a = u - i, b = v - j;
   const std::uint8_t *p = image.pixel(i, j), *q = p + image.width;
   return (1 - b) * ((1 - a) * p[0] + a * p[1]) + b * ((1 - a) * q[0] + a * q[1]);
@@ -73,19 +70,21 @@ float greyAt(const Image& image, float x, float y)
 std::vector<Eigen::Vector2f> findCorners(const Image& image, int cells)
 {
   std::vector<Eigen::Vector2f> out;
+  constexpr int corner_border = 12;  // pixels: room for a patch around the corner
+  constexpr double least_change = 4; // grey levels per pixel, RMS in the direction of least change: above noise
   const double width = image.width - 2.0 * corner_border, height = image.height - 2.0 * corner_border;
   if (!(width > 0 && height > 0))
     return out;
   const double side = std::sqrt(width * height / cells);
-  const int nx = std::max(1, static_cast<int>(width / side)), ny = std::max(1, static_cast<int>(height / side));
+  const int nx = std::max<int>(1, width / side), ny = std::max<int>(1, height / side);
   for (int cy = 0; cy < ny; ++cy)
     for (int cx = 0; cx < nx; ++cx) {
       double best = least_change * least_change;
       Eigen::Vector2f place(-1, -1);
-      for (int y = corner_border + static_cast<int>(cy * height / ny);
-           y < corner_border + static_cast<int>((cy + 1) * height / ny); y += 2)
-        for (int x = corner_border + static_cast<int>(cx * width / nx);
-             x < corner_border + static_cast<int>((cx + 1) * width / nx); x += 2)
+      const int left = cx * width / nx, right = (cx + 1) * width / nx, top = cy * height / ny,
+                bottom = (cy + 1) * height / ny;
+      for (int y = corner_border + top; y < corner_border + bottom; y += 2)
+        for (int x = corner_border + left; x < corner_border + right; x += 2)
           if (const double value = cornerness(image, x, y); value > best) {
             best = value;
             place = {x + 0.5f, y + 0.5f};

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cameras/patch_search.h"
+#include "grid.h"
 #include <Eigen/LU>
 #include <algorithm>
 #include <array>
@@ -8,20 +9,17 @@
 #include <vector>
 namespace fresco::texture {
 namespace {
-constexpr int radius = 5, side = 2 * radius + 1, count = side * side; // pixels
-constexpr float coarse_search = 10;                                   // pixels, largest at any level
-constexpr int fine_search = 2;                                        // pixels, from one level to the next
-constexpr float least_correlation = 0.8f;                             // of the last level; 0.7 on the way
-constexpr float least_lead = 0.05f;                                   // over the second best place
-constexpr float least_deviation = 3;                                  // grey levels in the patch
+/// Pixels: 11 x 11 are distinct enough, and the surface is still flat over them.
+constexpr int radius = 5, side = 2 * radius + 1, count = side * side;
 
 /// Patch with mean 0 and norm 1.
 using Template = std::array<float, count>;
 
 bool takeTemplate(const PatchQuery& query, int level, Template& out)
 {
+  constexpr float least_deviation = 3; // grey levels: below, the patch is mostly noise
   const Image& image = query.from.levels[level];
-  const float scale = 1.f / static_cast<float>(1 << level);
+  const float scale = 1.f / (1 << level);
   float sum = 0, squares = 0;
   for (int j = 0; j < side; ++j)
     for (int i = 0; i < side; ++i) {
@@ -72,14 +70,14 @@ class Region {
 public:
   /// @param low upper left pixel; the region lies inside the image
   Region(const Image& image, Eigen::Vector2i low, Eigen::Vector2i size)
-      : width_(size.x()), grey_(static_cast<std::size_t>(size.x()) * size.y() + 1, 0.f),
-        sums_(static_cast<std::size_t>(size.x() + 1) * (size.y() + 1), 0), squares_(sums_)
+      : width_(size.x()), grey_(cellCount(size.x(), size.y()) + 1, 0.f),
+        sums_(cellCount(size.x() + 1, size.y() + 1), 0), squares_(sums_)
   {
     for (int y = 0; y < size.y(); ++y) {
       const std::uint8_t* row = image.pixel(low.x(), low.y() + y);
       std::int64_t sum = 0, square = 0;
       for (int x = 0; x < width_; ++x) {
-        grey_[static_cast<std::size_t>(y) * width_ + x] = row[x];
+        grey_[cellAt(x, y, width_)] = row[x];
         sum += row[x];
         square += row[x] * row[x];
         sums_[at(x + 1, y + 1)] = sums_[at(x + 1, y)] + sum;
@@ -93,17 +91,17 @@ public:
   {
     float product = 0;
     for (int j = 0; j < side; ++j) {
-      const float *row = grey_.data() + static_cast<std::size_t>(y + j) * width_ + x, *wanted = patch.data() + j * side;
+      const float *row = grey_.data() + cellAt(x, y + j, width_), *wanted = patch.data() + j * side;
       for (int i = 0; i < side; ++i)
         product += wanted[i] * row[i];
     }
     const float sum = box(sums_, x, y);
-    const float spread = static_cast<float>(box(squares_, x, y)) - sum * sum / count;
+    const float spread = box(squares_, x, y) - sum * sum / count;
     return spread > 1 ? product / std::sqrt(spread) : -1;
   }
 
 private:
-  std::size_t at(int x, int y) const { return static_cast<std::size_t>(y) * (width_ + 1) + x; }
+  std::size_t at(int x, int y) const { return cellAt(x, y, width_ + 1); }
   std::int64_t box(const std::vector<std::int64_t>& sums, int x, int y) const
   {
     return sums[at(x + side, y + side)] - sums[at(x, y + side)] - sums[at(x + side, y)] + sums[at(x, y)];
@@ -138,18 +136,23 @@ Peak findPeak(const Template& patch, const Image& image, Eigen::Vector2i at, int
 }
 
 /// Top of the parabola through three values at -1, 0, 1.
-float parabolaTop(float before, float middle, float after)
+float parabolaVertex(float before, float middle, float after)
 {
-  const float bend = before - 2 * middle + after;
-  return bend < -1e-6f ? std::clamp(0.5f * (before - after) / bend, -0.5f, 0.5f) : 0.f;
+  const float curvature = before - 2 * middle + after;
+  return curvature < -1e-6f ? std::clamp(0.5f * (before - after) / curvature, -0.5f, 0.5f) : 0.f;
 }
 } // namespace
 
 bool findPatch(const PatchQuery& query, Eigen::Vector2f& place)
 {
+  constexpr float coarse_search = 10;       // pixels of the coarsest level: as far as a patch is itself
+  constexpr int fine_search = 2;            // pixels, from one level to the next: a pixel of the last, and one more
+  constexpr float least_correlation = 0.8f; // of the finest level
+  constexpr float least_on_the_way = 0.7f;  // of coarser ones, whose pixels mix in what lies beside
+  constexpr float least_lead = 0.05f;       // over the second best match: repeated structure is ambiguous
   int level = 0;
   const int levels = std::min(query.from.levels.size(), query.to.levels.size());
-  while (level + 1 < levels && query.search / static_cast<float>(1 << level) > coarse_search)
+  while (level + 1 < levels && query.search / (1 << level) > coarse_search)
     ++level;
   place = query.pixel_to;
   for (const int first = level; level >= 0; --level) {
@@ -157,19 +160,19 @@ bool findPatch(const PatchQuery& query, Eigen::Vector2f& place)
     if (!takeTemplate(query, level, patch))
       return false;
     const Image& image = query.to.levels[level];
-    const float scale = 1.f / static_cast<float>(1 << level);
+    const float scale = 1.f / (1 << level);
     const Eigen::Vector2i at = (place * scale).array().floor().cast<int>();
-    const int reach = level == first ? static_cast<int>(std::ceil(query.search * scale)) : fine_search;
+    const int reach = level == first ? std::ceil(query.search * scale) : fine_search;
     const Peak peak = findPeak(patch, image, at, reach);
-    if (peak.value < (level == 0 ? least_correlation : 0.7f) ||
+    if (peak.value < (level == 0 ? least_correlation : least_on_the_way) ||
         (level == first && peak.value < peak.second + least_lead))
       return false;
     place = Eigen::Vector2f(peak.x + 0.5f, peak.y + 0.5f) / scale;
     if (level == 0)
-      place += Eigen::Vector2f(parabolaTop(correlation(patch, image, peak.x - 1, peak.y), peak.value,
-                                           correlation(patch, image, peak.x + 1, peak.y)),
-                               parabolaTop(correlation(patch, image, peak.x, peak.y - 1), peak.value,
-                                           correlation(patch, image, peak.x, peak.y + 1)));
+      place += Eigen::Vector2f(parabolaVertex(correlation(patch, image, peak.x - 1, peak.y), peak.value,
+                                              correlation(patch, image, peak.x + 1, peak.y)),
+                               parabolaVertex(correlation(patch, image, peak.x, peak.y - 1), peak.value,
+                                              correlation(patch, image, peak.x, peak.y + 1)));
   }
   return true;
 }

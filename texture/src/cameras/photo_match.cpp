@@ -9,11 +9,8 @@
 #include <numeric>
 namespace fresco::texture {
 namespace {
-constexpr double depth_agreement = 0.02; // share of the distance, for a surface to be the same from two places
-constexpr int flat_reach = 6;            // pixels around a corner over which the surface has to be smooth
-constexpr double least_cosine = 0.25;    // 75 degrees between surface and either view
-constexpr int sampled = 4;               // every so many corners, to see which views share them
-constexpr int least_shared = 12;         // corners, for two views to be compared
+constexpr double depth_agreement = 0.02; // share of the distance: a mesh may err so much and be the same surface
+constexpr double least_cosine = 0.25;    // 75 degrees: beyond, pixels smear over four times their size
 
 struct Corner {
   Eigen::Vector2d pixel; ///< of the photograph
@@ -38,7 +35,7 @@ public:
         n, options_.threads, [&](Index v) { corners[v] = cornersOnSurface(v); }, 1);
     std::vector<std::vector<PhotoMatch>> matches(photos_.size());
     parallelFor(
-        n, options_.threads, [&](Index v) { matches[v] = matchesOf(static_cast<int>(v), corners[v]); }, 1);
+        n, options_.threads, [&](Index v) { matches[v] = matchesOf(v, corners[v]); }, 1);
     std::vector<PhotoMatch> all;
     for (const auto& some : matches)
       all.insert(all.end(), some.begin(), some.end());
@@ -62,6 +59,7 @@ private:
   /// where it is bent or seen too obliquely
   bool lift(Index v, Corner& corner) const
   {
+    constexpr int flat_reach = 6; // pixels: a patch with its border
     const Eigen::Vector3f from = views_[v].center();
     const double reach = flat_reach / photos_[v].pyramid.scale;
     const Eigen::Vector2d offsets[5] = {{0, 0}, {reach, 0}, {-reach, 0}, {0, reach}, {0, -reach}};
@@ -104,17 +102,19 @@ private:
   /// Views that see most of the corners; fewer and fewer of those that see less, for long baselines.
   std::vector<int> partnersOf(int from, const std::vector<Corner>& corners) const
   {
+    constexpr int sampled = 4;       // every so many corners: enough to rank the views
+    constexpr int least_shared = 12; // corners: fewer give hardly a match
     std::vector<int> shared(photos_.size(), 0), order(photos_.size());
     Eigen::Vector2d pixel;
-    for (int v = 0; v < static_cast<int>(photos_.size()); ++v)
+    const Index n = photos_.size(), most = options_.partners;
+    for (int v = 0; v < n; ++v)
       for (std::size_t i = 0; i < corners.size() && v != from; i += sampled)
         shared[v] += sampled * sees(v, corners[i], pixel);
     std::iota(order.begin(), order.end(), 0);
     std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return shared[a] > shared[b]; });
     std::vector<int> out;
     double step = 1;
-    for (double rank = 0; rank < static_cast<double>(order.size()) && static_cast<int>(out.size()) < options_.partners;
-         rank += step) {
+    for (double rank = 0; rank < n && static_cast<Index>(out.size()) < most; rank += step) {
       const int v = order[rank];
       if (shared[v] < least_shared)
         break;

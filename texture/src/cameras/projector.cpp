@@ -7,11 +7,11 @@ Projector::Projector(const CameraModel& camera, const Eigen::Isometry3d& T_camer
     : camera_(camera), R_(T_camera_world.linear().cast<float>()), t_((T_camera_world * origin).cast<float>()),
       center_((-(T_camera_world.linear().transpose() * (T_camera_world * origin))).cast<float>()),
       low_(Eigen::Array2d::Constant(std::numeric_limits<double>::infinity())), high_(-low_),
-      focal_(static_cast<float>(std::sqrt(camera.fx * camera.fy)))
+      focal_(std::sqrt(camera.fx * camera.fy))
 {
   constexpr int steps = 16;
   for (int i = 0; i <= steps; ++i) {
-    const double x = camera.width * static_cast<double>(i) / steps, y = camera.height * static_cast<double>(i) / steps;
+    const double x = 1.0 * camera.width * i / steps, y = 1.0 * camera.height * i / steps;
     for (const Eigen::Vector2d& pixel : {Eigen::Vector2d(x, 0), Eigen::Vector2d(x, camera.height),
                                          Eigen::Vector2d(0, y), Eigen::Vector2d(camera.width, y)}) {
       const Eigen::Array2d p = unproject(camera, pixel).head<2>().array();
@@ -29,13 +29,13 @@ Eigen::Vector3f Projector::operator()(const Eigen::Vector3f& point) const
   const Eigen::Vector3f q = R_ * point + t_;
   if (!(q.z() > 1e-6f))
     return Eigen::Vector3f::Zero();
-  const double x = static_cast<double>(q.x()) / q.z(), y = static_cast<double>(q.y()) / q.z();
+  const double z = q.z(), x = q.x() / z, y = q.y() / z;
   if (!camera_.hasDistortion())
-    return {static_cast<float>(camera_.fx * x + camera_.cx), static_cast<float>(camera_.fy * y + camera_.cy), q.z()};
+    return Eigen::Vector3d(camera_.fx * x + camera_.cx, camera_.fy * y + camera_.cy, z).cast<float>();
   if (x < low_.x() || x > high_.x() || y < low_.y() || y > high_.y())
     return Eigen::Vector3f::Zero();
   const Eigen::Vector2d pixel = project(camera_, {x, y, 1.0});
-  return {static_cast<float>(pixel.x()), static_cast<float>(pixel.y()), q.z()};
+  return Eigen::Vector3d(pixel.x(), pixel.y(), z).cast<float>();
 }
 
 Eigen::Vector3f Projector::ray(const Eigen::Vector2d& pixel) const

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "charts/atlas_packing.h"
+#include "grid.h"
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -26,13 +27,13 @@ Mask maskOf(const Chart& chart, int block)
   Mask mask;
   mask.width = (chart.width + block - 1) / block;
   mask.height = (chart.height + block - 1) / block;
-  std::vector<char> taken(static_cast<std::size_t>(mask.width) * mask.height, 0);
+  std::vector<char> taken(cellCount(mask.width, mask.height), 0);
   for (const TexelSpan& span : chart.texels.spans)
     for (int x = span.x / block; x <= (span.x + span.length - 1) / block; ++x)
-      taken[static_cast<std::size_t>(span.y / block) * mask.width + x] = 1;
+      taken[cellAt(x, span.y / block, mask.width)] = 1;
   mask.rows.resize(mask.height);
   for (int y = 0; y < mask.height; ++y) {
-    const char* row = taken.data() + static_cast<std::size_t>(y) * mask.width;
+    const char* row = taken.data() + cellAt(0, y, mask.width);
     for (int x = 0, end = 0; x < mask.width; x = end + 1) {
       for (end = x; end < mask.width && row[end]; ++end)
         ;
@@ -46,7 +47,7 @@ Mask maskOf(const Chart& chart, int block)
 /// out |= row shifted so that bit x of `out` takes bit x + shift
 void orShifted(const BitRow& row, int shift, BitRow& out)
 {
-  const std::size_t words = static_cast<std::size_t>(shift) / 64, bits = static_cast<std::size_t>(shift) % 64;
+  const std::size_t words = shift / 64, bits = shift % 64;
   for (std::size_t i = 0; i + words < row.size(); ++i) {
     Word w = row[i + words] >> bits;
     if (bits > 0 && i + words + 1 < row.size())
@@ -79,7 +80,7 @@ public:
     if (mask.width > width_)
       return false;
     for (int y = from; height_ == 0 || y + mask.height <= height_; ++y) {
-      while (static_cast<int>(rows_.size()) < y + mask.height)
+      while (static_cast<Index>(rows_.size()) < y + mask.height)
         rows_.push_back(emptyRow());
       if (const int x = firstFree(mask, y); x >= 0) {
         place = {x, y};
@@ -104,7 +105,7 @@ private:
   /// Bits beyond the width are set: taken.
   BitRow emptyRow() const
   {
-    BitRow row(static_cast<std::size_t>(width_) / 64 + 1, 0);
+    BitRow row(width_ / 64 + 1, 0);
     for (std::size_t x = width_; x < row.size() * 64; ++x)
       row[x / 64] |= Word(1) << (x % 64);
     return row;
@@ -132,7 +133,7 @@ private:
   std::vector<BitRow> rows_;
 };
 
-int logSize(int length) { return static_cast<int>(std::lround(2 * std::log2(static_cast<double>(length)))); }
+int logSize(int length) { return std::lround(2 * std::log2(length)); }
 
 class Packer {
 public:
@@ -141,7 +142,7 @@ public:
     for (const Chart& chart : charts)
       masks_.push_back(maskOf(chart, block));
     std::iota(order_.begin(), order_.end(), 0);
-    const auto size = [&](int c) { return masks_[c].height * static_cast<long>(masks_[c].width); };
+    const auto size = [&](int c) { return cellCount(masks_[c].width, masks_[c].height); };
     std::stable_sort(order_.begin(), order_.end(), [&](int a, int b) { return size(a) > size(b); });
   }
 
@@ -155,7 +156,7 @@ public:
     return grids_.empty() ? 0 : grids_.back().top();
   }
 
-  int atlases() const { return static_cast<int>(grids_.size()); }
+  int atlases() const { return grids_.size(); }
 
 private:
   void place(int c, int width, int height)
@@ -177,7 +178,7 @@ private:
       }
       from = at.y();
       grids_[g].take(mask, at);
-      charts_[c].atlas = static_cast<int>(g);
+      charts_[c].atlas = g;
       charts_[c].x = at.x() * block_;
       charts_[c].y = at.y() * block_;
       return;
@@ -196,7 +197,7 @@ double ownedTexels(const std::vector<Chart>& charts)
 {
   double sum = 0;
   for (const Chart& chart : charts)
-    sum += static_cast<double>(chart.texels.count());
+    sum += chart.texels.count();
   return sum;
 }
 
@@ -204,7 +205,7 @@ double ownedTexels(const std::vector<Chart>& charts)
 int smallestSquare(Packer& packer, int least, double blocks)
 {
   constexpr int tries = 5;
-  int width = std::max(least, static_cast<int>(std::ceil(std::sqrt(blocks / 0.9)))), best = 0, best_width = width;
+  int width = std::max<int>(least, std::ceil(std::sqrt(blocks / 0.9))), best = 0, best_width = width;
   for (int i = 0; i < tries; ++i) {
     const int height = packer.pack(width, 0), side = std::max(width, height);
     if (best == 0 || side < best) {
@@ -252,12 +253,12 @@ Packing packCharts(std::vector<Chart>& charts, int side, int largest)
   out.side = side;
   if (side > 0)
     packer.pack(side / block, side / block);
-  else if (owned <= static_cast<double>(largest) * largest)
+  else if (owned <= 1.0 * largest * largest)
     out.side = block * smallestSquare(packer, widest, owned / block / block);
   if (side == 0 && (out.side == 0 || out.side > largest))
     out.side = block * smallestSquares(packer, widest, largest / block);
   out.atlases = std::max(1, packer.atlases());
-  out.used = owned / (static_cast<double>(out.side) * out.side * out.atlases);
+  out.used = owned / (1.0 * out.side * out.side * out.atlases);
   return out;
 }
 } // namespace fresco::texture

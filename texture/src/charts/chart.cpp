@@ -7,11 +7,7 @@
 #include <numeric>
 namespace fresco::texture {
 namespace {
-constexpr int smoothing_rounds = 6;
-constexpr float grow_cosine = 0.5f;        // 60 degrees: a face loses at most half its resolution in one direction
-constexpr float grow_smooth_cosine = 0.7f; // 45 degrees between the surroundings and the axis
-constexpr float merge_cosine = 0.25f;      // 75 degrees: accepted for scraps, of which each would cost a border
-constexpr std::size_t scrap = 64;          // faces
+constexpr int smoothing_rounds = 6; // reaches as many faces far: evens out noise, keeps furniture apart
 
 Points smoothed(const FaceGraph& graph, Points values, int threads)
 {
@@ -63,7 +59,7 @@ public:
     for (const int seed : faces)
       if (chart_[seed] == open)
         growFrom(seed);
-    mergeScraps();
+    mergeSmallCharts();
     charts_.erase(std::remove_if(charts_.begin(), charts_.end(), [](const Chart& c) { return c.faces.empty(); }),
                   charts_.end());
     return std::move(charts_);
@@ -74,8 +70,10 @@ private:
 
   bool fits(int f, const Eigen::Vector3f& axis) const
   {
-    return chart_[f] == open && graph_.normals.col(f).dot(axis) > grow_cosine &&
-           graph_.smooth_normals.col(f).dot(axis) > grow_smooth_cosine;
+    constexpr float least_cosine = 0.5f;        // 60 degrees: half the resolution is lost in one direction at most
+    constexpr float least_smooth_cosine = 0.7f; // 45 degrees, of the surroundings: noise alone ends no chart
+    return chart_[f] == open && graph_.normals.col(f).dot(axis) > least_cosine &&
+           graph_.smooth_normals.col(f).dot(axis) > least_smooth_cosine;
   }
 
   /// Open faces joined with the seed that fit the axis, breadth first; they become part of chart `id`.
@@ -111,7 +109,8 @@ private:
   /// The neighbour that shares the longest border and can take all faces of chart c; -1 = none.
   int hostOf(int c) const
   {
-    std::map<int, int> shared; // edges per neighbour
+    constexpr float merge_cosine = 0.25f; // 75 degrees: accepted, since each small chart would cost a border
+    std::map<int, int> shared;            // edges per neighbour
     for (const int f : charts_[c].faces)
       for (int k = 0; k < 3; ++k)
         if (const int other = graph_.neighbors(k, f); other >= 0 && chart_[other] >= 0 && chart_[other] != c)
@@ -129,14 +128,15 @@ private:
     return best;
   }
 
-  void mergeScraps()
+  void mergeSmallCharts()
   {
+    constexpr std::size_t small_chart = 64; // faces: fewer are not worth a border of their own
     std::vector<int> order(charts_.size());
     std::iota(order.begin(), order.end(), 0);
     std::stable_sort(order.begin(), order.end(),
                      [&](int a, int b) { return charts_[a].faces.size() < charts_[b].faces.size(); });
     for (const int c : order) {
-      if (charts_[c].faces.size() > scrap)
+      if (charts_[c].faces.size() > small_chart)
         continue;
       const int host = hostOf(c);
       if (host < 0)
@@ -161,17 +161,13 @@ FaceGraph buildFaceGraph(const TriangleMesh& mesh, int threads)
   graph.normals = faceNormals(mesh, threads);
   graph.neighbors = faceNeighbors(mesh.faces);
   graph.areas.resize(n);
-  parallelFor(n, threads, [&](Index f) {
-    const Eigen::Vector3d a = mesh.vertices.col(mesh.faces(0, f)).cast<double>(),
-                          b = mesh.vertices.col(mesh.faces(1, f)).cast<double>(),
-                          c = mesh.vertices.col(mesh.faces(2, f)).cast<double>();
-    graph.areas[f] = static_cast<float>(0.5 * (b - a).cross(c - a).norm());
-  });
+  parallelFor(n, threads,
+              [&](Index f) { graph.areas[f] = 0.5 * doubleAreaVector(mesh.vertices, mesh.faces.col(f)).norm(); });
   graph.smooth_normals = smoothed(graph, graph.normals, threads);
   const Eigen::VectorXf flat = flatness(graph, threads);
   for (Index f = 0; f < n; ++f)
     if (graph.areas[f] > 0 && graph.normals.col(f).squaredNorm() > 0)
-      graph.seeds.push_back(static_cast<int>(f));
+      graph.seeds.push_back(f);
   std::stable_sort(graph.seeds.begin(), graph.seeds.end(), [&](int a, int b) { return flat[a] > flat[b]; });
   return graph;
 }

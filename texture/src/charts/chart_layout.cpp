@@ -4,13 +4,12 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <fresco/core/constants.h>
 #include <fresco/core/parallel.h>
 #include <fresco/core/require.h>
 #include <stdexcept>
 namespace fresco::texture {
 namespace {
-constexpr double density_share = 0.75; // of a chart's area that gets all the resolution it wants
-
 /// Value that `share` of the area does not exceed.
 float areaQuantile(const FaceGraph& graph, const std::vector<int>& faces, const Eigen::VectorXf& value, double share)
 {
@@ -119,6 +118,8 @@ private:
   /// The smallest rectangle among those turned by steps of 3 degrees.
   Extent place(Chart& chart) const
   {
+    constexpr double density_share =
+        0.75; // of the area that gets all the resolution it wants: a small near part does not decide
     const double density = areaQuantile(graph_, chart.faces, density_, density_share);
     const Eigen::Matrix<double, 2, 3> frame = density * frameAcross(chart.axis);
     const std::vector<Eigen::Vector2d> points = cornersIn(frame, chart);
@@ -126,7 +127,7 @@ private:
     double least = 1e300;
     Extent box{};
     for (int i = 0; i < steps; ++i) {
-      const Eigen::Matrix2d turn = Eigen::Rotation2Dd(-i * 1.5707963267948966 / steps).toRotationMatrix();
+      const Eigen::Matrix2d turn = Eigen::Rotation2Dd(-i * (pi / 2) / steps).toRotationMatrix();
       const Extent turned = extentOf(points, turn);
       const double area = (turned.size().array() + 2.0 * options_.border).prod();
       if (area < least * (1 - 1e-9)) {
@@ -154,8 +155,8 @@ private:
     const double spare = options_.border + 0.5;
     chart.offset = -box.low.array() + spare;
     const Eigen::Array2d size = (box.size().array() + 2 * spare).ceil().min(1e9);
-    chart.width = static_cast<int>(size.x());
-    chart.height = static_cast<int>(size.y());
+    chart.width = size.x();
+    chart.height = size.y();
   }
 
   void shrink(Chart& chart, Extent box) const

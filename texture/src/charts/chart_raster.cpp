@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "charts/chart_raster.h"
+#include "grid.h"
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -14,10 +15,10 @@ struct Box {
 
 Box boxOf(const Eigen::Matrix<double, 2, 3>& c, const Chart& chart)
 {
-  return {std::max(0, static_cast<int>(std::ceil(c.row(0).minCoeff() - 0.5))),
-          std::max(0, static_cast<int>(std::ceil(c.row(1).minCoeff() - 0.5))),
-          std::min(chart.width - 1, static_cast<int>(std::floor(c.row(0).maxCoeff() - 0.5))),
-          std::min(chart.height - 1, static_cast<int>(std::floor(c.row(1).maxCoeff() - 0.5)))};
+  return {std::max<int>(0, std::ceil(c.row(0).minCoeff() - 0.5)),
+          std::max<int>(0, std::ceil(c.row(1).minCoeff() - 0.5)),
+          std::min<int>(chart.width - 1, std::floor(c.row(0).maxCoeff() - 0.5)),
+          std::min<int>(chart.height - 1, std::floor(c.row(1).maxCoeff() - 0.5))};
 }
 
 /// Distances of texel centres from a patch's sides, positive inside: linear functions of the place. Corners run
@@ -49,14 +50,14 @@ void forTexels(const PatchMesh& patches, const Chart& chart, int patch, const Vi
   for (int y = box.y0; y <= box.y1; ++y)
     for (int x = box.x0; x <= box.x1; ++x)
       if (const double depth = distances.least({x + 0.5, y + 0.5}); depth >= -inside_margin)
-        visit(static_cast<std::size_t>(y) * chart.width + x, depth);
+        visit(cellAt(x, y, chart.width), depth);
 }
 
 class Raster {
 public:
   Raster(const PatchMesh& patches, const std::vector<int>& first_patch, const Chart& chart)
-      : patches_(patches), first_(first_patch), chart_(chart),
-        claimed_(static_cast<std::size_t>(chart.width) * chart.height, 0), owner_(claimed_.size(), -1)
+      : patches_(patches), first_(first_patch), chart_(chart), claimed_(cellCount(chart.width, chart.height), 0),
+        owner_(claimed_.size(), -1)
   {}
 
   /// @return false if the face would cover a texel that is firmly another's; nothing is drawn then
@@ -79,12 +80,12 @@ public:
   }
 
   /// The texel under the middle of a patch that covers no texel's centre, so that it is not left without colour.
-  void drawSpeck(int patch)
+  void drawSmallPatch(int patch)
   {
     const Eigen::Vector2d middle = patchTexels(patches_, chart_, patch).rowwise().mean();
-    const int x = std::clamp(static_cast<int>(middle.x()), 0, chart_.width - 1),
-              y = std::clamp(static_cast<int>(middle.y()), 0, chart_.height - 1);
-    int& owner = owner_[static_cast<std::size_t>(y) * chart_.width + x];
+    const int x = std::clamp<int>(middle.x(), 0, chart_.width - 1),
+              y = std::clamp<int>(middle.y(), 0, chart_.height - 1);
+    int& owner = owner_[cellAt(x, y, chart_.width)];
     if (owner < 0)
       owner = patch;
   }
@@ -111,13 +112,12 @@ private:
 void growOwners(int rounds, int width, std::vector<int>& owner)
 {
   const int offsets[8][2] = {{1, 0}, {0, 1}, {-1, 0}, {0, -1}, {1, 1}, {-1, 1}, {-1, -1}, {1, -1}};
-  const int height = owner.size() / static_cast<std::size_t>(width);
+  const int height = owner.size() / width;
   const auto ownerBeside = [&](std::size_t at) {
-    const int x = static_cast<int>(at % static_cast<std::size_t>(width)),
-              y = static_cast<int>(at / static_cast<std::size_t>(width));
+    const int x = at % width, y = at / width;
     for (const auto& [dx, dy] : offsets)
       if (x + dx >= 0 && y + dy >= 0 && x + dx < width && y + dy < height)
-        if (const int other = owner[static_cast<std::size_t>(y + dy) * width + x + dx]; other >= 0)
+        if (const int other = owner[cellAt(x + dx, y + dy, width)]; other >= 0)
           return other;
     return -1;
   };
@@ -140,11 +140,10 @@ void growOwners(int rounds, int width, std::vector<int>& owner)
     for (const auto& [at, patch] : grown) {
       if (std::exchange(owner[at], patch) >= 0)
         continue; // was reached from two sides
-      const int x = static_cast<int>(at % static_cast<std::size_t>(width)),
-                y = static_cast<int>(at / static_cast<std::size_t>(width));
+      const int x = at % width, y = at / width;
       for (const auto& [dx, dy] : offsets)
         if (x + dx >= 0 && y + dy >= 0 && x + dx < width && y + dy < height)
-          front.push_back(static_cast<std::size_t>(y + dy) * width + x + dx);
+          front.push_back(cellAt(x + dx, y + dy, width));
     }
   }
 }
@@ -152,7 +151,7 @@ void growOwners(int rounds, int width, std::vector<int>& owner)
 
 std::vector<int> patchesOfFaces(const PatchMesh& patches, Index faces)
 {
-  std::vector<int> first(static_cast<std::size_t>(faces) + 1, 0);
+  std::vector<int> first(faces + 1, 0);
   for (Index i = 0; i < patches.size(); ++i)
     ++first[patches.parent[i] + 1];
   for (Index f = 0; f < faces; ++f)
@@ -188,7 +187,7 @@ std::vector<int> rasterizeChart(const PatchMesh& patches, const std::vector<int>
   chart.faces = std::move(kept);
   for (const int face : chart.faces)
     for (int i = first_patch[face]; i < first_patch[face + 1]; ++i)
-      raster.drawSpeck(i);
+      raster.drawSmallPatch(i);
   std::vector<int> owner = raster.takeOwners();
   growOwners(border, chart.width, owner);
   chart.texels = OwnedTexels::from(owner, chart.width);

@@ -38,10 +38,7 @@ public:
   }
 
   /// Of a texel's centre.
-  Eigen::Vector2f place(int x, int y) const
-  {
-    return {static_cast<float>(x - first_.x) + 0.5f, static_cast<float>(y - first_.y) + 0.5f};
-  }
+  Eigen::Vector2f place(int x, int y) const { return {x - first_.x + 0.5f, y - first_.y + 0.5f}; }
 
   /// The part of a span whose centres lie in the patch or at most `edge` (in weight of a corner) beyond.
   TexelSpan insideOf(const TexelSpan& span, float edge) const;
@@ -67,7 +64,7 @@ inline TexelSpan PatchFrame::insideOf(const TexelSpan& span, float edge) const
 {
   const Eigen::Vector2f start = place(span.x, span.y);
   const Eigen::Vector3f at = map.weights(start.x(), start.y()), step = map.weights(start.x() + 1, start.y()) - at;
-  float low = 0, high = static_cast<float>(span.length - 1); // texels from the span's first
+  float low = 0, high = span.length - 1; // texels from the span's first
   for (int k = 0; k < 3; ++k) {
     const float least = -edge - at[k];
     if (step[k] > 1e-9f)
@@ -78,8 +75,11 @@ inline TexelSpan PatchFrame::insideOf(const TexelSpan& span, float edge) const
       high = -1;
   }
   TexelSpan out = span;
-  out.x = static_cast<std::uint16_t>(span.x + (high >= low ? static_cast<int>(low) : 0));
-  out.length = static_cast<std::uint16_t>(high >= low ? static_cast<int>(high - low) + 1 : 0);
+  out.length = 0;
+  if (high >= low) {
+    out.x += low;
+    out.length = high - low + 1;
+  }
   return out;
 }
 } // namespace fresco::texture

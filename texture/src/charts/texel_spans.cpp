@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "charts/texel_spans.h"
+#include "grid.h"
 #include <algorithm>
 namespace fresco::texture {
 OwnedTexels OwnedTexels::from(const std::vector<int>& owner, int width)
@@ -9,9 +10,9 @@ OwnedTexels OwnedTexels::from(const std::vector<int>& owner, int width)
     TexelSpan span;
   };
   std::vector<Run> runs;
-  const int height = width > 0 ? static_cast<int>(owner.size() / static_cast<std::size_t>(width)) : 0;
+  const int height = width > 0 ? owner.size() / width : 0;
   for (int y = 0; y < height; ++y) {
-    const int* row = owner.data() + static_cast<std::size_t>(y) * width;
+    const int* row = owner.data() + cellAt(0, y, width);
     for (int x = 0, end = 0; x < width; x = end) {
       for (end = x + 1; end < width && row[end] == row[x]; ++end)
         ;
@@ -27,11 +28,11 @@ OwnedTexels OwnedTexels::from(const std::vector<int>& owner, int width)
   for (const Run& run : runs) {
     if (out.patches.empty() || out.patches.back() != run.patch) {
       out.patches.push_back(run.patch);
-      out.begin.push_back(static_cast<int>(out.spans.size()));
+      out.begin.push_back(out.spans.size());
     }
     out.spans.push_back(run.span);
   }
-  out.begin.push_back(static_cast<int>(out.spans.size()));
+  out.begin.push_back(out.spans.size());
   return out;
 }
 

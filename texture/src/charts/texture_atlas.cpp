@@ -27,15 +27,15 @@ void fillTexcoords(const std::vector<Chart>& charts, int side, TexturedMesh& mod
       for (int k = 0; k < 3; ++k) {
         const int v = mesh.faces(k, f);
         if (number[v] < begin) {
-          number[v] = static_cast<int>(coords.size());
+          number[v] = coords.size();
           const Eigen::Vector2d at = (chart.texel(mesh.vertices.col(v)) + Eigen::Vector2d(chart.x, chart.y)) / side;
-          coords.emplace_back(static_cast<float>(at.x()), static_cast<float>(1 - at.y()));
+          coords.emplace_back(at.x(), 1 - at.y());
         }
         model.texcoord_faces(k, f) = number[v];
       }
     }
   }
-  model.texcoords = Eigen::Map<const Eigen::Matrix2Xf>(coords.front().data(), 2, static_cast<Index>(coords.size()));
+  model.texcoords = Eigen::Map<const Eigen::Matrix2Xf>(coords.front().data(), 2, coords.size());
 }
 
 double typicalTexel(const std::vector<Chart>& charts, const FaceGraph& graph)
@@ -69,7 +69,8 @@ std::vector<Chart> makeAtlas(const PatchMesh& patches, const Eigen::VectorXf& re
   const FaceGraph graph = buildFaceGraph(result.model.mesh, options.threads);
   Eigen::VectorXf density = wantedDensities(patches, result.model.mesh.faceCount(), resolution, options.texel);
   if (const double coarser = coarsening(graph, density); options.texel == 0 && coarser > 1) {
-    density /= static_cast<float>(coarser);
+    const float factor = coarser;
+    density /= factor;
     result.warnings.push_back(concat("texels are ", std::fixed, std::setprecision(2), coarser, std::defaultfloat,
                                      std::setprecision(6),
                                      " times as large as the photographs give, so that there are ", most_texels / 1e6,
@@ -86,7 +87,7 @@ std::vector<Chart> makeAtlas(const PatchMesh& patches, const Eigen::VectorXf& re
   result.model.atlases.assign(packing.atlases, Image(packing.side, packing.side, 3, 128));
   result.masks.assign(packing.atlases, Image(packing.side, packing.side, 1));
   result.used = packing.used;
-  result.charts = static_cast<Index>(charts.size());
+  result.charts = charts.size();
   result.texel = typicalTexel(charts, graph);
   return charts;
 }
@@ -96,7 +97,7 @@ Eigen::VectorXi chartsOfFaces(const std::vector<Chart>& charts, Index faces)
   Eigen::VectorXi out = Eigen::VectorXi::Constant(faces, -1);
   for (std::size_t c = 0; c < charts.size(); ++c)
     for (const int f : charts[c].faces)
-      out[f] = static_cast<int>(c);
+      out[f] = c;
   return out;
 }
 } // namespace fresco::texture

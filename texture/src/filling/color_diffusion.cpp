@@ -4,8 +4,6 @@
 #include <vector>
 namespace fresco::texture {
 namespace {
-constexpr float mid_grey = 128.f;
-
 /// Vertices joined by an edge, each as often as patches share the edge.
 struct Rings {
   std::vector<int> begin, list;
@@ -60,7 +58,7 @@ std::vector<int> spread(const Rings& rings, Known& known)
   std::vector<char> reached = known.fixed;
   for (std::size_t v = 0; v < reached.size(); ++v)
     if (reached[v])
-      order.push_back(static_cast<int>(v));
+      order.push_back(v);
   const std::size_t given = order.size();
   std::vector<char> valued = known.fixed;
   for (std::size_t i = 0; i < order.size(); ++i) {
@@ -82,7 +80,7 @@ std::vector<int> spread(const Rings& rings, Known& known)
       known.value.col(v) = sum / count;
     valued[v] = 1;
   }
-  return {order.begin() + static_cast<std::ptrdiff_t>(given), order.end()};
+  return {order.begin() + given, order.end()};
 }
 
 void smooth(const Rings& rings, const std::vector<int>& free, int threads, Points& value)
@@ -105,6 +103,7 @@ void smooth(const Rings& rings, const std::vector<int>& free, int threads, Point
 
 Points diffuseColors(const PatchMesh& patches, const Points& patch_colors, int threads)
 {
+  constexpr float mid_grey = 128.f;
   Known known = seenVertices(patches, patch_colors);
   const bool colored = patches.colors.cols() > 0;
   Eigen::Vector3f mean = Eigen::Vector3f::Zero();

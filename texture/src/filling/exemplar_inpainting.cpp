@@ -1,16 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "filling/exemplar_inpainting.h"
 #include "filling/exemplar_synthesis.h"
+#include "grid.h"
 #include <algorithm>
 #include <cmath>
 #include <fresco/core/parallel.h>
 namespace fresco::texture {
 namespace {
-constexpr int least_texels = 300, least_radius = 4; // of a hole: smaller ones have no room for a structure
-constexpr int least_surroundings = 64;              // texels around a hole's box that may serve as examples
-constexpr std::size_t most_texels = 8000000;        // of a hole with its surroundings: a matter of time
-constexpr int smooth_reach = 8;                     // texels: coarser structure is what the smooth colours hold
-
 /// Texels of a chart that are unseen and joined.
 struct Hole {
   std::size_t chart;
@@ -27,11 +23,12 @@ struct ChartTexels {
 
 std::vector<Hole> holesOf(const ChartTexels& texels, std::size_t number)
 {
+  constexpr std::size_t least_texels = 300; // smaller holes have no room for a structure
   const int w = texels.chart.width, h = texels.chart.height;
-  std::vector<char> open(static_cast<std::size_t>(w) * h, 0); // unseen and of no hole yet
+  std::vector<char> open(cellCount(w, h), 0); // unseen and of no hole yet
   for (const TexelSpan& span : texels.chart.texels.spans)
     for (int x = span.x; x < span.x + span.length; ++x)
-      open[static_cast<std::size_t>(span.y) * w + x] = texels.isUnseen(x, span.y);
+      open[cellAt(x, span.y, w)] = texels.isUnseen(x, span.y);
   std::vector<Hole> holes;
   for (int start = 0; start < w * h; ++start) {
     if (!open[start])
@@ -57,6 +54,7 @@ std::vector<Hole> holesOf(const ChartTexels& texels, std::size_t number)
 /// The hole's box and as much again to each side, within the chart.
 Eigen::AlignedBox2i surroundingsOf(const Hole& hole, const Chart& chart)
 {
+  constexpr int least_surroundings = 64; // texels around the box: several windows even for a small hole
   const int spare = std::max(least_surroundings, hole.box.sizes().maxCoeff());
   const Eigen::Vector2i low = (hole.box.min().array() - spare).max(0),
                         high = (hole.box.max().array() + spare).min(Eigen::Array2i(chart.width - 1, chart.height - 1));
@@ -69,7 +67,7 @@ HolePicture pictureOf(const ChartTexels& texels, const Hole& hole, const Eigen::
   HolePicture out;
   out.width = box.sizes().x() + 1;
   out.height = box.sizes().y() + 1;
-  out.color.resize(static_cast<std::size_t>(out.width) * out.height, Eigen::Vector3f::Zero());
+  out.color.resize(cellCount(out.width, out.height), Eigen::Vector3f::Zero());
   out.state.resize(out.color.size(), HolePicture::outside);
   const auto set = [&](int at, std::uint8_t state) { // texels of other holes are not even read: they are being written
     const int x = at % chart.width, y = at / chart.width;
@@ -88,23 +86,24 @@ HolePicture pictureOf(const ChartTexels& texels, const Hole& hole, const Eigen::
   return out;
 }
 
-/// Mean of each row's pixels within smooth_reach, of those inside the picture; then transposed.
+/// Mean of each row's pixels within 8 texels, of those inside the picture; then transposed.
 struct Smoothing {
   std::vector<Eigen::Vector4f> value; ///< sum of colours, count
 
   void rows(int width, int height)
   {
+    constexpr int smooth_reach = 8; // texels: coarser structure is what the smooth colours hold
     std::vector<Eigen::Vector4f> out(value.size());
     for (int y = 0; y < height; ++y) {
       Eigen::Vector4f sum = Eigen::Vector4f::Zero();
-      const Eigen::Vector4f* row = value.data() + static_cast<std::size_t>(y) * width;
+      const Eigen::Vector4f* row = value.data() + cellAt(0, y, width);
       for (int x = -smooth_reach; x < width; ++x) {
         if (x + smooth_reach < width)
           sum += row[x + smooth_reach];
         if (x - smooth_reach - 1 >= 0)
           sum -= row[x - smooth_reach - 1];
         if (x >= 0)
-          out[static_cast<std::size_t>(x) * height + y] = sum;
+          out[cellAt(y, x, height)] = sum;
       }
     }
     value.swap(out);
@@ -132,6 +131,8 @@ std::vector<Eigen::Vector3f> smoothed(const HolePicture& picture)
 
 bool fill(const ChartTexels& texels, const Hole& hole, Image& atlas)
 {
+  constexpr int least_radius = 4;     // texels: thinner holes have no room for a structure
+  constexpr double most_texels = 8e6; // of a hole with its surroundings: bounds the time
   const Eigen::AlignedBox2i box = surroundingsOf(hole, texels.chart);
   if ((box.sizes().cast<double>().array() + 1).prod() > most_texels)
     return false;
@@ -142,14 +143,14 @@ bool fill(const ChartTexels& texels, const Hole& hole, Image& atlas)
   for (std::size_t i = 0; i < base.size(); ++i)
     picture.color[i] =
         picture.state[i] == HolePicture::known ? Eigen::Vector3f(picture.color[i] - base[i]) : Eigen::Vector3f::Zero();
-  if (!synthesizeHole(picture, hole.chart * 1000003 + static_cast<std::size_t>(hole.texels.front())))
+  if (!synthesizeHole(picture, hole.chart * 1000003 + hole.texels.front()))
     return false;
   for (const int at : hole.texels) {
     const int x = at % texels.chart.width, y = at / texels.chart.width;
     const std::size_t i = picture.at(x - box.min().x(), y - box.min().y());
     std::uint8_t* p = atlas.pixel(texels.chart.x + x, texels.chart.y + y);
     for (int c = 0; c < 3; ++c)
-      p[c] = static_cast<std::uint8_t>(std::lround(std::clamp(base[i][c] + picture.color[i][c], 0.f, 255.f)));
+      p[c] = std::lround(std::clamp(base[i][c] + picture.color[i][c], 0.f, 255.f));
   }
   return true;
 }
@@ -160,8 +161,7 @@ Index inpaintByExample(const PaintScene& scene, const std::vector<Image>& masks,
   const auto texelsOf = [&](std::size_t c) { return ChartTexels{scene.charts[c], masks[scene.charts[c].atlas]}; };
   std::vector<std::vector<Hole>> by_chart(scene.charts.size());
   parallelFor(
-      scene.charts.size(), scene.threads,
-      [&](Index c) { by_chart[c] = holesOf(texelsOf(static_cast<std::size_t>(c)), static_cast<std::size_t>(c)); }, 1);
+      scene.charts.size(), scene.threads, [&](Index c) { by_chart[c] = holesOf(texelsOf(c), c); }, 1);
   std::vector<Hole> holes;
   for (auto& list : by_chart)
     std::move(list.begin(), list.end(), std::back_inserter(holes));
@@ -173,7 +173,7 @@ Index inpaintByExample(const PaintScene& scene, const std::vector<Image>& masks,
       holes.size(), scene.threads,
       [&](Index h) {
         if (fill(texelsOf(holes[h].chart), holes[h], atlases[scene.charts[holes[h].chart].atlas]))
-          filled[h] = static_cast<Index>(holes[h].texels.size());
+          filled[h] = holes[h].texels.size();
       },
       1);
   Index total = 0;

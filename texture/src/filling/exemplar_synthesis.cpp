@@ -1,18 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "filling/exemplar_synthesis.h"
+#include "grid.h"
 #include <algorithm>
 #include <cmath>
+#include <fresco/core/statistics.h>
 #include <limits>
 namespace fresco::texture {
 namespace {
-constexpr int reach = 3;                   // of a window to each side
-constexpr std::size_t least_windows = 300; // that are wholly known, for a picture to serve as its own example
-constexpr int coarsest_radius = 4;         // of the hole, pixels: about a window
-constexpr int most_levels = 6;
-constexpr std::size_t many_windows =
-    300000; // beyond, the finest level gets one round: its matches are given by the coarser one
+constexpr int reach = 3; // of a window to each side: 7 x 7 hold a structure and still repeat
 
-using Place = Eigen::Vector2i;
+using Pixel = Eigen::Vector2i;
 
 /// Numbers of Marsaglia 2003, "Xorshift RNGs".
 class Random {
@@ -24,7 +21,7 @@ public:
     state_ ^= state_ << 13;
     state_ ^= state_ >> 7;
     state_ ^= state_ << 17;
-    return static_cast<int>((state_ >> 33) % static_cast<std::uint64_t>(n));
+    return (state_ >> 33) % n;
   }
 
 private:
@@ -37,7 +34,7 @@ HolePicture halved(const HolePicture& in)
   HolePicture out;
   out.width = in.width / 2;
   out.height = in.height / 2;
-  out.color.resize(static_cast<std::size_t>(out.width) * out.height, Eigen::Vector3f::Zero());
+  out.color.resize(cellCount(out.width, out.height), Eigen::Vector3f::Zero());
   out.state.resize(out.color.size(), HolePicture::outside);
   for (int y = 0; y < out.height; ++y)
     for (int x = 0; x < out.width; ++x) {
@@ -79,7 +76,7 @@ public:
     for (int y = 0; y < picture.height; ++y)
       for (int x = 0; x < picture.width; ++x)
         if (hole[picture.at(x, y)] && picture.state[picture.at(x, y)] != HolePicture::outside) {
-          slot_[picture.at(x, y)] = static_cast<int>(targets_.size());
+          slot_[picture.at(x, y)] = targets_.size();
           targets_.emplace_back(x, y);
         }
     match_.resize(targets_.size());
@@ -91,32 +88,32 @@ public:
 
   void start()
   {
-    for (Place& match : match_)
-      match = sources_[random_.below(static_cast<int>(sources_.size()))];
-    vote(false);
+    for (Pixel& match : match_)
+      match = sources_[random_.below(sources_.size())];
+    voteColors(false);
   }
 
   void startFrom(const Matching& coarse)
   {
     for (std::size_t t = 0; t < targets_.size(); ++t) {
-      const Place p = targets_[t],
+      const Pixel p = targets_[t],
                   half(std::min(p.x() / 2, coarse.picture_.width - 1), std::min(p.y() / 2, coarse.picture_.height - 1));
       const int slot = coarse.slot_[coarse.picture_.at(half.x(), half.y())];
-      match_[t] = sources_[random_.below(static_cast<int>(sources_.size()))];
+      match_[t] = sources_[random_.below(sources_.size())];
       if (slot < 0)
         continue;
-      const Place at = 2 * coarse.match_[slot] + (p - 2 * half);
+      const Pixel at = 2 * coarse.match_[slot] + (p - 2 * half);
       if (isUsable(at))
         match_[t] = at;
     }
-    vote(false);
+    voteColors(false);
   }
 
   void refine(int rounds, int passes)
   {
     for (int round = 0; round < rounds; ++round) {
       search(passes);
-      vote(false);
+      voteColors(false);
     }
   }
 
@@ -124,7 +121,7 @@ public:
   void finish(int passes)
   {
     search(passes);
-    vote(true);
+    voteColors(true);
   }
 
 private:
@@ -146,14 +143,14 @@ private:
       }
   }
 
-  bool isUsable(const Place& p) const
+  bool isUsable(const Pixel& p) const
   {
     return p.x() >= 0 && p.y() >= 0 && p.x() < picture_.width && p.y() < picture_.height &&
            usable_[picture_.at(p.x(), p.y())];
   }
 
   /// Mean squared difference over what of the target's window is in the picture; given up beyond `most`.
-  float difference(const Place& target, const Place& source, float most) const
+  float difference(const Pixel& target, const Pixel& source, float most) const
   {
     float sum = 0;
     int count = 0;
@@ -171,10 +168,10 @@ private:
       if (sum > most * (2 * reach + 1) * (2 * reach + 1))
         return std::numeric_limits<float>::infinity();
     }
-    return count > 0 ? sum / static_cast<float>(count) : 0.f;
+    return count > 0 ? sum / count : 0.f;
   }
 
-  void attempt(std::size_t t, const Place& source)
+  void attempt(std::size_t t, const Pixel& source)
   {
     if (!isUsable(source) || source == match_[t])
       return;
@@ -194,29 +191,27 @@ private:
       const int step = pass % 2 == 0 ? -1 : 1;
       for (std::size_t k = 0; k < targets_.size(); ++k) {
         const std::size_t t = step < 0 ? k : targets_.size() - 1 - k;
-        const Place p = targets_[t];
-        for (const Place& aside : {Place(step, 0), Place(0, step)}) {
-          const Place q = p + aside;
+        const Pixel p = targets_[t];
+        for (const Pixel& aside : {Pixel(step, 0), Pixel(0, step)}) {
+          const Pixel q = p + aside;
           if (q.x() < 0 || q.y() < 0 || q.x() >= picture_.width || q.y() >= picture_.height)
             continue;
           if (const int slot = slot_[picture_.at(q.x(), q.y())]; slot >= 0)
             attempt(t, match_[slot] - aside);
         }
         for (int radius = std::max(picture_.width, picture_.height); radius >= 1; radius /= 3)
-          attempt(t, match_[t] + Place(random_.below(2 * radius + 1) - radius, random_.below(2 * radius + 1) - radius));
+          attempt(t, match_[t] + Pixel(random_.below(2 * radius + 1) - radius, random_.below(2 * radius + 1) - radius));
       }
     }
   }
 
   /// Colours of the hole from the windows' matches.
-  void vote(bool own_only)
+  void voteColors(bool own_only)
   {
     float scale = 1e-3f;
     if (!own_only && !error_.empty()) { // the error that a quarter of the windows exceed
       std::vector<float> errors = error_;
-      const auto at = errors.begin() + static_cast<std::ptrdiff_t>(errors.size() * 3 / 4);
-      std::nth_element(errors.begin(), at, errors.end());
-      scale = std::max(scale, *at);
+      scale = std::max(scale, rankedValue(errors, errors.size() * 3 / 4));
     }
     std::vector<Eigen::Vector3f> result(targets_.size());
     for (std::size_t t = 0; t < targets_.size(); ++t)
@@ -226,7 +221,7 @@ private:
         picture_.color[at] = result[t];
   }
 
-  Eigen::Vector3f meanAt(const Place& p, float scale) const
+  Eigen::Vector3f meanAt(const Pixel& p, float scale) const
   {
     Eigen::Vector3f sum = Eigen::Vector3f::Zero();
     float weights = 0;
@@ -249,7 +244,7 @@ private:
   Random& random_;
   std::vector<char> usable_; ///< per pixel: middle of a known window
   std::vector<int> slot_;    ///< per pixel: its number among the targets, -1 = none
-  std::vector<Place> sources_, targets_, match_;
+  std::vector<Pixel> sources_, targets_, match_;
   std::vector<float> error_;
 };
 } // namespace
@@ -261,7 +256,7 @@ int holeRadius(const HolePicture& picture)
   /// One more than the least of the four neighbours that lie behind in the order of the pass.
   const auto next = [&](int x, int y, int step) {
     int least = 1 << 28;
-    for (const Place& aside : {Place(-step, 0), Place(-1, -step), Place(0, -step), Place(1, -step)}) {
+    for (const Pixel& aside : {Pixel(-step, 0), Pixel(-1, -step), Pixel(0, -step), Pixel(1, -step)}) {
       const int i = x + aside.x(), j = y + aside.y();
       least = std::min(least, i < 0 || j < 0 || i >= w || j >= h ? 0 : distance[picture.at(i, j)]);
     }
@@ -283,10 +278,14 @@ int holeRadius(const HolePicture& picture)
 
 bool synthesizeHole(HolePicture& picture, std::uint64_t seed)
 {
+  constexpr std::size_t least_windows = 300;   // wholly known: fewer would repeat visibly
+  constexpr int coarsest_radius = 4;           // of the hole, pixels: about a window
+  constexpr std::size_t most_levels = 6;       // a hole of 250 pixels becomes a window
+  constexpr std::size_t many_windows = 300000; // one round at the finest level: time; its matches come from the coarser
   Random random(seed);
   std::vector<HolePicture> levels{picture};
   int radius = holeRadius(picture);
-  while (static_cast<int>(levels.size()) < most_levels && radius > coarsest_radius) {
+  while (levels.size() < most_levels && radius > coarsest_radius) {
     HolePicture next = halved(levels.back());
     if (Matching(next, random).sources() < least_windows)
       break;
@@ -299,7 +298,7 @@ bool synthesizeHole(HolePicture& picture, std::uint64_t seed)
     matchings.emplace_back(level, random);
   if (matchings.front().sources() < least_windows)
     return false;
-  constexpr int rounds = 6, passes = 2;
+  constexpr int rounds = 6, passes = 2; // finer levels start from coarser ones and need fewer
   matchings.back().start();
   matchings.back().refine(2 * rounds, passes);
   for (std::size_t l = levels.size() - 1; l-- > 0;) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+#include "grid.h"
 #include <Eigen/Core>
 #include <cstdint>
 #include <fresco/core/point_set.h>
@@ -12,7 +13,7 @@ struct HolePicture {
   std::vector<Eigen::Vector3f> color; ///< rows from the top
   std::vector<std::uint8_t> state;    ///< what each pixel is; pixels outside are not looked at
 
-  std::size_t at(int x, int y) const { return static_cast<std::size_t>(y) * width + x; }
+  std::size_t at(int x, int y) const { return cellAt(x, y, width); }
 };
 
 /// Fills the hole so that each 7x7 window of it looks like some window of the known part, coarse to fine: Wexler,

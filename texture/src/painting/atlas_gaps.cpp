@@ -1,20 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "painting/atlas_gaps.h"
+#include "grid.h"
 #include <algorithm>
 #include <fresco/core/parallel.h>
 namespace fresco::texture {
 namespace {
-constexpr int far = 8; // texels: three halvings of the picture
-
 /// Per texel the round in which it gets its colour: 1 = a chart's own, 0 = not yet.
 std::vector<std::uint8_t> ownTexels(const std::vector<Chart>& charts, int atlas, const Image& image)
 {
-  std::vector<std::uint8_t> round(static_cast<std::size_t>(image.width) * image.height, 0);
+  std::vector<std::uint8_t> round(cellCount(image.width, image.height), 0);
   for (const Chart& chart : charts)
     if (chart.atlas == atlas)
       for (const TexelSpan& span : chart.texels.spans)
-        std::fill_n(round.begin() + static_cast<std::ptrdiff_t>(chart.y + span.y) * image.width + chart.x + span.x,
-                    span.length, std::uint8_t(1));
+        std::fill_n(round.begin() + cellAt(chart.x + span.x, chart.y + span.y, image.width), span.length,
+                    std::uint8_t(1));
   return round;
 }
 
@@ -24,6 +23,7 @@ public:
 
   void run()
   {
+    constexpr int far = 8; // texels: three halvings of the picture
     std::vector<std::size_t> front = firstFront();
     for (std::uint8_t now = 2; now < far + 2 && !front.empty(); ++now) {
       std::vector<std::size_t> next;
@@ -46,7 +46,7 @@ private:
   template <typename Visit>
   void visitNeighbors(std::size_t at, const Visit& visit) const
   {
-    const auto width = static_cast<std::size_t>(image_.width);
+    const std::size_t width = image_.width;
     const std::size_t x = at % width;
     if (x > 0)
       visit(at - 1);
@@ -85,7 +85,7 @@ private:
       ++count;
     });
     for (int c = 0; c < 3; ++c)
-      image_.data[3 * at + c] = static_cast<std::uint8_t>((sum[c] + count / 2) / count);
+      image_.data[3 * at + c] = (sum[c] + count / 2) / count;
     round_[at] = now;
   }
 
@@ -97,7 +97,6 @@ private:
 void fillGaps(const std::vector<Chart>& charts, int threads, std::vector<Image>& atlases)
 {
   parallelFor(
-      atlases.size(), threads,
-      [&](Index a) { Growth(ownTexels(charts, static_cast<int>(a), atlases[a]), atlases[a]).run(); }, 1);
+      atlases.size(), threads, [&](Index a) { Growth(ownTexels(charts, a, atlases[a]), atlases[a]).run(); }, 1);
 }
 } // namespace fresco::texture

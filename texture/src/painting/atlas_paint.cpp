@@ -9,7 +9,7 @@ namespace {
 void store(const Eigen::Vector3f& color, std::uint8_t* pixel)
 {
   for (int c = 0; c < 3; ++c)
-    pixel[c] = static_cast<std::uint8_t>(std::clamp(color[c], 0.f, 255.f) + 0.5f);
+    pixel[c] = std::clamp(color[c], 0.f, 255.f) + 0.5f;
 }
 
 /// Colours of a patch's texels in one photograph.
@@ -21,10 +21,9 @@ public:
     for (int k = 0; k < 3; ++k)
       least_[k] = goesOn(scene, patch, (k + 1) % 3) ? -far_beyond : inset(k);
     const Eigen::Vector2f middle = map.place(Eigen::Vector3f::Constant(1.f / 3));
-    constexpr float most = 16;
+    constexpr float most = 16; // samples each way: enough for any mean
     const float pixels_per_texel = map.steps(middle.x(), middle.y()).colwise().norm().maxCoeff();
-    steps_ =
-        std::isfinite(pixels_per_texel) ? static_cast<int>(std::lround(std::clamp(pixels_per_texel, 1.f, most))) : 1;
+    steps_ = std::isfinite(pixels_per_texel) ? std::lround(std::clamp(pixels_per_texel, 1.f, most)) : 1;
   }
 
   /// Mean over the texel.
@@ -35,11 +34,10 @@ public:
       return samplePhoto(photo_, p.x(), p.y());
     }
     Eigen::Vector3f sum = Eigen::Vector3f::Zero();
-    const float step = 1.f / static_cast<float>(steps_);
+    const float step = 1.f / steps_;
     for (int j = 0; j < steps_; ++j)
       for (int i = 0; i < steps_; ++i) {
-        const Eigen::Vector2f p = pixel(center + Eigen::Vector2f((static_cast<float>(i) + 0.5f) * step - 0.5f,
-                                                                 (static_cast<float>(j) + 0.5f) * step - 0.5f));
+        const Eigen::Vector2f p = pixel(center + Eigen::Vector2f((i + 0.5f) * step - 0.5f, (j + 0.5f) * step - 0.5f));
         sum += samplePhoto(photo_, p.x(), p.y());
       }
     return sum * (step * step);
@@ -102,10 +100,18 @@ std::vector<std::vector<PaintedShare>> sharesByView(const PaintScene& scene, con
   return out;
 }
 
-void paintShare(const PaintScene& scene, const PaintSources& sources, const PaintedShare& part, const Image& photo,
-                Image& atlas)
+/// A view at work: only its own photograph is held.
+struct PaintedView {
+  const PaintSources& sources;
+  const Image& photo;
+};
+
+void paintShare(const PaintScene& scene, const PaintedView& view, const PaintedShare& part, std::vector<Image>& atlases)
 {
+  const PaintSources& sources = view.sources;
+  const Image& photo = view.photo;
   PatchFrame frame(scene, part.patch);
+  Image& atlas = atlases[frame.chart.atlas];
   const BlendShare& share = sources.blend.list[part.share];
   if (part.first)
     frame.forTexels([&](const Eigen::Vector2f&, int x, int y) {
@@ -141,9 +147,9 @@ void paintSeen(const PaintScene& scene, const PaintSources& sources, std::vector
   for (std::size_t v = 0; v < parts.size(); ++v) {
     if (parts[v].empty())
       continue;
-    const std::shared_ptr<const Image> photo = sources.photos.get(static_cast<Index>(v));
+    const std::shared_ptr<const Image> photo = sources.photos.get(v);
     parallelFor(parts[v].size(), scene.threads, [&](Index i) {
-      paintShare(scene, sources, parts[v][i], *photo, atlases[scene.chartOf(parts[v][i].patch)->atlas]);
+      paintShare(scene, {sources, *photo}, parts[v][i], atlases);
     });
   }
 }
@@ -160,9 +166,9 @@ void paintTexels(const PaintScene& scene, const PaintSources& sources,
       if (k == 0 || texels[k].patch != texels[k - 1].patch)
         runs.push_back(k);
     runs.push_back(texels.size());
-    const std::shared_ptr<const Image> photo = sources.photos.get(static_cast<Index>(v));
-    const Eigen::Vector3f gain = sources.gains.col(static_cast<Index>(v));
-    parallelFor(static_cast<Index>(runs.size()) - 1, scene.threads, [&](Index r) {
+    const std::shared_ptr<const Image> photo = sources.photos.get(v);
+    const Eigen::Vector3f gain = sources.gains.col(v);
+    parallelFor(runs.size() - 1, scene.threads, [&](Index r) {
       PatchFrame frame(scene, texels[runs[r]].patch);
       if (!frame.map.look(sources.views[v]))
         return;
@@ -218,13 +224,13 @@ std::vector<int> texelSlots(const std::vector<Chart>& charts, Index patches)
   std::vector<int> slots(patches, -1);
   for (const Chart& chart : charts)
     for (std::size_t s = 0; s < chart.texels.patches.size(); ++s)
-      slots[chart.texels.patches[s]] = static_cast<int>(s);
+      slots[chart.texels.patches[s]] = s;
   return slots;
 }
 
 bool goesOn(const PaintScene& scene, Index patch, int side)
 {
-  constexpr float straight = 0.95f; // cosine of 18 degrees
+  constexpr float straight = 0.95f; // 18 degrees: less than a pixel off over the border's width
   const int other = scene.patches.neighbors(side, patch);
   return other >= 0 && scene.view[other] >= 0 &&
          scene.patches.normals.col(other).dot(scene.patches.normals.col(patch)) > straight;

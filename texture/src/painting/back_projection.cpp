@@ -1,16 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "painting/back_projection.h"
 #include "charts/patch_frame.h"
-#include "painting/photo_error.h"
+#include "painting/photo_residual.h"
 #include <algorithm>
 #include <cmath>
 #include <fresco/core/parallel.h>
 namespace fresco::texture {
 namespace {
-constexpr float gain = 1.3f; // of the changes: what a pixel differs by is spread over texels that it only partly is
-constexpr float least_say = 0.1f;               // of the best view's: a third of its resolution
-constexpr std::size_t group_bytes = 512u << 20; // of errors held at a time; a choice that results depend on
-
 /// For every view the patches it shows, in their order.
 struct ViewPatches {
   std::vector<Index> begin;
@@ -20,44 +16,46 @@ struct ViewPatches {
 class BackProjection {
 public:
   BackProjection(const PaintScene& scene, const BackProjectionSources& sources, std::vector<Image>& atlases)
-      : scene_(scene), sources_(sources), atlases_(atlases), say_(sources.candidates.list.size(), 0.f)
+      : scene_(scene), sources_(sources), atlases_(atlases), weights_(sources.candidates.list.size(), 0.f)
   {
     parallelFor(scene.patches.size(), scene.threads, [&](Index i) {
       if (scene.isSeen(i))
-        shareSay(i);
+        normalizeWeights(i);
     });
     listPatches();
   }
 
   void round()
   {
+    constexpr std::size_t group_bytes = 512u << 20; // of residuals held at a time; results depend on it
     const Index n = sources_.views.size();
     for (Index first = 0, last = 0; first < n; first = last) {
       std::size_t bytes = 0;
       do
-        bytes += errorBytes(sources_.views[last++].camera());
-      while (last < n && bytes + errorBytes(sources_.views[last].camera()) <= group_bytes);
-      compare(first, last);
-      giveBack(first, last);
+        bytes += residualBytes(sources_.views[last++].camera());
+      while (last < n && bytes + residualBytes(sources_.views[last].camera()) <= group_bytes);
+      computeResiduals(first, last);
+      backProjectResidual(first, last);
     }
   }
 
 private:
   /// Shares of a patch's views in what is corrected: by the square of their quality, which is how many pixels they have
   /// there.
-  void shareSay(Index patch)
+  void normalizeWeights(Index patch)
   {
     const Candidates& all = sources_.candidates;
+    constexpr float least_weight = 0.1f; // of the best view's: less than a third of its resolution adds only blur
     float best = 0, sum = 0;
     for (Index c = all.begin[patch]; c < all.begin[patch + 1]; ++c) {
-      const float quality = all.list[c].quality() * std::exp2(-sources_.odd[c]);
-      say_[c] = quality * quality;
-      best = std::max(best, say_[c]);
+      const float quality = all.list[c].quality() * std::exp2(-sources_.penalties[c]);
+      weights_[c] = quality * quality;
+      best = std::max(best, weights_[c]);
     }
     for (Index c = all.begin[patch]; c < all.begin[patch + 1]; ++c)
-      sum += say_[c] = say_[c] >= least_say * best ? say_[c] : 0.f;
+      sum += weights_[c] = weights_[c] >= least_weight * best ? weights_[c] : 0.f;
     for (Index c = all.begin[patch]; c < all.begin[patch + 1] && sum > 0; ++c)
-      say_[c] /= sum;
+      weights_[c] /= sum;
   }
 
   void listPatches()
@@ -74,13 +72,13 @@ private:
       shown_.begin[v] += shown_.begin[v - 1];
     shown_.list.resize(shown_.begin.back());
     std::vector<Index> next(shown_.begin.begin(), shown_.begin.end() - 1);
-    each([&](Index i, int view) { shown_.list[next[view]++] = static_cast<int>(i); });
+    each([&](Index i, int view) { shown_.list[next[view]++] = i; });
   }
 
-  void compare(Index first, Index last)
+  void computeResiduals(Index first, Index last)
   {
-    errors_.clear();
-    errors_.resize(sources_.views.size());
+    residuals_.clear();
+    residuals_.resize(sources_.views.size());
     parallelFor(
         last - first, scene_.threads,
         [&](Index i) {
@@ -90,12 +88,12 @@ private:
           const int* list = shown_.list.data();
           const Prediction prediction{scene_, atlases_, sources_.views[v], list + shown_.begin[v],
                                       list + shown_.begin[v + 1]};
-          errors_[v] = errorOf(prediction, *sources_.photos.get(v), sources_.gains.col(v));
+          residuals_[v] = residualOf(prediction, *sources_.photos.get(v), sources_.gains.col(v));
         },
         1);
   }
 
-  void giveBack(Index first, Index last)
+  void backProjectResidual(Index first, Index last)
   {
     parallelRanges(scene_.patches.size(), scene_.threads, [&](Index begin, Index end) {
       Sums sums;
@@ -112,16 +110,16 @@ private:
   /// Work space: changes of a patch's texels.
   struct Sums {
     std::vector<Eigen::Vector4f> values;
-    float say = 0; ///< factor of the view in work
+    float weight = 0; ///< factor of the view in work
   };
 
-  /// Adds what one view says of each texel of the patch.
-  void addView(const PatchFrame& frame, const Eigen::Vector3f& least, const PhotoError& error, Sums& sums) const
+  /// Adds one view's residual to each texel of the patch.
+  void addView(const PatchFrame& frame, const Eigen::Vector3f& least, const PhotoResidual& residual, Sums& sums) const
   {
     std::size_t next = 0;
     const auto add = [&](const Eigen::Vector2f& at) {
       const Eigen::Vector2f pixel = frame.map.pixel(at.x(), at.y());
-      sums.values[next++] += sums.say * error.at(pixel.x(), pixel.y());
+      sums.values[next++] += sums.weight * residual.at(pixel.x(), pixel.y());
     };
     frame.forSpans([&](const TexelSpan& span) {
       const TexelSpan own = frame.insideOf(span, 0.f);
@@ -142,6 +140,7 @@ private:
 
   void correct(Index patch, const Range& views, Sums& sums)
   {
+    constexpr float gain = 1.3f; // above 1: what a pixel differs by is spread over texels that it only partly covers
     PatchFrame frame(scene_, patch);
     Eigen::Vector3f least; // of the corners' weights
     for (int k = 0; k < 3; ++k)
@@ -150,12 +149,12 @@ private:
     const Candidates& all = sources_.candidates;
     for (Index c = all.begin[patch]; c < all.begin[patch + 1]; ++c) {
       const int view = all.list[c].view;
-      if (!(say_[c] > 0) || view < views.first || view >= views.last || !frame.map.look(sources_.views[view]))
+      if (!(weights_[c] > 0) || view < views.first || view >= views.last || !frame.map.look(sources_.views[view]))
         continue;
       if (sums.values.empty())
         sums.values.assign(frame.texels(), Eigen::Vector4f::Zero());
-      sums.say = gain * say_[c];
-      addView(frame, least, errors_[view], sums);
+      sums.weight = gain * weights_[c];
+      addView(frame, least, residuals_[view], sums);
     }
     if (!sums.values.empty())
       change(frame, sums.values);
@@ -169,16 +168,16 @@ private:
       std::uint8_t* p = atlas.pixel(frame.chart.x + x, frame.chart.y + y);
       const Eigen::Vector4f& value = values[next++];
       for (int c = 0; c < 3; ++c)
-        p[c] = static_cast<std::uint8_t>(std::clamp(p[c] + value[c], 0.f, 255.f) + 0.5f);
+        p[c] = std::clamp(p[c] + value[c], 0.f, 255.f) + 0.5f;
     });
   }
 
   const PaintScene& scene_;
   const BackProjectionSources& sources_;
   std::vector<Image>& atlases_;
-  std::vector<float> say_; ///< of each candidate, 0..1; those of a patch sum to 1
+  std::vector<float> weights_; ///< of each candidate, 0..1; those of a patch sum to 1
   ViewPatches shown_;
-  std::vector<PhotoError> errors_; ///< by view, of those in work
+  std::vector<PhotoResidual> residuals_; ///< by view, of those in work
 };
 } // namespace
 

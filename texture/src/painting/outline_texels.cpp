@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "painting/outline_texels.h"
 #include "charts/patch_frame.h"
+#include "grid.h"
 #include <algorithm>
 #include <cmath>
 #include <fresco/core/parallel.h>
 namespace fresco::texture {
 namespace {
-constexpr float least_weight = 0.02f; // of a view in a blended texel: 5 grey levels of 255 at most
-constexpr int as_painted = -2, none = -1;
+enum : int { as_painted = -2, none = -1 }; // instead of a view
 
 /// Decides for the texels of one patch.
 class PatchChoice {
@@ -40,6 +40,7 @@ public:
   /// View of each texel, `as_painted` or `none`.
   std::vector<int> run()
   {
+    constexpr float least_weight = 0.02f; // of a view in a blended texel: 5 grey levels of 255 at most
     std::vector<int> choice(frame_.texels(), as_painted);
     const auto& blend = sources_.blend;
     for (Index s = blend.begin[patch_]; s < blend.begin[patch_ + 1]; ++s) {
@@ -77,7 +78,7 @@ private:
     const Candidates& all = sources_.candidates;
     std::vector<std::pair<float, int>> ranked; // quality, view
     for (Index c = all.begin[patch_]; c < all.begin[patch_ + 1]; ++c)
-      ranked.emplace_back(all.list[c].quality() * std::exp2(-sources_.odd[c]), all.list[c].view);
+      ranked.emplace_back(all.list[c].quality() * std::exp2(-sources_.penalties[c]), all.list[c].view);
     std::stable_sort(ranked.begin(), ranked.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
     for (const auto& [quality, view] : ranked) {
       std::vector<char> mixed(choice.size(), 0);
@@ -99,7 +100,7 @@ private:
 void append(const PaintScene& scene, Index patch, const std::vector<int>& choice, OutlineTexels& out)
 {
   if (std::all_of(choice.begin(), choice.end(), [](int view) { return view == none; })) {
-    out.hidden.push_back(static_cast<int>(patch));
+    out.hidden.push_back(patch);
     return;
   }
   std::size_t k = 0;
@@ -117,12 +118,11 @@ void append(const PaintScene& scene, Index patch, const std::vector<int>& choice
 class ChartFill {
 public:
   ChartFill(const PaintScene& scene, const Chart& chart, std::vector<PatchTexel> unknown, Image& atlas)
-      : chart_(chart), atlas_(atlas), unknown_(std::move(unknown)),
-        known_(static_cast<std::size_t>(chart.width) * chart.height, 0)
+      : chart_(chart), atlas_(atlas), unknown_(std::move(unknown)), known_(cellCount(chart.width, chart.height), 0)
   {
     for (std::size_t s = 0; s < chart.texels.patches.size(); ++s)
       if (scene.isSeen(chart.texels.patches[s]))
-        chart.texels.forTexels(static_cast<int>(s), [&](int x, int y) { known_[at(x, y)] = 1; });
+        chart.texels.forTexels(s, [&](int x, int y) { known_[at(x, y)] = 1; });
     for (const PatchTexel& texel : unknown_)
       known_[at(texel.x, texel.y)] = 0;
   }
@@ -145,7 +145,7 @@ public:
   }
 
 private:
-  std::size_t at(int x, int y) const { return static_cast<std::size_t>(y) * chart_.width + x; }
+  std::size_t at(int x, int y) const { return cellAt(x, y, chart_.width); }
 
   bool fill(const PatchTexel& texel)
   {
@@ -158,7 +158,7 @@ private:
           ++count;
         }
     for (int c = 0; c < 3 && count > 0; ++c)
-      atlas_.pixel(chart_.x + texel.x, chart_.y + texel.y)[c] = static_cast<std::uint8_t>((sum[c] + count / 2) / count);
+      atlas_.pixel(chart_.x + texel.x, chart_.y + texel.y)[c] = (sum[c] + count / 2) / count;
     return count > 0;
   }
 

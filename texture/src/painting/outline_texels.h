@@ -7,7 +7,7 @@ namespace fresco::texture {
 struct OutlineSources {
   const std::vector<Projector>& views;
   const Candidates& candidates;
-  const std::vector<float>& odd; ///< octaves, of each candidate
+  const std::vector<float>& penalties; ///< octaves, of each candidate
   const Blend& blend;
   const std::vector<OutlineMask>& masks; ///< of the views
 };

@@ -8,10 +8,6 @@
 #include <fresco/core/release.h>
 namespace fresco::texture {
 namespace {
-constexpr float slowness = 0.3f;  // weight of a change along an edge against a step between views
-constexpr float anchor = 1e-3f;   // weight of the offset itself: it fades far from seams
-constexpr float implausible = 40; // grey levels: a larger step is rather something that moved or stood in the way
-
 using Sparse = Eigen::SparseMatrix<float, Eigen::RowMajor>;
 using Triplet = Eigen::Triplet<float>;
 
@@ -28,17 +24,18 @@ public:
   {
     out_.begin.assign(1, 0);
     for (const auto& list : shares_)
-      out_.begin.push_back(out_.begin.back() + static_cast<int>(list.size()));
+      out_.begin.push_back(out_.begin.back() + list.size());
   }
 
   SeamOffsets run(int threads)
   {
     const Index n = out_.begin.back();
     right_ = Eigen::MatrixXf::Zero(n, 3);
-    diagonal_ = Eigen::VectorXf::Constant(n, anchor);
+    constexpr float regularization = 1e-3f; // small against smoothness: offsets fade over tens of edges
+    diagonal_ = Eigen::VectorXf::Constant(n, regularization);
     for (std::size_t v = 0; v < shares_.size(); ++v)
-      addSteps(v);
-    addSlowness();
+      addSeams(v);
+    addSmoothness();
     const Sparse A = matrix();
     Eigen::MatrixXf channels(n, 3); // columns, so that threads do not write side by side
     parallelFor(
@@ -60,7 +57,7 @@ private:
   Sparse matrix()
   {
     for (Index i = 0; i < diagonal_.size(); ++i)
-      entries_.emplace_back(static_cast<int>(i), static_cast<int>(i), diagonal_[i]);
+      entries_.emplace_back(i, i, diagonal_[i]);
     Sparse A(diagonal_.size(), diagonal_.size());
     A.setFromTriplets(entries_.begin(), entries_.end());
     releaseMemory(entries_);
@@ -77,8 +74,11 @@ private:
     right_.row(j) -= weight * difference.transpose();
   }
 
-  void addSteps(std::size_t v)
+  /// What two views at a vertex differ by is to go. Steps larger than `implausible` rather come from something that
+  /// moved or stood in the way.
+  void addSeams(std::size_t v)
   {
+    constexpr float implausible = 40; // grey levels: more than exposure leaves
     const auto& list = shares_[v];
     for (std::size_t a = 0; a < list.size(); ++a)
       for (std::size_t b = a + 1; b < list.size(); ++b) {
@@ -96,23 +96,22 @@ private:
           continue;
         step /= count;
         const float trust = 1 / (1 + step.squaredNorm() / (implausible * implausible));
-        addEquation(out_.begin[v] + static_cast<int>(a), out_.begin[v] + static_cast<int>(b),
-                    4 * trust * std::min(list[a].weight, list[b].weight), step);
+        addEquation(out_.begin[v] + a, out_.begin[v] + b, 4 * trust * std::min(list[a].weight, list[b].weight), step);
       }
   }
 
   /// Along every edge, for each view that takes part at both ends.
-  void addSlowness()
+  void addSmoothness()
   {
-    entries_.reserve(entries_.size() + static_cast<std::size_t>(4 * patches_.size()) + diagonal_.size());
+    constexpr float smoothness = 0.3f; // against a step between views: steps vanish, what they change spreads
+    entries_.reserve(entries_.size() + 4 * patches_.size() + diagonal_.size());
     for (Index i = 0; i < patches_.size(); ++i)
       for (int k = 0; k < 3; ++k) {
         const int p = patches_.faces(k, i), q = patches_.faces((k + 1) % 3, i);
         const auto &a = shares_[p], &b = shares_[q];
         for (std::size_t s = 0, t = 0; s < a.size() && t < b.size();) {
           if (a[s].view == b[t].view)
-            addEquation(out_.begin[p] + static_cast<int>(s), out_.begin[q] + static_cast<int>(t), slowness,
-                        Eigen::Vector3f::Zero());
+            addEquation(out_.begin[p] + s, out_.begin[q] + t, smoothness, Eigen::Vector3f::Zero());
           const bool next_a = a[s].view <= b[t].view, next_b = b[t].view <= a[s].view;
           s += next_a;
           t += next_b;

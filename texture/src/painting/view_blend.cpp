@@ -11,25 +11,24 @@ double meanEdge(const PatchMesh& patches)
   double sum = 0;
   for (Index i = 0; i < patches.size(); ++i)
     sum += (patches.vertices.col(patches.faces(0, i)) - patches.vertices.col(patches.faces(1, i))).norm();
-  return sum / static_cast<double>(patches.size());
+  return sum / patches.size();
 }
 
 /// k rounds of averaging spread a step over about sqrt(k) edges to either side.
-int roundsFor(const PatchMesh& patches, double strip)
+int roundsFor(const PatchMesh& patches, double width)
 {
-  const double edges = strip / std::max(2 * meanEdge(patches), 1e-30);
-  return static_cast<int>(std::clamp(std::round(edges * edges), 0.0, 8.0));
+  const double edges = width / std::max(2 * meanEdge(patches), 1e-30);
+  return std::clamp(std::round(edges * edges), 0.0, 8.0);
 }
 
 class Blending {
 public:
-  Blending(const PatchMesh& patches, const Candidates& candidates, const Eigen::VectorXi& view, const Points& gains,
-           const BlendOptions& options)
-      : patches_(patches), candidates_(candidates), view_(view), around_(vertexPatches(patches)),
-        shares_(shareVertices(patches, around_, view, roundsFor(patches, options.strip)))
+  Blending(const BlendInput& input, const BlendOptions& options)
+      : patches_(input.patches), candidates_(input.candidates), view_(input.view), around_(vertexPatches(patches_)),
+        shares_(shareVertices(patches_, around_, view_, roundsFor(patches_, options.blend_width)))
   {
     if (options.level)
-      offsets_ = levelSeams(patches, {around_, shares_}, {candidates, gains}, options.threads);
+      offsets_ = levelSeams(patches_, {around_, shares_}, {candidates_, input.gains}, options.threads);
   }
 
   Blend run() const
@@ -39,7 +38,7 @@ public:
     for (Index i = 0; i < patches_.size(); ++i) {
       if (view_[i] >= 0)
         addPatch(i, out.list);
-      out.begin.push_back(static_cast<Index>(out.list.size()));
+      out.begin.push_back(out.list.size());
     }
     return out;
   }
@@ -77,7 +76,7 @@ private:
         if (shares_[v][s].view == view) {
           share.weights[k] = shares_[v][s].weight;
           if (offsets_.offsets.cols() > 0) {
-            share.offsets.col(k) = offsets_.offsets.col(offsets_.begin[v] + static_cast<int>(s));
+            share.offsets.col(k) = offsets_.offsets.col(offsets_.begin[v] + s);
             mean += share.offsets.col(k);
             known[k] = true;
             ++count;
@@ -99,9 +98,5 @@ private:
 };
 } // namespace
 
-Blend blendViews(const PatchMesh& patches, const Candidates& candidates, const Eigen::VectorXi& view,
-                 const Points& gains, const BlendOptions& options)
-{
-  return Blending(patches, candidates, view, gains, options).run();
-}
+Blend blendViews(const BlendInput& input, const BlendOptions& options) { return Blending(input, options).run(); }
 } // namespace fresco::texture

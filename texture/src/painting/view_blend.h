@@ -18,14 +18,19 @@ struct Blend {
 };
 
 struct BlendOptions {
-  double strip = 0;  ///< mesh units over which one view passes into the next
-  bool level = true; ///< take away the step between views that is left at their seam, and spread what that changes
+  double blend_width = 0; ///< mesh units over which one view passes into the next
+  bool level = true;      ///< take away the step between views that is left at their seam, and spread what that changes
   int threads = 0;
 };
 
-/// What the colours of a patch are made of, near seams from both views.
-/// @param view  P, -1 = unseen
-/// @param gains 3xV
-Blend blendViews(const PatchMesh& patches, const Candidates& candidates, const Eigen::VectorXi& view,
-                 const Points& gains, const BlendOptions& options);
+/// What is blended.
+struct BlendInput {
+  const PatchMesh& patches;
+  const Candidates& candidates;
+  const Eigen::VectorXi& view; ///< P, -1 = unseen
+  const Points& gains;         ///< 3xV, factor per view and channel
+};
+
+/// Feathers the seams: near them the colours of a patch are made of both views.
+Blend blendViews(const BlendInput& input, const BlendOptions& options);
 } // namespace fresco::texture

@@ -30,7 +30,7 @@ int orientationIn(const Tiff& tiff)
   const std::uint32_t entries = std::min(tiff.number(table, 2), 512U);
   for (std::uint32_t i = 0; i < entries; ++i)
     if (const std::size_t entry = table + 2 + 12 * i; tiff.number(entry, 2) == 274) {
-      const auto value = static_cast<int>(tiff.number(entry + 8, 2));
+      const int value = tiff.number(entry + 8, 2);
       return value >= 1 && value <= 8 ? value : 1;
     }
   return 1;
@@ -50,10 +50,10 @@ int exifOrientation(const std::string& path)
       return 1;
     std::vector<std::uint8_t> block(length - 2);
     if (marker != 0xE1) {
-      file.seekg(static_cast<std::streamoff>(block.size()), std::ios::cur);
+      file.seekg(block.size(), std::ios::cur);
       continue;
     }
-    file.read(reinterpret_cast<char*>(block.data()), static_cast<std::streamsize>(block.size()));
+    file.read(reinterpret_cast<char*>(block.data()), block.size());
     const std::string name = "Exif";
     if (file && block.size() > 14 && std::equal(name.begin(), name.end(), block.begin()))
       return orientationIn(Tiff({block.begin() + 6, block.end()}));

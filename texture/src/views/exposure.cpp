@@ -3,17 +3,11 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <fresco/core/statistics.h>
 #include <map>
 #include <numeric>
 namespace fresco::texture {
 namespace {
-constexpr Index most_patches = 40000;
-constexpr std::size_t most_samples = 1000, least_samples = 12; // per pair of views
-constexpr int darkest = 12, brightest = 240;                   // grey levels: beyond, a value says little of the light
-constexpr float trusted = 0.2f;                                // of the best quality, for a view to be heard
-constexpr double outlier = 0.03;                               // of a pair's logarithm: errors beyond count less
-constexpr double anchor = 1e-3;                                // weight that holds views without partners at 1
-
 struct Pair {
   std::vector<Eigen::Vector3f> ratios; ///< logarithms of first over second
 };
@@ -21,6 +15,7 @@ using Pairs = std::map<std::pair<int, int>, Pair>;
 
 bool isClear(const Candidate& c)
 {
+  constexpr int darkest = 12, brightest = 240; // grey levels: beyond, a value says little of the light
   return std::all_of(c.color.begin(), c.color.end(), [](int v) { return v >= darkest && v <= brightest; });
 }
 
@@ -31,6 +26,8 @@ Eigen::Vector3f logColor(const Candidate& c)
 
 void addPatch(const Candidates& candidates, Index patch, Pairs& pairs)
 {
+  constexpr float trusted = 0.2f;            // of the best quality: views that show much less blur the colour
+  constexpr std::size_t most_samples = 1000; // per pair of views: more hardly change a median
   const Candidate* list = candidates.of(patch);
   float best = 0;
   for (Index i = 0; i < candidates.count(patch); ++i)
@@ -50,10 +47,12 @@ void addPatch(const Candidates& candidates, Index patch, Pairs& pairs)
 /// From patches spread over the whole mesh.
 Pairs collectPairs(const Candidates& candidates)
 {
-  const Index patches = static_cast<Index>(candidates.begin.size()) - 1;
+  constexpr Index most_patches = 40000; // far more than the unknowns ask for
+  const Index patches = candidates.begin.size() - 1;
   const Index taken = std::min(patches, most_patches);
   Pairs pairs;
-  Index step = static_cast<Index>(0.618 * static_cast<double>(taken)) | 1;
+  const Index golden = 0.618 * taken;
+  Index step = golden | 1;
   while (taken > 1 && std::gcd(step, taken) != 1)
     step += 2;
   for (Index k = 0, at = 0; k < taken; ++k, at = (at + step) % taken)
@@ -61,13 +60,12 @@ Pairs collectPairs(const Candidates& candidates)
   return pairs;
 }
 
-float medianOf(const std::vector<Eigen::Vector3f>& values, int channel)
+float channelMedian(const std::vector<Eigen::Vector3f>& values, int channel)
 {
   std::vector<float> numbers;
   for (const Eigen::Vector3f& v : values)
     numbers.push_back(v[channel]);
-  std::nth_element(numbers.begin(), numbers.begin() + static_cast<std::ptrdiff_t>(numbers.size() / 2), numbers.end());
-  return numbers[numbers.size() / 2];
+  return median(numbers);
 }
 
 struct Equation {
@@ -77,10 +75,12 @@ struct Equation {
 
 Eigen::VectorXd solve(const std::vector<Equation>& equations, Index views)
 {
-  constexpr int rounds = 10;
+  constexpr int rounds = 10;              // of reweighting
+  constexpr double outlier = 0.03;        // of a logarithm (Cauchy): pairs off by more than 3 % count less
+  constexpr double regularization = 1e-3; // holds views without partners at 1; nothing beside a pair's weight
   Eigen::VectorXd x = Eigen::VectorXd::Zero(views);
   for (int round = 0; round < rounds; ++round) {
-    Eigen::MatrixXd A = anchor * Eigen::MatrixXd::Identity(views, views);
+    Eigen::MatrixXd A = regularization * Eigen::MatrixXd::Identity(views, views);
     Eigen::VectorXd b = Eigen::VectorXd::Zero(views);
     for (const Equation& e : equations) {
       const double error = x[e.first] - x[e.second] - e.difference;
@@ -100,6 +100,7 @@ Eigen::VectorXd solve(const std::vector<Equation>& equations, Index views)
 
 Points solveGains(const Candidates& candidates, Index views)
 {
+  constexpr std::size_t least_samples = 12; // per pair of views, for a median to count
   const Pairs pairs = collectPairs(candidates);
   Points gains = Points::Ones(3, views);
   for (int c = 0; c < 3 && views > 0; ++c) {
@@ -107,8 +108,7 @@ Points solveGains(const Candidates& candidates, Index views)
     std::vector<char> known(views, 0);
     for (const auto& [key, pair] : pairs)
       if (pair.ratios.size() >= least_samples) {
-        equations.push_back(
-            {key.first, key.second, medianOf(pair.ratios, c), std::sqrt(static_cast<double>(pair.ratios.size()))});
+        equations.push_back({key.first, key.second, channelMedian(pair.ratios, c), std::sqrt(pair.ratios.size())});
         known[key.first] = known[key.second] = 1;
       }
     const double count = std::count(known.begin(), known.end(), 1);
@@ -120,7 +120,7 @@ Points solveGains(const Candidates& candidates, Index views)
       mean += known[v] ? x[v] / count : 0;
     for (Index v = 0; v < views; ++v)
       if (known[v])
-        gains(c, v) = static_cast<float>(std::exp(mean - x[v]));
+        gains(c, v) = std::exp(mean - x[v]);
   }
   return gains;
 }

@@ -2,8 +2,7 @@
 #pragma once
 #include "views/visibility.h"
 namespace fresco::texture {
-/// Cuts the patches that no view shows whole, though some view shows a part of them, to a quarter of their side: what
+/// Cuts the patches that no view shows whole, though some view shows a part of them, to an eighth of their side: what
 /// is seen beside something that stands before it can then be painted, and only the rest is unseen.
-PatchMesh cutHiddenParts(PatchMesh patches, const RayScene& scene, const ViewList& views,
-                         const TextureOptions& options);
+PatchMesh cutHiddenParts(PatchMesh patches, const VisibilityInput& input);
 } // namespace fresco::texture

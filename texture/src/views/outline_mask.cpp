@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "views/outline_mask.h"
+#include "grid.h"
 #include "views/patch_visibility.h"
 #include <algorithm>
 #include <cmath>
 #include <fresco/core/parallel.h>
 namespace fresco::texture {
 namespace {
-constexpr float reach_pixels = 2.f;
-
 /// Inverse depth along a row or column of cells; over a plane it is linear.
 struct Line {
   const DepthMap& map;
@@ -47,15 +46,14 @@ struct Line {
 } // namespace
 
 OutlineMask::OutlineMask(const DepthMap& map, float reach, float step)
-    : width_(map.width), height_(map.height), per_pixel_(1 / map.step),
-      near_(static_cast<std::size_t>(map.width) * map.height, false)
+    : width_(map.width), height_(map.height), per_pixel_(1 / map.step), near_(cellCount(map.width, map.height), false)
 {
   const int radius = std::ceil(reach / map.step);
   const auto spread = [&](const Line& line) {
     const float between = 0.5f * (line.inverse(0) + line.inverse(1));
     for (int y = std::max(0, line.y + line.dy - radius); y <= std::min(height_ - 1, line.y + radius); ++y)
       for (int x = std::max(0, line.x + line.dx - radius); x <= std::min(width_ - 1, line.x + radius); ++x)
-        between_.emplace_back(static_cast<std::uint32_t>(y) * width_ + x, between);
+        between_.emplace_back(cellAt(x, y, width_), between);
   };
   for (int y = 0; y < height_; ++y)
     for (int x = 0; x < width_; ++x)
@@ -74,18 +72,18 @@ OutlineMask::OutlineMask(const DepthMap& map, float reach, float step)
     near_[cell.first] = true;
 }
 
-Eigen::Vector2i OutlineMask::cellAt(const Eigen::Vector2f& pixel) const
+Eigen::Vector2i OutlineMask::cellUnder(const Eigen::Vector2f& pixel) const
 {
   const Eigen::Array2f cell = (pixel.array() * per_pixel_).max(0.f).min(1e6f);
-  return {std::min(static_cast<int>(cell.x()), width_ - 1), std::min(static_cast<int>(cell.y()), height_ - 1)};
+  return {std::min<int>(cell.x(), width_ - 1), std::min<int>(cell.y(), height_ - 1)};
 }
 
 bool OutlineMask::holds(const Eigen::Vector2f& pixel, float inverse_depth) const
 {
   if (near_.empty())
     return false;
-  const Eigen::Vector2i at = cellAt(pixel);
-  const std::uint32_t cell = static_cast<std::uint32_t>(at.y()) * width_ + at.x();
+  const Eigen::Vector2i at = cellUnder(pixel);
+  const std::uint32_t cell = cellAt(at.x(), at.y(), width_);
   if (!near_[cell])
     return false;
   const auto found = std::lower_bound(between_.begin(), between_.end(), cell,
@@ -97,24 +95,25 @@ bool OutlineMask::touches(const Eigen::Vector2f& low, const Eigen::Vector2f& hig
 {
   if (near_.empty())
     return false;
-  const Eigen::Vector2i first = cellAt(low), last = cellAt(high);
+  const Eigen::Vector2i first = cellUnder(low), last = cellUnder(high);
   for (int y = first.y(); y <= last.y(); ++y)
     for (int x = first.x(); x <= last.x(); ++x)
-      if (near_[static_cast<std::size_t>(y) * width_ + x])
+      if (near_[cellAt(x, y, width_)])
         return true;
   return false;
 }
 
-std::vector<OutlineMask> outlineMasks(const PatchMesh& patches, const RayScene& scene, const ViewList& views,
-                                      const TextureOptions& options)
+std::vector<OutlineMask> outlineMasks(const PatchMesh& patches, const VisibilityInput& input)
 {
-  const float step = limitsFor(patches, views, options).tolerance;
+  const ViewList& views = input.views;
+  constexpr float reach_pixels = 2.f; // of cubic interpolation
+  const float step = limitsFor(patches, views, input.options).tolerance;
   std::vector<OutlineMask> masks(views.used.size());
   parallelFor(
-      masks.size(), options.threads,
+      masks.size(), input.options.threads,
       [&](Index v) {
         if (views.used[v])
-          masks[v] = OutlineMask(scene.depthMap(views.projectors[v], most_cells), reach_pixels, step);
+          masks[v] = OutlineMask(input.scene.depthMap(views.projectors[v], most_cells), reach_pixels, step);
       },
       1);
   return masks;

@@ -17,7 +17,7 @@ public:
   bool touches(const Eigen::Vector2f& low, const Eigen::Vector2f& high) const;
 
 private:
-  Eigen::Vector2i cellAt(const Eigen::Vector2f& pixel) const;
+  Eigen::Vector2i cellUnder(const Eigen::Vector2f& pixel) const;
 
   int width_ = 0, height_ = 0;                           ///< cells
   float per_pixel_ = 0;                                  ///< cells
@@ -26,6 +26,5 @@ private:
 };
 
 /// Of every view in use; the reach is what cubic interpolation and the pixels' own width mix.
-std::vector<OutlineMask> outlineMasks(const PatchMesh& patches, const RayScene& scene, const ViewList& views,
-                                      const TextureOptions& options);
+std::vector<OutlineMask> outlineMasks(const PatchMesh& patches, const VisibilityInput& input);
 } // namespace fresco::texture

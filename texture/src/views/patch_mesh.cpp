@@ -12,7 +12,8 @@ using Midpoints = std::unordered_map<EdgeKey, int>;
 
 EdgeKey edgeKey(int a, int b)
 {
-  return (static_cast<EdgeKey>(std::min(a, b)) << 32) | static_cast<std::uint32_t>(std::max(a, b));
+  const EdgeKey low = std::min(a, b), high = std::max(a, b);
+  return low << 32 | high;
 }
 
 struct Patches {
@@ -32,7 +33,7 @@ Midpoints cutEdges(Patches& patches, const Want& want)
       const int a = patches.faces[i][k], b = patches.faces[i][(k + 1) % 3];
       if (!want(i, k))
         continue;
-      if (!middle.emplace(edgeKey(a, b), static_cast<int>(patches.vertices.size())).second)
+      if (!middle.emplace(edgeKey(a, b), patches.vertices.size()).second)
         continue;
       patches.vertices.push_back(0.5f * (patches.vertices[a] + patches.vertices[b]));
       if (!patches.colors.empty())
@@ -104,10 +105,11 @@ Patches copyOf(const TriangleMesh& mesh)
     patches.colors.emplace_back(mesh.colors.col(v).cast<float>());
   for (Index f = 0; f < mesh.faceCount(); ++f) {
     patches.faces.emplace_back(mesh.faces.col(f));
-    patches.parent.push_back(static_cast<int>(f));
+    patches.parent.push_back(f);
   }
   return patches;
 }
+
 Patches copyOf(const PatchMesh& mesh)
 {
   Patches patches;
@@ -135,11 +137,9 @@ PatchMesh finish(const Patches& patches, int threads)
   out.normals.resize(3, n);
   out.areas.resize(n);
   parallelFor(n, threads, [&](Index i) {
-    const Eigen::Vector3i f = out.faces.col(i);
-    const Eigen::Vector3d a = out.vertices.col(f[0]).cast<double>(), b = out.vertices.col(f[1]).cast<double>(),
-                          c = out.vertices.col(f[2]).cast<double>(), cross = (b - a).cross(c - a);
+    const Eigen::Vector3d cross = doubleAreaVector(out.vertices, out.faces.col(i));
     const double length = cross.norm();
-    out.areas[i] = static_cast<float>(0.5 * length);
+    out.areas[i] = 0.5 * length;
     out.normals.col(i) = (length > 0 ? Eigen::Vector3d(cross / length) : Eigen::Vector3d::Zero()).cast<float>();
   });
   return out;
@@ -148,7 +148,7 @@ PatchMesh finish(const Patches& patches, int threads)
 
 PatchMesh cutFaces(const TriangleMesh& mesh, float longest_edge, int threads)
 {
-  constexpr int most_rounds = 16; // each halves the longest edge
+  constexpr int most_rounds = 16; // each halves the longest edge: a face of 65,000 pixels at most
   Patches patches = copyOf(mesh);
   for (int round = 0; round < most_rounds && cutLongEdges(patches, longest_edge); ++round)
     ;
@@ -163,6 +163,13 @@ PatchMesh cutPatches(const PatchMesh& patches, const std::vector<char>& marked, 
     return patches;
   cutAt(middle, parts);
   return finish(parts, threads);
+}
+
+Eigen::Vector3d doubleAreaVector(const Points& vertices, const Eigen::Vector3i& face)
+{
+  const Eigen::Vector3d a = vertices.col(face[0]).cast<double>(), b = vertices.col(face[1]).cast<double>(),
+                        c = vertices.col(face[2]).cast<double>();
+  return (b - a).cross(c - a);
 }
 
 Eigen::Matrix3Xi faceNeighbors(const Faces& faces)

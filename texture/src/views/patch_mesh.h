@@ -23,6 +23,9 @@ PatchMesh cutFaces(const TriangleMesh& mesh, float longest_edge, int threads);
 /// @param marked P
 PatchMesh cutPatches(const PatchMesh& patches, const std::vector<char>& marked, int threads);
 
+/// Of a triangle: along its normal, twice its area long.
+Eigen::Vector3d doubleAreaVector(const Points& vertices, const Eigen::Vector3i& face);
+
 /// 3xF, face across the edge from corner k to corner k+1; -1 at boundaries and where more than two faces meet.
 Eigen::Matrix3Xi faceNeighbors(const Faces& faces);
 } // namespace fresco::texture

@@ -2,13 +2,14 @@
 #include "views/patch_visibility.h"
 #include <algorithm>
 #include <cmath>
+#include <fresco/core/statistics.h>
 #include <limits>
 namespace fresco::texture {
 namespace {
 /// Median distance of the surface within the images, from what stands before it or not; mesh units.
 float typicalDepth(const PatchMesh& patches, const std::vector<Projector>& views)
 {
-  constexpr Index samples = 2000;
+  constexpr Index samples = 2000; // enough for a median
   const Index stride = std::max<Index>(1, patches.vertices.cols() / samples);
   std::vector<float> depths;
   for (const Projector& view : views)
@@ -19,8 +20,7 @@ float typicalDepth(const PatchMesh& patches, const std::vector<Projector>& views
     }
   if (depths.empty())
     return 0;
-  std::nth_element(depths.begin(), depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2), depths.end());
-  return depths[depths.size() / 2];
+  return median(depths);
 }
 
 /// Cells from a place to the triangle's nearest side, positive inside; some number below -1 where it lies further out.
@@ -44,10 +44,10 @@ struct CellBox {
 
 CellBox cellsOf(const Footprint& patch, const DepthMap& map)
 {
-  return {std::max(0, static_cast<int>(patch.corners.row(0).minCoeff() - 0.5f)),
-          std::min(map.width - 1, static_cast<int>(patch.corners.row(0).maxCoeff() + 0.5f)),
-          std::max(0, static_cast<int>(patch.corners.row(1).minCoeff() - 0.5f)),
-          std::min(map.height - 1, static_cast<int>(patch.corners.row(1).maxCoeff() + 0.5f))};
+  return {std::max<int>(0, patch.corners.row(0).minCoeff() - 0.5f),
+          std::min<int>(map.width - 1, patch.corners.row(0).maxCoeff() + 0.5f),
+          std::max<int>(0, patch.corners.row(1).minCoeff() - 0.5f),
+          std::min<int>(map.height - 1, patch.corners.row(1).maxCoeff() + 0.5f)};
 }
 
 /// Whether the ray through the middle of a cell ends clearly before the patch's plane.
@@ -71,18 +71,21 @@ private:
 };
 } // namespace
 
-SightLimits limitsFor(const PatchMesh& patches, const ViewList& views, const TextureOptions& options)
+VisibilityLimits limitsFor(const PatchMesh& patches, const ViewList& views, const TextureOptions& options)
 {
-  const double tolerance = views.doubt * options.depth_tolerance * typicalDepth(patches, views.projectors);
-  return {static_cast<float>(tolerance), static_cast<float>(views.doubt * options.margin),
-          static_cast<float>(views.doubt)};
+  const double tolerance = views.pose_uncertainty * options.depth_tolerance * typicalDepth(patches, views.projectors);
+  VisibilityLimits out;
+  out.tolerance = tolerance;
+  out.margin = views.pose_uncertainty * options.margin;
+  out.pose_uncertainty = views.pose_uncertainty;
+  return out;
 }
 
 Eigen::Vector3f pixelWithin(const Projector& view, const Eigen::Vector3f& vertex)
 {
   const Eigen::Vector3f p = view(vertex);
-  const float low = image_border, right = static_cast<float>(view.camera().width) - image_border,
-              bottom = static_cast<float>(view.camera().height) - image_border;
+  constexpr float low = 1; // pixels: interpolation needs a neighbour
+  const float right = view.camera().width - low, bottom = view.camera().height - low;
   const bool inside = p.z() > 0 && p.x() >= low && p.y() >= low && p.x() <= right && p.y() <= bottom;
   return inside ? p : Eigen::Vector3f::Zero();
 }
@@ -110,26 +113,26 @@ Footprint footprintOf(const Eigen::Matrix3f& pixels, float step)
   return out;
 }
 
-Sight sightOf(const Footprint& patch, const DepthMap& map, float tolerance)
+Visibility visibilityOf(const Footprint& patch, const DepthMap& map, float tolerance)
 {
   const CellBox box = cellsOf(patch, map);
   const Eigen::Vector2i middle = patch.corners.rowwise().mean().array().floor().cast<int>().matrix();
   const PlaneTest plane(patch, tolerance);
-  Sight sight = Sight::free;
+  Visibility visibility = Visibility::clear;
   for (int y = box.y0; y <= box.y1; ++y)
     for (int x = box.x0; x <= box.x1; ++x) {
       const float hit = map.at(x, y);
       if (!(hit < patch.farthest - tolerance))
         continue;
-      const Eigen::Vector2f p(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f);
+      const Eigen::Vector2f p(x + 0.5f, y + 0.5f);
       const float inside = depthInside(patch, p);
       if (inside < -1 || !plane.endsBefore(hit, p))
         continue;
       if (inside >= 0 || Eigen::Vector2i(x, y) == middle)
-        return Sight::hidden;
-      sight = Sight::beside;
+        return Visibility::hidden;
+      visibility = Visibility::beside;
     }
-  return sight;
+  return visibility;
 }
 
 bool isSeenInPart(const Footprint& patch, const DepthMap& map, float tolerance)
@@ -138,7 +141,7 @@ bool isSeenInPart(const Footprint& patch, const DepthMap& map, float tolerance)
   const PlaneTest plane(patch, tolerance);
   for (int y = box.y0; y <= box.y1; ++y)
     for (int x = box.x0; x <= box.x1; ++x) {
-      const Eigen::Vector2f p(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f);
+      const Eigen::Vector2f p(x + 0.5f, y + 0.5f);
       if (depthInside(patch, p) >= 0 && !plane.endsBefore(map.at(x, y), p))
         return true;
     }

@@ -3,18 +3,17 @@
 #include "views/visibility.h"
 namespace fresco::texture {
 constexpr float least_cosine = 0.1f; // 84 degrees: beyond, a pixel smears over ten times its size
-constexpr float image_border = 1.f;  // pixels: interpolation needs a neighbour
 
 constexpr Index most_cells = 1 << 20; // of a depth map: enough for outlines, and a 12 megapixel view takes a second
 
-struct SightLimits {
-  float tolerance; ///< of depth, mesh units
-  float margin;    ///< pixels
-  float doubt;     ///< factor on the octaves
+struct VisibilityLimits {
+  float tolerance;        ///< of depth, mesh units
+  float margin;           ///< pixels
+  float pose_uncertainty; ///< factor on the octaves
 };
 
-/// The tolerance is the same length in all views, so that near views are not doubted more than far ones.
-SightLimits limitsFor(const PatchMesh& patches, const ViewList& views, const TextureOptions& options);
+/// The tolerance is the same length in all views, so that near views are not penalized more than far ones.
+VisibilityLimits limitsFor(const PatchMesh& patches, const ViewList& views, const TextureOptions& options);
 
 /// Pixel and depth of a vertex; depth 0 where it is too near to the image's border, outside, or behind the camera.
 Eigen::Vector3f pixelWithin(const Projector& view, const Eigen::Vector3f& vertex);
@@ -33,11 +32,11 @@ struct Footprint {
 /// @param step pixels per cell
 Footprint footprintOf(const Eigen::Matrix3f& pixels, float step);
 
-enum class Sight { free, beside, hidden };
+enum class Visibility { clear, beside, hidden };
 
 /// hidden: some ray through a cell whose centre the patch covers ends before it; beside: one through a cell next to it.
 /// @param tolerance mesh units
-Sight sightOf(const Footprint& patch, const DepthMap& map, float tolerance);
+Visibility visibilityOf(const Footprint& patch, const DepthMap& map, float tolerance);
 
 /// Whether a ray through some cell whose centre the patch covers ends at it.
 bool isSeenInPart(const Footprint& patch, const DepthMap& map, float tolerance);

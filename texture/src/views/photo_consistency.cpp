@@ -2,17 +2,9 @@
 #include "views/photo_consistency.h"
 #include <algorithm>
 #include <fresco/core/parallel.h>
+#include <fresco/core/statistics.h>
 namespace fresco::texture {
 namespace {
-constexpr Index least_views = 3;  // for a majority
-constexpr float trusted = 0.1f;   // of the best quality, for a view to have a vote
-constexpr float one_octave = 20;  // grey levels of difference that cost an octave
-constexpr float most_octaves = 5; // by difference
-constexpr float overexposed_octaves = 1;
-constexpr int overexposed = 252; // grey level
-constexpr int smoothing_rounds =
-    2; // oddness is a matter of regions; single patches differ by small errors of alignment
-
 Eigen::Vector3f colorOf(const Candidate& c, const Points& gains)
 {
   return Eigen::Vector3f(c.color[0], c.color[1], c.color[2]).cwiseProduct(gains.col(c.view));
@@ -21,6 +13,8 @@ Eigen::Vector3f colorOf(const Candidate& c, const Points& gains)
 /// Median per channel over the views with a vote; false if they are too few.
 bool consensus(const Candidates& candidates, Index patch, const Points& gains, Eigen::Vector3f& color)
 {
+  constexpr std::size_t least_views = 3; // for a majority
+  constexpr float trusted = 0.1f;        // of the best quality: views that show much less blur the colour
   const Candidate* list = candidates.of(patch);
   const Index n = candidates.count(patch);
   float best = 0;
@@ -31,13 +25,10 @@ bool consensus(const Candidates& candidates, Index patch, const Points& gains, E
     if (list[i].quality() >= trusted * best)
       for (int c = 0; c < 3; ++c)
         values[c].push_back(colorOf(list[i], gains)[c]);
-  if (static_cast<Index>(values[0].size()) < least_views)
+  if (values[0].size() < least_views)
     return false;
-  for (int c = 0; c < 3; ++c) {
-    const auto middle = values[c].begin() + static_cast<std::ptrdiff_t>(values[c].size() / 2);
-    std::nth_element(values[c].begin(), middle, values[c].end());
-    color[c] = *middle;
-  }
+  for (int c = 0; c < 3; ++c)
+    color[c] = median(values[c]);
   return true;
 }
 
@@ -62,8 +53,14 @@ std::vector<float> smoothed(const PatchMesh& patches, const Candidates& candidat
 }
 } // namespace
 
-std::vector<float> oddityCosts(const PatchMesh& patches, const Candidates& candidates, const Points& gains, int threads)
+std::vector<float> photoConsistencyPenalties(const PatchMesh& patches, const Candidates& candidates,
+                                             const Points& gains, int threads)
 {
+  constexpr int smoothing_rounds = 2; // what differs is a region; single patches differ by small errors of alignment
+  constexpr float one_octave = 20;    // grey levels of difference that cost an octave: well above noise
+  constexpr float most_octaves = 5;   // by difference: a view that alone shows the patch well keeps a chance
+  constexpr float overexposed_octaves = 1;
+  constexpr int overexposed = 252; // grey level: structure is lost
   std::vector<float> difference(candidates.list.size(), 0.f);
   parallelFor(patches.size(), threads, [&](Index i) {
     Eigen::Vector3f usual;

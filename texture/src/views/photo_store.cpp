@@ -97,20 +97,20 @@ void PhotoStore::dropUnlessAll()
 }
 
 namespace {
-constexpr int taps = 4;
+constexpr int taps = 4; // of the cubic
 
 /// Rows weighted and added first: sum[3 * a + c] of tap a and channel c.
 void addRow(const std::uint8_t* row, float weight, float* sum)
 {
   for (int i = 0; i < 3 * taps; ++i)
-    sum[i] += weight * static_cast<float>(row[i]);
+    sum[i] += weight * row[i];
 }
 } // namespace
 
 Eigen::Vector3f samplePhoto(const Image& photo, float x, float y)
 {
   const float u = std::clamp(x - 0.5f, 0.f, photo.width - 1.f), v = std::clamp(y - 0.5f, 0.f, photo.height - 1.f);
-  const int i = static_cast<int>(u), j = static_cast<int>(v);
+  const int i = u, j = v;
   const Eigen::Vector4f wx = cubicWeights(u - i), wy = cubicWeights(v - j);
   float sum[3 * taps] = {};
   const bool inside = i >= 1 && i + 2 < photo.width;
@@ -134,7 +134,7 @@ Eigen::Vector3f samplePhoto(const Image& photo, float x, float y)
 Eigen::Vector3f samplePhotoQuickly(const Image& photo, float x, float y)
 {
   const float u = std::clamp(x - 0.5f, 0.f, photo.width - 1.f), v = std::clamp(y - 0.5f, 0.f, photo.height - 1.f);
-  const int i = std::min(static_cast<int>(u), photo.width - 2), j = std::min(static_cast<int>(v), photo.height - 2);
+  const int i = std::min<int>(u, photo.width - 2), j = std::min<int>(v, photo.height - 2);
   const float a = u - i, b = v - j;
   const std::uint8_t *p = photo.pixel(i, j), *q = photo.pixel(i, j + 1);
   return ((1 - a) * (1 - b)) * Eigen::Vector3f(p[0], p[1], p[2]) + (a * (1 - b)) * Eigen::Vector3f(p[3], p[4], p[5]) +

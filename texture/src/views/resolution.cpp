@@ -2,22 +2,8 @@
 #include "views/resolution.h"
 #include <algorithm>
 #include <cmath>
+#include <fresco/core/statistics.h>
 namespace fresco::texture {
-namespace {
-constexpr float oversampling = 1.4f;  // texels per pixel: interpolating a second time would blur otherwise
-constexpr float unseen_share = 0.25f; // of the typical density: there is no detail
-
-/// 0 if there is none.
-float medianOf(std::vector<float> values)
-{
-  if (values.empty())
-    return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-} // namespace
-
 Eigen::VectorXf patchResolutions(const PatchMesh& patches, const std::vector<Projector>& views,
                                  const Eigen::VectorXi& view)
 {
@@ -42,13 +28,13 @@ double pixelSize(const Eigen::VectorXf& resolution)
   for (const float r : resolution)
     if (r > 0)
       sizes.push_back(1 / r);
-  return medianOf(std::move(sizes));
+  return sizes.empty() ? 0 : median(sizes);
 }
 
 Eigen::VectorXf wantedDensities(const PatchMesh& patches, Index faces, const Eigen::VectorXf& resolution, double texel)
 {
   if (texel > 0)
-    return Eigen::VectorXf::Constant(faces, static_cast<float>(1 / texel));
+    return Eigen::VectorXf::Constant(faces, 1 / texel);
   Eigen::VectorXf sum = Eigen::VectorXf::Zero(faces), area = sum;
   for (Index i = 0; i < patches.size(); ++i)
     if (resolution[i] > 0) {
@@ -59,10 +45,11 @@ Eigen::VectorXf wantedDensities(const PatchMesh& patches, Index faces, const Eig
   for (Index f = 0; f < faces; ++f)
     if (area[f] > 0)
       seen.push_back(sum[f] / area[f]);
-  constexpr double side_without_views = 64; // texels along the root of the area
-  const float typical = seen.empty()
-                            ? static_cast<float>(side_without_views / std::sqrt(patches.areas.cast<double>().sum()))
-                            : medianOf(std::move(seen));
+  constexpr float oversampling = 1.4f;      // texels per pixel: interpolating a second time would blur otherwise
+  constexpr float unseen_share = 0.25f;     // of the typical density: there is no detail
+  constexpr double side_without_views = 64; // texels along the root of the area: any number does
+  const float typical =
+      seen.empty() ? side_without_views / std::sqrt(patches.areas.cast<double>().sum()) : median(seen);
   Eigen::VectorXf out(faces);
   for (Index f = 0; f < faces; ++f)
     out[f] = oversampling * std::max(unseen_share * typical, area[f] > 0 ? sum[f] / area[f] : 0.f);

@@ -3,9 +3,6 @@
 #include <algorithm>
 namespace fresco::texture {
 namespace {
-constexpr float least_weight = 0.03f;
-constexpr std::size_t most_shares = 4;
-
 void add(std::vector<VertexShare>& shares, int view, float weight)
 {
   const auto at = std::find_if(shares.begin(), shares.end(), [&](const VertexShare& s) { return s.view == view; });
@@ -18,6 +15,8 @@ void add(std::vector<VertexShare>& shares, int view, float weight)
 /// The largest shares only, by view number, with sum 1.
 void tidy(std::vector<VertexShare>& shares)
 {
+  constexpr float least_weight = 0.03f;  // of the sum: 8 grey levels of 255 at most
+  constexpr std::size_t most_shares = 4; // more views hardly meet at a vertex
   float sum = 0;
   for (const VertexShare& s : shares)
     sum += s.weight;
@@ -60,7 +59,7 @@ std::vector<int> atSeams(const PatchMesh& patches, const VertexViews& shares)
   std::vector<int> out;
   for (std::size_t v = 0; v < marked.size(); ++v)
     if (marked[v])
-      out.push_back(static_cast<int>(v));
+      out.push_back(v);
   return out;
 }
 } // namespace
@@ -68,7 +67,7 @@ std::vector<int> atSeams(const PatchMesh& patches, const VertexViews& shares)
 VertexPatches vertexPatches(const PatchMesh& patches)
 {
   VertexPatches out;
-  out.begin.assign(static_cast<std::size_t>(patches.vertices.cols()) + 1, 0);
+  out.begin.assign(patches.vertices.cols() + 1, 0);
   for (Index i = 0; i < patches.faces.size(); ++i)
     ++out.begin[patches.faces.data()[i] + 1];
   for (std::size_t v = 1; v < out.begin.size(); ++v)
@@ -76,7 +75,7 @@ VertexPatches vertexPatches(const PatchMesh& patches)
   out.list.resize(out.begin.back());
   std::vector<int> next(out.begin.begin(), out.begin.end() - 1);
   for (Index i = 0; i < patches.faces.size(); ++i)
-    out.list[next[patches.faces.data()[i]]++] = static_cast<int>(i / 3);
+    out.list[next[patches.faces.data()[i]]++] = i / 3;
   return out;
 }
 

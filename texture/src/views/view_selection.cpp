@@ -6,12 +6,6 @@
 #include <limits>
 namespace fresco::texture {
 namespace {
-constexpr Index most_labels = 16; // per patch, the best ones: the others lose by their cost anyway
-constexpr int rounds = 24;
-constexpr float damping = 0.5f;
-constexpr float crease_share = 0.1f; // of a seam's cost where the surface bends sharply: it does not show there
-constexpr float bend_from = 0.7f, bend_to = 0.3f; // cosines of the normals, 46 and 73 degrees
-
 struct Label {
   int view;
   float cost;
@@ -26,9 +20,10 @@ struct Labels {
 
 Labels labelsOf(const PatchMesh& patches, const ViewCosts& costs)
 {
+  constexpr std::size_t most_labels = 16; // per patch, the best ones: the others lose by their cost anyway
   Labels out;
   out.begin.assign(1, 0);
-  out.begin.reserve(static_cast<std::size_t>(patches.size()) + 1);
+  out.begin.reserve(patches.size() + 1);
   out.list.reserve(costs.candidates.list.size());
   std::vector<Label> kept;
   for (Index i = 0; i < patches.size(); ++i) {
@@ -37,12 +32,12 @@ Labels labelsOf(const PatchMesh& patches, const ViewCosts& costs)
       kept.push_back({costs.candidates.list[c].view, costs.extra[c] - std::log2(costs.candidates.list[c].quality())});
     std::sort(kept.begin(), kept.end(),
               [](const Label& a, const Label& b) { return a.cost != b.cost ? a.cost < b.cost : a.view < b.view; });
-    kept.resize(std::min<std::size_t>(kept.size(), most_labels));
+    kept.resize(std::min(kept.size(), most_labels));
     const float least = kept.empty() ? 0.f : kept.front().cost;
     std::sort(kept.begin(), kept.end(), [](const Label& a, const Label& b) { return a.view < b.view; });
     for (const Label& label : kept)
       out.list.push_back({label.view, patches.areas[i] * (label.cost - least)});
-    out.begin.push_back(static_cast<Index>(out.list.size()));
+    out.begin.push_back(out.list.size());
   }
   return out;
 }
@@ -50,17 +45,19 @@ Labels labelsOf(const PatchMesh& patches, const ViewCosts& costs)
 /// Length of a patch's side as far as a seam along it would show.
 float visibleLength(const PatchMesh& patches, Index patch, int side)
 {
+  constexpr float crease_share = 0.1f;                  // of a seam's cost at a crease: shading changes there anyway
+  constexpr float crease_from = 0.7f, crease_to = 0.3f; // cosines of the normals: 46 and 73 degrees
   const float cosine = patches.normals.col(patch).dot(patches.normals.col(patches.neighbors(side, patch)));
-  const float straight = std::clamp((cosine - bend_to) / (bend_from - bend_to), 0.f, 1.f);
+  const float straight = std::clamp((cosine - crease_to) / (crease_from - crease_to), 0.f, 1.f);
   return edgeLength(patches, patch, side) * (crease_share + (1 - crease_share) * straight);
 }
 
 /// Min-sum messages of the Potts model over the patches' edges; all are renewed at once from those of the last round,
 /// so that the order does not matter. Felzenszwalb & Huttenlocher 2006, "Efficient Belief Propagation for Early
 /// Vision".
-class Propagation {
+class BeliefPropagation {
 public:
-  Propagation(const PatchMesh& patches, const Labels& labels, const Eigen::Matrix3Xf& seams)
+  BeliefPropagation(const PatchMesh& patches, const Labels& labels, const Eigen::Matrix3Xf& seams)
       : patches_(patches), labels_(labels), seams_(seams), now_(3 * labels.list.size(), 0.f), next_(now_)
   {}
 
@@ -98,6 +95,7 @@ private:
 
   void receive(Index i, int side, int from)
   {
+    constexpr float damping = 0.5f; // messages renewed at once would swing between two states
     if (labels_.count(from) == 0)
       return;
     const float edge = seams_(side, i);
@@ -124,10 +122,12 @@ private:
   std::vector<float> now_, next_; ///< 3 per label: from the patch across each side
 };
 
-/// Each patch in turn takes the label that costs least given its neighbours, until none changes.
-void settle(const PatchMesh& patches, const Labels& labels, const Eigen::Matrix3Xf& seams, Eigen::VectorXi& view)
+/// Each patch in turn takes the label that costs least given its neighbours, until none changes. Besag 1986, "On the
+/// Statistical Analysis of Dirty Pictures".
+void iteratedConditionalModes(const PatchMesh& patches, const Labels& labels, const Eigen::Matrix3Xf& seams,
+                              Eigen::VectorXi& view)
 {
-  constexpr int most_sweeps = 20;
+  constexpr int most_sweeps = 20; // a bound: the cost falls with each, so that they end by themselves
   bool changed = true;
   for (int sweep = 0; sweep < most_sweeps && changed; ++sweep) {
     changed = false;
@@ -160,19 +160,21 @@ float edgeLength(const PatchMesh& patches, Index patch, int side)
 Eigen::VectorXi selectViews(const PatchMesh& patches, const ViewCosts& costs, double seam, int threads)
 {
   const Labels labels = labelsOf(patches, costs);
+  constexpr int rounds = 24; // messages reach as many patches far
+  const float seam_cost = seam;
   Eigen::Matrix3Xf seams = Eigen::Matrix3Xf::Zero(3, patches.size()); // cost of each side
   parallelFor(patches.size(), threads, [&](Index i) {
     for (int side = 0; side < 3; ++side)
       if (patches.neighbors(side, i) >= 0)
-        seams(side, i) = static_cast<float>(seam) * visibleLength(patches, i, side);
+        seams(side, i) = seam_cost * visibleLength(patches, i, side);
   });
-  Propagation propagation(patches, labels, seams);
+  BeliefPropagation propagation(patches, labels, seams);
   if (seam > 0)
     for (int r = 0; r < rounds; ++r)
       propagation.round(threads);
   Eigen::VectorXi view(patches.size());
   parallelFor(patches.size(), threads, [&](Index i) { view[i] = propagation.best(i); });
-  settle(patches, labels, seams, view);
+  iteratedConditionalModes(patches, labels, seams, view);
   return view;
 }
 

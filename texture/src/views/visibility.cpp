@@ -8,16 +8,15 @@
 #include <limits>
 namespace fresco::texture {
 namespace {
-constexpr float outline_doubt = 5; // octaves, near the outline of what stands before: taken where nothing else shows it
-constexpr float rim_doubt = 2;     // octaves, at its own outline, where pixels mix with what lies behind
-constexpr float beside_doubt = 1;  // octaves, where a pixel next to it shows something a little nearer
-constexpr float rim_pixels = 2;    // reach of cubic interpolation
-constexpr float outline_step = 3.f; // an outline: depth jumps by this many tolerances
+// Octaves by which a view is trusted less, if poses are uncertain.
+constexpr float outline_penalty = 5; // near the outline of what stands before: taken where nothing else shows it
+constexpr float rim_penalty = 2;     // at its own outline, where pixels mix with what lies behind
+constexpr float beside_penalty = 1;  // where a pixel next to it shows something a little nearer
 
 struct Seen {
   int patch;
   std::array<std::uint8_t, 3> color;
-  std::uint8_t doubt;
+  std::uint8_t penalty;
   float resolution;
 };
 
@@ -25,8 +24,8 @@ struct Seen {
 bool isNearOutline(const Footprint& patch, const DepthMap& nearest, float radius, float step)
 {
   const Eigen::Vector2f center = patch.corners.rowwise().mean();
-  const int x = std::clamp(static_cast<int>(center.x()), 0, nearest.width - 1),
-            y = std::clamp(static_cast<int>(center.y()), 0, nearest.height - 1);
+  const int x = std::clamp<int>(center.x(), 0, nearest.width - 1),
+            y = std::clamp<int>(center.y(), 0, nearest.height - 1);
   const float slope = patch.inverse_depth.head<2>().norm(), depth = patch.farthest;
   return nearest.at(x, y) < depth - step - depth * depth * slope * (1.5f * radius + 1);
 }
@@ -39,8 +38,7 @@ bool isAtRim(const Footprint& patch, const DepthMap& farthest, float radius, flo
   for (int k = 0; k < 4; ++k) {
     const Eigen::Vector2f p =
         k < 3 ? Eigen::Vector2f(patch.corners.col(k)) : Eigen::Vector2f(patch.corners.rowwise().mean());
-    const int x = std::clamp(static_cast<int>(p.x()), 0, farthest.width - 1),
-              y = std::clamp(static_cast<int>(p.y()), 0, farthest.height - 1);
+    const int x = std::clamp<int>(p.x(), 0, farthest.width - 1), y = std::clamp<int>(p.y(), 0, farthest.height - 1);
     if (farthest.at(x, y) > beyond)
       return true;
   }
@@ -48,7 +46,7 @@ bool isAtRim(const Footprint& patch, const DepthMap& farthest, float radius, flo
 }
 
 /// Octaves, 0 inside the image, rising to 1 at its border: there lenses are worst and a better view is likely.
-float borderDoubt(const CameraModel& camera, const Eigen::Vector2f& pixel)
+float borderPenalty(const CameraModel& camera, const Eigen::Vector2f& pixel)
 {
   const float away = std::min({pixel.x(), pixel.y(), camera.width - pixel.x(), camera.height - pixel.y()});
   return 1 - std::clamp(away / (0.05f * std::min(camera.width, camera.height)), 0.f, 1.f);
@@ -56,8 +54,8 @@ float borderDoubt(const CameraModel& camera, const Eigen::Vector2f& pixel)
 
 class ViewTest {
 public:
-  ViewTest(const PatchMesh& patches, const Projector& view, const SightLimits& limits)
-      : patches_(patches), view_(view), limits_(limits), outline_(outline_step * limits.tolerance),
+  ViewTest(const PatchMesh& patches, const Projector& view, const VisibilityLimits& limits)
+      : patches_(patches), view_(view), limits_(limits), outline_(3.f * limits.tolerance),
         pixels_(3, patches.vertices.cols())
   {
     for (Index v = 0; v < pixels_.cols(); ++v)
@@ -71,24 +69,24 @@ public:
       return seen;
     const DepthMap map = scene.depthMap(view_, most_cells);
     const float radius = limits_.margin / map.step;
+    constexpr float rim_pixels = 2; // reach of cubic interpolation
     const float rim = rim_pixels / map.step;
-    const DepthMap nearest = nearestWithin(map, static_cast<int>(std::ceil(radius))),
-                   farthest = farthestWithin(map, static_cast<int>(std::ceil(rim)));
+    const DepthMap nearest = nearestWithin(map, std::ceil(radius)), farthest = farthestWithin(map, std::ceil(rim));
     for (Index i = 0; i < patches_.size(); ++i)
       if (const float cosine = cosineOf(i); cosine >= least_cosine) {
         const Footprint patch = footprintOf(corners(i), map.step);
-        const Sight sight = sightOf(patch, map, limits_.tolerance);
-        if (sight == Sight::hidden)
+        const Visibility visibility = visibilityOf(patch, map, limits_.tolerance);
+        if (visibility == Visibility::hidden)
           continue;
-        float doubt = borderDoubt(view_.camera(), patch.corners.rowwise().mean() * map.step);
-        if (sight == Sight::beside)
-          doubt += limits_.doubt * beside_doubt;
+        float penalty = borderPenalty(view_.camera(), patch.corners.rowwise().mean() * map.step);
+        if (visibility == Visibility::beside)
+          penalty += limits_.pose_uncertainty * beside_penalty;
         if (isNearOutline(patch, nearest, radius, outline_))
-          doubt += limits_.doubt * outline_doubt;
+          penalty += limits_.pose_uncertainty * outline_penalty;
         else if (isAtRim(patch, farthest, rim, outline_))
-          doubt += limits_.doubt * rim_doubt;
+          penalty += limits_.pose_uncertainty * rim_penalty;
         const float resolution = view_.focal() * cosine / (0.5f * (patch.nearest + patch.farthest));
-        seen.push_back({static_cast<int>(i), meanColor(photo, i), static_cast<std::uint8_t>(16 * doubt), resolution});
+        seen.push_back({static_cast<int>(i), meanColor(photo, i), static_cast<std::uint8_t>(16 * penalty), resolution});
       }
     return seen;
   }
@@ -121,14 +119,16 @@ private:
       const Eigen::Vector2f p = 0.5f * (middle + at.col(k).head<2>());
       sum += samplePhotoQuickly(photo, p.x(), p.y());
     }
-    const Eigen::Vector3f mean = sum / 4 + Eigen::Vector3f::Constant(0.5f);
-    return {static_cast<std::uint8_t>(mean[0]), static_cast<std::uint8_t>(mean[1]), static_cast<std::uint8_t>(mean[2])};
+    std::array<std::uint8_t, 3> mean;
+    for (int c = 0; c < 3; ++c)
+      mean[c] = sum[c] / 4 + 0.5f;
+    return mean;
   }
 
   const PatchMesh& patches_;
   const Projector& view_;
-  SightLimits limits_;
-  float outline_;
+  VisibilityLimits limits_;
+  float outline_; ///< mesh units by which depth jumps at an outline: more than a surface behind may lie
   Points pixels_; ///< x, y, depth per vertex; depth 0 where out of the image
 };
 } // namespace
@@ -165,7 +165,7 @@ Candidates CandidateTable::take()
   Candidates out;
   out.begin.assign(counts_.size() + 1, 0);
   for (std::size_t i = 0; i < counts_.size(); ++i) {
-    const Index from = static_cast<Index>(i) * most_;
+    const Index from = i * most_;
     for (int k = 0; k < counts_[i]; ++k)
       slots_[out.begin[i] + k] = slots_[from + k]; // never to behind where it was
     out.begin[i + 1] = out.begin[i] + counts_[i];
@@ -183,28 +183,29 @@ const Candidate* Candidates::find(Index patch, int view) const
   return at != last && at->view == view ? at : nullptr;
 }
 
-Candidates findCandidates(const PatchMesh& patches, const RayScene& scene, const ViewList& views,
-                          const TextureOptions& options, const Progress& progress)
+Candidates findCandidates(const PatchMesh& patches, const VisibilityInput& input, const Progress& progress)
 {
+  const ViewList& views = input.views;
   constexpr Index batch = 16; // views between two reports
   const Index n = views.used.size();
   CandidateTable table(patches.size(), CandidateTable::mostPerPatch(patches.size(), n));
   std::vector<std::vector<Seen>> seen(batch);
-  const SightLimits limits = limitsFor(patches, views, options);
+  const VisibilityLimits limits = limitsFor(patches, views, input.options);
   for (Index first = 0; first < n; first += batch) {
-    report(progress, "visibility", static_cast<double>(first) / static_cast<double>(n));
+    report(progress, "visibility", static_cast<double>(first) / n);
     const Index count = std::min(batch, n - first);
     parallelFor(
-        count, options.threads,
+        count, input.options.threads,
         [&](Index i) {
           seen[i].clear();
           if (views.used[first + i])
-            seen[i] = ViewTest(patches, views.projectors[first + i], limits).run(scene, *views.photos.get(first + i));
+            seen[i] =
+                ViewTest(patches, views.projectors[first + i], limits).run(input.scene, *views.photos.get(first + i));
         },
         1);
     for (Index i = 0; i < count; ++i)
       for (const Seen& s : seen[i])
-        table.add(s.patch, {static_cast<int>(first + i), s.color, s.doubt, s.resolution});
+        table.add(s.patch, {static_cast<int>(first + i), s.color, s.penalty, s.resolution});
   }
   views.photos.dropUnlessAll();
   return table.take();

@@ -13,10 +13,10 @@ namespace fresco::texture {
 struct Candidate {
   int view;
   std::array<std::uint8_t, 3> color; ///< mean over the patch in the photograph
-  std::uint8_t doubt; ///< octaves / 16 by which the view is to be trusted less: outlines, the image's border
-  float resolution;   ///< pixels per mesh unit in the direction seen most obliquely
+  std::uint8_t penalty; ///< octaves / 16 by which the view is to be trusted less: outlines, the image's border
+  float resolution;     ///< pixels per mesh unit in the direction seen most obliquely
 
-  float quality() const { return resolution * std::exp2(doubt * (-1 / 16.f)); }
+  float quality() const { return resolution * std::exp2(penalty * (-1 / 16.f)); }
 };
 
 /// For each patch the views that show the whole of it, by view number.
@@ -52,11 +52,18 @@ struct ViewList {
   const std::vector<Projector>& projectors;
   PhotoStore& photos;
   std::vector<char> used; ///< views that may become candidates
-  double doubt = 1; ///< how far outlines are to be distrusted: 1 = by some pixels and centimetres, 0 = all is exact
+  double pose_uncertainty =
+      1; ///< how far outlines are to be distrusted: 1 = by some pixels and centimetres, 0 = all is exact
+};
+
+/// What visibility is judged by.
+struct VisibilityInput {
+  const RayScene& scene; ///< of the whole mesh
+  const ViewList& views;
+  const TextureOptions& options;
 };
 
 /// A patch counts as seen by a view where all of it lies in the image, turned towards the camera, and no ray through
 /// the pixels that it covers ends clearly before it.
-Candidates findCandidates(const PatchMesh& patches, const RayScene& scene, const ViewList& views,
-                          const TextureOptions& options, const Progress& progress);
+Candidates findCandidates(const PatchMesh& patches, const VisibilityInput& input, const Progress& progress);
 } // namespace fresco::texture

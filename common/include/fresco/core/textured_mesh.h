@@ -15,8 +15,8 @@ struct TexturedMesh {
   std::vector<Image> atlases;      ///< RGB
 };
 
-/// @throws std::invalid_argument unless the mesh is valid, every face has an atlas and three texture coordinates that
-/// exist
-///         or neither, texture coordinates are finite and atlases that faces use are RGB images
+/// Checks that every face has an atlas and three texture coordinates that exist, or neither.
+/// @throws std::invalid_argument if this does not hold, the mesh is not valid, texture coordinates are not finite or
+///         an atlas that a face uses is no RGB image
 FRESCO_EXPORT void validateTexturedMesh(const TexturedMesh& model);
 } // namespace fresco

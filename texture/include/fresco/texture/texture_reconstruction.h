@@ -22,6 +22,9 @@ public:
   using Ptr = std::shared_ptr<TextureReconstruction>;
   using ConstPtr = std::shared_ptr<const TextureReconstruction>;
 
+  void setOptions(const TextureOptions& options) { options_ = options; }
+  const TextureOptions& getOptions() const { return options_; }
+
   void setInputMesh(const pcl::PolygonMeshConstPtr& mesh) { input_mesh_ = mesh; }
   pcl::PolygonMeshConstPtr getInputMesh() const { return input_mesh_; }
 
@@ -55,16 +58,20 @@ public:
   bool getCheckConsistency() const { return options_.consistency; }
   void setLevelSeams(bool level) { options_.level = level; }
   bool getLevelSeams() const { return options_.level; }
-  void setBlendStrip(double pixels) { options_.strip = pixels; }
-  double getBlendStrip() const { return options_.strip; }
+  void setBlendWidth(double pixels) { options_.blend_width = pixels; }
+  double getBlendWidth() const { return options_.blend_width; }
+  void setBlendStrip(double pixels) { setBlendWidth(pixels); } ///< old name of setBlendWidth()
+  double getBlendStrip() const { return getBlendWidth(); }     ///< old name of getBlendWidth()
   void setBackProjectionRounds(int rounds) { options_.rounds = rounds; }
   int getBackProjectionRounds() const { return options_.rounds; }
   void setUseExamples(bool use) { options_.examples = use; }
   bool getUseExamples() const { return options_.examples; }
   void setMemory(int megabytes) { options_.memory = megabytes; }
   int getMemory() const { return options_.memory; }
-  void setThreads(int threads) { options_.threads = threads; }
-  int getThreads() const { return options_.threads; }
+  void setNumberOfThreads(int threads) { options_.threads = threads; }
+  int getNumberOfThreads() const { return options_.threads; }
+  void setThreads(int threads) { setNumberOfThreads(threads); } ///< as pcl::Poisson names it
+  int getThreads() const { return getNumberOfThreads(); }       ///< as pcl::Poisson names it
   void setProgress(const Progress& progress) { progress_ = progress; }
 
   /// @throws std::invalid_argument without input mesh or as reconstructTexture() does; std::runtime_error likewise

@@ -10,26 +10,30 @@
 #include <utility>
 #include <vector>
 namespace fresco {
-/// Texture reconstruction from calibrated photographs: per face the view that shows it best, chosen with few seams.
+/// Texture reconstruction from calibrated photographs. Each face is painted from the view that shows it best; views are
+/// a labelling with few seams, after Lempitsky & Ivanov 2007 and Waechter, Moehrle & Goesele 2014.
 struct TextureOptions {
   double texel = 0; ///< side of a texel in mesh units, >= 0; 0 = as fine as the photographs show each part
   int atlas = 0;    ///< side of each square atlas, 128..16384 pixels; 0 = one as small as possible, up to 8192 each
   int border = 2;   ///< texels around each chart that continue its surface against bleeding, 1..16
-  double smoothness =
-      0.004;         ///< length, in bounding-box diagonals, of seam that costs as much as one octave of resolution
-                     ///< lost over a square of that side, >= 0; 0 = the best view of each face on its own
-  double margin = 4; ///< pixels kept away from the outline of anything nearer to the camera, 0..100; less
-                     ///< where the photographs are found to agree to a fraction of a pixel
-  double depth_tolerance = 0.01; ///< share of the photographs' typical distance by which a face may lie behind the
-                                 ///< surface seen, 0..0.5
-  bool refine = true;      ///< correct poses, focal length, lens and mount so that the photographs agree on the mesh;
-                           ///< not done, with a warning, for more than 400 views
+  /// Weight of seams: length, in bounding-box diagonals, of seam that costs as much as one octave of resolution lost
+  /// over a square of that side, >= 0; 0 = the best view of each face on its own.
+  double smoothness = 0.004;
+  /// Pixels kept away from the outline of anything nearer to the camera, 0..100; less where the photographs are found to
+  /// agree to a fraction of a pixel.
+  double margin = 4;
+  /// How far a face may lie behind the surface seen, as a share of the photographs' typical distance, 0..0.5.
+  double depth_tolerance = 0.01;
+  /// Correct poses, focal length, lens and mount so that the photographs agree on the mesh. Not done, with a warning,
+  /// for more than 400 views.
+  bool refine = true;
   bool exposure = true;    ///< bring exposure and white balance of the photographs together
   bool consistency = true; ///< avoid photographs whose colour differs from what most show of the same surface
-  bool level = true;       ///< take away what steps of colour are left at seams
-  double strip = 6;        ///< pixels over which one photograph passes into the next at a seam, 0..100
-  int rounds = 3;       ///< of making texels of all photographs together, 0..100; only where refinement found them to
-                        ///< agree within half a pixel and exposures are brought together
+  bool level = true;       ///< seam levelling: take away what steps of colour are left at seams
+  double blend_width = 6;  ///< pixels over which one photograph passes into the next at a seam (feathering), 0..100
+  /// Rounds of back-projection: texels are made of all photographs together, 0..100. Only where refinement found them to
+  /// agree within half a pixel and exposures are brought together.
+  int rounds = 3;
   bool examples = true; ///< give larger unseen parts the fine structure of the seen surface beside them
   int memory = 1024;    ///< MB of photographs kept at a time, decoded or as grey copies, >= 1
   int threads = 0;      ///< 0 = all cores; the result does not depend on it
@@ -52,8 +56,8 @@ struct PlacedCamera {
 
 struct TextureResult {
   TexturedMesh model;
-  std::vector<Image>
-      masks; ///< one per atlas, grey: 255 where no photograph saw the surface and the colour is inpainted
+  /// One per atlas, grey: 255 where no photograph saw the surface and the colour is inpainted.
+  std::vector<Image> masks;
   Eigen::VectorXi face_view; ///< F, index of the view that most of the face is taken from; -1 = unseen
   double coverage = 0;       ///< share of the mesh's area that at least one view sees, 0..1
   double used = 0;           ///< share of the atlases' texels that lie in charts or their borders, 0..1
@@ -65,17 +69,18 @@ struct TextureResult {
   Points gains; ///< 3xV, factors on RGB that bring the photographs together; their mean logarithm is 0
   double disagreement_before = 0; ///< pixels, median, between photographs on the mesh; 0 where it was not measured
   double disagreement_after = 0;  ///< with `cameras`; the same where these were left as given
-  bool refined = false; ///< whether `cameras` differ from what was given: not where photographs agree within half a
-                        ///< pixel already, nor where no correction makes them agree clearly better
+  /// Whether `cameras` differ from what was given: not where photographs agree within half a pixel already, nor where no
+  /// correction makes them agree clearly better.
+  bool refined = false;
   std::vector<std::string> warnings;                   ///< what was left out or ignored, a sentence each
-  std::vector<std::pair<std::string, double>> seconds; ///< time of each phase
+  std::vector<std::pair<std::string, double>> seconds; ///< time of each step
 };
 
 /// @param mesh  as validateMesh() wants it, with at least one face of positive area
 /// @throws std::invalid_argument if the mesh, an option or a view (pose, intrinsics) is out of range
-/// @throws std::runtime_error naming the photograph that is missing, no image, or of another size than its camera; if
-/// the
-///         texture would be larger than a thousand megatexels; Cancelled
+/// @throws std::runtime_error naming the photograph that is missing, no image, or of another size than its camera
+/// @throws std::runtime_error if the texture would be larger than a thousand megatexels
+/// @throws Cancelled if `progress` asks to stop
 FRESCO_EXPORT TextureResult reconstructTexture(const TriangleMesh& mesh, const std::vector<TextureView>& views,
                                                const TextureOptions& options = {}, const Progress& progress = {});
 } // namespace fresco

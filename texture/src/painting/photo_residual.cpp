@@ -1,19 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "painting/photo_error.h"
+#include "painting/photo_residual.h"
 #include "charts/patch_frame.h"
+#include "grid.h"
 #include <algorithm>
 #include <cmath>
 namespace fresco::texture {
 namespace {
-constexpr float largest_texel = 4;          // pixels: beyond, the photograph shows more than the texture can hold
-constexpr float lookup_width = 1.41421356f; // box as wide as the triangle of linear interpolation, by deviation
-constexpr std::uint8_t overexposed = 254;
-
 /// Adds a texel's value to the pixels under its box, by the area of each in it.
 class Canvas {
 public:
   /// @param size of the box, pixels
-  Canvas(PhotoError& sums, const Eigen::Vector2f& size) : sums_(sums), small_(size.maxCoeff() <= nearly_pixel)
+  Canvas(PhotoResidual& sums, const Eigen::Vector2f& size) : sums_(sums), small_(size.maxCoeff() <= nearly_pixel)
   {
     const Eigen::Vector2f box = small_ ? Eigen::Vector2f(size.cwiseMin(1.f)) : size;
     half_ = 0.5f * box;
@@ -23,15 +20,14 @@ public:
   void add(const Eigen::Vector2f& center, const Eigen::Vector4f& value)
   {
     const Eigen::Vector2f low = center - half_, high = center + half_;
-    if (!(low.x() >= 0 && low.y() >= 0 && high.x() < static_cast<float>(sums_.width - 1) &&
-          high.y() < static_cast<float>(sums_.height - 1)))
+    if (!(low.x() >= 0 && low.y() >= 0 && high.x() < sums_.width - 1 && high.y() < sums_.height - 1))
       return;
-    const int x = static_cast<int>(low.x()), y = static_cast<int>(low.y());
+    const int x = low.x(), y = low.y();
     if (!small_)
       return addLarge(low, high, value);
-    const float right = std::max(0.f, high.x() - static_cast<float>(x + 1)) * per_size_.x(),
-                down = std::max(0.f, high.y() - static_cast<float>(y + 1)) * per_size_.y();
-    Eigen::Vector4f *p = sums_.pixels.data() + static_cast<std::size_t>(y) * sums_.width + x, *q = p + sums_.width;
+    const float right = std::max(0.f, high.x() - (x + 1)) * per_size_.x(),
+                down = std::max(0.f, high.y() - (y + 1)) * per_size_.y();
+    Eigen::Vector4f *p = sums_.pixels.data() + cellAt(x, y, sums_.width), *q = p + sums_.width;
     const Eigen::Vector4f upper = (1 - down) * value, lower = down * value;
     p[0] += (1 - right) * upper;
     p[1] += right * upper;
@@ -45,23 +41,25 @@ private:
   void addLarge(const Eigen::Vector2f& low, const Eigen::Vector2f& high, const Eigen::Vector4f& value)
   {
     const Eigen::Vector4f share = value * per_size_.prod();
-    for (int y = low.y(); y <= static_cast<int>(high.y()); ++y) {
-      const float down = std::min(high.y(), static_cast<float>(y + 1)) - std::max(low.y(), static_cast<float>(y));
-      Eigen::Vector4f* row = sums_.pixels.data() + static_cast<std::size_t>(y) * sums_.width;
-      for (int x = low.x(); x <= static_cast<int>(high.x()); ++x)
-        row[x] +=
-            (down * (std::min(high.x(), static_cast<float>(x + 1)) - std::max(low.x(), static_cast<float>(x)))) * share;
+    const int right = high.x(), bottom = high.y();
+    for (int y = low.y(); y <= bottom; ++y) {
+      const float down = std::min<float>(high.y(), y + 1) - std::max<float>(low.y(), y);
+      Eigen::Vector4f* row = sums_.pixels.data() + cellAt(0, y, sums_.width);
+      for (int x = low.x(); x <= right; ++x)
+        row[x] += (down * (std::min<float>(high.x(), x + 1) - std::max<float>(low.x(), x))) * share;
     }
   }
 
-  PhotoError& sums_;
+  PhotoResidual& sums_;
   Eigen::Vector2f half_, per_size_;
   bool small_;
 };
 
 /// Adds a patch's colours, each texel times the area it covers in the photograph, and the areas.
-void draw(const Prediction& p, Index patch, PhotoError& sums)
+void draw(const Prediction& p, Index patch, PhotoResidual& sums)
 {
+  constexpr float largest_texel = 4;          // pixels: beyond, the photograph shows more than the texture can hold
+  constexpr float lookup_width = 1.41421356f; // box of the same deviation as the triangle of linear interpolation
   PatchFrame frame(p.scene, patch);
   if (!frame.map.look(p.view))
     return;
@@ -84,7 +82,7 @@ void draw(const Prediction& p, Index patch, PhotoError& sums)
 }
 
 /// 0..1 by how much of a pixel is covered.
-float trustOf(float covered)
+float coverageWeight(float covered)
 {
   constexpr float none_below = 0.5f, all_from = 0.8f, all_to = 1.3f, none_above = 1.6f;
   return std::clamp(
@@ -93,17 +91,18 @@ float trustOf(float covered)
 }
 } // namespace
 
-PhotoError errorOf(const Prediction& prediction, const Image& photo, const Eigen::Vector3f& gain)
+PhotoResidual residualOf(const Prediction& prediction, const Image& photo, const Eigen::Vector3f& gain)
 {
-  PhotoError out;
+  constexpr std::uint8_t overexposed = 254; // grey level: the light may have been any brighter
+  PhotoResidual out;
   out.width = photo.width;
   out.height = photo.height;
-  out.pixels.assign(static_cast<std::size_t>(photo.width) * photo.height, Eigen::Vector4f::Zero());
+  out.pixels.assign(cellCount(photo.width, photo.height), Eigen::Vector4f::Zero());
   for (const int* patch = prediction.first; patch != prediction.last; ++patch)
     draw(prediction, *patch, out);
   const std::uint8_t* p = photo.data.data();
   for (Eigen::Vector4f& pixel : out.pixels) {
-    const float trust = std::max({p[0], p[1], p[2]}) < overexposed ? trustOf(pixel.w()) : 0.f;
+    const float trust = std::max({p[0], p[1], p[2]}) < overexposed ? coverageWeight(pixel.w()) : 0.f;
     if (trust > 0)
       pixel.head<3>() = trust * (gain.cwiseProduct(Eigen::Vector3f(p[0], p[1], p[2])) - pixel.head<3>() / pixel.w());
     else
@@ -114,8 +113,8 @@ PhotoError errorOf(const Prediction& prediction, const Image& photo, const Eigen
   return out;
 }
 
-std::size_t errorBytes(const CameraModel& camera)
+std::size_t residualBytes(const CameraModel& camera)
 {
-  return static_cast<std::size_t>(camera.width) * camera.height * sizeof(Eigen::Vector4f);
+  return cellCount(camera.width, camera.height) * sizeof(Eigen::Vector4f);
 }
 } // namespace fresco::texture

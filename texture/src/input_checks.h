@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include "views/photo_store.h"
+namespace fresco::texture {
+/// @throws std::invalid_argument as reconstructTexture() says
+void validate(const TriangleMesh& mesh, const std::vector<TextureView>& views, const TextureOptions& options);
+
+/// Reads every photograph once, so that one that is missing or of another size is found before the long work. Warns of
+/// EXIF rotations.
+void checkPhotos(PhotoStore& photos, const std::vector<TextureView>& views, int threads, TextureResult& result);
+} // namespace fresco::texture

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "views/visible_surface.h"
+#include "views/hidden_parts.h"
+#include "views/view_selection.h"
+#include <algorithm>
+#include <cmath>
+#include <fresco/core/statistics.h>
+namespace fresco::texture {
+namespace {
+/// Longest side of a patch, mesh units.
+float longestEdge(const TriangleMesh& mesh, const std::vector<Projector>& views)
+{
+  constexpr float patch_pixels = 16;   // small against what stands before a surface, many pixels to compare colours by
+  constexpr double most_patches = 1e6; // bounds the memory
+  constexpr Index samples = 2000;      // enough for a median
+  const Index stride = std::max<Index>(1, mesh.faceCount() / samples);
+  std::vector<float> sizes; // of a pixel
+  for (const Projector& view : views)
+    for (Index f = 0; f < mesh.faceCount(); f += stride) {
+      const Eigen::Vector3f p = view(mesh.vertices.col(mesh.faces(0, f)));
+      if (p.z() > 0 && p.x() >= 0 && p.y() >= 0 && p.x() <= view.camera().width && p.y() <= view.camera().height)
+        sizes.push_back(p.z() / view.focal());
+    }
+  const float least = std::sqrt(surfaceArea(mesh) / (0.43 * most_patches));
+  if (sizes.empty())
+    return std::max<double>(least, 0.05 * diagonalOf(mesh));
+  return std::max(least, patch_pixels * median(sizes));
+}
+
+/// For each face the view that most of its area is taken from.
+Eigen::VectorXi viewsOfFaces(const PatchMesh& patches, const Eigen::VectorXi& view, Index faces)
+{
+  Eigen::VectorXi out = Eigen::VectorXi::Constant(faces, -1);
+  std::vector<std::pair<int, float>> areas; // of the views of one face
+  for (Index i = 0; i < patches.size(); ++i) {
+    if (i == 0 || patches.parent[i] != patches.parent[i - 1])
+      areas.clear();
+    const auto at = std::find_if(areas.begin(), areas.end(), [&](const auto& a) { return a.first == view[i]; });
+    if (at == areas.end())
+      areas.emplace_back(view[i], patches.areas[i]);
+    else
+      at->second += patches.areas[i];
+    out[patches.parent[i]] = std::max_element(areas.begin(), areas.end(), [](const auto& a, const auto& b) {
+                               return a.second < b.second;
+                             })->first;
+  }
+  return out;
+}
+} // namespace
+
+double diagonalOf(const TriangleMesh& mesh)
+{
+  Eigen::Vector3f low = mesh.vertices.col(mesh.faces(0, 0)), high = low;
+  for (Index i = 0; i < mesh.faces.size(); ++i) {
+    low = low.cwiseMin(mesh.vertices.col(mesh.faces.data()[i]));
+    high = high.cwiseMax(mesh.vertices.col(mesh.faces.data()[i]));
+  }
+  return (high - low).norm();
+}
+
+VisibleSurface findVisibleSurface(const TriangleMesh& mesh, const VisibilityInput& input, const Progress& progress)
+{
+  const bool exact = input.views.pose_uncertainty < 1; // else outlines are too uncertain to be followed closely
+  VisibleSurface out;
+  out.patches = cutFaces(mesh, longestEdge(mesh, input.views.projectors), input.options.threads);
+  if (exact)
+    out.patches = cutHiddenParts(std::move(out.patches), input);
+  out.candidates = findCandidates(out.patches, input, progress);
+  if (exact)
+    out.outlines = outlineMasks(out.patches, input);
+  return out;
+}
+
+void describeViews(const PatchMesh& patches, const Eigen::VectorXi& view, TextureResult& result)
+{
+  double seen = 0;
+  std::vector<char> used(view.maxCoeff() + 1, 0);
+  for (Index i = 0; i < patches.size(); ++i)
+    if (view[i] >= 0) {
+      seen += patches.areas[i];
+      used[view[i]] = 1;
+    }
+  result.coverage = std::min(1.0, seen / patches.areas.cast<double>().sum());
+  result.views_used = std::count(used.begin(), used.end(), 1);
+  result.seam_length = seamLength(patches, view);
+  result.face_view = viewsOfFaces(patches, view, result.model.mesh.faceCount());
+}
+} // namespace fresco::texture

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include "views/outline_mask.h"
+namespace fresco::texture {
+/// What the views show of the mesh.
+struct VisibleSurface {
+  PatchMesh patches;
+  Candidates candidates;             ///< views of each patch
+  std::vector<OutlineMask> outlines; ///< of each view; empty where poses are too uncertain for single pixels
+};
+
+/// Patches of about 16 pixels of a typical view, smaller ones beside outlines, and the views that show them.
+VisibleSurface findVisibleSurface(const TriangleMesh& mesh, const VisibilityInput& input, const Progress& progress);
+
+/// Fills coverage, views_used, seam_length and face_view of the result.
+/// @param view P, -1 = unseen
+void describeViews(const PatchMesh& patches, const Eigen::VectorXi& view, TextureResult& result);
+
+/// Diagonal of the bounding box of all faces, mesh units.
+double diagonalOf(const TriangleMesh& mesh);
+} // namespace fresco::texture
