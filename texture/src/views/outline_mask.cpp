@@ -114,7 +114,7 @@ std::vector<OutlineMask> outlineMasks(const PatchMesh& patches, const RayScene& 
       masks.size(), options.threads,
       [&](Index v) {
         if (views.used[v])
-          masks[v] = OutlineMask(scene.depthMap(views.projectors[v], most_cells), reach_pixels, step);
+          masks[v] = OutlineMask(depthMap(scene, views.projectors[v], most_cells), reach_pixels, step);
       },
       1);
   return masks;
