@@ -7,7 +7,7 @@
 #include <fresco/core/parallel.h>
 #include <fresco/core/require.h>
 #include <fresco/search/closest_on_triangle.h>
-#include <fresco/search/morton_order.h>
+#include "search/morton_order.h"
 namespace fresco {
 namespace {
 using Eigen::Vector3d;
@@ -197,7 +197,7 @@ std::vector<ClosestPoint> closestPoints(const TriangleTree& tree, const Eigen::M
 {
   for (Index i = 0; i < queries.cols(); ++i)
     requireQuery(queries.col(i));
-  const std::vector<std::int32_t> order = mortonOrder(queries, threads);
+  const std::vector<std::int32_t> order = search::mortonOrder(queries, threads);
   std::vector<ClosestPoint> answers(order.size());
   parallelRanges(queries.cols(), threads, [&](Index begin, Index end) {
     std::int32_t last = -1; // the previous answer bounds the next one

@@ -83,8 +83,8 @@ void SurfaceChoice::markCreases(int threads)
   at_crease_.assign(normals_.cols(), 0);
   std::vector<float> noises(at_crease_.size());
   parallelFor(field_.lists.size(), threads, [&](Index range) {
-    const CompactLists& lists = field_.lists[range];
-    CompactReader reader(lists);
+    const CompressedLists& lists = field_.lists[range];
+    CompressedReader reader(lists);
     std::vector<int> list;
     for (Index i = lists.begin; i < lists.end; ++i) {
       reader.next(list);
@@ -132,8 +132,8 @@ void SurfaceChoice::setOffers(Index i, const Eigen::Vector3f& ray, const Directi
 void SurfaceChoice::compare(int threads, const UseOffers& use) const
 {
   parallelFor(field_.lists.size(), threads, [&](Index range) {
-    const CompactLists& lists = field_.lists[range];
-    CompactReader reader(lists);
+    const CompressedLists& lists = field_.lists[range];
+    CompressedReader reader(lists);
     std::vector<int> list;
     std::vector<DirectionOffer> offered;
     std::vector<FacedNeighbor> near;
