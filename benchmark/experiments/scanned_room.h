@@ -32,7 +32,7 @@ struct ScannedRoom {
   }
 
   Scene scene;
-  VirtualRays rays;
+  RayScene rays;
   Lightmap light;
   Points stations; ///< 3xN, in the frame of the scene's vertices
 

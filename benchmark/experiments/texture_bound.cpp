@@ -79,7 +79,7 @@ float footprint(const LitScene& lit, const CameraSet& set, std::size_t view_inde
   const Eigen::Vector2d pixel = project(camera, seen);
   if (pixel.minCoeff() < 1 || pixel.x() > camera.width - 1 || pixel.y() > camera.height - 1)
     return nothing;
-  const VirtualHit hit = lit.rays.intersect({from, middle - from, 1.1f});
+  const RayHit hit = lit.rays.intersect({from, middle - from, 1.1f});
   if (hit.face != static_cast<int>(face) && (hit.face < 0 || hit.distance < 0.999f))
     return nothing;
   return pixel_share * static_cast<float>(seen.z() / camera.fx) / std::sqrt(std::max(cosine, 0.1f));
@@ -143,7 +143,7 @@ private:
     return true;
   }
 
-  static VirtualHit hitAt(const Corners& corners, Index face, const Eigen::Vector2d& place)
+  static RayHit hitAt(const Corners& corners, Index face, const Eigen::Vector2d& place)
   {
     const Eigen::Vector2d u = corners.at.col(1) - corners.at.col(0), w = corners.at.col(2) - corners.at.col(0),
                           to = place - corners.at.col(0);
@@ -190,7 +190,7 @@ void run(int argc, char** argv)
   args.option("edge", options.edge, "as given to fresco_scan, metres");
   const std::vector<std::string> files = args.parse(argc, argv, 3);
   const Scene scene = loadScene(files[0], options.edge);
-  const VirtualRays rays(scene.mesh);
+  const RayScene rays(scene.mesh);
   const Lightmap light = bakeLight(scene, rays, {});
   const LitScene lit{scene, rays, light};
   TexturedMesh model = readTexturedMesh(files[1]);

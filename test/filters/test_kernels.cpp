@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "filters/clouds.h"
 #include "normals/plane_kernels.h"
+#include "search/knn_kernels.h"
+#include "search/tree_items.h"
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cstring>
-#include <fresco/search/knn_kernels.h>
 #include <fresco/search/neighbors.h>
-#include <fresco/search/tree_items.h>
 #include <numeric>
 using namespace fresco::filters;
+using namespace fresco::search;
 namespace fresco {
 namespace {
 constexpr float infinity = std::numeric_limits<float>::infinity();
@@ -23,13 +24,13 @@ Points unevenPoints(Index count, unsigned seed)
   return points;
 }
 
-struct NearResults {
+struct KnnResults {
   std::vector<float> squared, x, y, z, boxes, limits, sums;
   std::vector<int> position, only_position, ranks, chosen, close;
-  explicit NearResults(std::size_t room)
+  explicit KnnResults(std::size_t room)
       : squared(room), x(room), y(room), z(room), position(room), only_position(room), ranks(room), chosen(room)
   {}
-  bool operator==(const NearResults& o) const
+  bool operator==(const KnnResults& o) const
   {
     return squared == o.squared && x == o.x && y == o.y && z == o.z && boxes == o.boxes && limits == o.limits &&
            sums == o.sums && position == o.position && only_position == o.only_position && ranks == o.ranks &&
@@ -37,18 +38,18 @@ struct NearResults {
   }
 };
 
-NearResults runAll(const NearKernels& kernels, const PointTree& tree, float bound)
+KnnResults runAll(const KnnKernels& kernels, const PointTree& tree, float bound)
 {
   const auto leaf_count = static_cast<std::size_t>(tree.leafCount()), stride = (leaf_count + 7) / 8 * 8;
   std::vector<int> leaves(leaf_count);
   std::iota(leaves.begin(), leaves.end(), 0);
-  NearResults r(8 * leaf_count + 16);
+  KnnResults r(8 * leaf_count + 16);
   const Eigen::Vector3f query = tree.point(tree.size() / 2);
   const float* coordinates = tree.leafCoordinates();
   const std::size_t found = kernels.closer(coordinates, leaves.data(), leaf_count, query.data(), bound,
                                            r.squared.data(), r.only_position.data());
   kernels.rank(r.squared.data(), found, r.ranks.data());
-  const NearPoints points = {r.squared.data(), r.x.data(), r.y.data(), r.z.data(), r.position.data()};
+  const KnnPoints points = {r.squared.data(), r.x.data(), r.y.data(), r.z.data(), r.position.data()};
   EXPECT_EQ(kernels.offsets(coordinates, leaves.data(), leaf_count, query.data(), bound, points), found);
   for (std::size_t k = 1; k <= found; k = 2 * k + 1) {
     r.limits.push_back(kernels.limit(r.squared.data(), found, k, bound));
@@ -67,49 +68,49 @@ NearResults runAll(const NearKernels& kernels, const PointTree& tree, float boun
   return r;
 }
 
-TEST(NearKernels, TheFastOnesGiveTheSameBits)
+TEST(KnnKernels, TheFastOnesGiveTheSameBits)
 {
-  if (!avx2NearKernels())
+  if (!avx2KnnKernels())
     GTEST_SKIP() << "no AVX2";
   for (const Index count : {5, 64, 1001}) {
     const PointTree tree(unevenPoints(count, 6));
     for (const float bound : {0.f, 1e-4f, 0.01f, 0.3f, 100.f})
-      EXPECT_TRUE(runAll(*avx2NearKernels(), tree, bound) == runAll(portableNearKernels(), tree, bound)) << bound;
+      EXPECT_TRUE(runAll(*avx2KnnKernels(), tree, bound) == runAll(portableKnnKernels(), tree, bound)) << bound;
   }
 }
 
-TEST(NearKernels, RankCountsSmallerValuesAndLimitLeavesThatMany)
+TEST(KnnKernels, RankCountsSmallerValuesAndLimitLeavesThatMany)
 {
   const Points random = test::randomPoints(60, 3, 0, 1);
   for (const std::size_t count : {1, 7, 8, 20, 33, 60}) {
     std::vector<float> values(random.data(), random.data() + count);
     values.resize(count + 8);
     std::vector<int> ranks(count + 8);
-    nearKernels().rank(values.data(), count, ranks.data());
+    knnKernels().rank(values.data(), count, ranks.data());
     for (std::size_t k = 1; k <= count; ++k) {
       const auto below = [&](float limit) {
         return static_cast<std::size_t>(std::count_if(
             values.begin(), values.begin() + static_cast<std::ptrdiff_t>(count), [&](float v) { return v < limit; }));
       };
       EXPECT_EQ(static_cast<std::size_t>(ranks[k - 1]), below(values[k - 1]));
-      EXPECT_EQ(below(nearKernels().limit(values.data(), count, k, 2.f)), k);
+      EXPECT_EQ(below(knnKernels().limit(values.data(), count, k, 2.f)), k);
     }
   }
   std::vector<float> equal(28, 0.5f);
-  EXPECT_LT(nearKernels().limit(equal.data(), 20, 7, 2.f), 0);
-  EXPECT_EQ(nearKernels().limit(equal.data(), 20, 20, 2.f), 2.f);
+  EXPECT_LT(knnKernels().limit(equal.data(), 20, 7, 2.f), 0);
+  EXPECT_EQ(knnKernels().limit(equal.data(), 20, 20, 2.f), 2.f);
 }
 
-TEST(NearKernels, CloseBoxesMissNoLeafWithinReach)
+TEST(KnnKernels, CloseBoxesMissNoLeafWithinReach)
 {
   const PointTree tree(unevenPoints(800, 2));
   const auto count = static_cast<std::size_t>(tree.leafCount()), stride = (count + 7) / 8 * 8;
   std::vector<float> boxes(6 * stride);
   std::vector<int> close(stride + 8);
-  nearKernels().boxes(tree.leafCoordinates(), count, stride, boxes.data());
+  knnKernels().boxes(tree.leafCoordinates(), count, stride, boxes.data());
   for (const std::size_t center : {0ul, 17ul, count - 1})
     for (const float reach : {0.f, 0.05f, 0.4f}) {
-      const std::size_t found = nearKernels().closeBoxes(boxes.data(), count, stride, center, reach, close.data());
+      const std::size_t found = knnKernels().closeBoxes(boxes.data(), count, stride, center, reach, close.data());
       for (Index i = 0; i < tree.size(); ++i)
         for (Index j = 8 * static_cast<Index>(center); j < std::min(tree.size(), 8 * static_cast<Index>(center) + 8);
              ++j)

@@ -1,18 +1,50 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rendering/indoor_view.h"
 #include "rendering/room_frame.h"
-#include "rendering/view_rays.h"
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <fresco/core/parallel.h>
 #include <fresco/core/require.h>
+#include <fresco/search/ray_scene.h>
 namespace fresco::rendering {
 namespace {
 constexpr double pi = 3.14159265358979323846;
 constexpr double inside_angle = 62; // vertical, degrees: with 4:3 about the 77 degrees across of a wide lens
 constexpr int rays_x = 20, rays_y = 15;
+
+struct ViewHit {
+  double distance = std::numeric_limits<double>::infinity(); ///< in lengths of the direction; infinite: nothing hit
+  bool front = false; ///< the face shows its front: its corners are counter-clockwise seen from the ray's start
+  bool any() const { return distance < std::numeric_limits<double>::infinity(); }
+};
+
+/// The first face hit at `least` or farther.
+ViewHit trace(const RayScene& scene, const Eigen::Vector3d& from, const Eigen::Vector3d& direction, float least = 0)
+{
+  Ray ray{from.cast<float>(), direction.cast<float>()};
+  ray.near = least;
+  const RayHit hit = scene.intersect(ray);
+  if (hit.face < 0)
+    return {};
+  return {hit.distance, hit.normal.cast<double>().dot(direction) < 0};
+}
+
+/// The first face hit whose front is seen, through all others: what a picture without back faces shows.
+ViewHit traceFront(const RayScene& scene, const Eigen::Vector3d& from, const Eigen::Vector3d& direction)
+{
+  constexpr int most_layers = 32;
+  float least = 0;
+  for (int layer = 0; layer < most_layers; ++layer) {
+    const ViewHit hit = trace(scene, from, direction, least);
+    if (!hit.any() || hit.front)
+      return hit;
+    const float distance = hit.distance * (1 + 1e-6);
+    least = std::nextafter(distance, std::numeric_limits<float>::max());
+  }
+  return {};
+}
 
 /// A place to stand at and what is around it.
 struct Stand {
@@ -37,14 +69,14 @@ std::vector<Eigen::Vector3d> sphereDirections(int count)
   return directions;
 }
 
-Stand examine(const ViewRays& scene, const Eigen::Vector3d& eye)
+Stand examine(const RayScene& scene, const Eigen::Vector3d& eye)
 {
   static const std::vector<Eigen::Vector3d> directions = sphereDirections(200);
   Stand stand;
   stand.eye = eye;
   std::vector<double> distances;
   for (const Eigen::Vector3d& direction : directions) {
-    const ViewHit hit = scene.trace(eye, direction);
+    const ViewHit hit = trace(scene, eye, direction);
     stand.front += hit.any() && hit.front;
     stand.back += hit.any() && !hit.front;
     distances.push_back(hit.distance);
@@ -58,7 +90,7 @@ Stand examine(const ViewRays& scene, const Eigen::Vector3d& eye)
 }
 
 /// Stands on a grid, at 0.6 and 0.75 of the room's height.
-std::vector<Stand> gridOfStands(const ViewRays& scene, const RoomFrame& room, int threads)
+std::vector<Stand> gridOfStands(const RayScene& scene, const RoomFrame& room, int threads)
 {
   constexpr int cells = 20;
   constexpr std::array<double, 2> heights{0.6, 0.75};
@@ -122,14 +154,14 @@ double relief(const std::vector<double>& depths)
 }
 
 /// Depth in view is good up to a point, steps are good, holes and things right before the eye are bad.
-double scoreInside(const ViewRays& scene, const Stand& stand, const std::vector<Eigen::Vector3d>& rays,
+double scoreInside(const RayScene& scene, const Stand& stand, const std::vector<Eigen::Vector3d>& rays,
                    double room_size)
 {
   const double near = 0.14 * room_size, far = 0.6 * room_size;
   double sum = 0;
   std::vector<double> depths;
   for (const Eigen::Vector3d& ray : rays) {
-    const double depth = std::max(scene.trace(stand.eye, ray).distance, 1e-9 * room_size);
+    const double depth = std::max(trace(scene, stand.eye, ray).distance, 1e-9 * room_size);
     depths.push_back(depth);
     if (!std::isfinite(depth))
       sum -= 0.4;
@@ -139,7 +171,7 @@ double scoreInside(const ViewRays& scene, const Stand& stand, const std::vector<
   return sum / static_cast<double>(rays.size()) + 2 * relief(depths);
 }
 
-Look bestLook(const ViewRays& scene, const Stand& stand, const RoomFrame& room, double aspect)
+Look bestLook(const RayScene& scene, const Stand& stand, const RoomFrame& room, double aspect)
 {
   constexpr int headings = 24;
   constexpr double down = 12 * pi / 180;
@@ -156,13 +188,13 @@ Look bestLook(const ViewRays& scene, const Stand& stand, const RoomFrame& room, 
   return best;
 }
 
-double scoreAbove(const ViewRays& scene, const Viewpoint& view, const Eigen::Vector3d& origin, double aspect)
+double scoreAbove(const RayScene& scene, const Viewpoint& view, const Eigen::Vector3d& origin, double aspect)
 {
   const auto rays = pictureRays(cameraAxes(view.eye - view.look, view.up), view.angle, aspect);
   double hits = 0;
   std::vector<double> depths;
   for (const Eigen::Vector3d& ray : rays) {
-    const ViewHit hit = scene.traceFront(view.eye - origin, ray);
+    const ViewHit hit = traceFront(scene, view.eye - origin, ray);
     depths.push_back(hit.distance);
     hits += hit.any();
   }
@@ -182,7 +214,7 @@ std::optional<Viewpoint> insideView(const TriangleMesh& mesh, const IndoorOption
   validate(mesh, options);
   const RoomFrame room = findRoomFrame(mesh, options.up);
   const double room_size = room.size().head<2>().norm();
-  const ViewRays scene(mesh);
+  const RayScene scene(mesh, false);
   const std::vector<Stand> grid = gridOfStands(scene, room, options.threads);
   std::vector<Stand> stands = freeStands(grid, room_size, false);
   if (stands.empty())
@@ -204,7 +236,7 @@ Viewpoint aboveView(const TriangleMesh& mesh, const IndoorOptions& options)
 {
   validate(mesh, options);
   const RoomFrame room = findRoomFrame(mesh, options.up);
-  const ViewRays scene(mesh);
+  const RayScene scene(mesh, false);
   constexpr std::array<double, 8> headings{30, 60, 120, 150, 210, 240, 300, 330}; // degrees from the walls
   constexpr double elevation = 52 * pi / 180;
   Viewpoint best;

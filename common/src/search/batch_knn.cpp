@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "search/knn_kernels.h"
 #include <algorithm>
 #include <cmath>
 #include <fresco/search/batch_knn.h>
@@ -11,9 +12,9 @@ constexpr float leaf_margin = 1.3f;  // distance to the k-th neighbours of a lea
 constexpr float point_margin = 1.4f; // squared distance to the k-th neighbour of a point / that of the point before
 } // namespace
 
-NearGroup::NearGroup(const PointTree& tree, const NearKernels& kernels) : tree_(tree), kernels_(kernels) {}
+BatchKnn::BatchKnn(const PointTree& tree) : tree_(tree), kernels_(search::knnKernels()) {}
 
-void NearGroup::enter(Index begin, Index end)
+void BatchKnn::enter(Index begin, Index end)
 {
   first_leaf_ = begin;
   begin_ = begin * PointTree::leaf_size;
@@ -26,16 +27,16 @@ void NearGroup::enter(Index begin, Index end)
   gather(0, 0);
 }
 
-float NearGroup::expectedReach(int k) const
+float BatchKnn::expectedReach(int k) const
 {
   Eigen::Vector3f extent = high_ - low_;
   std::sort(extent.data(), extent.data() + 3);
-  const float share = static_cast<float>(k) / static_cast<float>(end_ - begin_);
+  const float share = 1.f * k / (end_ - begin_);
   const float along = 0.5f * share * extent[2], across = std::sqrt(0.3183f * share * extent[2] * extent[1]);
   return std::max(along, across);
 }
 
-void NearGroup::makeRoom(std::size_t leaf_count)
+void BatchKnn::makeRoom(std::size_t leaf_count)
 {
   const std::size_t room = 8 * leaf_count + 16;
   if (squared_.size() >= room)
@@ -46,7 +47,7 @@ void NearGroup::makeRoom(std::size_t leaf_count)
     values->resize(2 * room);
 }
 
-void NearGroup::gather(float reach, std::size_t most)
+void BatchKnn::gather(float reach, std::size_t most)
 {
   leaves_.clear();
   if (most > 0) {
@@ -64,7 +65,7 @@ void NearGroup::gather(float reach, std::size_t most)
   makeRoom(gathered_);
 }
 
-void NearGroup::prepare()
+void BatchKnn::prepare()
 {
   prepared_ = true;
   const std::size_t stride = (gathered_ + 7) / 8 * 8;
@@ -75,32 +76,31 @@ void NearGroup::prepare()
     focus_leaves_.resize(2 * stride + 8);
   }
   for (std::size_t l = 0; l < gathered_; ++l)
-    std::copy_n(tree_.leafCoordinates() + 24 * static_cast<std::size_t>(leaves_[l]), 24, coordinates_.data() + 24 * l);
+    std::copy_n(tree_.leafCoordinates() + 24 * Index{leaves_[l]}, 24, coordinates_.data() + 24 * l);
   kernels_.boxes(coordinates_.data(), gathered_, stride, boxes_.data());
 }
 
 /// Narrows the search to the leaves within `reach` of one of the group.
-void NearGroup::focus(Index leaf, float reach)
+void BatchKnn::focus(Index leaf, float reach)
 {
   if (!prepared_)
     prepare();
   focus_leaf_ = leaf;
   focus_reach_ = reach;
-  const auto center = std::lower_bound(leaves_.begin(), leaves_.begin() + static_cast<std::ptrdiff_t>(gathered_),
-                                       static_cast<int>(leaf)) -
-                      leaves_.begin();
-  focus_count_ = kernels_.closeBoxes(boxes_.data(), gathered_, (gathered_ + 7) / 8 * 8,
-                                     static_cast<std::size_t>(center), reach * (1 + rounding), focus_.data());
+  const Index center = std::lower_bound(leaves_.begin(), leaves_.begin() + gathered_, leaf) - leaves_.begin();
+  focus_count_ = kernels_.closeBoxes(boxes_.data(), gathered_, (gathered_ + 7) / 8 * 8, center, reach * (1 + rounding),
+                                     focus_.data());
   for (std::size_t l = 0; l < focus_count_; ++l)
     focus_leaves_[l] = leaves_[focus_[l]];
 }
 
-/// Whether at least k points are closer than `bound`, and then the nearest k of them are chosen.
-bool NearGroup::choose(Index i, int k, float bound)
+/// Chooses the nearest k of the points closer than `bound`. @return false if there are fewer
+bool BatchKnn::choose(Index i, int k, float bound)
 {
   const Eigen::Vector3f query = tree_.point(i);
-  const auto wanted = static_cast<std::size_t>(k);
-  count_ = kernels_.offsets(coordinates_.data(), focus_.data(), focus_count_, query.data(), bound, points());
+  const std::size_t wanted = k;
+  const search::KnnPoints points{squared_.data(), x_.data(), y_.data(), z_.data(), position_.data()};
+  count_ = kernels_.offsets(coordinates_.data(), focus_.data(), focus_count_, query.data(), bound, points);
   if (count_ < wanted)
     return false;
   limit_ = kernels_.limit(squared_.data(), count_, wanted, bound);
@@ -115,7 +115,7 @@ bool NearGroup::choose(Index i, int k, float bound)
   return true;
 }
 
-void NearGroup::nearest(Index i, int k)
+void BatchKnn::nearest(Index i, int k)
 {
   const Index leaf = i / PointTree::leaf_size;
   if (reach_ >= 0) {
@@ -139,20 +139,21 @@ void NearGroup::nearest(Index i, int k)
   chooseByKeys(i);
 }
 
-int NearGroup::codeOf(int position)
+int BatchKnn::codeOf(int position)
 {
   const int leaf = position / 8;
-  const auto end = leaves_.begin() + static_cast<std::ptrdiff_t>(gathered_);
+  const auto end = leaves_.begin() + gathered_;
   auto at = std::lower_bound(leaves_.begin(), end, leaf);
   if (at == end || *at != leaf)
     at = std::find(end, leaves_.end(), leaf);
   if (at == leaves_.end())
     at = leaves_.insert(at, leaf);
-  return static_cast<int>(at - leaves_.begin()) * 8 + position % 8;
+  const int place = at - leaves_.begin();
+  return 8 * place + position % 8;
 }
 
 /// Chooses the points of keys_.
-void NearGroup::chooseByKeys(Index i)
+void BatchKnn::chooseByKeys(Index i)
 {
   std::sort(keys_.begin(), keys_.end(),
             [](PointTree::Key a, PointTree::Key b) { return PointTree::position(a) < PointTree::position(b); });
@@ -169,13 +170,14 @@ void NearGroup::chooseByKeys(Index i)
   limit_ = infinity;
 }
 
-const int* NearGroup::sum(float* sums)
+const int* BatchKnn::sum(float* sums)
 {
-  kernels_.sum(points(), count_, limit_, sums, chosen_.data());
+  kernels_.sum({squared_.data(), x_.data(), y_.data(), z_.data(), position_.data()}, count_, limit_, sums,
+               chosen_.data());
   return chosen_.data();
 }
 
-void NearGroup::ordered(int* positions)
+void BatchKnn::ordered(int* positions)
 {
   std::size_t k = 0;
   for (std::size_t j = 0; j < count_; ++j)
@@ -193,7 +195,7 @@ void NearGroup::ordered(int* positions)
   }
 }
 
-std::size_t NearGroup::within(Index i, float radius)
+std::size_t BatchKnn::within(Index i, float radius)
 {
   const Index leaf = i / PointTree::leaf_size;
   if (radius > reach_)
@@ -205,13 +207,13 @@ std::size_t NearGroup::within(Index i, float radius)
                          squared_.data(), position_.data());
 }
 
-void NearGroup::thin(float radius, int wanted)
+void BatchKnn::thin(float radius, int wanted)
 {
   Eigen::Vector3f extent = high_ - low_;
   std::sort(extent.data(), extent.data() + 3);
   const float around = (extent[2] + 2 * reach_) * (extent[1] + 2 * reach_), disc = 3.1416f * radius * radius;
-  const float found = static_cast<float>(8 * gathered_) * (around > 0 ? disc / around : 1.f);
-  const auto step = static_cast<std::size_t>(std::max(1.f, found / static_cast<float>(wanted)));
+  const float found = 8.f * gathered_ * (around > 0 ? disc / around : 1.f);
+  const auto step = static_cast<std::size_t>(std::max(1.f, found / wanted));
   const std::size_t count = (8 * gathered_ + step - 1) / step, leaf_count = (count + 7) / 8;
   thin_coordinates_.assign(24 * leaf_count, infinity);
   thin_codes_.assign(8 * leaf_count, -1);
@@ -219,18 +221,19 @@ void NearGroup::thin(float radius, int wanted)
   std::iota(thin_leaves_.begin(), thin_leaves_.end(), 0);
   for (std::size_t i = 0; i < count; ++i) {
     const std::size_t code = i * step;
-    const float* leaf = tree_.leafCoordinates() + 24 * static_cast<std::size_t>(leaves_[code / 8]);
+    const float* leaf = tree_.leafCoordinates() + 24 * Index{leaves_[code / 8]};
     for (std::size_t axis = 0; axis < 3; ++axis)
       thin_coordinates_[i / 8 * 24 + axis * 8 + i % 8] = leaf[axis * 8 + code % 8];
-    thin_codes_[i] = static_cast<int>(code);
+    thin_codes_[i] = code;
   }
 }
 
-std::size_t NearGroup::keptWithin(Index i, float radius)
+std::size_t BatchKnn::keptWithin(Index i, float radius)
 {
   limit_ = std::nextafter(radius * radius, infinity);
+  const search::KnnPoints points{squared_.data(), x_.data(), y_.data(), z_.data(), position_.data()};
   count_ = kernels_.offsets(thin_coordinates_.data(), thin_leaves_.data(), thin_leaves_.size(), tree_.point(i).data(),
-                            limit_, points());
+                            limit_, points);
   for (std::size_t j = 0; j < count_; ++j)
     position_[j] = thin_codes_[position_[j]];
   return count_;

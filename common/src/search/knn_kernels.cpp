@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "search/knn_kernels.h"
 #include "search/kth_smallest.h"
 #include <algorithm>
-#include <fresco/search/knn_kernels.h>
 #include <limits>
-namespace fresco {
+namespace fresco::search {
 namespace {
 constexpr float infinity = std::numeric_limits<float>::infinity();
 
@@ -21,7 +21,7 @@ std::size_t closer(const float* coordinates, const int* leaves, std::size_t leaf
 {
   std::size_t found = 0;
   for (std::size_t l = 0; l < leaf_count; ++l) {
-    const float* leaf = coordinates + static_cast<std::size_t>(leaves[l]) * 24;
+    const float* leaf = coordinates + 24 * std::ptrdiff_t{leaves[l]};
     float distances[8];
     squaredDistances(leaf, query, distances);
     for (int i = 0; i < 8; ++i) {
@@ -34,11 +34,11 @@ std::size_t closer(const float* coordinates, const int* leaves, std::size_t leaf
 }
 
 std::size_t offsets(const float* coordinates, const int* leaves, std::size_t leaf_count, const float* query,
-                    float bound, const NearPoints& points)
+                    float bound, const KnnPoints& points)
 {
   std::size_t found = 0;
   for (std::size_t l = 0; l < leaf_count; ++l) {
-    const float* leaf = coordinates + static_cast<std::size_t>(leaves[l]) * 24;
+    const float* leaf = coordinates + 24 * std::ptrdiff_t{leaves[l]};
     float distances[8];
     squaredDistances(leaf, query, distances);
     for (int i = 0; i < 8; ++i) {
@@ -73,7 +73,7 @@ std::size_t closeBoxes(const float* boxes, std::size_t leaf_count, std::size_t s
       const float *low = boxes + axis * stride, *high = low + 3 * stride;
       gaps[axis] = std::max(std::max(low[l] - high[center], low[center] - high[l]), 0.f);
     }
-    leaves[found] = static_cast<int>(l);
+    leaves[found] = l;
     found += gaps[0] * gaps[0] + gaps[1] * gaps[1] + gaps[2] * gaps[2] <= reach * reach;
   }
   return found;
@@ -95,7 +95,7 @@ float limit(float* values, std::size_t count, std::size_t k, float bound)
 {
   for (std::size_t i = count; i < (count + 7) / 8 * 8; ++i)
     values[i] = infinity;
-  return findLimit(Counter{values, count}, count, k, bound);
+  return kthSmallest(Counter{values, count}, count, k, bound);
 }
 
 /// In the order in which vectors of 8 lanes are added up.
@@ -104,7 +104,7 @@ float total(const float* lanes)
   return ((lanes[0] + lanes[4]) + (lanes[2] + lanes[6])) + ((lanes[1] + lanes[5]) + (lanes[3] + lanes[7]));
 }
 
-void sum(const NearPoints& points, std::size_t count, float limit, float* sums, int* chosen)
+void sum(const KnnPoints& points, std::size_t count, float limit, float* sums, int* chosen)
 {
   float lanes[9][8] = {}, largest = 0;
   for (std::size_t i = 0; i < count; ++i) {
@@ -140,15 +140,15 @@ void rank(float* values, std::size_t count, int* ranks)
 }
 } // namespace
 
-const NearKernels& portableNearKernels()
+const KnnKernels& portableKnnKernels()
 {
-  static const NearKernels kernels = {closer, offsets, boxes, closeBoxes, limit, sum, rank};
+  static const KnnKernels kernels = {closer, offsets, boxes, closeBoxes, limit, sum, rank};
   return kernels;
 }
 
-const NearKernels& nearKernels()
+const KnnKernels& knnKernels()
 {
-  static const NearKernels& kernels = avx2NearKernels() ? *avx2NearKernels() : portableNearKernels();
+  static const KnnKernels& kernels = avx2KnnKernels() ? *avx2KnnKernels() : portableKnnKernels();
   return kernels;
 }
-} // namespace fresco
+} // namespace fresco::search

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Only these functions are compiled for AVX2, and they run only where the processor has it. No header with inline
 // functions of external linkage may be used here: the linker could keep their AVX2 code for the whole program.
-#include <fresco/search/knn_kernels.h>
+#include "search/knn_kernels.h"
 #if defined(__x86_64__) && defined(__GNUC__)
-#define FRESCO_LANE_CODE __attribute__((target("avx2,popcnt")))
+#define FRESCO_SIMD_TARGET __attribute__((target("avx2,popcnt")))
 #include "search/kth_smallest.h"
 #include <immintrin.h>
-namespace fresco {
+namespace fresco::search {
 namespace {
 /// For each set of lanes (as bits) the lanes that are set, first ones first, 4 bits each.
 struct Packing {
@@ -25,31 +25,31 @@ struct Packing {
 constexpr Packing packing;
 
 /// Lanes to permute by so that those set come first. The permutation uses the lowest 3 bits of each lane.
-FRESCO_LANE_CODE inline __m256i packedLanes(unsigned set)
+FRESCO_SIMD_TARGET inline __m256i packedLanes(unsigned set)
 {
   const __m256i shifts = _mm256_setr_epi32(0, 4, 8, 12, 16, 20, 24, 28);
   return _mm256_srlv_epi32(_mm256_set1_epi32(static_cast<int>(packing.lanes[set])), shifts);
 }
 
-FRESCO_LANE_CODE inline unsigned lanesBelow(__m256 values, __m256 limit)
+FRESCO_SIMD_TARGET inline unsigned lanesBelow(__m256 values, __m256 limit)
 {
   return static_cast<unsigned>(_mm256_movemask_ps(_mm256_cmp_ps(values, limit, _CMP_LT_OQ)));
 }
 
-FRESCO_LANE_CODE inline std::size_t bits(unsigned set) { return static_cast<unsigned>(__builtin_popcount(set)); }
+FRESCO_SIMD_TARGET inline std::size_t bits(unsigned set) { return static_cast<unsigned>(__builtin_popcount(set)); }
 
-FRESCO_LANE_CODE inline __m256 squaredLength(__m256 x, __m256 y, __m256 z)
+FRESCO_SIMD_TARGET inline __m256 squaredLength(__m256 x, __m256 y, __m256 z)
 {
   return _mm256_add_ps(_mm256_add_ps(_mm256_mul_ps(x, x), _mm256_mul_ps(y, y)), _mm256_mul_ps(z, z));
 }
 
-FRESCO_LANE_CODE inline __m256i positionsOf(__m256i lanes, int leaf)
+FRESCO_SIMD_TARGET inline __m256i positionsOf(__m256i lanes, int leaf)
 {
   return _mm256_add_epi32(_mm256_and_si256(lanes, _mm256_set1_epi32(7)), _mm256_set1_epi32(leaf * 8));
 }
 
-FRESCO_LANE_CODE std::size_t closer(const float* coordinates, const int* leaves, std::size_t leaf_count,
-                                    const float* query, float bound, float* squared, int* position)
+FRESCO_SIMD_TARGET std::size_t closer(const float* coordinates, const int* leaves, std::size_t leaf_count,
+                                      const float* query, float bound, float* squared, int* position)
 {
   const __m256 x = _mm256_set1_ps(query[0]), y = _mm256_set1_ps(query[1]), z = _mm256_set1_ps(query[2]);
   const __m256 limit = _mm256_set1_ps(bound);
@@ -69,12 +69,12 @@ FRESCO_LANE_CODE std::size_t closer(const float* coordinates, const int* leaves,
   return found;
 }
 
-FRESCO_LANE_CODE std::size_t offsets(const float* coordinates, const int* leaves, std::size_t leaf_count,
-                                     const float* query, float bound, const NearPoints& points)
+FRESCO_SIMD_TARGET std::size_t offsets(const float* coordinates, const int* leaves, std::size_t leaf_count,
+                                       const float* query, float bound, const KnnPoints& points)
 {
   const __m256 x = _mm256_set1_ps(query[0]), y = _mm256_set1_ps(query[1]), z = _mm256_set1_ps(query[2]);
   const __m256 limit = _mm256_set1_ps(bound);
-  const NearPoints to = points;
+  const KnnPoints to = points;
   std::size_t found = 0;
   for (std::size_t l = 0; l < leaf_count; ++l) {
     const float* leaf = coordinates + static_cast<std::size_t>(leaves[l]) * 24;
@@ -95,21 +95,21 @@ FRESCO_LANE_CODE std::size_t offsets(const float* coordinates, const int* leaves
   return found;
 }
 
-FRESCO_LANE_CODE inline float smallest(__m256 v)
+FRESCO_SIMD_TARGET inline float smallest(__m256 v)
 {
   const __m128 four = _mm_min_ps(_mm256_castps256_ps128(v), _mm256_extractf128_ps(v, 1));
   const __m128 two = _mm_min_ps(four, _mm_movehl_ps(four, four));
   return _mm_cvtss_f32(_mm_min_ss(two, _mm_movehdup_ps(two)));
 }
 
-FRESCO_LANE_CODE inline float largest(__m256 v)
+FRESCO_SIMD_TARGET inline float largest(__m256 v)
 {
   const __m128 four = _mm_max_ps(_mm256_castps256_ps128(v), _mm256_extractf128_ps(v, 1));
   const __m128 two = _mm_max_ps(four, _mm_movehl_ps(four, four));
   return _mm_cvtss_f32(_mm_max_ss(two, _mm_movehdup_ps(two)));
 }
 
-FRESCO_LANE_CODE void boxes(const float* coordinates, std::size_t leaf_count, std::size_t stride, float* boxes)
+FRESCO_SIMD_TARGET void boxes(const float* coordinates, std::size_t leaf_count, std::size_t stride, float* boxes)
 {
   for (std::size_t l = 0; l < leaf_count; ++l)
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -119,8 +119,8 @@ FRESCO_LANE_CODE void boxes(const float* coordinates, std::size_t leaf_count, st
     }
 }
 
-FRESCO_LANE_CODE std::size_t closeBoxes(const float* boxes, std::size_t leaf_count, std::size_t stride,
-                                        std::size_t center, float reach, int* leaves)
+FRESCO_SIMD_TARGET std::size_t closeBoxes(const float* boxes, std::size_t leaf_count, std::size_t stride,
+                                          std::size_t center, float reach, int* leaves)
 {
   const __m256 limit = _mm256_set1_ps(reach * reach);
   const __m256i places = _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7);
@@ -148,7 +148,7 @@ FRESCO_LANE_CODE std::size_t closeBoxes(const float* boxes, std::size_t leaf_cou
 struct Counter {
   const float* values;
   std::size_t count;
-  FRESCO_LANE_CODE std::size_t below(float limit) const
+  FRESCO_SIMD_TARGET std::size_t below(float limit) const
   {
     const __m256 limits = _mm256_set1_ps(limit);
     std::size_t found = 0;
@@ -158,20 +158,20 @@ struct Counter {
   }
 };
 
-FRESCO_LANE_CODE float limit(float* values, std::size_t count, std::size_t k, float bound)
+FRESCO_SIMD_TARGET float limit(float* values, std::size_t count, std::size_t k, float bound)
 {
   _mm256_storeu_ps(values + count, _mm256_set1_ps(__builtin_inff()));
-  return findLimit(Counter{values, count}, count, k, bound);
+  return kthSmallest(Counter{values, count}, count, k, bound);
 }
 
-FRESCO_LANE_CODE inline float total(__m256 v)
+FRESCO_SIMD_TARGET inline float total(__m256 v)
 {
   const __m128 four = _mm_add_ps(_mm256_castps256_ps128(v), _mm256_extractf128_ps(v, 1));
   const __m128 two = _mm_add_ps(four, _mm_movehl_ps(four, four));
   return _mm_cvtss_f32(_mm_add_ss(two, _mm_movehdup_ps(two)));
 }
 
-FRESCO_LANE_CODE void sum(const NearPoints& points, std::size_t count, float limit, float* sums, int* chosen)
+FRESCO_SIMD_TARGET void sum(const KnnPoints& points, std::size_t count, float limit, float* sums, int* chosen)
 {
   _mm256_storeu_ps(points.squared + count, _mm256_set1_ps(__builtin_inff()));
   const __m256 limits = _mm256_set1_ps(limit), zero = _mm256_setzero_ps();
@@ -197,7 +197,7 @@ FRESCO_LANE_CODE void sum(const NearPoints& points, std::size_t count, float lim
   sums[9] = largest(far);
 }
 
-FRESCO_LANE_CODE void rank(float* values, std::size_t count, int* ranks)
+FRESCO_SIMD_TARGET void rank(float* values, std::size_t count, int* ranks)
 {
   const __m256 infinity = _mm256_set1_ps(__builtin_inff());
   _mm256_storeu_ps(values + count, infinity);
@@ -218,14 +218,14 @@ FRESCO_LANE_CODE void rank(float* values, std::size_t count, int* ranks)
 }
 } // namespace
 
-const NearKernels* avx2NearKernels()
+const KnnKernels* avx2KnnKernels()
 {
-  static const NearKernels kernels = {closer, offsets, boxes, closeBoxes, limit, sum, rank};
+  static const KnnKernels kernels = {closer, offsets, boxes, closeBoxes, limit, sum, rank};
   return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("popcnt") ? &kernels : nullptr;
 }
-} // namespace fresco
+} // namespace fresco::search
 #else
-namespace fresco {
-const NearKernels* avx2NearKernels() { return nullptr; }
-} // namespace fresco
+namespace fresco::search {
+const KnnKernels* avx2KnnKernels() { return nullptr; }
+} // namespace fresco::search
 #endif

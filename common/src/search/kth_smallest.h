@@ -1,19 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include <cstddef>
-#ifndef FRESCO_LANE_CODE
-#define FRESCO_LANE_CODE // attributes of functions that are compiled for certain processors
+#ifndef FRESCO_SIMD_TARGET
+#define FRESCO_SIMD_TARGET // attributes of functions that are compiled for certain processors
 #endif
-namespace fresco {
+namespace fresco::search {
 namespace {
-/// A limit that exactly `k` of `count` values, all below `bound`, are below: by interpolation, as the number of points
-/// of a surface grows with the squared distance, and bisection. Negative if not found.
+/// A threshold that separates the `k` smallest of `count` values from the others: exactly `k` are below it. All values
+/// are in 0 .. `bound`. Found by interpolation, since on a surface the number of points grows in proportion to the
+/// squared distance, and by bisection. Negative where there is no such threshold, as two values are equal, or where 40
+/// steps do not find it.
 template <typename Counter>
-FRESCO_LANE_CODE float findLimit(const Counter& counter, std::size_t count, std::size_t k, float bound)
+FRESCO_SIMD_TARGET float kthSmallest(const Counter& counter, std::size_t count, std::size_t k, float bound)
 {
-  float low = 0, high = bound;
-  auto below_low = 0.f, below_high = static_cast<float>(count);
-  const auto wanted = static_cast<float>(k);
+  float low = 0, high = bound, below_low = 0, below_high = count;
+  const float wanted = k;
   if (count == k)
     return bound;
   for (int step = 0; step < 40; ++step) {
@@ -26,13 +27,13 @@ FRESCO_LANE_CODE float findLimit(const Counter& counter, std::size_t count, std:
       return limit;
     if (below < k) {
       low = limit;
-      below_low = static_cast<float>(below);
+      below_low = below;
     } else {
       high = limit;
-      below_high = static_cast<float>(below);
+      below_high = below;
     }
   }
   return -1.f;
 }
 } // namespace
-} // namespace fresco
+} // namespace fresco::search

@@ -1,30 +1,24 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <fresco/search/morton_order.h>
+#include "search/morton_order.h"
 
 #include <algorithm>
 #include <array>
+#include <fresco/core/morton.h>
 #include <fresco/core/parallel.h>
 #include <utility>
-namespace fresco {
+namespace fresco::search {
 namespace {
 struct Key {
   std::uint32_t code;
   std::int32_t column;
 };
 
-// Spreads the lower 10 bits so that two zeros follow each.
-std::uint32_t spreadBits(std::uint32_t x)
+// 30 bits; z is the lowest.
+std::uint32_t codeOf(const Eigen::Array3d& cell)
 {
-  x = (x | (x << 16)) & 0x030000ffu;
-  x = (x | (x << 8)) & 0x0300f00fu;
-  x = (x | (x << 4)) & 0x030c30c3u;
-  return (x | (x << 2)) & 0x09249249u;
-}
-
-std::uint32_t mortonCode(const Eigen::Array3d& cell)
-{
-  const auto axis = [&](int a) { return spreadBits(static_cast<std::uint32_t>(std::clamp(cell[a], 0.0, 1023.0))); };
-  return (axis(0) << 2) | (axis(1) << 1) | axis(2);
+  const Eigen::Array<std::uint32_t, 3, 1> whole = cell.max(0.0).min(1023.0).cast<std::uint32_t>();
+  const std::uint64_t code = mortonCode(whole[2], whole[1], whole[0]);
+  return code;
 }
 
 // One pass of a least-significant-digit radix sort.
@@ -44,7 +38,7 @@ void sortByDigit(const std::vector<Key>& from, std::vector<Key>& to, int shift)
 
 std::vector<std::int32_t> mortonOrder(const Eigen::Matrix3Xd& points, int threads)
 {
-  const auto n = static_cast<std::size_t>(points.cols());
+  const Index n = points.cols();
   if (n == 0)
     return {};
   const Eigen::Array3d low = points.rowwise().minCoeff();
@@ -52,7 +46,7 @@ std::vector<std::int32_t> mortonOrder(const Eigen::Matrix3Xd& points, int thread
   const double scale = side > 0.0 ? 1024.0 / side : 0.0;
   std::vector<Key> keys(n), other(n);
   parallelFor(points.cols(), threads, [&](Index i) {
-    keys[i] = {mortonCode((points.col(i).array() - low) * scale), static_cast<std::int32_t>(i)};
+    keys[i] = {codeOf((points.col(i).array() - low) * scale), static_cast<std::int32_t>(i)};
   });
   for (const int shift : {0, 10, 20}) {
     sortByDigit(keys, other, shift);
@@ -62,4 +56,4 @@ std::vector<std::int32_t> mortonOrder(const Eigen::Matrix3Xd& points, int thread
   std::transform(keys.begin(), keys.end(), order.begin(), [](const Key& key) { return key.column; });
   return order;
 }
-} // namespace fresco
+} // namespace fresco::search

@@ -63,7 +63,7 @@ NeighborLists gatherLists(Index n, int threads, const Find& find)
         for (Index i = begin; i < end; ++i) {
           found.clear();
           find(i, found);
-          range.begin.push_back(static_cast<std::int64_t>(found.size()));
+          range.begin.push_back(found.size());
           range.index.insert(range.index.end(), found.begin(), found.end());
         }
       },
@@ -76,9 +76,9 @@ void thinPositions(std::size_t most, int self, std::vector<int>& positions)
 {
   if (positions.size() <= most)
     return;
-  const double step = static_cast<double>(positions.size()) / static_cast<double>(most);
+  const double step = 1.0 * positions.size() / most;
   for (std::size_t j = 0; j < most; ++j)
-    positions[j] = positions[(static_cast<double>(j) + 0.5) * step];
+    positions[j] = positions[(j + 0.5) * step];
   positions.resize(most);
   const auto place = std::lower_bound(positions.begin(), positions.end(), self);
   if (place == positions.end() || *place != self)
@@ -87,11 +87,11 @@ void thinPositions(std::size_t most, int self, std::vector<int>& positions)
 
 /// All points in the ball, ascending, from the leaves gathered around the group of its centre or, where those were too
 /// many, from the tree.
-void findWithin(const PointTree& tree, NearGroup& group, const Ball& ball, std::vector<int>& found)
+void findWithin(const PointTree& tree, BatchKnn& group, const Ball& ball, std::vector<int>& found)
 {
   const std::size_t count = group.within(ball.center, ball.radius);
   if (count > 0) {
-    found.assign(group.positions().begin(), group.positions().begin() + static_cast<std::ptrdiff_t>(count));
+    found.assign(group.positions().begin(), group.positions().begin() + count);
     return;
   }
   thread_local Keys keys;
@@ -112,11 +112,11 @@ std::vector<Range> searchRadii(const PointTree& tree, const Eigen::VectorXf& rad
   require(radii.size() == 0 || radii.minCoeff() >= 0, "neighbour search: a radius is negative or NaN");
   constexpr Index chunk = 32;
   const std::vector<Index> groups = tree.subtrees(group_leaves);
-  const auto count = static_cast<Index>(groups.size()) - 1;
+  const Index count = groups.size() - 1;
   std::vector<Range> ranges((count + chunk - 1) / chunk);
   const auto search = [&](Index begin, Index end) {
     Range range;
-    NearGroup group(tree);
+    BatchKnn group(tree);
     std::vector<int> found;
     for (Index g = begin; g < end; ++g) {
       group.enter(groups[g], groups[g + 1]);
@@ -124,7 +124,7 @@ std::vector<Range> searchRadii(const PointTree& tree, const Eigen::VectorXf& rad
                    most_leaves);
       for (Index i = group.begin(); i < group.end(); ++i) {
         findWithin(tree, group, {i, radii[radii.size() == 1 ? 0 : i]}, found);
-        thinPositions(static_cast<std::size_t>(limits.most), static_cast<int>(i), found);
+        thinPositions(limits.most, i, found);
         add(range, i, found);
       }
     }
@@ -138,7 +138,7 @@ std::vector<Range> searchRadii(const PointTree& tree, const Eigen::VectorXf& rad
 NeighborLists evenLists(Index n, Index k)
 {
   NeighborLists lists;
-  lists.begin.resize(static_cast<std::size_t>(n) + 1);
+  lists.begin.resize(n + 1);
   for (Index i = 0; i <= n; ++i)
     lists.begin[i] = i * k;
   lists.index.resize(n * k);
@@ -149,14 +149,14 @@ void forNearest(const PointTree& tree, int k, int threads, const std::function<v
 {
   const Index each = std::min<Index>(k, tree.size());
   const std::vector<Index> groups = tree.subtrees(group_leaves);
-  parallelRanges(static_cast<Index>(groups.size()) - 1, threads, [&](Index begin, Index end) {
-    NearGroup group(tree);
+  parallelRanges(groups.size() - 1, threads, [&](Index begin, Index end) {
+    BatchKnn group(tree);
     std::vector<int> found(each);
     for (Index g = begin; g < end; ++g) {
       group.enter(groups[g], groups[g + 1]);
-      group.gather(reach_margin * group.expectedReach(static_cast<int>(each)), most_leaves);
+      group.gather(reach_margin * group.expectedReach(each), most_leaves);
       for (Index i = group.begin(); i < group.end(); ++i) {
-        group.nearest(i, static_cast<int>(each));
+        group.nearest(i, each);
         group.ordered(found.data());
         use(i, found.data(), each);
       }
@@ -178,21 +178,22 @@ NeighborLists nearestLists(const PointTree& tree, int k, int threads)
 NeighborLists radiusLists(const PointTree& tree, const Eigen::VectorXf& radii, int most, int threads)
 {
   const auto add = [](NeighborLists& range, Index, const std::vector<int>& found) {
-    range.begin.push_back(static_cast<std::int64_t>(found.size()));
+    range.begin.push_back(found.size());
     range.index.insert(range.index.end(), found.begin(), found.end());
   };
   return joinLists(searchRadii<NeighborLists>(tree, radii, {most, threads}, add), threads);
 }
 
-std::vector<CompactLists> compactRadiusLists(const PointTree& tree, const Eigen::VectorXf& radii, int most, int threads)
+std::vector<CompressedLists> compressedRadiusLists(const PointTree& tree, const Eigen::VectorXf& radii, int most,
+                                                   int threads)
 {
-  const auto add = [](CompactLists& range, Index i, const std::vector<int>& found) {
+  const auto add = [](CompressedLists& range, Index i, const std::vector<int>& found) {
     if (range.end == 0)
       range.begin = i;
     range.end = i + 1;
     range.add(found);
   };
-  return searchRadii<CompactLists>(tree, radii, {most, threads}, add);
+  return searchRadii<CompressedLists>(tree, radii, {most, threads}, add);
 }
 
 NeighborLists imageLists(const Points& points, Index width, int k, int threads)
@@ -217,7 +218,7 @@ NeighborLists imageLists(const Points& points, Index width, int k, int threads)
           keys.push_back(PointTree::key(squared_distance, y * width + x));
       }
     std::sort(keys.begin(), keys.end());
-    keys.resize(std::min(keys.size(), static_cast<std::size_t>(k)));
+    keys.resize(std::min<std::size_t>(keys.size(), k));
     std::transform(keys.begin(), keys.end(), std::back_inserter(found), PointTree::position);
   });
 }

@@ -7,7 +7,7 @@ void Neighborhoods::numberGroups()
 {
   group_of_leaf.clear();
   for (std::size_t g = 0; g < groups.size(); ++g)
-    group_of_leaf.resize((groups[g].end + 7) / 8, static_cast<int>(g));
+    group_of_leaf.resize((groups[g].end + 7) / 8, g);
 }
 
 void GroupEncoder::begin(Index begin, Index end)
@@ -15,7 +15,7 @@ void GroupEncoder::begin(Index begin, Index end)
   lists_ = {};
   lists_.begin = begin;
   lists_.end = end;
-  lists_.starts.reserve(static_cast<std::size_t>(end - begin) + 1);
+  lists_.starts.reserve(end - begin + 1);
   lists_.starts.push_back(0);
   codes_.clear();
 }
@@ -23,7 +23,7 @@ void GroupEncoder::begin(Index begin, Index end)
 void GroupEncoder::add(const int* codes, std::size_t count)
 {
   codes_.insert(codes_.end(), codes, codes + count);
-  lists_.starts.push_back(static_cast<int>(codes_.size()));
+  lists_.starts.push_back(codes_.size());
 }
 
 void GroupEncoder::replace(Index i, const int* codes, std::size_t count)
@@ -40,19 +40,19 @@ GroupLists GroupEncoder::finish(const std::vector<int>& table, std::uint16_t* co
   for (const int code : codes_)
     places_[code / 8] = used;
   for (Index leaf = first; leaf < last; ++leaf)
-    lists_.leaves.push_back(static_cast<int>(leaf));
+    lists_.leaves.push_back(leaf);
   for (std::size_t l = 0; l < table.size(); ++l) {
     if (table[l] >= first && table[l] < last) {
-      places_[l] = static_cast<int>(table[l] - first);
+      places_[l] = table[l] - first;
     } else if (places_[l] == used) {
-      places_[l] = static_cast<int>(lists_.leaves.size());
+      places_[l] = lists_.leaves.size();
       lists_.leaves.push_back(table[l]);
     }
   }
   lists_.leaves.shrink_to_fit();
   lists_.codes = codes;
   std::transform(codes_.begin(), codes_.end(), codes,
-                 [&](int code) { return static_cast<std::uint16_t>(8 * places_[code / 8] + code % 8); });
+                 [&](int code) -> std::uint16_t { return 8 * places_[code / 8] + code % 8; });
   const auto& starts = lists_.starts;
   lists_.length = starts.size() > 1 ? starts[1] : 0;
   bool even = true;
@@ -83,8 +83,8 @@ void encodeLists(const NeighborLists& lists, int threads, Neighborhoods& all)
     for (Index i = begin; i < end; ++i) {
       codes.clear();
       for (const int* j = lists.first(i); j != lists.last(i); ++j) {
-        const auto place = std::lower_bound(table.begin(), table.end(), *j / 8) - table.begin();
-        codes.push_back(8 * static_cast<int>(place) + *j % 8);
+        const int place = std::lower_bound(table.begin(), table.end(), *j / 8) - table.begin();
+        codes.push_back(8 * place + *j % 8);
       }
       encoder.add(codes.data(), codes.size());
     }

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "search/tree_items.h"
 #include <algorithm>
 #include <cmath>
 #include <fresco/core/parallel.h>
 #include <fresco/core/require.h>
 #include <fresco/search/neighbors.h>
-#include <fresco/search/tree_items.h>
 namespace fresco {
+using search::TreeItem;
 /// Leaves begin .. end - 1, to be cut in two by nodes_[node].
 struct PointTree::Part {
   Index node, begin, end;
@@ -45,7 +46,7 @@ PointTree::PointTree(const Points& points, int threads)
   for (Index i = 0; i < points.cols(); ++i)
     if (points.col(i).allFinite())
       items.push_back({{points(0, i), points(1, i), points(2, i)}, static_cast<int>(i)});
-  leaves_ = (static_cast<Index>(items.size()) + leaf_size - 1) / leaf_size;
+  leaves_ = (items.size() + leaf_size - 1) / leaf_size;
   nodes_.resize(std::max<Index>(0, leaves_ - 1));
   build(items, threads);
   columns_.resize(items.size());
@@ -89,9 +90,9 @@ void PointTree::split(std::vector<TreeItem>& items, const OpenPart& open, std::v
   const Part& part = open.part;
   TreeItem* const begin = items.data() + part.begin * leaf_size;
   TreeItem* const middle = items.data() + part.middle() * leaf_size;
-  TreeItem* const end = items.data() + std::min<Index>(part.end * leaf_size, static_cast<Index>(items.size()));
+  TreeItem* const end = items.data() + std::min<Index>(part.end * leaf_size, items.size());
   const int axis = open.box.longest();
-  selectMiddle(begin, middle, end, axis);
+  search::selectMiddle(begin, middle, end, axis);
   const Box left(begin, middle), right(middle, end);
   nodes_[part.node] = {left.high[axis], right.low[axis], axis};
   if (part.middle() - part.begin > 1)
@@ -131,7 +132,7 @@ struct NearestFew {
   std::size_t size = 0;
   void offer(const float* squared_distances, Index first, Index count)
   {
-    if (size + static_cast<std::size_t>(count) > keys.size())
+    if (size + count > keys.size())
       shrink();
     for (Index i = 0; i < count; ++i) {
       keys[size] = PointTree::key(squared_distances[i], first + i);
@@ -142,8 +143,7 @@ struct NearestFew {
   {
     if (size <= k)
       return;
-    std::nth_element(keys.begin(), keys.begin() + static_cast<std::ptrdiff_t>(k) - 1,
-                     keys.begin() + static_cast<std::ptrdiff_t>(size));
+    std::nth_element(keys.begin(), keys.begin() + (k - 1), keys.begin() + size);
     size = k;
     bound = PointTree::squaredDistance(keys[k - 1]);
   }
@@ -218,7 +218,7 @@ Neighbor PointTree::nearest(const Eigen::Vector3f& query, float max_distance) co
 void PointTree::nearestKeys(const Eigen::Vector3f& query, int k, std::vector<Key>& found, float bound) const
 {
   require(k > 0, "neighbour search: k ", k, " is below 1");
-  found.resize(static_cast<std::size_t>(std::min<Index>(k, size())) * 3 + 64);
+  found.resize(3 * std::min<Index>(k, size()) + 64);
   NearestFew collector{found, static_cast<std::size_t>(k),
                        std::nextafter(bound, std::numeric_limits<float>::infinity())};
   search(query, collector);
@@ -259,7 +259,7 @@ void PointTree::leavesWithin(const Eigen::Vector3f& low, const Eigen::Vector3f& 
       part = in_left ? left : right;
     }
     if (part.end - part.begin == 1)
-      leaves.push_back(static_cast<int>(part.begin));
+      leaves.push_back(part.begin);
   }
 }
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "search/tree_items.h"
 #include <algorithm>
 #include <cstddef>
-#include <fresco/search/tree_items.h>
-namespace fresco {
+namespace fresco::search {
 namespace {
 constexpr std::ptrdiff_t few = 32; // sorted by comparing all with all
 
@@ -80,4 +80,4 @@ void selectMiddle(TreeItem* begin, TreeItem* middle, TreeItem* end, int axis)
   }
   sortFew(begin, end, axis);
 }
-} // namespace fresco
+} // namespace fresco::search

@@ -78,8 +78,8 @@ template <typename Use>
 void forNeighborhoods(const Field& field, const Points& normals, int threads, const Use& use)
 {
   const auto search = [&](Index range) {
-    const CompactLists& lists = field.lists[range];
-    CompactReader reader(lists);
+    const CompressedLists& lists = field.lists[range];
+    CompressedReader reader(lists);
     Neighborhood around;
     for (around.point = lists.begin; around.point < lists.end; ++around.point) {
       reader.next(around.list);

@@ -81,8 +81,8 @@ void CreaseNormals::markCreases(int threads)
   at_crease_.assign(normals_.cols(), 0);
   std::vector<float> noises(at_crease_.size());
   parallelFor(field_.lists.size(), threads, [&](Index range) {
-    const CompactLists& lists = field_.lists[range];
-    CompactReader reader(lists);
+    const CompressedLists& lists = field_.lists[range];
+    CompressedReader reader(lists);
     std::vector<int> list;
     for (Index i = lists.begin; i < lists.end; ++i) {
       reader.next(list);
@@ -132,8 +132,8 @@ void CreaseNormals::setCandidates(Index i, const Eigen::Vector3f& ray, const Dir
 void CreaseNormals::compare(int threads, const UseNormalCandidates& use) const
 {
   parallelFor(field_.lists.size(), threads, [&](Index range) {
-    const CompactLists& lists = field_.lists[range];
-    CompactReader reader(lists);
+    const CompressedLists& lists = field_.lists[range];
+    CompressedReader reader(lists);
     std::vector<int> list;
     std::vector<NormalCandidate> candidates;
     std::vector<CandidateNeighbor> near;

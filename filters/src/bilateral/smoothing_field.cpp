@@ -31,7 +31,7 @@ SmoothingField makeSmoothingField(const Points& points, const Points& normals, c
     field.radii = Eigen::VectorXf::Constant(1, 2 * options.sigma_d);
   else
     field.radii = 2 * options.spacings * field.areas.cwiseSqrt();
-  field.lists = compactRadiusLists(*field.tree, field.radii, most, options.threads);
+  field.lists = compressedRadiusLists(*field.tree, field.radii, most, options.threads);
   field.normals.resize(3, field.tree->size());
   for (Index i = 0; i < field.normals.cols(); ++i)
     field.normals.col(i) = normals.col(field.tree->columns()[i]).normalized();

@@ -11,7 +11,7 @@ struct SmoothingField {
   Points normals;                  ///< 3 x size of the tree, unit, by position
   Eigen::VectorXf areas;           ///< that points stand for, by position, any common factor
   Eigen::VectorXf radii;           ///< of the neighbourhoods, lengths: one by position, or one for all
-  std::vector<CompactLists> lists; ///< of the neighbourhoods of all positions, in order
+  std::vector<CompressedLists> lists; ///< of the neighbourhoods of all positions, in order
 };
 
 /// @param normals 3xN, any length; points whose normal is not finite or zero are left out

@@ -80,7 +80,7 @@ private:
   float width_;    ///< at least, of a neighbourhood
   float variance_; ///< of the points, across their surfaces
   Fits& fits_;
-  NearGroup group_, wide_;
+  BatchKnn group_, wide_;
   std::vector<Index> lines_; ///< points whose neighbours lie on a line but for the noise
   bool thinned_ = false;
   GroupEncoder encoder_;

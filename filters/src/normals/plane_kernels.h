@@ -28,7 +28,7 @@ struct BestPlane {
 
 constexpr double rounding_share = 1e-6; // of the variances of points: sums in single precision tell no smaller ones
 
-/// Inner loops of plane fits over raw arrays; as NearKernels, with the same bits on any processor.
+/// Inner loops of plane fits over raw arrays; as KnnKernels, with the same bits on any processor.
 struct PlaneKernels {
   void (*fit)(const EightMoments& moments, EightPlanes& planes);
 

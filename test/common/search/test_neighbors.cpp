@@ -179,7 +179,7 @@ TEST(PointTree, RadiusListsAreThoseOfASearchOfAllPoints)
     EXPECT_EQ(std::vector<int>(lists.first(i), lists.last(i)), withinOfAll(tree, i, radii[i]));
 }
 
-TEST(PointTree, CompactListsHoldTheSame)
+TEST(PointTree, CompressedListsHoldTheSame)
 {
   for (const Index count : {0, 1, 9, 5000}) {
     const PointTree tree(unevenPoints(count, 8));
@@ -189,9 +189,9 @@ TEST(PointTree, CompactListsHoldTheSame)
         const NeighborLists lists = radiusLists(tree, radii, most);
         Index i = 0;
         std::vector<int> found;
-        for (const CompactLists& range : compactRadiusLists(tree, radii, most, 2)) {
+        for (const CompressedLists& range : compressedRadiusLists(tree, radii, most, 2)) {
           EXPECT_EQ(range.begin, i);
-          CompactReader reader(range);
+          CompressedReader reader(range);
           for (; i < range.end; ++i) {
             reader.next(found);
             ASSERT_EQ(found, std::vector<int>(lists.first(i), lists.last(i)));

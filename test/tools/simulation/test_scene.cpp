@@ -128,7 +128,7 @@ TEST(VirtualScene, RoundBodiesApproachTheirVolume)
 TEST(VirtualLight, FallsOnTheLitSideAndNotBelowABlock)
 {
   const Scene scene = emptyRoom();
-  const VirtualRays rays(scene.mesh);
+  const RayScene rays(scene.mesh);
   const Lightmap light = bakeLight(scene, rays, {});
   const LitScene lit{scene, rays, light};
   const auto seen = [&](const Vector3f& from, const Vector3f& to) {
@@ -144,7 +144,7 @@ TEST(VirtualLight, FallsOnTheLitSideAndNotBelowABlock)
 TEST(VirtualLight, DoesNotDependOnThreads)
 {
   const Scene scene = emptyRoom();
-  const VirtualRays rays(scene.mesh);
+  const RayScene rays(scene.mesh);
   LightingOptions one, four;
   one.threads = 1, four.threads = 4;
   const Lightmap a = bakeLight(scene, rays, one), b = bakeLight(scene, rays, four);

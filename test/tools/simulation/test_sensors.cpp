@@ -15,7 +15,7 @@ namespace {
 /// The conference room under coarse light, built once for all tests.
 struct Room {
   Scene scene = makeScene("conference_room", 0.4f);
-  VirtualRays rays{scene.mesh};
+  RayScene rays{scene.mesh};
   Lightmap light = bakeLight(scene, rays, coarse());
   LitScene lit{scene, rays, light};
   ScenePlaces samples = sampleSurface(scene, 2000, 1);
@@ -116,7 +116,7 @@ TEST(VirtualLaser, WideBeamsMixRangesAtDepthJumpsOnly)
 TEST(VirtualLaser, NothingComesBackAtGrazingAngles)
 {
   const Scene scene = plain(200.f);
-  const VirtualRays rays(scene.mesh);
+  const RayScene rays(scene.mesh);
   const Lightmap light = bakeLight(scene, rays, {});
   LaserOptions options = quiet(50000);
   options.max_range = 200.f;
@@ -137,7 +137,7 @@ TEST(VirtualLaser, NothingComesBackAtGrazingAngles)
 TEST(VirtualLaser, NoiseHasItsSizeAndGrowsWithRange)
 {
   const Scene scene = plain(20.f);
-  const VirtualRays rays(scene.mesh);
+  const RayScene rays(scene.mesh);
   const Lightmap light = bakeLight(scene, rays, {});
   LaserOptions options = quiet(60000);
   options.noise = 0.01f;
@@ -241,7 +241,7 @@ TEST(VirtualCamera, PixelsShowTheSurfaceThatProjectsThere)
         continue;
       const Eigen::Vector2d pixel = project(camera, local);
       const Vector3f from = view.center().cast<float>();
-      const VirtualHit hit = room().rays.intersect({from, world.cast<float>() - from});
+      const RayHit hit = room().rays.intersect({from, world.cast<float>() - from});
       if (!(pixel.array() > 0).all() || pixel.x() >= camera.width || pixel.y() >= camera.height ||
           std::fabs(hit.distance - 1.f) > 1e-3f)
         continue;

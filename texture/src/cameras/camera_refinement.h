@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include "views/photo_store.h"
-#include "views/ray_scene.h"
 #include <fresco/core/progress.h>
+#include <fresco/search/ray_scene.h>
 namespace fresco::texture {
 /// Cameras that agree so well are left alone: half a pixel is what matching itself errs by.
 constexpr double agreement_pixels = 0.5;

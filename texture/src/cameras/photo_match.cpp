@@ -66,7 +66,7 @@ private:
     Eigen::Matrix<double, 3, 5> points;
     for (int k = 0; k < 5; ++k) {
       const Eigen::Vector3f ray = views_[v].ray(corner.pixel + offsets[k]);
-      const RayHit hit = scene_.cast(from, ray);
+      const RayHit hit = scene_.intersect({from, ray});
       if (hit.face < 0)
         return false;
       points.col(k) = (from + hit.distance * ray).cast<double>();
@@ -96,7 +96,7 @@ private:
     if (!(-corner.normal.dot(ray.cast<double>().normalized()) > least_cosine))
       return false;
     pixel = p.head<2>().cast<double>();
-    return scene_.cast(views_[v].center(), ray).distance > 1 - depth_agreement;
+    return scene_.intersect({views_[v].center(), ray}).distance > 1 - depth_agreement;
   }
 
   /// Views that see most of the corners; fewer and fewer of those that see less, for long baselines.

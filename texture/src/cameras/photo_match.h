@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include "cameras/grey_pyramid.h"
-#include "views/ray_scene.h"
+#include "cameras/projector.h"
+#include <fresco/search/ray_scene.h>
 namespace fresco::texture {
 /// Cameras that are being refined, in mesh coordinates.
 struct CameraState {

@@ -14,7 +14,7 @@ std::vector<DepthMap> coarseMaps(const RayScene& scene, const ViewList& views, i
       n, threads,
       [&](Index v) {
         if (views.used[v])
-          maps[v] = scene.depthMap(views.projectors[v], std::min(most_cells, cells_of_all / n));
+          maps[v] = depthMap(scene, views.projectors[v], std::min(most_cells, cells_of_all / n));
       },
       1);
   return maps;

@@ -113,7 +113,7 @@ std::vector<OutlineMask> outlineMasks(const PatchMesh& patches, const Visibility
       masks.size(), input.options.threads,
       [&](Index v) {
         if (views.used[v])
-          masks[v] = OutlineMask(input.scene.depthMap(views.projectors[v], most_cells), reach_pixels, step);
+          masks[v] = OutlineMask(depthMap(input.scene, views.projectors[v], most_cells), reach_pixels, step);
       },
       1);
   return masks;

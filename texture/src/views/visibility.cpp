@@ -67,7 +67,7 @@ public:
     std::vector<Seen> seen;
     if (!(pixels_.row(2).array() > 0).any())
       return seen;
-    const DepthMap map = scene.depthMap(view_, most_cells);
+    const DepthMap map = depthMap(scene, view_, most_cells);
     const float radius = limits_.margin / map.step;
     constexpr float rim_pixels = 2; // reach of cubic interpolation
     const float rim = rim_pixels / map.step;

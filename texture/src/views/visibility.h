@@ -3,7 +3,7 @@
 #include "cameras/projector.h"
 #include "views/patch_mesh.h"
 #include "views/photo_store.h"
-#include "views/ray_scene.h"
+#include "views/depth_map.h"
 #include <array>
 #include <cmath>
 #include <fresco/core/progress.h>

@@ -32,7 +32,7 @@ bool isFree(const PlanningInput& in, const Vector3f& place, float clearance)
   int hits = 0, fronts = 0;
   for (int i = 0; i < probe_rays; ++i) {
     const Vector3f direction = probeDirection(i);
-    const VirtualHit hit = in.rays.intersect({place, direction});
+    const RayHit hit = in.rays.intersect({place, direction});
     if (hit.face < 0)
       continue;
     if (hit.distance < clearance)
@@ -50,7 +50,7 @@ bool isFree(const PlanningInput& in, const Vector3f& place, float clearance)
 
 bool aboveFloor(const PlanningInput& in, const Vector3f& place)
 {
-  const VirtualHit hit = in.rays.intersect({place, -Vector3f::UnitZ()});
+  const RayHit hit = in.rays.intersect({place, -Vector3f::UnitZ()});
   return hit.face >= 0 && place.z() - hit.distance < 0.02f;
 }
 
@@ -180,9 +180,9 @@ Eigen::MatrixXf viewQuality(const PlanningInput& in, const Points& places, float
       const float distance = way.norm(), cosine = -way.dot(in.samples.normals.col(s)) / distance;
       if (cosine < 0.12f)
         continue;
-      RayPacket single;
+      RayPacket<16> single;
       single[0] = {places.col(p), way, 1.f};
-      if (in.rays.occludedPacket(single, 1) == 0)
+      if (in.rays.occluded(single, 1) == 0)
         quality(p, s) = cosine * std::min(1.f, good_distance / distance);
     }
   });

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include "simulation/sensors/ray_scene.h"
+#include "simulation/scene/scene.h"
 #include <cstdint>
+#include <fresco/search/ray_scene.h>
 namespace fresco::simulation {
 /// Points spread over the surface, equally dense everywhere, some of which a good set of places should see.
 struct ScenePlaces {
@@ -12,7 +13,7 @@ ScenePlaces sampleSurface(const Scene& scene, int count, std::uint64_t seed);
 /// A scene with what planning needs.
 struct PlanningInput {
   const Scene& scene;
-  const VirtualRays& rays;
+  const RayScene& rays;
   const ScenePlaces& samples;
   std::uint64_t seed = 1;
   int threads = 0;

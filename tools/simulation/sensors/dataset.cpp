@@ -90,7 +90,7 @@ void writeTruth(const Run& run, const std::vector<int>& returns)
   Eigen::VectorXf weight = Eigen::VectorXf::Zero(mesh.vertexCount()), seen = Eigen::VectorXf::Zero(mesh.vertexCount());
   for (Index f = 0; f < mesh.faceCount(); ++f)
     for (int k = 0; k < 3; ++k) {
-      const VirtualHit corner{static_cast<int>(f), 0.f, k == 1 ? 1.f : 0.f, k == 2 ? 1.f : 0.f};
+      const RayHit corner{static_cast<int>(f), 0.f, k == 1 ? 1.f : 0.f, k == 2 ? 1.f : 0.f};
       sum.col(mesh.faces(k, f)) += surfaceColor(run.lit, corner, 0.02f);
       weight[mesh.faces(k, f)] += 1.f;
       seen[mesh.faces(k, f)] += static_cast<float>(returns[f]);
@@ -176,7 +176,7 @@ void writeDataset(const std::string& name, const std::string& folder, const Data
   const Scene scene = loadScene(name, options.max_edge);
   makeFolder(folder);
   removeOld(folder);
-  const VirtualRays rays(scene.mesh);
+  const RayScene rays(scene.mesh);
   LightingOptions lighting;
   lighting.threads = options.threads;
   report(progress, "light", 0.02);

@@ -101,7 +101,7 @@ public:
 
   Return measure(const Vector3d& direction, Index beam) const
   {
-    const VirtualHit hit = middle(direction);
+    const RayHit hit = middle(direction);
     if (hit.face < 0 || hit.distance > max_range_)
       return {};
     CounterRandom random(options_.seed, 1000 + number_, static_cast<std::uint64_t>(beam));
@@ -125,11 +125,11 @@ public:
 private:
   float brightness() const { return static_cast<float>(CounterRandom(options_.seed, 71, number_).uniform(0.92, 1.08)); }
   Ray worldRay(const Vector3d& direction) const { return {center_, (R_ * direction).cast<float>().normalized()}; }
-  VirtualHit middle(const Vector3d& direction) const { return lit_.rays.intersect(worldRay(direction)); }
+  RayHit middle(const Vector3d& direction) const { return lit_.rays.intersect(worldRay(direction)); }
   float radius(float range) const { return options_.beam_radius + options_.divergence * range; }
 
   /// Dark, glassy and obliquely met surfaces often send too little light back.
-  double answerProbability(const VirtualHit& hit, float cosine) const
+  double answerProbability(const RayHit& hit, float cosine) const
   {
     const float reflectance = std::pow(surfaceAlbedo(lit_.scene, hit, 2.f * radius(hit.distance)).mean(), 2.2f);
     const float far = hit.distance / unit_, distance = std::min(1.f, 36.f / (far * far));
@@ -138,12 +138,9 @@ private:
     return glass * answer * smoothStep(0.02f, 0.08f, cosine);
   }
 
-  bool isApart(const VirtualHit& a, const VirtualHit& b) const
-  {
-    return std::fabs(a.distance - b.distance) > options_.pulse;
-  }
+  bool isApart(const RayHit& a, const RayHit& b) const { return std::fabs(a.distance - b.distance) > options_.pulse; }
 
-  float strength(const VirtualHit& hit, const Ray& ray) const
+  float strength(const RayHit& hit, const Ray& ray) const
   {
     const float reflectance = std::pow(surfaceAlbedo(lit_.scene, hit, 0.02f).mean(), 2.2f);
     return reflectance * std::fabs(faceNormal(lit_.scene.mesh, hit.face).dot(ray.direction)) + 1e-6f;
@@ -151,19 +148,19 @@ private:
 
   /// Traces the rim of the beam; where it meets another surface the range is a weighted mean of both, or that of the
   /// stronger one if they are far apart.
-  void widen(const Vector3d& direction, const VirtualHit& hit, Return& back) const
+  void widen(const Vector3d& direction, const RayHit& hit, Return& back) const
   {
     const Ray axis = worldRay(direction);
     const Vector3f u = axis.direction.unitOrthogonal(), v = axis.direction.cross(u),
                    normal = faceNormal(lit_.scene.mesh, hit.face);
     const float plane = normal.dot(axis.direction) * hit.distance;
-    thread_local std::vector<std::pair<VirtualHit, Ray>> rim; // what the rays beside the middle meet
+    thread_local std::vector<std::pair<RayHit, Ray>> rim; // what the rays beside the middle meet
     rim.clear();
     bool elsewhere = false;
     for (const RimRay& beside : rim_) {
       const float spread = beside.part * radius(hit.distance) / hit.distance;
       const Ray ray{center_, (axis.direction + spread * (beside.cosine * u + beside.sine * v)).normalized()};
-      const VirtualHit other = lit_.rays.intersect(ray);
+      const RayHit other = lit_.rays.intersect(ray);
       if (other.face < 0)
         continue;
       const bool apart = isApart(other, hit);

@@ -38,11 +38,12 @@ Place placeOn(const Scene& scene, const Cell& cell, const CellPoint& at)
   return {cellPosition(scene, cell, at) + lift * facet, facet, normal.normalized()};
 }
 
+constexpr int packet_size = 16;      // rays traced together
 constexpr std::size_t lamp_rays = 8; // a lamp is seen through a grid of 4x2 points; a packet serves two lamps
 
 /// Rays to two lamps, and the light that each brings if nothing is in the way.
 struct LampRays {
-  RayPacket rays;
+  RayPacket<packet_size> rays;
   std::array<float, packet_size> light{};
 };
 
@@ -62,7 +63,7 @@ void aimAtLamp(const Lamp& lamp, const Place& place, LampRays& to, std::size_t f
 }
 
 /// Light straight from the lamps, with soft shadows.
-Vector3f directLight(const Scene& scene, const VirtualRays& rays, const Place& place)
+Vector3f directLight(const Scene& scene, const RayScene& rays, const Place& place)
 {
   Vector3f sum = Vector3f::Zero();
   for (std::size_t first = 0; first < scene.lamps.size(); first += 2) {
@@ -72,7 +73,7 @@ Vector3f directLight(const Scene& scene, const VirtualRays& rays, const Place& p
       aimAtLamp(scene.lamps[first + k], place, to, k * lamp_rays);
     if (*std::max_element(to.light.begin(), to.light.end()) <= 0.f)
       continue;
-    const unsigned blocked = rays.occludedPacket(to.rays, static_cast<int>(count * lamp_rays));
+    const unsigned blocked = rays.occluded(to.rays, static_cast<int>(count * lamp_rays));
     for (std::size_t i = 0; i < count * lamp_rays; ++i)
       if (!(blocked >> i & 1u))
         sum += to.light[i] * scene.lamps[first + i / lamp_rays].color;
@@ -100,7 +101,7 @@ std::vector<Vector3f> hemisphere(int count)
 
 struct GatherInput {
   const Scene& scene;
-  const VirtualRays& rays;
+  const RayScene& rays;
   const std::vector<Vector3f>& radiance; ///< per cell
   const std::vector<Vector3f>& facets;   ///< per cell
   const std::vector<Vector3f>& directions;
@@ -115,10 +116,10 @@ Gathered gather(const GatherInput& in, const Place& place)
   frame.col(1) = place.normal.cross(frame.col(0));
   Gathered sum;
   for (std::size_t first = 0; first < in.directions.size(); first += packet_size) {
-    RayPacket packet;
+    RayPacket<packet_size> packet;
     for (std::size_t i = 0; i < packet_size; ++i)
       packet[i] = {place.position, frame * in.directions[first + i]};
-    const HitPacket hits = in.rays.intersectPacket(packet, false);
+    const HitPacket<packet_size> hits = in.rays.intersect(packet, RayOrder::incoherent);
     for (std::size_t i = 0; i < packet_size; ++i) {
       if (hits[i].face < 0)
         continue;
@@ -149,7 +150,7 @@ Vector3f cellAlbedo(const Scene& scene, const Cell& cell, const CellPoint& at, f
 }
 
 /// Radiance of every cell after two bounces; lamps themselves are left out, for they are counted as lamps.
-std::vector<Vector3f> cellRadiance(const Scene& scene, const VirtualRays& rays, const std::vector<Vector3f>& facets,
+std::vector<Vector3f> cellRadiance(const Scene& scene, const RayScene& rays, const std::vector<Vector3f>& facets,
                                    int threads)
 {
   const Index count = scene.cells.size();
@@ -304,8 +305,7 @@ void Lightmap::expose(const LightingOptions& options)
   });
 }
 
-Lightmap bakeLight(const Scene& scene, const VirtualRays& rays, const LightingOptions& options,
-                   const Progress& progress)
+Lightmap bakeLight(const Scene& scene, const RayScene& rays, const LightingOptions& options, const Progress& progress)
 {
   require(options.spacing > 0.f, "lighting: spacing ", options.spacing, " is not positive");
   require(options.gather_packets >= 1 && options.gather_packets <= 64, "lighting: gather_packets is not in 1..64");
@@ -348,7 +348,7 @@ Vector3f toneCurve(const Vector3f& x)
   });
 }
 
-Vector3f surfaceAlbedo(const Scene& scene, const VirtualHit& hit, float footprint)
+Vector3f surfaceAlbedo(const Scene& scene, const RayHit& hit, float footprint)
 {
   const int code = scene.face_cell[hit.face];
   return cellAlbedo(scene, scene.cells[code / 2], cellPoint(code % 2, hit.beta, hit.gamma), footprint);
@@ -360,7 +360,7 @@ const Material& materialAt(const Scene& scene, int face)
   return scene.materials[scene.parts[cell.part].material];
 }
 
-Vector3f surfaceColor(const LitScene& lit, const VirtualHit& hit, float footprint)
+Vector3f surfaceColor(const LitScene& lit, const RayHit& hit, float footprint)
 {
   const Vector3f color = surfaceAlbedo(lit.scene, hit, footprint);
   const float emission = materialAt(lit.scene, hit.face).emission;

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include "simulation/sensors/ray_scene.h"
+#include "simulation/scene/scene.h"
 #include <fresco/core/progress.h>
+#include <fresco/search/ray_scene.h>
 namespace fresco::simulation {
 struct LightingOptions {
   float spacing = 0.034f;   ///< metres between places on a surface where light is computed, > 0
@@ -23,7 +24,7 @@ public:
   };
 
 private:
-  friend Lightmap bakeLight(const Scene&, const VirtualRays&, const LightingOptions&, const Progress&);
+  friend Lightmap bakeLight(const Scene&, const RayScene&, const LightingOptions&, const Progress&);
   void layOut(const Scene& scene, float spacing);
   void expose(const LightingOptions& options);
   std::vector<Lattice> lattices_; ///< per cell
@@ -31,7 +32,7 @@ private:
 };
 
 /// @throws std::runtime_error if `progress` asks to stop
-Lightmap bakeLight(const Scene& scene, const VirtualRays& rays, const LightingOptions& options,
+Lightmap bakeLight(const Scene& scene, const RayScene& rays, const LightingOptions& options,
                    const Progress& progress = {});
 
 /// Display value after the shoulder that keeps lamps from clipping: x up to 0.62, then up to 0.82 at most, so that a
@@ -41,15 +42,15 @@ Eigen::Vector3f toneCurve(const Eigen::Vector3f& x);
 /// A scene with its light: what every sensor sees.
 struct LitScene {
   const Scene& scene;
-  const VirtualRays& rays;
+  const RayScene& rays;
   const Lightmap& light;
 };
 
 const Material& materialAt(const Scene& scene, int face);
 
 /// Display albedo 0..1 of the surface at a hit. @param footprint metres, size of the asking pixel on the surface
-Eigen::Vector3f surfaceAlbedo(const Scene& scene, const VirtualHit& hit, float footprint);
+Eigen::Vector3f surfaceAlbedo(const Scene& scene, const RayHit& hit, float footprint);
 
 /// Display colour 0..1 of the lit surface at a hit. @param footprint metres, size of the asking pixel on the surface
-Eigen::Vector3f surfaceColor(const LitScene& lit, const VirtualHit& hit, float footprint);
+Eigen::Vector3f surfaceColor(const LitScene& lit, const RayHit& hit, float footprint);
 } // namespace fresco::simulation

@@ -13,7 +13,7 @@ using Eigen::Vector3f;
 namespace {
 constexpr int block = 2; // pixels along the side of a ray packet's square
 constexpr float corners[4][2] = {{0.25f, 0.25f}, {0.75f, 0.25f}, {0.25f, 0.75f}, {0.75f, 0.75f}}; // rays within a pixel
-static_assert(4 * block * block == packet_size);
+constexpr int packet_size = 4 * block * block; // rays traced together
 const Vector3f background(0.7f, 0.75f, 0.8f);
 
 /// Noise of a pixel, deviation 1: twelve random bits of a hash each, four a channel (Irwin-Hall).
@@ -43,10 +43,10 @@ void store(Image& image, const Shot& shot, const Eigen::Vector2i& at, const Vect
 }
 
 /// Rays of the pixels at (x, y) .. (x + 1, y + 1), four a pixel.
-RayPacket pixelRays(const Shot& shot, const Vector3f& center, const Eigen::Vector2i& at)
+RayPacket<packet_size> pixelRays(const Shot& shot, const Vector3f& center, const Eigen::Vector2i& at)
 {
   const Eigen::Matrix3d R_world_camera = shot.view.T_camera_world.linear().transpose();
-  RayPacket packet;
+  RayPacket<packet_size> packet;
   for (int i = 0; i < packet_size; ++i) {
     const int pixel = i / 4;
     const Vector2d where(at.x() + pixel % block + corners[i % 4][0], at.y() + pixel / block + corners[i % 4][1]);
@@ -56,7 +56,7 @@ RayPacket pixelRays(const Shot& shot, const Vector3f& center, const Eigen::Vecto
   return packet;
 }
 
-Vector3f rayColor(const LitScene& lit, const CameraModel& camera, const Ray& ray, const VirtualHit& hit)
+Vector3f rayColor(const LitScene& lit, const CameraModel& camera, const Ray& ray, const RayHit& hit)
 {
   if (hit.face < 0)
     return background;
@@ -95,8 +95,8 @@ Image takePhotograph(const LitScene& lit, const Shot& shot, int threads)
       [&](Index row) {
         for (int x = 0; x < camera.width; x += block) {
           const Eigen::Vector2i at(x, static_cast<int>(row) * block);
-          const RayPacket packet = pixelRays(shot, center, at);
-          const HitPacket hits = lit.rays.intersectPacket(packet, true);
+          const RayPacket<packet_size> packet = pixelRays(shot, center, at);
+          const HitPacket<packet_size> hits = lit.rays.intersect(packet, RayOrder::coherent);
           for (int pixel = 0; pixel < block * block; ++pixel) {
             const Eigen::Vector2i own = at + Eigen::Vector2i(pixel % block, pixel / block);
             if (own.x() >= camera.width || own.y() >= camera.height)

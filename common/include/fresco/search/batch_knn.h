@@ -1,54 +1,60 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include <fresco/core/export.h>
-#include <fresco/search/knn_kernels.h>
 #include <fresco/search/neighbors.h>
 #include <functional>
 namespace fresco {
-/// Neighbour search for the points of a subtree at once: the leaves around all of them are found in one descent, those
-/// around each leaf among them, and each point is compared with the points in those, eight at a time.
+namespace search {
+struct KnnKernels;
+}
+
+/// Search for the k nearest neighbours (or those within a radius) of all points of a subtree together. One descent of
+/// the tree finds the leaves around the whole group; of these, the leaves near one leaf of the group are picked by
+/// their boxes; each point is then compared with the points in them, eight at a time.
+///
+/// This is own code since nanoflann takes twice as long for normals and smoothing: docs/measurements/search.md.
 ///
 /// Points are named by codes: 8 * place of their leaf in leaves() + place in the leaf.
-class FRESCO_EXPORT NearGroup {
+class FRESCO_EXPORT BatchKnn {
 public:
-  explicit NearGroup(const PointTree& tree, const NearKernels& kernels = nearKernels());
+  explicit BatchKnn(const PointTree& tree);
 
-  /// Goes to the points of leaves begin .. end - 1.
+  /// Makes the points of leaves begin .. end - 1 the group.
   void enter(Index begin, Index end);
   Index begin() const { return begin_; } ///< first position
   Index end() const { return end_; }     ///< behind the last position
 
-  /// About the distance of the `k`-th neighbour of a point of the group if they are part of a surface, from their
-  /// extent.
+  /// Estimate of the distance to the `k`-th neighbour of a point of the group, from the group's extent. Right where
+  /// its points are spread evenly over a flat piece of surface.
   float expectedReach(int k) const;
 
   /// Finds the leaves within `reach` of the box around the points; none where there are more than `most`.
   void gather(float reach, std::size_t most);
-  const std::vector<int>& leaves() const
-  {
-    return leaves_;
-  } ///< ascending, then those of farther neighbours found since
-  int position(int code) const { return 8 * leaves_[static_cast<std::size_t>(code) / 8] + code % 8; }
+  /// The leaves gathered, ascending, then those of farther neighbours found since.
+  const std::vector<int>& leaves() const { return leaves_; }
+  int position(int code) const { return 8 * leaves_[code / 8] + code % 8; }
 
-  /// Of any point of the tree; leaves() grows if its leaf is new.
+  /// The code of any point of the tree; leaves() grows if its leaf is new.
   int codeOf(int position);
 
-  /// Finds the `k` nearest of point i, itself included (equally far ones by position), for what follows.
+  /// Finds the `k` nearest of point i, itself included; ordered() and sum() read them. Of equally far ones those of the
+  /// smallest positions count.
   /// @param k <= tree.size()
   void nearest(Index i, int k);
-  /// Their positions, by distance, then position.
+  /// Writes the positions of those found, by distance, then position.
   void ordered(int* positions);
-  /// Sums of their offsets from the point (see NearKernels::sum). @return their codes, about in order of position
+  /// Sums over the offsets of those found from the point: x, y, z, xx, xy, xz, yy, yz, zz, and the largest squared
+  /// distance. @return their codes, about in order of position
   const int* sum(float* sums);
 
   /// Positions of the gathered points that are no farther from point i than `radius`, ascending. @return how many
   std::size_t within(Index i, float radius);
   const std::vector<int>& positions() const { return position_; }
 
-  /// Keeps some of the gathered points, evenly spread, for keptWithin(): such that about `wanted` of those of a surface
-  /// are within `radius` of one of them.
+  /// Keeps every m-th of the gathered points for keptWithin(), so many that on a surface about `wanted` of them lie
+  /// within `radius` of each.
   void thin(float radius, int wanted);
-  /// Finds the points kept that are no farther from point i than `radius`, for sum(). @return how many
+  /// Finds the points kept that are no farther from point i than `radius`; sum() reads them. @return how many
   std::size_t keptWithin(Index i, float radius);
 
 private:
@@ -56,12 +62,10 @@ private:
   void makeRoom(std::size_t leaf_count);
   void focus(Index leaf, float reach);
   bool choose(Index i, int k, float bound);
-  void chooseFromTree(Index i, int k);
   void chooseByKeys(Index i);
-  NearPoints points() { return {squared_.data(), x_.data(), y_.data(), z_.data(), position_.data()}; }
 
   const PointTree& tree_;
-  const NearKernels& kernels_;
+  const search::KnnKernels& kernels_;
   Index begin_ = 0, end_ = 0, first_leaf_ = 0;
   Eigen::Vector3f low_, high_;
   float reach_ = 0;                        ///< all points so far around the box are gathered

@@ -7,7 +7,7 @@
 namespace fresco {
 /// Lists of neighbours of consecutive points, read one after the other: about half a byte per neighbour, since those in
 /// one leaf of the tree are the bits of one byte.
-struct FRESCO_EXPORT CompactLists {
+struct FRESCO_EXPORT CompressedLists {
   Index begin = 0, end = 0; ///< positions of the points
   std::vector<std::uint8_t> bytes;
 
@@ -15,9 +15,9 @@ struct FRESCO_EXPORT CompactLists {
   void add(const std::vector<int>& positions);
 };
 
-class FRESCO_EXPORT CompactReader {
+class FRESCO_EXPORT CompressedReader {
 public:
-  explicit CompactReader(const CompactLists& lists) : at_(lists.bytes.data()) {}
+  explicit CompressedReader(const CompressedLists& lists) : at_(lists.bytes.data()) {}
   /// The list of the next point.
   void next(std::vector<int>& positions);
 
@@ -27,6 +27,6 @@ private:
 };
 
 /// As radiusLists(), in about 1/7 of the memory. Ranges of points in their order.
-FRESCO_EXPORT std::vector<CompactLists> compactRadiusLists(const PointTree& tree, const Eigen::VectorXf& radii,
-                                                           int most, int threads);
+FRESCO_EXPORT std::vector<CompressedLists> compressedRadiusLists(const PointTree& tree, const Eigen::VectorXf& radii,
+                                                                 int most, int threads);
 } // namespace fresco

@@ -16,11 +16,11 @@ struct GroupLists {
   std::vector<int> starts;              ///< of the lists in `codes`, and the end; empty where all lists are as long
   int length = 0;                       ///< of every list, then
 
-  std::size_t start(Index at) const { return static_cast<std::size_t>(starts.empty() ? at * length : starts[at]); }
+  std::size_t start(Index at) const { return starts.empty() ? at * length : starts[at]; }
   const std::uint16_t* list(Index i) const { return codes + start(i - begin); }
   std::size_t count(Index i) const { return start(i - begin + 1) - start(i - begin); }
-  std::uint16_t codeOf(Index i) const { return static_cast<std::uint16_t>(i - begin); } ///< of a point of the group
-  Index position(std::uint16_t code) const { return 8 * static_cast<Index>(leaves[code / 8u]) + code % 8u; }
+  std::uint16_t codeOf(Index i) const { return i - begin; } ///< of a point of the group
+  Index position(std::uint16_t code) const { return 8 * Index{leaves[code / 8u]} + code % 8u; }
 };
 
 /// Points in an order good for loops, eight to a leaf, with their neighbours.

@@ -7,7 +7,10 @@
 #include <limits>
 #include <vector>
 namespace fresco {
+namespace search {
 struct TreeItem;
+}
+
 struct Neighbor {
   int index;              ///< column of the point, -1 = none
   float squared_distance; ///< length^2
@@ -24,8 +27,8 @@ public:
   /// @param points 3xN, N up to 2^31 - 1; copied
   explicit PointTree(const Points& points, int threads = 0);
 
-  Index size() const { return static_cast<Index>(columns_.size()); } ///< finite points
-  const std::vector<int>& columns() const { return columns_; }       ///< position -> column of `points`
+  Index size() const { return columns_.size(); }               ///< finite points
+  const std::vector<int>& columns() const { return columns_; } ///< position -> column of `points`
   Eigen::Vector3f point(Index position) const
   {
     const float* leaf = coordinates_.data() + position / leaf_size * 3 * leaf_size + position % leaf_size;
@@ -45,10 +48,10 @@ public:
   /// For inner loops: distance and position in one number, (bits of squared distance) << 32 | position. Such keys sort
   /// by distance, then position.
   using Key = std::uint64_t;
-  static int position(Key key) { return static_cast<int>(key & 0xffffffffu); }
+  static int position(Key key) { return key & 0xffffffffu; }
   static float squaredDistance(Key key)
   {
-    const auto bits = static_cast<std::uint32_t>(key >> 32);
+    const std::uint32_t bits = key >> 32;
     float value;
     std::memcpy(&value, &bits, sizeof value);
     return value;
@@ -57,7 +60,7 @@ public:
   {
     std::uint32_t bits;
     std::memcpy(&bits, &squared_distance, sizeof bits);
-    return static_cast<Key>(bits) << 32 | static_cast<std::uint32_t>(position);
+    return Key{bits} << 32 | static_cast<std::uint32_t>(position);
   }
 
   /// As nearest() with keys in no order.
@@ -87,8 +90,8 @@ private:
   struct Part;
   struct Box;
   struct OpenPart;
-  void build(std::vector<TreeItem>& items, int threads);
-  void split(std::vector<TreeItem>& items, const OpenPart& open, std::vector<OpenPart>& parts);
+  void build(std::vector<search::TreeItem>& items, int threads);
+  void split(std::vector<search::TreeItem>& items, const OpenPart& open, std::vector<OpenPart>& parts);
   template <typename Collector>
   void search(const Eigen::Vector3f& query, Collector& collector) const;
 
@@ -103,8 +106,8 @@ struct NeighborLists {
   std::vector<std::int64_t> begin; ///< N + 1
   std::vector<int> index;
 
-  Index size() const { return static_cast<Index>(begin.size()) - 1; }
-  Index count(Index i) const { return static_cast<Index>(begin[i + 1] - begin[i]); }
+  Index size() const { return begin.size() - 1; }
+  Index count(Index i) const { return begin[i + 1] - begin[i]; }
   const int* first(Index i) const { return index.data() + begin[i]; }
   const int* last(Index i) const { return index.data() + begin[i + 1]; }
 };

@@ -17,8 +17,12 @@ struct ClosestPoint {
 
 /// Closest-point search over the triangles of a mesh, exact: the least of the distances to all triangles, each computed
 /// in double precision. Of several faces at the same distance the one with the smallest index is returned. Triangles
-/// without area count as the segment or point that they are. Holds its own copy of the triangles (about 80 bytes each),
-/// may be used by many threads at once, and is cheap to copy.
+/// without area count as the segment or point that they are. Holds its own copy of the triangles, may be used by many
+/// threads at once, and is cheap to copy.
+///
+/// Embree's point query finds the triangles whose boxes are near (Wald et al. 2014, "Embree: a kernel framework for
+/// efficient CPU ray tracing"). A hierarchy of our own took as long:
+/// docs/measurements/search.md.
 class FRESCO_EXPORT TriangleTree {
 public:
   /// @throws std::invalid_argument if the mesh has no face, is not valid, or a coordinate exceeds 1e18

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include <fresco/core/export.h>
-namespace fresco {
+namespace fresco::search {
 /// A point while a tree is built.
 struct alignas(16) TreeItem {
   float x[3];
@@ -10,5 +9,5 @@ struct alignas(16) TreeItem {
 
 /// Reorders such that no x[axis] before `middle` is larger than one from there on; mostly without branches, which
 /// processors could not foretell.
-FRESCO_EXPORT void selectMiddle(TreeItem* begin, TreeItem* middle, TreeItem* end, int axis);
-} // namespace fresco
+void selectMiddle(TreeItem* begin, TreeItem* middle, TreeItem* end, int axis);
+} // namespace fresco::search

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include "cameras/projector.h"
-#include <fresco/core/mesh.h>
-#include <memory>
+#include <fresco/search/ray_scene.h>
 #include <vector>
 namespace fresco::texture {
 /// Depth of the nearest surface in each cell of a grid laid over an image.
@@ -14,27 +13,8 @@ struct DepthMap {
   float at(int x, int y) const { return depth[static_cast<std::size_t>(y) * width + x]; }
 };
 
-struct RayHit {
-  float distance; ///< in lengths of the direction
-  int face;       ///< -1 = nothing hit; the distance is infinite then
-};
-
-/// Triangles ready for ray casting.
-class RayScene {
-public:
-  explicit RayScene(const TriangleMesh& mesh);
-  ~RayScene();
-  RayScene(RayScene&&) noexcept;
-
-  /// One ray through the centre of each cell; as fine as the image, but at most `most_cells`.
-  DepthMap depthMap(const Projector& view, Index most_cells) const;
-
-  RayHit cast(const Eigen::Vector3f& from, const Eigen::Vector3f& direction) const;
-
-private:
-  struct Embree;
-  std::unique_ptr<Embree> embree_;
-};
+/// One ray through the centre of each cell; as fine as the image, but at most `most_cells`.
+DepthMap depthMap(const RayScene& scene, const Projector& view, Index most_cells);
 
 /// Minimum over the square of `radius` cells around each cell.
 DepthMap nearestWithin(const DepthMap& map, int radius);

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include <cstddef>
-#include <fresco/core/export.h>
-namespace fresco {
+namespace fresco::search {
 /// Points near a query, as separate arrays.
-struct NearPoints {
+struct KnnPoints {
   float* squared;   ///< squared distances
   float *x, *y, *z; ///< offsets from the query
   int* position;    ///< 8 * leaf + place in the leaf
@@ -12,7 +11,7 @@ struct NearPoints {
 
 /// Inner loops of the neighbour search over raw arrays. There is one set of them for any processor and one for those
 /// with AVX2; both round alike, so that results have the same bits.
-struct NearKernels {
+struct KnnKernels {
   /// The points of leaves of 8 (8 x, 8 y, 8 z, one after the other) whose squared distance to `query` is below
   /// `bound`, leaf by leaf in the order of `leaves`.
   /// @param squared,position out: squared distances, and 8 * leaf + place in the leaf; room for 8 * leaf_count + 8
@@ -22,7 +21,7 @@ struct NearKernels {
 
   /// As closer(), with offsets.
   std::size_t (*offsets)(const float* coordinates, const int* leaves, std::size_t leaf_count, const float* query,
-                         float bound, const NearPoints& points);
+                         float bound, const KnnPoints& points);
 
   /// Boxes around the points of leaves: of leaf l the low and high ends on each axis are boxes[axis * stride + l] and
   /// boxes[(3 + axis) * stride + l].
@@ -33,22 +32,21 @@ struct NearKernels {
   std::size_t (*closeBoxes)(const float* boxes, std::size_t leaf_count, std::size_t stride, std::size_t center,
                             float reach, int* leaves);
 
-  /// A limit that exactly `k` of values[0 .. count - 1], which are below `bound`, are below; negative where there is
-  /// none, as the k-th and the next are equal, or it was not found soon.
+  /// A threshold that exactly `k` of values[0 .. count - 1] are below, see kthSmallest(). All are below `bound`.
   /// @param values with room for count + 8; those from count on become infinite
   float (*limit)(float* values, std::size_t count, std::size_t k, float bound);
 
   /// Sums over the points whose squared distance is below `limit`: x, y, z, xx, xy, xz, yy, yz, zz, and the largest
   /// squared distance. Their positions go to `chosen`, in order.
   /// @param points with room for count + 8; squared distances from count on become infinite
-  void (*sum)(const NearPoints& points, std::size_t count, float limit, float* sums, int* chosen);
+  void (*sum)(const KnnPoints& points, std::size_t count, float limit, float* sums, int* chosen);
 
   /// How many of values[0 .. count - 1] are smaller than each of them.
   /// @param values,ranks with room for count + 8; values from count on become infinite
   void (*rank)(float* values, std::size_t count, int* ranks);
 };
 
-FRESCO_EXPORT const NearKernels& nearKernels();         ///< the fastest ones that this processor runs
-FRESCO_EXPORT const NearKernels& portableNearKernels(); ///< those that run everywhere
-FRESCO_EXPORT const NearKernels* avx2NearKernels();     ///< null where the processor has no AVX2
-} // namespace fresco
+const KnnKernels& knnKernels();         ///< the fastest ones that this processor runs
+const KnnKernels& portableKnnKernels(); ///< those that run everywhere
+const KnnKernels* avx2KnnKernels();     ///< null where the processor has no AVX2
+} // namespace fresco::search

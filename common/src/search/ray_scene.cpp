@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "search/embree_scene.h"
+#include <fresco/search/ray_scene.h>
+namespace fresco {
+struct RayScene::Embree : search::EmbreeScene {
+  using EmbreeScene::EmbreeScene;
+};
+
+namespace {
+RTCIntersectContext newContext(RTCIntersectContextFlags flags)
+{
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  context.flags = flags;
+  return context;
+}
+
+/// Lane i of Embree's rays, which keep each number of all rays together.
+template <typename Lanes>
+void setRay(Lanes& lanes, std::size_t i, const Ray& ray)
+{
+  lanes.org_x[i] = ray.origin.x(), lanes.org_y[i] = ray.origin.y(), lanes.org_z[i] = ray.origin.z();
+  lanes.dir_x[i] = ray.direction.x(), lanes.dir_y[i] = ray.direction.y(), lanes.dir_z[i] = ray.direction.z();
+  lanes.tnear[i] = ray.near, lanes.tfar[i] = ray.far, lanes.time[i] = 0.f;
+  lanes.mask[i] = ~0u, lanes.id[i] = 0, lanes.flags[i] = 0;
+}
+
+template <std::size_t n>
+struct Embrees;
+template <>
+struct Embrees<8> {
+  using RayHits = RTCRayHit8;
+  static constexpr auto intersect = rtcIntersect8;
+};
+template <>
+struct Embrees<16> {
+  using RayHits = RTCRayHit16;
+  static constexpr auto intersect = rtcIntersect16;
+};
+} // namespace
+
+RayScene::RayScene(const TriangleMesh& mesh, bool watertight)
+    : embree_(
+          std::make_unique<Embree>(mesh.vertices, mesh.faces, watertight ? RTC_SCENE_FLAG_ROBUST : RTC_SCENE_FLAG_NONE))
+{}
+
+RayScene::~RayScene() = default;
+RayScene::RayScene(RayScene&&) noexcept = default;
+
+RayHit RayScene::intersect(const Ray& ray) const
+{
+  RTCIntersectContext context = newContext(RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT);
+  RTCRayHit query{};
+  query.ray.org_x = ray.origin.x(), query.ray.org_y = ray.origin.y(), query.ray.org_z = ray.origin.z();
+  query.ray.dir_x = ray.direction.x(), query.ray.dir_y = ray.direction.y(), query.ray.dir_z = ray.direction.z();
+  query.ray.tnear = ray.near, query.ray.tfar = ray.far;
+  query.ray.mask = ~0u;
+  query.hit.geomID = query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+  rtcIntersect1(embree_->scene(), &context, &query);
+  const RTCHit& hit = query.hit;
+  if (hit.geomID == RTC_INVALID_GEOMETRY_ID)
+    return {};
+  return {static_cast<int>(hit.primID), query.ray.tfar, hit.u, hit.v, {hit.Ng_x, hit.Ng_y, hit.Ng_z}};
+}
+
+template <std::size_t n>
+HitPacket<n> RayScene::intersect(const RayPacket<n>& rays, RayOrder order) const
+{
+  RTCIntersectContext context = newContext(order == RayOrder::coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT
+                                                                       : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT);
+  alignas(64) int valid[n];
+  typename Embrees<n>::RayHits query;
+  for (std::size_t i = 0; i < n; ++i) {
+    valid[i] = -1;
+    setRay(query.ray, i, rays[i]);
+    query.hit.geomID[i] = query.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
+  }
+  Embrees<n>::intersect(valid, embree_->scene(), &context, &query);
+  const auto& hit = query.hit;
+  HitPacket<n> hits;
+  for (std::size_t i = 0; i < n; ++i)
+    if (hit.geomID[i] != RTC_INVALID_GEOMETRY_ID)
+      hits[i] = {static_cast<int>(hit.primID[i]),
+                 query.ray.tfar[i],
+                 hit.u[i],
+                 hit.v[i],
+                 {hit.Ng_x[i], hit.Ng_y[i], hit.Ng_z[i]}};
+  return hits;
+}
+
+template FRESCO_EXPORT HitPacket<8> RayScene::intersect(const RayPacket<8>&, RayOrder) const;
+template FRESCO_EXPORT HitPacket<16> RayScene::intersect(const RayPacket<16>&, RayOrder) const;
+
+unsigned RayScene::occluded(const RayPacket<16>& rays, int count) const
+{
+  RTCIntersectContext context = newContext(RTC_INTERSECT_CONTEXT_FLAG_COHERENT);
+  alignas(64) int valid[16];
+  RTCRay16 query;
+  for (int i = 0; i < 16; ++i) {
+    valid[i] = i < count ? -1 : 0;
+    setRay(query, i, rays[i < count ? i : 0]);
+  }
+  rtcOccluded16(valid, embree_->scene(), &context, &query);
+  unsigned blocked = 0;
+  for (int i = 0; i < count; ++i)
+    if (query.tfar[i] < 0.f)
+      blocked |= 1u << i;
+  return blocked;
+}
+} // namespace fresco
