@@ -1,31 +1,32 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "pipeline.h"
-#include "report.h"
 #include "support/args.h"
 #include "support/tool.h"
-using namespace fresco::model;
+#include <fresco/model/build_model.h>
 int main(int argc, char** argv)
 {
   return fresco::runTool("fresco_model", [&] {
-    fresco::model::ModelOptions options; // its defaults are the tool's defaults
+    fresco::ModelOptions options; // its defaults are the tool's defaults
     fresco::CommonOptions common;
     bool no_optimize = false;
     fresco::Args args(
         "fresco_model INPUT OUT_DIR [options]",
         "Makes a textured model of a room: points and normals, poses, surface, texture, pictures, report.\n"
         "INPUT is a folder of scans and photographs (scans/*.pcd, cameras/ as COLMAP model, images/, and\n"
-        "poses.txt, of which only the first pose is used unless -poses is given: it ties the scans to the\n"
+        "poses.txt, of which only the first pose is used unless -use_poses is given: it ties the scans to the\n"
         "photographs) or an RGB-D folder (camera-intrinsics.txt, frame-*.{color.jpg,depth.png,pose.txt}).\n"
         "Writes model.obj/.mtl/.png, model.glb, mesh.ply, poses.txt, snapshots/*.png, report.html and\n"
         "report.json to OUT_DIR; OUT_DIR/work holds what -resume needs.");
-    args.flag("poses", options.use_poses, "take the poses of poses.txt as they are instead of registering the scans");
+    args.flag("use_poses", options.use_poses,
+              "take the poses of poses.txt as they are instead of registering the scans");
+    args.flag("poses", options.use_poses, "old name of -use_poses, for one version");
     args.flag("resume", options.resume, "go on after the last stage that an earlier run into OUT_DIR finished");
     args.option("cell", options.cell, "finest cell of the surface reconstruction, metres, > 0");
     args.option("fuse", options.fuse, "RGB-D: cell in which the points of all frames are averaged, metres, > 0");
     args.option("bilateral", options.bilateral, "rounds of bilateral smoothing of the normals, >= 0");
-    args.option("trim", options.trim,
+    args.option("trim_levels", options.trim_levels,
                 "octree levels that the data may sustain less than they do elsewhere, else surface is cut off; 0 = "
                 "keep it closed");
+    args.option("trim", options.trim_levels, "old name of -trim_levels, for one version");
     args.flag("no_optimize", no_optimize, "leave the vertices where the reconstruction puts them: rounded edges");
     args.option("texel", options.texel, "side of a texel, metres; 0 = as fine as the photographs");
     args.size("size", options.width, options.height, "size of the pictures, pixels");
@@ -33,9 +34,9 @@ int main(int argc, char** argv)
     const auto words = args.parse(argc, argv, 2);
     options.threads = common.threads;
     options.optimize = !no_optimize;
-    const fresco::model::ModelReport report = fresco::model::buildModel(
-        fresco::model::readModelInput(words[0]), words[1], options, fresco::printProgress(common.quiet));
-    for (const fresco::model::StageRecord& stage : report.stages)
-      fresco::inform(common.quiet, fresco::model::stageSummary(stage));
+    const fresco::ModelReport report =
+        fresco::buildModel(words[0], words[1], options, fresco::printProgress(common.quiet));
+    for (const fresco::ModelStage& stage : report.stages)
+      fresco::inform(common.quiet, fresco::stageSummary(stage));
   });
 }

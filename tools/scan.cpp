@@ -15,13 +15,14 @@ void declare(Args& args, DatasetOptions& options, Switches& switches)
   args.option("stations", options.stations, "laser stations, 1..1000");
   args.option("points", options.laser.points, "laser points per station, about");
   args.option("noise", options.laser.noise, "deviation of the range at 4 m, metres; it grows with range and incidence");
-  args.flag("no_veil", switches.no_veil, "thin laser beams: no mixed pixels at depth jumps");
+  args.flag("no_veil", switches.no_veil, "thin laser beams: no mixed pixels (veil points) at depth jumps");
   args.option("max_range", options.laser.max_range, "of the laser, metres; 0 = 30 in rooms, without limit for meshes");
   args.option("seed", switches.seed, "of all random numbers; same seed, same bytes; >= 0");
   args.size("images", options.width, options.height, "size of the photographs, pixels, 16..20000 each");
   args.option("views", options.views, "photographs");
   args.flag("labels", options.labels,
-            "scans get a field label: 0 = of one surface, 1 = of several but within the noise of one, 2 = mixed pixel");
+            "scans get a field label: 0 = of one surface, 1 = of several but within the noise of one, 2 = mixed pixel "
+            "(veil point)");
   args.flag("no_images", switches.no_images, "no photographs");
   args.option("exposure", options.exposure_spread,
               "spread of the photographs' brightness, 0..0.9; white balance a quarter of it");

@@ -106,7 +106,8 @@ void declareLook(Args& args, Request& request)
               [&](const auto& words) { setBackground(picture, words); });
   args.flag("transparent", picture.transparent, "no background: PNG with alpha");
   args.option("crease", picture.crease_angle, "edges that bend by more look sharp with gouraud, 0..180 degrees");
-  args.flag("plain", picture.plain, "leave out the colours of vertices and points: the shape alone");
+  args.flag("no_colors", picture.no_colors, "leave out the colours of vertices and points: the shape alone");
+  args.flag("plain", picture.no_colors, "old name of -no_colors, for one version");
   args.option("point_size", picture.point_size, "size of points, pixels; 0 = by their number");
   args.option("oversampling", picture.oversampling, "pixels drawn per pixel along each side, 1..4: finer, slower");
 }
@@ -265,7 +266,7 @@ void run(int argc, char** argv)
     options.view = chooseView(request, model);
     for (const Shading shading : request.shadings) {
       report(progress, "draw " + shadingNames()[static_cast<std::size_t>(shading)],
-             0.2 + 0.7 * static_cast<double>(pictures.size()) / static_cast<double>(request.shadings.size()));
+             0.2 + 0.7 * pictures.size() / request.shadings.size());
       options.shading = shading;
       pictures.push_back(draw(request, model, options));
     }

@@ -97,7 +97,7 @@ void run(const Options& options)
   const std::string head = heading(cases, options.runner);
   const Progress progress = printProgress(options.common.quiet);
   double done = 0.0;
-  const auto log = [&](const std::string& line) { report(progress, line, done / static_cast<double>(cases.size())); };
+  const auto log = [&](const std::string& line) { report(progress, line, done / cases.size()); };
   Runner runner(table, options.runner, log);
   std::vector<Measurement> measurements;
   for (const Case& c : cases) {

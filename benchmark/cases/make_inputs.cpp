@@ -79,9 +79,9 @@ PointSet verticesOf(const TriangleMesh& whole)
 
 PointSet samplesOf(const TriangleMesh& mesh, const Options& options)
 {
-  SurfaceSamples samples = sampleSurface(mesh, options.count, static_cast<std::uint64_t>(options.seed));
+  SurfaceSamples samples = sampleSurface(mesh, options.count, options.seed);
   const Eigen::Vector3f extent = mesh.vertices.rowwise().maxCoeff() - mesh.vertices.rowwise().minCoeff();
-  std::mt19937_64 random(static_cast<std::uint64_t>(options.seed));
+  std::mt19937_64 random(options.seed);
   std::normal_distribution<double> noise(0.0, 0.01 * options.noise * extent.cast<double>().norm());
   if (options.noise > 0.0)
     for (Index i = 0; i < samples.points.size(); ++i)

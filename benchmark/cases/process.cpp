@@ -14,7 +14,7 @@ namespace fresco::benchmark {
 namespace {
 double seconds(const timeval& time)
 {
-  return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+  return time.tv_sec + 1e-6 * time.tv_usec;
 }
 
 double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
@@ -105,7 +105,7 @@ ProcessResult runProcess(const std::vector<std::string>& command, const std::str
       waitUntilOver(child, signals, limits.timeout > 0 ? start + limits.timeout : 0.0, status, usage);
   result.wall = now() - start;
   result.cpu = seconds(usage.ru_utime) + seconds(usage.ru_stime);
-  result.peak_memory = 1024.0 * static_cast<double>(usage.ru_maxrss);
+  result.peak_memory = 1024.0 * usage.ru_maxrss;
   result.failure = failureText(status, timed_out, log);
   result.ok = result.failure.empty();
   return result;

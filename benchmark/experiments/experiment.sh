@@ -1,4 +1,4 @@
-# Sourced by benchmark/experiments/fandisk and benchmark/conference_room.
+# Sourced by benchmark/fandisk and benchmark/conference_room.
 
 # Path of a file or folder of the real data.
 experiment_data() {

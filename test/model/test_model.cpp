@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "fusion.h"
-#include "optimization_stage.h"
-#include "pipeline.h"
-#include "report.h"
+#include "input/rgbd.h"
+#include "report/report.h"
+#include "stages/fusion.h"
+#include "stages/optimization.h"
 #include "test_data.h"
 #include <fresco/core/require.h>
 #include <fresco/io/file.h>
@@ -93,7 +93,7 @@ TEST(Fusion, OptimisationGetsNoMorePointsThanVerticesCanUse)
   EXPECT_NEAR(thinned.points.row(2).mean(), 0.f, 1e-4f);
 }
 
-struct Job {
+struct TwoStages {
   std::string folder;
   int runs_a = 0, runs_b = 0;
 
@@ -123,7 +123,7 @@ TEST(Stages, ProgramFilesAreTheProgramAndItsLibraries)
 
 TEST(Stages, ResumeTakesOverOnlyWhatIsStillValid)
 {
-  Job job{test::scratchFolder()};
+  TwoStages job{test::scratchFolder()};
   job.run("input", "x", false);
   EXPECT_EQ(job.runs_a + job.runs_b, 2);
   const auto records = job.run("input", "x", true);
@@ -155,7 +155,9 @@ TEST(Report, SummaryOfAStageIsOneLineForPeople)
   stage.peak_megabytes = 300.2;
   stage.resumed = true;
   stage.figures = {{"vertices", 85709}, {"cell", 0.0200004}, {"seconds", {{"solve", 1.0}}}, {"up", {0, 0, 1}}};
-  EXPECT_EQ(stageSummary(stage), "surface (earlier run): 1.2 s, 2.5 s of CPU, 300 MB, vertices 85709, cell 0.02");
+  const ModelReport report = publicReport({"", {stage}, {}, Eigen::Vector3d::UnitZ(), 0});
+  EXPECT_EQ(stageSummary(report.stages.at(0)),
+            "surface (earlier run): 1.2 s, 2.5 s of CPU, 300 MB, vertices 85709, cell 0.02");
 }
 
 TEST(Report, IsWholeAndEscaped)
@@ -174,7 +176,7 @@ TEST(Report, IsWholeAndEscaped)
   model.texcoord_faces = Faces::Constant(3, 1, -1);
   model.face_atlas = Eigen::VectorXi::Constant(1, -1);
   writeTexturedMesh(files.viewer_glb, model);
-  ModelReport content;
+  Report content;
   content.input = "a<b>";
   content.stages = {stage};
   content.pictures = {{"snapshots/p.png", "title"}};

@@ -45,6 +45,9 @@ expect_file("${SCRATCH}/registered.pcd")
 run("${build}/texture" "${room}/truth.ply" "${room}/cameras" "${room}/images" "${SCRATCH}/textured")
 expect_file("${SCRATCH}/textured/model.obj")
 expect_file("${SCRATCH}/textured/texture_0.png")
+run("${build}/model" "${room}" "${SCRATCH}/model")
+expect_file("${SCRATCH}/model/model.glb")
+expect_file("${SCRATCH}/model/report.html")
 
 # The pieces of code in the documentation compile.
 set(snippets "${SCRATCH}/snippets")
@@ -60,7 +63,7 @@ run("${CMAKE_COMMAND}" --build "${snippets}/build")
 # What a package holds besides.
 file(GLOB_RECURSE installed RELATIVE "${prefix}" "${prefix}/*")
 foreach(part "libfresco_core.so.${SOVERSION}" "libfresco_surface.so.${SOVERSION}." share/man/man1/fresco_model.1
-             include/fresco/surface/volumetric_reconstruction.h share/doc/fresco/copyright frescoConfig.cmake)
+             include/fresco/surface/volumetric_reconstruction.h include/fresco/model/build_model.h share/doc/fresco/copyright frescoConfig.cmake)
   if(NOT installed MATCHES "${part}")
     message(FATAL_ERROR "${part} was not installed")
   endif()

@@ -168,7 +168,7 @@ TEST(Tools, UnwritableOutput)
         "compare mesh.ply mesh.ply -colored none/out.ply"})
     expectRefused(folder, command, "none/out");
   for (const std::string command :
-       {"register cloud.pcd -o file", "scan mesh.ply file -stations 1", "model in file -poses"})
+       {"register cloud.pcd -o file", "scan mesh.ply file -stations 1", "model in file -use_poses"})
     expectRefused(folder, command, "file");
   EXPECT_EQ(get(folder + "/file"), "in the way");
 }
@@ -255,7 +255,7 @@ TEST(Tools, ModelInputThatDoesNotFit)
   expectRefused(folder, "model in out", "scans");
   fs::copy(folder + "/cloud.pcd", folder + "/in/scans/scan_00.pcd");
   expectRefused(folder, "model in out", "cameras");
-  expectRefused(folder, "model in out -poses", "poses.txt");
+  expectRefused(folder, "model in out -use_poses", "poses.txt");
   fs::copy(folder + "/cameras", folder + "/in/cameras");
   expectRefused(folder, "model in out", "a.png");
   writePoses(folder + "/in/poses.txt", {Pose(), Pose()});

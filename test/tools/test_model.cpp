@@ -45,8 +45,8 @@ public:
       apply(RLIMIT_AS, limits.memory_bytes);
       if (limits.foreign && geteuid() == 0 && (setgid(nobody) != 0 || setuid(nobody) != 0))
         _exit(126);
-      execl(program.c_str(), "fresco_model", input.c_str(), out.c_str(), "-poses", "-cell", "0.1", "-size", "160x120",
-            "-quiet", resume ? "-resume" : nullptr, nullptr);
+      execl(program.c_str(), "fresco_model", input.c_str(), out.c_str(), "-use_poses", "-cell", "0.1", "-size",
+            "160x120", "-quiet", resume ? "-resume" : nullptr, nullptr);
       _exit(127);
     }
   }

@@ -133,7 +133,7 @@ TEST_F(SnapshotTool, HelpNamesEveryOption)
   EXPECT_EQ(result.status, 0);
   for (const char* option :
        {"-shading", "-reference", "-size", "-eye", "-look", "-up", "-angle", "-view", "-transparent", "-cull", "-room",
-        "-plain", "-limit", "-unit", "-background", "-threads", "-quiet"})
+        "-no_colors", "-limit", "-unit", "-background", "-threads", "-quiet"})
     EXPECT_NE(result.output.find(option), std::string::npos) << option;
 }
 

@@ -24,7 +24,7 @@ template <typename Array, typename Matrix>
 vtkSmartPointer<Array> viewOf(Matrix& matrix)
 {
   auto array = vtkSmartPointer<Array>::New();
-  array->SetNumberOfComponents(static_cast<int>(matrix.rows()));
+  array->SetNumberOfComponents(matrix.rows());
   array->SetArray(matrix.data(), matrix.size(), keep_memory);
   return array;
 }
@@ -43,7 +43,7 @@ vtkSmartPointer<vtkCellArray> singlePoints(Index count)
   const vtkNew<vtkIntArray> points;
   points->SetNumberOfValues(count);
   for (Index i = 0; i < count; ++i)
-    points->SetValue(i, static_cast<int>(i));
+    points->SetValue(i, i);
   auto cells = vtkSmartPointer<vtkCellArray>::New();
   cells->SetData(1, points);
   return cells;
@@ -76,7 +76,7 @@ vtkSmartPointer<vtkTexture> makeTexture(const Image& image, bool mipmap)
   const vtkNew<vtkImageData> data;
   data->SetDimensions(image.width, image.height, 1);
   data->AllocateScalars(VTK_UNSIGNED_CHAR, image.channels);
-  const auto row = static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.channels);
+  const Index row = Index(image.width) * image.channels;
   auto* to = static_cast<unsigned char*>(data->GetScalarPointer());
   for (int y = image.height - 1; y >= 0; --y, to += row)
     std::memcpy(to, image.pixel(0, y), row);
@@ -98,11 +98,11 @@ void setSurface(vtkProperty& property, const SurfaceLook& look)
   property.SetDiffuse(look.lit ? 1.0 - look.ambient : 0.0);
   property.SetSpecular(look.specular);
   property.SetSpecularPower(25);
-  property.SetPointSize(static_cast<float>(look.size));
+  property.SetPointSize(look.size);
   property.SetBackfaceCulling(look.cull_back_faces);
   if (look.edge_strength > 0) {
     property.EdgeVisibilityOn();
-    property.SetLineWidth(static_cast<float>(look.size));
+    property.SetLineWidth(look.size);
     const auto edge = [&](int c) { return (1 - look.edge_strength) * look.color[c]; };
     property.SetEdgeColor(edge(0), edge(1), edge(2));
   }
@@ -140,7 +140,7 @@ Image shrinkTo(Image image, int largest)
           const int right = std::min(2 * x + 1, image.width - 1), below = std::min(2 * y + 1, image.height - 1);
           const int sum = image.pixel(2 * x, 2 * y)[c] + image.pixel(right, 2 * y)[c] + image.pixel(2 * x, below)[c] +
                           image.pixel(right, below)[c];
-          half.pixel(x, y)[c] = static_cast<std::uint8_t>((sum + 2) / 4);
+          half.pixel(x, y)[c] = (sum + 2) / 4;
         }
     image = std::move(half);
   }

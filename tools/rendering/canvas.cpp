@@ -32,20 +32,18 @@ std::mutex& graphicsMutex()
 Image resolve(const unsigned char* rgba, int width, int height, int factor)
 {
   Image image(width, height, 4);
-  const std::size_t row = static_cast<std::size_t>(width) * static_cast<std::size_t>(factor) * 4;
+  const Index row = Index(width) * factor * 4;
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x) {
       int sum[4] = {0, 0, 0, 0};
       for (int j = 0; j < factor; ++j)
         for (int i = 0; i < factor; ++i)
           for (int c = 0; c < 4; ++c)
-            sum[c] += rgba[static_cast<std::size_t>((height - 1 - y) * factor + j) * row +
-                           static_cast<std::size_t>((x * factor + i) * 4 + c)];
+            sum[c] += rgba[((height - 1 - y) * factor + j) * row + (x * factor + i) * 4 + c];
       const int samples = factor * factor, alpha = sum[3];
       for (int c = 0; c < 3; ++c)
-        image.pixel(x, y)[c] =
-            static_cast<std::uint8_t>(alpha > 0 ? std::min(255, (sum[c] * 255 + alpha / 2) / alpha) : 0);
-      image.pixel(x, y)[3] = static_cast<std::uint8_t>((alpha + samples / 2) / samples);
+        image.pixel(x, y)[c] = alpha > 0 ? std::min(255, (sum[c] * 255 + alpha / 2) / alpha) : 0;
+      image.pixel(x, y)[3] = (alpha + samples / 2) / samples;
     }
   return image;
 }

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <fresco/core/constants.h>
 #include <fresco/core/parallel.h>
 #include <unordered_map>
 namespace fresco::rendering {
@@ -15,8 +16,8 @@ Faces renumber(const Faces& faces, Index vertex_count, std::vector<int>& source)
     number[faces.data()[i]] = 0;
   for (std::size_t v = 0; v < number.size(); ++v)
     if (number[v] == 0) {
-      number[v] = static_cast<int>(source.size());
-      source.push_back(static_cast<int>(v));
+      number[v] = source.size();
+      source.push_back(v);
     }
   return faces.unaryExpr([&](int v) { return number[v]; });
 }
@@ -24,7 +25,7 @@ Faces renumber(const Faces& faces, Index vertex_count, std::vector<int>& source)
 /// Vertices and colours of `source`.
 void fillVertices(DrawMesh& drawn, const TriangleMesh& mesh)
 {
-  const auto count = static_cast<Index>(drawn.source.size());
+  const Index count = drawn.source.size();
   drawn.vertices.resize(3, count);
   drawn.colors.resize(3, mesh.colors.cols() > 0 ? count : 0);
   for (Index v = 0; v < count; ++v) {
@@ -38,16 +39,16 @@ void fillVertices(DrawMesh& drawn, const TriangleMesh& mesh)
 /// Corners (face * 3 + k) around each vertex, ascending: corners[start[v]] .. corners[start[v + 1]].
 struct VertexCorners {
   std::vector<Index> start, corners;
-  Index count(Index v) const { return start[static_cast<std::size_t>(v) + 1] - start[v]; }
+  Index count(Index v) const { return start[v + 1] - start[v]; }
   const Index* begin(Index v) const { return corners.data() + start[v]; }
 };
 
 VertexCorners cornersOfVertices(const Faces& faces, Index vertex_count)
 {
   VertexCorners around;
-  around.start.assign(static_cast<std::size_t>(vertex_count) + 1, 0);
+  around.start.assign(vertex_count + 1, 0);
   for (Index i = 0; i < faces.size(); ++i)
-    ++around.start[static_cast<std::size_t>(faces.data()[i]) + 1];
+    ++around.start[faces.data()[i] + 1];
   for (std::size_t v = 1; v < around.start.size(); ++v)
     around.start[v] += around.start[v - 1];
   around.corners.resize(faces.size());
@@ -57,8 +58,8 @@ VertexCorners cornersOfVertices(const Faces& faces, Index vertex_count)
   return around;
 }
 
-/// Area times normal in a unit that suits the size of the model, so that neither tiny nor huge models leave float's
-/// range.
+/// Area times normal in a unit that suits the size of the model,
+/// so that neither tiny nor huge models leave float's range.
 Points areaVectors(const Points& vertices, const Faces& faces, int threads)
 {
   Points areas(3, faces.cols());
@@ -79,8 +80,7 @@ class CreaseNormals {
 public:
   CreaseNormals(const DrawMesh& mesh, double crease_angle, int threads)
       : areas_(areaVectors(mesh.vertices, mesh.faces, threads)), directions_(areas_.colwise().normalized()),
-        around_(cornersOfVertices(mesh.faces, mesh.vertices.cols())),
-        cosine_(static_cast<float>(std::cos(crease_angle * 3.14159265358979323846 / 180)))
+        around_(cornersOfVertices(mesh.faces, mesh.vertices.cols())), cosine_(std::cos(crease_angle * pi / 180))
   {}
 
   const VertexCorners& around() const { return around_; }
@@ -144,9 +144,8 @@ DrawMesh creasedMesh(const TriangleMesh& mesh, double crease_angle, int threads)
   std::vector<Index> first(creased.size());
   DrawMesh drawn;
   for (std::size_t v = 0; v < creased.size(); ++v) {
-    first[v] = static_cast<Index>(drawn.source.size());
-    drawn.source.insert(drawn.source.end(), creased[v] ? crease.around().count(static_cast<Index>(v)) : 1,
-                        plain.source[v]);
+    first[v] = drawn.source.size();
+    drawn.source.insert(drawn.source.end(), creased[v] ? crease.around().count(v) : 1, plain.source[v]);
   }
   fillVertices(drawn, mesh);
   drawn.faces.resize(3, plain.faces.cols());
@@ -155,7 +154,7 @@ DrawMesh creasedMesh(const TriangleMesh& mesh, double crease_angle, int threads)
     const bool split = creased[v];
     for (Index i = 0; i < crease.around().count(v); ++i) {
       const Index to = first[v] + (split ? i : 0);
-      drawn.faces.data()[crease.around().begin(v)[i]] = static_cast<int>(to);
+      drawn.faces.data()[crease.around().begin(v)[i]] = to;
       if (split || i == 0)
         drawn.normals.col(to) = crease.normal(v, i);
     }
@@ -181,13 +180,13 @@ DrawMesh texturedPart(const TexturedMesh& model, int atlas)
   for (Index f = 0; f < model.mesh.faceCount(); ++f)
     if (model.face_atlas[f] == atlas)
       faces.push_back(f);
-  drawn.faces.resize(3, static_cast<Index>(faces.size()));
+  drawn.faces.resize(3, faces.size());
   for (Index i = 0; i < drawn.faces.cols(); ++i)
     for (int k = 0; k < 3; ++k) {
       const int v = model.mesh.faces(k, faces[i]);
       const int t = atlas < 0 ? 0 : model.texcoord_faces(k, faces[i]);
-      const auto key = static_cast<std::uint64_t>(v) << 32 | static_cast<std::uint32_t>(t);
-      const auto [at, added] = number.emplace(key, static_cast<int>(drawn.source.size()));
+      const std::uint64_t key = static_cast<std::uint64_t>(v) << 32 | static_cast<std::uint32_t>(t);
+      const auto [at, added] = number.emplace(key, drawn.source.size());
       if (added) {
         drawn.source.push_back(v);
         texcoord.push_back(t);

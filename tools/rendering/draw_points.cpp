@@ -2,6 +2,7 @@
 #include "rendering/draw_mesh.h"
 #include <algorithm>
 #include <cmath>
+#include <fresco/core/statistics.h>
 namespace fresco::rendering {
 namespace {
 /// Values that 2 % of the finite ones are below and above: single wild values must not decide on the colours.
@@ -14,9 +15,8 @@ std::pair<float, float> usualRange(const Eigen::VectorXf& values)
   if (finite.empty())
     return {0.f, 1.f};
   const auto at = [&](double share) {
-    const auto place = finite.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(finite.size() - 1));
-    std::nth_element(finite.begin(), place, finite.end());
-    return *place;
+    const Index rank = share * (finite.size() - 1);
+    return rankedValue(finite, rank);
   };
   const float low = at(0.02), high = at(0.98);
   return {low, high > low ? high : low + 1.f};

@@ -35,7 +35,7 @@ EGLDisplay deviceDisplay(PFNEGLGETPLATFORMDISPLAYEXTPROC get_display)
   const auto query = reinterpret_cast<PFNEGLQUERYDEVICESEXTPROC>(eglGetProcAddress("eglQueryDevicesEXT"));
   std::array<EGLDeviceEXT, 16> devices{};
   EGLint count = 0;
-  if (!query || !query(static_cast<EGLint>(devices.size()), devices.data(), &count))
+  if (!query || !query(devices.size(), devices.data(), &count))
     return EGL_NO_DISPLAY;
   for (EGLint i = 0; i < count; ++i) {
     const EGLDisplay display = get_display(EGL_PLATFORM_DEVICE_EXT, devices[i], nullptr);

@@ -6,7 +6,9 @@
 #include "rendering/scale_bar.h"
 #include <algorithm>
 #include <cmath>
+#include <fresco/core/constants.h>
 #include <fresco/core/require.h>
+#include <fresco/core/statistics.h>
 #include <fresco/surface/core/error_colors.h>
 namespace fresco::rendering {
 namespace {
@@ -25,9 +27,9 @@ double blueDistance(const Eigen::VectorXf& distances, const PictureOptions& opti
   if (options.error_limit > 0)
     return options.error_limit;
   std::vector<float> sorted(distances.data(), distances.data() + distances.size());
-  const auto at = sorted.begin() + static_cast<std::ptrdiff_t>(0.99 * static_cast<double>(sorted.size() - 1));
-  std::nth_element(sorted.begin(), at, sorted.end());
-  const double usual = *at > 0 ? *at : distances.maxCoeff();
+  const Index rank = 0.99 * (sorted.size() - 1);
+  const float at = rankedValue(sorted, rank);
+  const double usual = at > 0 ? at : distances.maxCoeff();
   return usual > 0 ? roundUp(usual) : 1.0;
 }
 
@@ -54,7 +56,7 @@ Eigen::Matrix2Xf rampCoordinates(const Eigen::VectorXf& distances, double larges
 {
   Eigen::Matrix2Xf texcoords(2, distances.size());
   for (Index v = 0; v < texcoords.cols(); ++v)
-    texcoords.col(v) << static_cast<float>((0.5 + (ramp_size - 1) * (distances[v] / largest)) / ramp_size), 0.5f;
+    texcoords.col(v) << (0.5 + (ramp_size - 1) * (distances[v] / largest)) / ramp_size, 0.5f;
   return texcoords;
 }
 
@@ -90,7 +92,7 @@ Image drawColored(DrawMesh& drawn, const Viewpoint& view, const Eigen::Vector3d&
 Viewpoint narrowView(const TriangleMesh& mesh, const PictureOptions& part, int whole_width)
 {
   Viewpoint view = chooseView(mesh, part);
-  constexpr double degree = 3.14159265358979323846 / 180;
+  constexpr double degree = radians_per_degree;
   if (part.view)
     view.angle = std::min(170.0, 2 / degree * std::atan(std::tan(view.angle * degree / 2) * whole_width / part.width));
   return view;

@@ -9,8 +9,7 @@ namespace fresco::rendering {
 class HeadlessWindow {
 public:
   /// @throws std::runtime_error naming what is missing if there is no EGL, no suitable platform or no OpenGL 3.2, or if
-  /// a
-  ///         first frame does not come back as drawn
+  ///         a first frame does not come back as drawn
   HeadlessWindow();
   ~HeadlessWindow();
   HeadlessWindow(const HeadlessWindow&) = delete;

@@ -5,12 +5,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <fresco/core/constants.h>
 #include <fresco/core/parallel.h>
 #include <fresco/core/require.h>
+#include <fresco/core/statistics.h>
 #include <fresco/search/ray_scene.h>
 namespace fresco::rendering {
 namespace {
-constexpr double pi = 3.14159265358979323846;
 constexpr double inside_angle = 62; // vertical, degrees: with 4:3 about the 77 degrees across of a wide lens
 constexpr int rays_x = 20, rays_y = 15;
 
@@ -81,11 +82,9 @@ Stand examine(const RayScene& scene, const Eigen::Vector3d& eye)
     stand.back += hit.any() && !hit.front;
     distances.push_back(hit.distance);
   }
-  const auto near = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() * 3 / 100);
-  std::nth_element(distances.begin(), near, distances.end());
-  stand.clearance = *near;
-  stand.front /= static_cast<double>(directions.size());
-  stand.back /= static_cast<double>(directions.size());
+  stand.clearance = rankedValue(distances, distances.size() * 3 / 100);
+  stand.front /= directions.size();
+  stand.back /= directions.size();
   return stand;
 }
 
@@ -97,8 +96,8 @@ std::vector<Stand> gridOfStands(const RayScene& scene, const RoomFrame& room, in
   std::vector<Stand> stands(heights.size() * cells * cells);
   parallelFor(stands.size(), threads, [&](Index i) {
     const Index cell = i % (cells * cells);
-    const Eigen::Vector3d share((static_cast<double>(cell % cells) + 0.5) / cells,
-                                (static_cast<double>(cell / cells) + 0.5) / cells, heights[i / (cells * cells)]);
+    const Eigen::Vector3d share((cell % cells + 0.5) / cells, (cell / cells + 0.5) / cells,
+                                heights[i / (cells * cells)]);
     const Eigen::Vector3d coordinates = room.low.array() + share.array() * room.size().array();
     stands[i] = examine(scene, room.point(coordinates));
   });
@@ -135,8 +134,8 @@ std::vector<Eigen::Vector3d> pictureRays(const Eigen::Matrix3d& axes, double ang
   return rays;
 }
 
-/// Mean step between neighbouring depths, as a ratio, at most a factor of e each: furniture makes steps, bare walls
-/// none.
+/// Mean step between neighbouring depths, as a ratio, at most a factor of e each: furniture makes steps,
+/// bare walls none.
 double relief(const std::vector<double>& depths)
 {
   double sum = 0;
@@ -168,7 +167,7 @@ double scoreInside(const RayScene& scene, const Stand& stand, const std::vector<
     else
       sum += std::min(1.0, depth / far) - std::max(0.0, 1 - depth / near);
   }
-  return sum / static_cast<double>(rays.size()) + 2 * relief(depths);
+  return sum / rays.size() + 2 * relief(depths);
 }
 
 Look bestLook(const RayScene& scene, const Stand& stand, const RoomFrame& room, double aspect)
@@ -198,7 +197,7 @@ double scoreAbove(const RayScene& scene, const Viewpoint& view, const Eigen::Vec
     depths.push_back(hit.distance);
     hits += hit.any();
   }
-  return hits / static_cast<double>(rays.size()) + 4 * relief(depths);
+  return hits / rays.size() + 4 * relief(depths);
 }
 
 void validate(const TriangleMesh& mesh, const IndoorOptions& options)
@@ -222,10 +221,8 @@ std::optional<Viewpoint> insideView(const TriangleMesh& mesh, const IndoorOption
   if (stands.empty())
     return {};
   std::vector<Look> looks(stands.size());
-  parallelFor(stands.size(), options.threads, [&](Index i) {
-    const auto at = static_cast<std::size_t>(i);
-    looks[at] = bestLook(scene, stands[at], room, options.aspect);
-  });
+  parallelFor(stands.size(), options.threads,
+              [&](Index i) { looks[i] = bestLook(scene, stands[i], room, options.aspect); });
   const auto best =
       std::max_element(looks.begin(), looks.end(), [](const Look& a, const Look& b) { return a.score < b.score; });
   const Eigen::Vector3d eye = mesh.origin + stands[best - looks.begin()].eye;

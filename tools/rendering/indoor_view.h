@@ -16,8 +16,8 @@ struct IndoorOptions {
 std::optional<Viewpoint> insideView(const TriangleMesh& mesh, const IndoorOptions& options = {});
 
 /// A view from above at an angle, the whole model in the picture, for PictureOptions::cull_back_faces: the ceiling and
-/// the near walls, seen from behind, are left out, and the inside lies open. Of eight directions the one that shows
-/// most.
+/// the near walls, seen from behind, are left out, and the inside lies open.
+/// Of eight directions the one that shows most.
 /// @throws as insideView()
 Viewpoint aboveView(const TriangleMesh& mesh, const IndoorOptions& options = {});
 } // namespace fresco::rendering

@@ -5,6 +5,7 @@
 #include "rendering/picture_parts.h"
 #include <algorithm>
 #include <cmath>
+#include <fresco/core/constants.h>
 #include <fresco/core/require.h>
 namespace fresco::rendering {
 namespace {
@@ -14,7 +15,7 @@ double pointSize(Index count, const PictureOptions& options)
   if (options.point_size > 0)
     return options.point_size;
   const double pixels = 0.5 * options.width * options.height;
-  return std::clamp(std::sqrt(pixels / static_cast<double>(std::max<Index>(count, 1))), 1.5, 6.0);
+  return std::clamp(std::sqrt(pixels / std::max<Index>(count, 1)), 1.5, 6.0);
 }
 
 /// Edges become finer and paler where faces are small, so that they do not cover the surface.
@@ -25,8 +26,8 @@ void setEdges(SurfaceLook& look, const TriangleMesh& mesh, const Viewpoint& view
   Index count = 0;
   for (Index f = 0; f < mesh.faceCount(); f += step, ++count)
     sum += (mesh.vertices.col(mesh.faces(0, f)) - mesh.vertices.col(mesh.faces(1, f))).norm();
-  const double visible = 2 * (view.eye - view.look).norm() * std::tan(view.angle * 3.14159265358979323846 / 360);
-  const double pixels = sum / static_cast<double>(count) / visible * height; // mean length of an edge
+  const double visible = 2 * (view.eye - view.look).norm() * std::tan(view.angle * pi / 360);
+  const double pixels = sum / count / visible * height; // mean length of an edge
   look.edge_strength = std::clamp((pixels - 1) / 6, 0.0, 0.85);
   look.size = std::clamp(pixels / 10, 0.05, 1.0);
 }
@@ -45,7 +46,7 @@ DrawMesh drawnFaces(const TriangleMesh& mesh, const PictureOptions& options)
     return normalColoredMesh(mesh, options.threads);
   DrawMesh drawn =
       options.shading == Shading::Gouraud ? creasedMesh(mesh, options.crease_angle, options.threads) : plainMesh(mesh);
-  if (options.plain || options.shading == Shading::Wireframe)
+  if (options.no_colors || options.shading == Shading::Wireframe)
     drawn.colors.resize(3, 0);
   return drawn;
 }
@@ -88,7 +89,7 @@ PointSet verticesOf(const TriangleMesh& mesh)
 /// The points to be drawn: with `cull_back_faces` those whose normals point to the side of the eye.
 PointSet drawnPoints(PointSet set, const PictureOptions& options, const Eigen::Vector3d& eye)
 {
-  if (options.plain) {
+  if (options.no_colors) {
     set.colors.resize(3, 0);
     set.intensities.resize(0);
   }

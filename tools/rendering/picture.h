@@ -31,7 +31,7 @@ struct PictureOptions {
   std::optional<Viewpoint> view;  ///< nothing: the whole model, from the default direction of Framing
   bool cull_back_faces = false;   ///< faces, and points with normals, seen from behind are left out: a room seen from
                                   ///< outside shows its inside
-  bool plain = false;             ///< colours and intensities of vertices and points are left out: the shape alone
+  bool no_colors = false;         ///< colours and intensities of vertices and points are left out: the shape alone
   bool transparent = false;       ///< RGBA with alpha 0 where the model is not; else RGB
   std::array<std::uint8_t, 3> background{255, 255, 255};
   double crease_angle = 40; ///< Gouraud: edges that bend by more look sharp; degrees, 0..180; 180 = smooth everywhere

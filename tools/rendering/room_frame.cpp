@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <fresco/core/constants.h>
 #include <fresco/core/require.h>
 #include <vector>
 namespace fresco::rendering {
 namespace {
-constexpr double pi = 3.14159265358979323846;
 
 /// Some faces of a mesh, evenly picked.
 struct FaceSample {
@@ -88,7 +88,7 @@ double areaQuantile(const Eigen::VectorXd& values, const Eigen::VectorXd& areas,
 {
   std::vector<Index> order(values.size());
   for (std::size_t i = 0; i < order.size(); ++i)
-    order[i] = static_cast<Index>(i);
+    order[i] = i;
   std::sort(order.begin(), order.end(), [&](Index a, Index b) { return values[a] < values[b]; });
   const double wanted = share * areas.sum();
   double below = 0;
@@ -129,8 +129,8 @@ Eigen::Vector3d upright(const FaceSample& sample)
   return heights.dot(sample.areas) / sample.areas.sum() > middle ? Eigen::Vector3d(-best) : best;
 }
 
-/// Horizontal direction that most upright surfaces are parallel or orthogonal to: mean of their angles modulo 90
-/// degrees.
+/// Horizontal direction that most upright surfaces are parallel or orthogonal to:
+/// mean of their angles modulo 90 degrees.
 Eigen::Vector3d wallDirection(const FaceSample& sample, const Eigen::Vector3d& up)
 {
   const Eigen::Vector3d x = up.unitOrthogonal(), y = up.cross(x);

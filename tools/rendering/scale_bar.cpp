@@ -62,7 +62,7 @@ Layout makeLayout(const ScaleBar& bar, int height)
   for (const Tick& tick : layout.ticks)
     text_width = std::max(text_width, tick.label.width);
   layout.width = layout.bar_width + text_width + 4 * layout.pad;
-  const int title_height = static_cast<int>(bar.title.size()) * layout.font * 3 / 2;
+  const int title_height = bar.title.size() * layout.font * 3 / 2;
   layout.bar_top = height / 12 + title_height + layout.pad;
   layout.bar_bottom = std::max(layout.bar_top + 1, height - height / 12);
   return layout;
@@ -76,9 +76,9 @@ void paint(Image& image, int x, int y, const Rgb& color, int coverage = 255)
   const int below = image.channels == 4 ? pixel[3] * (255 - coverage) / 255 : 255 - coverage;
   const int alpha = coverage + below;
   for (int c = 0; c < 3; ++c)
-    pixel[c] = static_cast<std::uint8_t>((color[c] * coverage + pixel[c] * below + alpha / 2) / alpha);
+    pixel[c] = (color[c] * coverage + pixel[c] * below + alpha / 2) / alpha;
   if (image.channels == 4)
-    pixel[3] = static_cast<std::uint8_t>(alpha);
+    pixel[3] = alpha;
 }
 
 void paintText(Image& image, const Image& text, const Eigen::Vector2i& corner, const Rgb& color)

@@ -10,15 +10,14 @@ namespace {
 void validateTextures(const TexturedMesh& model)
 {
   const Index faces = model.mesh.faceCount();
-  const auto atlases = static_cast<int>(model.atlases.size());
+  const int atlases = model.atlases.size();
   require(atlases > 0, "picture: the model has no texture");
   require(model.texcoord_faces.cols() == faces && model.face_atlas.size() == faces, "picture: ", faces, " faces, ",
           model.texcoord_faces.cols(), " with texture coordinates, ", model.face_atlas.size(), " with an atlas");
   for (const Image& atlas : model.atlases)
     require(atlas.width > 0 && atlas.height > 0 &&
                 (atlas.channels == 1 || atlas.channels == 3 || atlas.channels == 4) &&
-                atlas.data.size() == static_cast<std::size_t>(atlas.width) * static_cast<std::size_t>(atlas.height) *
-                                         static_cast<std::size_t>(atlas.channels),
+                atlas.data.size() == std::size_t(atlas.width) * atlas.height * atlas.channels,
             "picture: an atlas is empty or malformed");
   for (Index f = 0; f < faces; ++f) {
     require(model.face_atlas[f] >= -1 && model.face_atlas[f] < atlases, "picture: face ", f, " names atlas ",

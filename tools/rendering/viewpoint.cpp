@@ -4,12 +4,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <fresco/core/constants.h>
 #include <fresco/core/require.h>
+#include <fresco/core/statistics.h>
 #include <limits>
 #include <utility>
 namespace fresco::rendering {
 namespace {
-constexpr double degree = 3.14159265358979323846 / 180;
 
 void validateFraming(const Framing& framing)
 {
@@ -73,7 +74,7 @@ Viewpoint frame(const Points& given, const Eigen::Vector3d& origin, const Framin
   const Eigen::Matrix3d axes = cameraAxes(framing.direction, framing.up);
   const Eigen::Matrix3Xd points = inCameraAxes(given, axes);
   require(points.cols() > 0, "view: the model has no finite point");
-  const double half = std::tan(0.5 * framing.angle * degree) * (1 - 2 * framing.margin);
+  const double half = std::tan(0.5 * framing.angle * radians_per_degree) * (1 - 2 * framing.margin);
   const Eigen::Array2d tangent(half * framing.aspect, half);
   const Extent e = measure(points, tangent);
   const double depth = e.near - e.far;
@@ -114,11 +115,9 @@ Points usualPoints(const Points& points)
     std::vector<float> values;
     for (const Index i : kept)
       values.push_back(points(axis, i));
-    const auto cut = static_cast<std::ptrdiff_t>(values.size() / 200);
-    std::nth_element(values.begin(), values.begin() + cut, values.end());
-    const float low = values[cut];
-    std::nth_element(values.begin(), values.end() - 1 - cut, values.end());
-    const float high = values[values.size() - 1 - static_cast<std::size_t>(cut)], rim = 0.2f * (high - low);
+    const auto cut = values.size() / 200;
+    const float low = rankedValue(values, cut);
+    const float high = rankedValue(values, values.size() - 1 - cut), rim = 0.2f * (high - low);
     kept.erase(
         std::remove_if(kept.begin(), kept.end(),
                        [&](Index i) { return !(points(axis, i) >= low - rim && points(axis, i) <= high + rim); }),

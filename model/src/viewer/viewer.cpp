@@ -19,14 +19,6 @@ void validate(const std::string& glb, const ViewerOptions& options)
   }
 }
 
-std::string escapedHtml(const std::string& text)
-{
-  std::string out;
-  for (const char c : text)
-    out += c == '&' ? "&amp;" : c == '<' ? "&lt;" : c == '>' ? "&gt;" : c == '"' ? "&quot;" : std::string(1, c);
-  return out;
-}
-
 /// A string of JavaScript that may stand inside of a <script> element.
 std::string quoted(const std::string& text)
 {
@@ -34,7 +26,7 @@ std::string quoted(const std::string& text)
   out << '"';
   for (const char c : text)
     if (const auto code = static_cast<unsigned char>(c); code < 32 || c == '"' || c == '\\' || c == '<')
-      out << "\\u" << std::hex << std::setw(4) << std::setfill('0') << static_cast<int>(code);
+      out << "\\u" << std::hex << std::setw(4) << std::setfill('0') << int{code};
     else
       out << c;
   out << '"';
@@ -59,6 +51,14 @@ std::string optionsText(const ViewerOptions& options)
   return out.str();
 }
 } // namespace
+
+std::string escapedHtml(const std::string& text)
+{
+  std::string out;
+  for (const char c : text)
+    out += c == '&' ? "&amp;" : c == '<' ? "&lt;" : c == '>' ? "&gt;" : c == '"' ? "&quot;" : std::string(1, c);
+  return out;
+}
 
 std::string base64(const std::string& bytes)
 {

@@ -28,6 +28,9 @@ std::string viewerHtml(const std::string& glb, const ViewerOptions& options = {}
 /// which must have a height, and script. One element per page.
 std::string viewerElement(const std::string& glb, const ViewerOptions& options = {});
 
+/// `text` as it is written between and inside of the tags of a page.
+std::string escapedHtml(const std::string& text);
+
 /// RFC 4648, section 4.
 std::string base64(const std::string& bytes);
 } // namespace fresco::model

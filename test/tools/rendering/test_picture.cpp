@@ -208,7 +208,7 @@ TEST(Picture, PlainPicturesShowTheShapeAlone)
   const Image bare = renderPicture(ball, options);
   ball.colors = Colors::Constant(3, ball.vertexCount(), 9);
   EXPECT_NE(renderPicture(ball, options).data, bare.data);
-  options.plain = true;
+  options.no_colors = true;
   EXPECT_EQ(renderPicture(ball, options).data, bare.data);
   PointSet set;
   set.points = ball.vertices;

@@ -8,13 +8,13 @@ using Eigen::Vector3f;
 PicturePtr drawWhiteboard(const PictureSize& size, std::uint64_t seed)
 {
   Picture picture(size.width, size.height, {0.9f, 0.91f, 0.92f});
-  const auto salt = static_cast<std::uint32_t>(seed);
+  const std::uint32_t salt = seed;
   paint(picture, [&](float u, float v) -> Vector3f { // wiped ink stays as faint clouds
     const float wiped = smoothStep(0.1f, 0.9f, noiseAt({u * 2.f, v * 3.f}, salt, {0.5f, 6, 0.6f}));
     return Vector3f(0.91f, 0.92f, 0.93f) - wiped * Vector3f(0.05f, 0.045f, 0.035f);
   });
   Drawing draw(picture, seed);
-  const float w = static_cast<float>(size.width), h = static_cast<float>(size.height), letter = 0.052f * h;
+  const float w = size.width, h = size.height, letter = 0.052f * h;
   const Pen black{{0.12f, 0.12f, 0.14f}, 0.009f * h, 0.005f * h}, blue{{0.12f, 0.22f, 0.6f}, 0.008f * h, 0.005f * h};
   const Pen red{{0.75f, 0.13f, 0.12f}, 0.009f * h, 0.005f * h}, green{{0.1f, 0.45f, 0.22f}, 0.008f * h, 0.005f * h};
   draw.text("MONDAY 10:30  ROOM SURVEY", {0.04f * w, 0.06f * h}, 1.25f * letter, black);
@@ -40,14 +40,13 @@ PicturePtr drawFlipChart(const PictureSize& size, std::uint64_t seed)
 {
   Picture picture(size.width, size.height, {0.93f, 0.93f, 0.9f});
   Drawing draw(picture, seed);
-  const float w = static_cast<float>(size.width), h = static_cast<float>(size.height);
+  const float w = size.width, h = size.height;
   for (int k = 1; k < 24; ++k)
-    draw.line({{0, h * static_cast<float>(k) / 24}, {w, h * static_cast<float>(k) / 24}},
-              {{0.8f, 0.84f, 0.88f}, 1.5f, 0});
+    draw.line({{0, h * k / 24}, {w, h * k / 24}}, {{0.8f, 0.84f, 0.88f}, 1.5f, 0});
   const Pen marker{{0.1f, 0.12f, 0.35f}, 0.011f * h, 0.005f * h};
   draw.text("IDEAS", {0.1f * w, 0.06f * h}, 0.075f * h, {{0.7f, 0.15f, 0.1f}, 0.014f * h, 0.004f * h});
   for (int k = 0; k < 5; ++k) {
-    const float y = (0.2f + 0.085f * static_cast<float>(k)) * h;
+    const float y = (0.2f + 0.085f * k) * h;
     draw.disc({0.12f * w, y + 0.02f * h}, 0.012f * h, {0.1f, 0.12f, 0.35f});
     draw.text(word(draw.random()) + " " + word(draw.random()), {0.18f * w, y}, 0.04f * h, marker);
   }
@@ -58,16 +57,16 @@ PicturePtr drawFlipChart(const PictureSize& size, std::uint64_t seed)
 PicturePtr drawLandscape(const PictureSize& size, std::uint64_t seed)
 {
   Picture picture(size.width, size.height, {0, 0, 0});
-  const auto salt = static_cast<std::uint32_t>(seed);
-  const float aspect = static_cast<float>(size.width) / static_cast<float>(size.height);
+  const std::uint32_t salt = seed;
+  const float aspect = static_cast<float>(size.width) / size.height;
   paint(picture, [&](float u, float v) -> Vector3f {
     const float x = u * aspect;
     const float cloud = smoothStep(0.f, 0.9f, noiseAt({x, 2.5f * v}, salt, {0.6f, 6, 0.55f}));
     Vector3f color = Vector3f(0.35f, 0.55f, 0.8f) + v * Vector3f(0.7f, 0.4f, 0.1f);
     color += cloud * (Vector3f(0.92f, 0.9f, 0.88f) - color);
     for (int hill = 0; hill < 4; ++hill) {
-      const float depth = static_cast<float>(hill) / 3.f, base = 0.42f + 0.13f * static_cast<float>(hill);
-      const auto own = salt + 11u * static_cast<std::uint32_t>(hill);
+      const float depth = hill / 3.f, base = 0.42f + 0.13f * hill;
+      const auto own = salt + 11u * hill;
       const float ridge = base + (0.13f - 0.07f * depth) * noiseAt({x, 0.3f}, own, {0.9f, 7, 0.5f});
       const float texture = noiseAt({x, v * 1.6f}, own + 3u, {0.12f, 5, 0.65f});
       const Vector3f near(0.2f, 0.34f, 0.1f), far(0.45f, 0.55f, 0.68f);
@@ -86,12 +85,12 @@ PicturePtr drawAbstract(const PictureSize& size, std::uint64_t seed)
 {
   CounterRandom random(seed, 5, 0);
   Picture picture(size.width, size.height, hue(random, 0.08f, 0.82f));
-  const float w = static_cast<float>(size.width), h = static_cast<float>(size.height);
+  const float w = size.width, h = size.height;
   Drawing draw(picture, seed);
   for (int k = 0; k < 26; ++k) {
-    const Vector2f center(static_cast<float>(random.uniform(0, w)), static_cast<float>(random.uniform(0, h)));
-    const float extent = static_cast<float>(random.uniform(0.04, 0.2)) * w;
-    const Vector3f color = hue(random, 0.22f, static_cast<float>(random.uniform(0.3, 0.65)));
+    const Vector2f center(random.uniformFloat(0, w), random.uniformFloat(0, h));
+    const float extent = random.uniformFloat(0.04, 0.2) * w;
+    const Vector3f color = hue(random, 0.22f, random.uniformFloat(0.3, 0.65));
     if (k % 3 == 0)
       draw.disc(center, 0.7f * extent, color);
     else if (k % 3 == 1)
@@ -100,11 +99,10 @@ PicturePtr drawAbstract(const PictureSize& size, std::uint64_t seed)
       draw.line({center, center + Vector2f(3 * extent, extent), center + Vector2f(extent, 2.5f * extent)},
                 {color, 0.012f * w, 0});
   }
-  const auto salt = static_cast<std::uint32_t>(seed);
+  const std::uint32_t salt = seed;
   for (int y = 0; y < size.height; ++y) // canvas and brush
     for (int x = 0; x < size.width; ++x)
-      picture.pixel(x, y) *=
-          1.f + 0.1f * noiseAt({static_cast<float>(x) / w, 3.f * static_cast<float>(y) / w}, salt, {0.08f, 5, 0.7f});
+      picture.pixel(x, y) *= 1.f + 0.1f * noiseAt({x / w, 3.f * y / w}, salt, {0.08f, 5, 0.7f});
   return finished(std::move(picture));
 }
 } // namespace fresco::simulation

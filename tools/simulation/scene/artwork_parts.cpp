@@ -39,7 +39,7 @@ void writeText(Drawing& draw, const Sheet& sheet, const Pen& pen)
     float x = sheet.min.x();
     while (true) {
       const std::string next = word(draw.random());
-      const float width = static_cast<float>(next.size() + 1) * 0.933f * sheet.height;
+      const float width = (next.size() + 1) * 0.933f * sheet.height;
       if (x + width > sheet.max.x() || draw.random().uniform() < 0.04)
         break;
       draw.text(next, {x, y}, sheet.height, pen);
@@ -54,11 +54,11 @@ void drawChart(Drawing& draw, const Sheet& at, const Pen& pen)
   draw.line({at.min, {at.min.x(), at.max.y()}, at.max}, pen);
   std::vector<Vector2f> curve;
   for (int k = 0; k < 8; ++k) {
-    const float x = at.min.x() + size.x() * (0.06f + 0.115f * static_cast<float>(k));
-    const float high = size.y() * static_cast<float>(draw.random().uniform(0.15, 0.9));
+    const float x = at.min.x() + size.x() * (0.06f + 0.115f * k);
+    const float high = size.y() * draw.random().uniformFloat(0.15, 0.9);
     draw.rectangle({x, at.max.y() - high}, {x + 0.07f * size.x(), at.max.y() - pen.width},
                    hue(draw.random(), 0.25f, 0.55f));
-    curve.push_back({x, at.max.y() - size.y() * static_cast<float>(draw.random().uniform(0.3, 0.95))});
+    curve.push_back({x, at.max.y() - size.y() * draw.random().uniformFloat(0.3, 0.95)});
   }
   draw.line(curve, {{0.75f, 0.15f, 0.12f}, pen.width, pen.shake});
 }

@@ -19,8 +19,7 @@ void paint(Picture& picture, const Color& color)
 {
   for (int y = 0; y < picture.height(); ++y)
     for (int x = 0; x < picture.width(); ++x)
-      picture.pixel(x, y) = color((static_cast<float>(x) + 0.5f) / static_cast<float>(picture.width()),
-                                  (static_cast<float>(y) + 0.5f) / static_cast<float>(picture.height()));
+      picture.pixel(x, y) = color((x + 0.5f) / picture.width(), (y + 0.5f) / picture.height());
 }
 
 PicturePtr finished(Picture picture);

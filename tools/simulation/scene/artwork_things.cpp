@@ -10,7 +10,7 @@ using Eigen::Vector3f;
 namespace {
 const Vector3f ink(0.12f, 0.12f, 0.14f);
 
-Vector2f extent(const PictureSize& size) { return {static_cast<float>(size.width), static_cast<float>(size.height)}; }
+Vector2f extent(const PictureSize& size) { return {size.width, size.height}; }
 } // namespace
 
 PicturePtr drawPoster(const PictureSize& size, std::uint64_t seed)
@@ -26,9 +26,8 @@ PicturePtr drawPoster(const PictureSize& size, std::uint64_t seed)
   draw.text(word(random) + " " + word(random), {0.06f * s.x(), 0.035f * s.y()}, 0.055f * s.y(),
             {{0.92f, 0.92f, 0.88f}, 0.009f * s.y(), 0});
   for (int k = 0; k < 7; ++k)
-    draw.disc(
-        {s.x() * static_cast<float>(random.uniform(0.2, 0.8)), s.y() * static_cast<float>(random.uniform(0.25, 0.5))},
-        s.x() * static_cast<float>(random.uniform(0.04, 0.16)), hue(random, 0.3f, 0.55f));
+    draw.disc({s.x() * random.uniformFloat(0.2, 0.8), s.y() * random.uniformFloat(0.25, 0.5)},
+              s.x() * random.uniformFloat(0.04, 0.16), hue(random, 0.3f, 0.55f));
   drawChart(draw, {{0.1f * s.x(), 0.57f * s.y()}, {0.5f * s.x(), 0.78f * s.y()}, 0}, {ink, 0.004f * s.y(), 0});
   writeText(draw, {{0.56f * s.x(), 0.57f * s.y()}, {0.94f * s.x(), 0.8f * s.y()}, 0.012f * s.y()},
             {ink, 0.002f * s.y(), 0});
@@ -40,7 +39,7 @@ PicturePtr drawPoster(const PictureSize& size, std::uint64_t seed)
 PicturePtr drawMap(const PictureSize& size, std::uint64_t seed)
 {
   Picture picture(size.width, size.height, {0.6f, 0.75f, 0.85f});
-  const auto salt = static_cast<std::uint32_t>(seed);
+  const std::uint32_t salt = seed;
   const Vector2f s = extent(size);
   paint(picture, [&](float u, float v) -> Vector3f {
     const Vector2f at(u * s.x() / s.y(), v);
@@ -54,17 +53,13 @@ PicturePtr drawMap(const PictureSize& size, std::uint64_t seed)
   Drawing draw(picture, seed);
   CounterRandom& random = draw.random();
   for (int road = 0; road < 9; ++road) {
-    std::vector<Vector2f> line = {
-        {s.x() * static_cast<float>(random.uniform()), s.y() * static_cast<float>(random.uniform())}};
+    std::vector<Vector2f> line = {{s.x() * random.uniformFloat(), s.y() * random.uniformFloat()}};
     for (int k = 0; k < 12; ++k)
-      line.push_back(line.back() + 0.06f * s.x() *
-                                       Vector2f(static_cast<float>(random.uniform(-0.4, 1)),
-                                                static_cast<float>(random.uniform(-1, 1))));
+      line.push_back(line.back() + 0.06f * s.x() * Vector2f(random.uniformFloat(-0.4, 1), random.uniformFloat(-1, 1)));
     draw.line(line, {{0.75f, 0.25f, 0.2f}, 0.004f * s.y(), 0});
   }
   for (int town = 0; town < 24; ++town) {
-    const Vector2f at(s.x() * static_cast<float>(random.uniform(0.02, 0.9)),
-                      s.y() * static_cast<float>(random.uniform(0.02, 0.95)));
+    const Vector2f at(s.x() * random.uniformFloat(0.02, 0.9), s.y() * random.uniformFloat(0.02, 0.95));
     draw.disc(at, 0.006f * s.y(), ink);
     draw.text(word(random), at + Vector2f(0.01f, -0.008f) * s.y(), 0.018f * s.y(), {ink, 0.0025f * s.y(), 0});
   }
@@ -113,8 +108,7 @@ PicturePtr drawKeyboard(const PictureSize& size, std::uint64_t seed)
   const Vector2f s = extent(size);
   for (int row = 0; row < 5; ++row)
     for (int key = 0; key < 14; ++key) {
-      const Vector2f a(s.x() * (0.02f + 0.0686f * static_cast<float>(key)),
-                       s.y() * (0.05f + 0.185f * static_cast<float>(row)));
+      const Vector2f a(s.x() * (0.02f + 0.0686f * key), s.y() * (0.05f + 0.185f * row));
       if (row == 4 && key > 3 && key < 9)
         continue;
       draw.rectangle(a, a + Vector2f(0.057f * s.x(), 0.15f * s.y()), {0.1f, 0.1f, 0.11f});
@@ -135,7 +129,7 @@ PicturePtr drawClock(const PictureSize& size, std::uint64_t seed)
     return middle + radius * s.x() * Vector2f(std::sin(angle), -std::cos(angle));
   };
   for (int minute = 0; minute < 60; ++minute) {
-    const float hours = static_cast<float>(minute) / 5.f;
+    const float hours = minute / 5.f;
     draw.line({at(hours, 0.45f), at(hours, minute % 5 == 0 ? 0.38f : 0.43f)},
               {ink, (minute % 5 == 0 ? 0.016f : 0.006f) * s.x(), 0});
   }
@@ -156,8 +150,7 @@ PicturePtr drawCalendar(const PictureSize& size, std::uint64_t seed)
   const Vector2f s = extent(size);
   draw.text("MAY", {0.08f * s.x(), 0.53f * s.y()}, 0.05f * s.y(), {{0.7f, 0.12f, 0.1f}, 0.01f * s.y(), 0});
   for (int day = 0; day < 31; ++day) {
-    const Vector2f at(s.x() * (0.07f + 0.128f * static_cast<float>((day + 2) % 7)),
-                      s.y() * (0.63f + 0.07f * static_cast<float>((day + 2) / 7)));
+    const Vector2f at(s.x() * (0.07f + 0.128f * ((day + 2) % 7)), s.y() * (0.63f + 0.07f * ((day + 2) / 7)));
     draw.text(std::to_string(day + 1), at, 0.03f * s.y(),
               {(day + 2) % 7 == 6 ? Vector3f(0.7f, 0.12f, 0.1f) : ink, 0.005f * s.y(), 0});
   }
@@ -167,14 +160,13 @@ PicturePtr drawCalendar(const PictureSize& size, std::uint64_t seed)
 PicturePtr drawSpine(const PictureSize& size, std::uint64_t seed)
 {
   CounterRandom random(seed, 8, 0);
-  const Vector3f cover =
-      hue(random, static_cast<float>(random.uniform(0.02, 0.16)), static_cast<float>(random.uniform(0.18, 0.62)))
-          .cwiseProduct(Vector3f(1.05f, 0.95f, 0.85f));
+  const Vector3f cover = hue(random, random.uniformFloat(0.02, 0.16), random.uniformFloat(0.18, 0.62))
+                             .cwiseProduct(Vector3f(1.05f, 0.95f, 0.85f));
   const Vector3f print = cover.mean() > 0.5f ? ink : Vector3f(0.9f, 0.87f, 0.75f);
   Picture lying(size.height, size.width, cover); // title written along the spine, turned afterwards
   Drawing draw(lying, seed);
-  const float w = static_cast<float>(size.height), h = static_cast<float>(size.width);
-  const float band = static_cast<float>(random.uniform(0.05, 0.12)) * w;
+  const float w = size.height, h = size.width;
+  const float band = random.uniformFloat(0.05, 0.12) * w;
   if (random.uniform() < 0.6) {
     draw.rectangle({band, 0}, {band + 0.02f * w, h}, print);
     draw.rectangle({w - band, 0}, {w - band + 0.02f * w, h}, print);
@@ -182,12 +174,11 @@ PicturePtr drawSpine(const PictureSize& size, std::uint64_t seed)
   const float letter = std::min(0.42f * h, 0.06f * w);
   draw.text(word(random) + " " + word(random), {0.2f * w, 0.5f * (h - letter)}, letter, {print, 0.16f * letter, 0});
   Picture picture(size.width, size.height, cover);
-  const auto salt = static_cast<std::uint32_t>(seed);
+  const std::uint32_t salt = seed;
   for (int y = 0; y < size.height; ++y)
     for (int x = 0; x < size.width; ++x)
       picture.pixel(x, y) =
-          lying.pixel(y, size.width - 1 - x) *
-          (1.f + 0.06f * noiseAt({static_cast<float>(x) / w, static_cast<float>(y) / w}, salt, {0.1f, 5, 0.7f}));
+          lying.pixel(y, size.width - 1 - x) * (1.f + 0.06f * noiseAt({x / w, y / w}, salt, {0.1f, 5, 0.7f}));
   return finished(std::move(picture));
 }
 
@@ -199,10 +190,9 @@ PicturePtr drawView(const PictureSize& size, std::uint64_t seed)
   CounterRandom& random = draw.random();
   const Vector2f s = extent(size);
   for (int house = 0; house < 9; ++house) {
-    const float x = s.x() * (0.11f * static_cast<float>(house) + static_cast<float>(random.uniform(0, 0.04)));
-    const float wide = s.x() * static_cast<float>(random.uniform(0.05, 0.1)),
-                top = s.y() * static_cast<float>(random.uniform(0.45, 0.72));
-    const Vector3f wall = hue(random, 0.05f, static_cast<float>(random.uniform(0.55, 0.85)));
+    const float x = s.x() * (0.11f * house + random.uniformFloat(0, 0.04));
+    const float wide = s.x() * random.uniformFloat(0.05, 0.1), top = s.y() * random.uniformFloat(0.45, 0.72);
+    const Vector3f wall = hue(random, 0.05f, random.uniformFloat(0.55, 0.85));
     draw.rectangle({x, top}, {x + wide, s.y()}, wall);
     draw.rectangle({x - 3, top - 0.02f * s.y()}, {x + wide + 3, top}, {0.45f, 0.28f, 0.22f});
     for (float y = top + 0.04f * s.y(); y < s.y(); y += 0.07f * s.y())
@@ -217,8 +207,8 @@ PicturePtr drawRug(const PictureSize& size, std::uint64_t seed)
   CounterRandom random(seed, 9, 0);
   const Vector3f ground = hue(random, 0.18f, 0.4f), light(0.82f, 0.76f, 0.62f), dark = hue(random, 0.12f, 0.22f);
   Picture picture(size.width, size.height, ground);
-  const auto salt = static_cast<std::uint32_t>(seed);
-  const float aspect = static_cast<float>(size.width) / static_cast<float>(size.height);
+  const std::uint32_t salt = seed;
+  const float aspect = static_cast<float>(size.width) / size.height;
   paint(picture, [&](float u, float v) -> Vector3f {
     const float x = u * aspect, border = std::min(std::min(x, aspect - x), std::min(v, 1.f - v));
     const float diamond =
@@ -246,9 +236,9 @@ PicturePtr drawLabel(const PictureSize& size, std::uint64_t seed)
             {ink, 0.012f * s.y(), 0});
   float x = 0.06f * s.x();
   while (x < 0.9f * s.x()) {
-    const float bar = s.x() * static_cast<float>(draw.random().uniform(0.006, 0.02));
+    const float bar = s.x() * draw.random().uniformFloat(0.006, 0.02);
     draw.rectangle({x, 0.65f * s.y()}, {x + bar, 0.93f * s.y()}, ink);
-    x += bar + s.x() * static_cast<float>(draw.random().uniform(0.008, 0.02));
+    x += bar + s.x() * draw.random().uniformFloat(0.008, 0.02);
   }
   return finished(std::move(picture));
 }
@@ -260,10 +250,10 @@ PicturePtr drawDoor(const PictureSize& size, std::uint64_t seed)
   wood.finish = Finish::wood;
   wood.color = {0.62f, 0.45f, 0.3f}, wood.accent = {0.74f, 0.58f, 0.42f};
   wood.along = 2;
-  wood.seed = static_cast<std::uint32_t>(seed);
-  const float metres = 2.1f / static_cast<float>(size.height);
+  wood.seed = seed;
+  const float metres = 2.1f / size.height;
   paint(picture, [&](float u, float v) -> Vector3f {
-    const float x = u * static_cast<float>(size.width) * metres, y = v * static_cast<float>(size.height) * metres;
+    const float x = u * size.width * metres, y = v * size.height * metres;
     const float shift = std::floor(3.f * u) * 2.7f + std::floor(2.f * v) * 5.3f;
     return albedo(wood, {{x + shift, 0.f, y + shift}, Vector3f::UnitY(), metres});
   });

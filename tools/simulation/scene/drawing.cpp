@@ -81,13 +81,11 @@ void Drawing::segment(const Vector2f& a, const Vector2f& b, const Pen& pen)
   const float reach = 0.5f * pen.width + 1.f;
   const Vector2f low = a.cwiseMin(b).array() - reach, high = a.cwiseMax(b).array() + reach, along = b - a;
   const float square = std::max(along.squaredNorm(), 1e-6f);
-  const int x0 = std::max(0, static_cast<int>(low.x())),
-            x1 = std::min(picture_.width() - 1, static_cast<int>(high.x()));
-  const int y0 = std::max(0, static_cast<int>(low.y())),
-            y1 = std::min(picture_.height() - 1, static_cast<int>(high.y()));
+  const int x0 = std::max<int>(0, low.x()), x1 = std::min<int>(picture_.width() - 1, high.x());
+  const int y0 = std::max<int>(0, low.y()), y1 = std::min<int>(picture_.height() - 1, high.y());
   for (int y = y0; y <= y1; ++y)
     for (int x = x0; x <= x1; ++x) {
-      const Vector2f p(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f);
+      const Vector2f p(x + 0.5f, y + 0.5f);
       const float t = std::clamp((p - a).dot(along) / square, 0.f, 1.f);
       blend(x, y, pen.color, 0.5f * pen.width + 0.5f - (p - a - t * along).norm());
     }
@@ -96,8 +94,7 @@ void Drawing::segment(const Vector2f& a, const Vector2f& b, const Pen& pen)
 void Drawing::line(const std::vector<Vector2f>& points, const Pen& pen)
 {
   const auto stray = [&](const Vector2f& p) -> Vector2f {
-    return p +
-           pen.shake * Vector2f(static_cast<float>(random_.uniform(-1, 1)), static_cast<float>(random_.uniform(-1, 1)));
+    return p + pen.shake * Vector2f(random_.uniformFloat(-1, 1), random_.uniformFloat(-1, 1));
   };
   if (points.empty())
     return;
@@ -115,10 +112,10 @@ void Drawing::rectangle(const Vector2f& min, const Vector2f& max, const Vector3f
     const float from = at;
     return std::clamp(std::min(high, from + 1.f) - std::max(low, from), 0.f, 1.f);
   };
-  const int right = std::min(picture_.width() - 1, static_cast<int>(max.x()));
-  const int below = std::min(picture_.height() - 1, static_cast<int>(max.y()));
-  for (int y = std::max(0, static_cast<int>(min.y())); y <= below; ++y)
-    for (int x = std::max(0, static_cast<int>(min.x())); x <= right; ++x)
+  const int right = std::min<int>(picture_.width() - 1, max.x());
+  const int below = std::min<int>(picture_.height() - 1, max.y());
+  for (int y = std::max<int>(0, min.y()); y <= below; ++y)
+    for (int x = std::max<int>(0, min.x()); x <= right; ++x)
       blend(x, y, color, covered(min.x(), max.x(), x) * covered(min.y(), max.y(), y));
 }
 
@@ -142,8 +139,7 @@ void Drawing::text(const std::string& words, Vector2f at, float height, const Pe
         line(stroke, pen);
         stroke.clear();
       } else if (k + 1 < strokes.size() && strokes[k + 1] != ' ') {
-        stroke.push_back(
-            at + unit * Vector2f(static_cast<float>(strokes[k] - '0'), static_cast<float>(strokes[k + 1] - '0')));
+        stroke.push_back(at + unit * Vector2f(strokes[k] - '0', strokes[k + 1] - '0'));
         ++k;
       }
     }

@@ -88,7 +88,7 @@ void coffeeTable(SceneBuilder& b, const Palette& p, const Spot& spot)
   b.beginObject("coffee table", spot.pose());
   b.lathe({{0, 0.39f}, {0.4f, 0.39f}, {0.42f, 0.4f}, {0.42f, 0.42f}, {0, 0.42f}}, p.walnut, 48);
   for (int leg = 0; leg < 3; ++leg) {
-    const float a = 2.0943951f * static_cast<float>(leg) + 0.4f;
+    const float a = 2.0943951f * leg + 0.4f;
     b.tube({{0.36f * std::cos(a), 0.36f * std::sin(a), 0}, {0.25f * std::cos(a), 0.25f * std::sin(a), 0.395f}}, 0.016f,
            p.walnut);
   }
@@ -100,7 +100,7 @@ void desk(SceneBuilder& b, const Palette& p, const Spot& spot)
   std::vector<Box> boxes = boardOnLegs({0.7f, 0.35f, 0.74f}, 0.025f, 0.045f, {p.white_lacquer, p.steel});
   boxes.push_back(solid({0.22f, -0.27f, 0.15f}, {0.62f, 0.27f, 0.715f}, p.white_lacquer));
   for (int drawer = 0; drawer < 3; ++drawer) {
-    const float z = 0.165f + 0.182f * static_cast<float>(drawer);
+    const float z = 0.165f + 0.182f * drawer;
     boxes.push_back(solid({0.23f, 0.27f, z}, {0.61f, 0.288f, z + 0.17f}, p.oak));
     boxes.push_back(solid({0.36f, 0.288f, z + 0.08f}, {0.48f, 0.303f, z + 0.09f}, p.chrome));
   }
@@ -120,7 +120,7 @@ void sofa(SceneBuilder& b, const Palette& p, const Spot& spot)
   boxes.push_back(solid({0.84f, -0.27f, 0.27f}, {1.f, 0.42f, 0.58f}, p.fabric_grey));
   b.boxes(boxes);
   for (int seat = 0; seat < 3; ++seat) {
-    const float x = 0.56f * static_cast<float>(seat - 1);
+    const float x = 0.56f * (seat - 1);
     b.place(Eigen::Isometry3f(Eigen::Translation3f(x, 0.09f, 0.345f)));
     b.cushion({0.276f, 0.345f, 0.085f}, p.fabric_grey);
     b.place(leaning({x, -0.19f, 0.6f}, 12.f));
@@ -128,7 +128,7 @@ void sofa(SceneBuilder& b, const Palette& p, const Spot& spot)
   }
   CounterRandom random(spot.seed, 21, 0);
   for (const float x : {-0.62f, 0.6f}) {
-    b.place(leaning({x, -0.03f, 0.6f}, static_cast<float>(random.uniform(18, 30))));
+    b.place(leaning({x, -0.03f, 0.6f}, random.uniformFloat(18, 30)));
     b.cushion({0.2f, 0.075f, 0.19f}, x < 0 ? p.fabric_red : p.linen);
   }
 }
@@ -158,27 +158,26 @@ void bookShelf(SceneBuilder& b, const Palette& p, const Spot& spot, const Vector
   b.beginObject("shelf", spot.pose());
   const float half = size.x() / 2, depth = 0.28f, board = 0.02f;
   const int floors = std::lround(size.y() / 0.36f);
-  const float step = (size.y() - board) / static_cast<float>(floors);
+  const float step = (size.y() - board) / floors;
   std::vector<Box> boxes = {solid({-half, 0, 0}, {half, 0.012f, size.y()}, p.oak),
                             solid({-half, 0, 0}, {-half + board, depth, size.y()}, p.oak),
                             solid({half - board, 0, 0}, {half, depth, size.y()}, p.oak)};
   for (int k = 0; k <= floors; ++k) {
-    const float z = step * static_cast<float>(k);
+    const float z = step * k;
     boxes.push_back(solid({-half, 0, z}, {half, depth, z + board}, p.oak));
   }
   b.boxes(boxes);
   CounterRandom random(spot.seed, 22, 0);
   for (int k = 0; k < floors; ++k) {
-    const float z = step * static_cast<float>(k) + board;
+    const float z = step * k + board;
     float x = -half + board + 0.01f;
     while (x < half - board - 0.09f) {
       if (random.uniform() < 0.1) {
-        x += static_cast<float>(random.uniform(0.04, 0.16));
+        x += random.uniformFloat(0.04, 0.16);
         continue;
       }
       const float thick = random.uniform(0.018, 0.055);
-      const float high = static_cast<float>(random.uniform(0.55, 0.88)) * (step - board),
-                  deep = static_cast<float>(random.uniform(0.15, 0.22));
+      const float high = random.uniformFloat(0.55, 0.88) * (step - board), deep = random.uniformFloat(0.15, 0.22);
       const PictureBox book{
           {x, 0.03f, z},
           {x + thick, 0.03f + deep, z + high},
@@ -199,9 +198,9 @@ void sideboard(SceneBuilder& b, const Palette& p, const Spot& spot, const Vector
   std::vector<Box> boxes = {solid({-half + 0.03f, 0.02f, 0}, {half - 0.03f, size.y() - 0.04f, 0.07f}, p.black),
                             solid({-half, 0, 0.07f}, {half, size.y() - 0.02f, size.z()}, p.walnut)};
   const int doors = std::lround(size.x() / 0.45f);
-  const float wide = size.x() / static_cast<float>(doors);
+  const float wide = size.x() / doors;
   for (int k = 0; k < doors; ++k) {
-    const float x = -half + wide * static_cast<float>(k);
+    const float x = -half + wide * k;
     boxes.push_back(solid({x + 0.004f, size.y() - 0.02f, 0.09f}, {x + wide - 0.004f, size.y(), size.z() - 0.02f},
                           k % 2 ? p.walnut : p.white_lacquer));
     boxes.push_back(solid({x + wide - 0.05f, size.y(), size.z() - 0.22f},

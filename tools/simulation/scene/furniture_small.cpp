@@ -71,18 +71,14 @@ void papers(SceneBuilder& b, const Palette& p, const Spot& spot, int count)
   CounterRandom random(spot.seed, 31, 0);
   for (int k = 0; k < count; ++k) {
     Spot own = spot;
-    own.degrees += static_cast<float>(random.uniform(-14, 14));
-    own.position += Vector3f(static_cast<float>(random.uniform(-0.05, 0.05)),
-                             static_cast<float>(random.uniform(-0.05, 0.05)), 0.004f * static_cast<float>(k));
+    own.degrees += random.uniformFloat(-14, 14);
+    own.position += Vector3f(random.uniformFloat(-0.05, 0.05), random.uniformFloat(-0.05, 0.05), 0.004f * k);
     b.beginObject("papers", own.pose());
-    const PictureBox sheet{{-0.105f, -0.1485f, 0},
-                           {0.105f, 0.1485f, 0.0035f},
-                           5,
-                           drawSheet({530, 750}, spot.seed + static_cast<std::uint64_t>(k)),
-                           p.paper};
+    const PictureBox sheet{
+        {-0.105f, -0.1485f, 0}, {0.105f, 0.1485f, 0.0035f}, 5, drawSheet({530, 750}, spot.seed + k), p.paper};
     b.box(sheet.min, sheet.max, pictureSides(b, sheet));
   }
-  b.place(turned({0.04f, 0.02f, 0.004f * static_cast<float>(count) + 0.0045f}, 35.f, Vector3f::UnitZ()));
+  b.place(turned({0.04f, 0.02f, 0.004f * count + 0.0045f}, 35.f, Vector3f::UnitZ()));
   b.tube({{-0.07f, 0, 0}, {0.07f, 0, 0}}, 0.0045f, p.fabric_red);
 }
 
@@ -140,13 +136,12 @@ void plant(SceneBuilder& b, const Palette& p, const Spot& spot, float height)
   CounterRandom random(spot.seed, 32, 0);
   const int leaves = 22;
   for (int k = 0; k < leaves; ++k) {
-    const float a = 2.3999632f * static_cast<float>(k), reach = height * static_cast<float>(random.uniform(0.25, 0.42));
-    const float rise = height * (0.25f + 0.42f * static_cast<float>(k) / leaves),
-                wide = 0.045f * height * static_cast<float>(random.uniform(0.8, 1.3));
+    const float a = 2.3999632f * k, reach = height * random.uniformFloat(0.25, 0.42);
+    const float rise = height * (0.25f + 0.42f * k / leaves), wide = 0.045f * height * random.uniformFloat(0.8, 1.3);
     const Vector3f out(std::cos(a), std::sin(a), 0), across(-std::sin(a), std::cos(a), 0);
     std::vector<SweepKnot> knots;
     for (int i = 0; i <= 10; ++i) {
-      const float t = static_cast<float>(i) / 10.f;
+      const float t = i / 10.f;
       const float blade = t < 0.4f ? 0.f : std::sin(3.14159f * std::pow((t - 0.4f) / 0.6f, 0.8f));
       const Vector3f at = Vector3f(0, 0, 0.9f * pot) + out * (0.06f * pot + reach * t * t) +
                           Vector3f::UnitZ() * rise * (1.7f * t - t * t * 0.75f);
@@ -176,14 +171,14 @@ void coatStand(SceneBuilder& b, const Palette& p, const Spot& spot)
   b.beginObject("coat stand", spot.pose());
   b.tube({{0, 0, 0.09f}, {0, 0, 1.78f}}, 0.018f, p.walnut);
   for (int k = 0; k < 4; ++k) {
-    const float a = 1.5707963f * static_cast<float>(k) + 0.3f, c = std::cos(a), s = std::sin(a);
+    const float a = 1.5707963f * k + 0.3f, c = std::cos(a), s = std::sin(a);
     b.tube({{0.01f * c, 0.01f * s, 0.2f}, {0.12f * c, 0.12f * s, 0.1f}, {0.26f * c, 0.26f * s, 0.f}}, 0.013f, p.walnut);
     b.tube({{0.01f * c, 0.01f * s, 1.6f}, {0.1f * c, 0.1f * s, 1.62f}, {0.17f * c, 0.17f * s, 1.72f}}, 0.009f,
            p.walnut);
   }
   std::vector<SweepKnot> coat; // a jacket on a hook
   for (int i = 0; i <= 9; ++i) {
-    const float t = static_cast<float>(i) / 9.f;
+    const float t = i / 9.f;
     coat.push_back({{0.15f + 0.03f * std::sin(5.f * t), 0.05f, 1.66f - 0.85f * t},
                     0.05f + 0.13f * std::pow(std::sin(1.4f * t + 0.25f), 0.7f),
                     0.035f + 0.03f * t});

@@ -11,8 +11,7 @@ Box solid(const Vector3f& min, const Vector3f& max, int material) { return {min,
 
 void framedPicture(SceneBuilder& b, const Palette& p, const Spot& spot, const PicturePtr& picture)
 {
-  const float half_z = 0.3f,
-              half_x = half_z * static_cast<float>(picture->width()) / static_cast<float>(picture->height());
+  const float half_z = 0.3f, half_x = half_z * picture->width() / picture->height();
   b.beginObject("picture", spot.pose());
   const float bar = 0.025f;
   const PictureBox sheet{{-half_x, gap, -half_z}, {half_x, 0.012f, half_z}, 3, picture, p.black};
@@ -33,7 +32,7 @@ void whiteboard(SceneBuilder& b, const Palette& p, const Spot& spot)
            solid({-0.6f, gap, -z - 0.035f}, {0.6f, 0.09f, -z - 0.02f}, p.chrome)});
   const Vector3f colors[] = {{0.12f, 0.2f, 0.6f}, {0.75f, 0.12f, 0.1f}, {0.1f, 0.45f, 0.2f}};
   for (int pen = 0; pen < 3; ++pen) {
-    const float at = -0.4f + 0.21f * static_cast<float>(pen);
+    const float at = -0.4f + 0.21f * pen;
     b.tube({{at, 0.06f, -z - 0.0115f}, {at + 0.13f, 0.062f, -z - 0.0115f}}, 0.0085f, addPaint(b, colors[pen]));
   }
   b.box({0.3f, 0.035f, -z - 0.02f}, {0.44f, 0.085f, -z + 0.015f}, p.fabric_blue);
@@ -69,7 +68,7 @@ void radiator(SceneBuilder& b, const Palette& p, const Spot& spot, float width)
   std::vector<Box> boxes = {solid({-half, 0.045f, 0.14f}, {half, 0.075f, 0.18f}, p.frame),
                             solid({-half, 0.045f, 0.66f}, {half, 0.075f, 0.7f}, p.frame)};
   for (int k = 0; k < ribs; ++k) {
-    const float x = -half + (static_cast<float>(k) + 0.1f) * width / static_cast<float>(ribs);
+    const float x = -half + (k + 0.1f) * width / ribs;
     boxes.push_back(solid({x, 0.03f, 0.12f}, {x + 0.046f, 0.09f, 0.72f}, p.frame));
   }
   b.boxes(boxes);
@@ -84,7 +83,7 @@ void cable(SceneBuilder& b, const Palette& p, const std::vector<Eigen::Vector2f>
   const auto at = [&](std::size_t k) { return line[std::min(k, line.size() - 1)]; };
   for (std::size_t k = 0; k + 1 < line.size(); ++k)
     for (int i = 0; i < 6; ++i) {
-      const float t = static_cast<float>(i) / 6.f;
+      const float t = i / 6.f;
       const Eigen::Vector2f a = at(k == 0 ? 0 : k - 1), c = at(k), d = at(k + 1), e = at(k + 2);
       const Eigen::Vector2f q =
           0.5f * (2 * c + t * (d - a) + t * t * (2 * a - 5 * c + 4 * d - e) + t * t * t * (3 * c - a - 3 * d + e));

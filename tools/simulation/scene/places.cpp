@@ -14,8 +14,8 @@ constexpr int probe_rays = 256;
 /// Evenly spread directions (Fibonacci lattice on the sphere).
 Vector3f probeDirection(int i)
 {
-  const float z = 1.f - 2.f * (static_cast<float>(i) + 0.5f) / probe_rays, r = std::sqrt(1.f - z * z);
-  const float angle = 2.3999632f * static_cast<float>(i);
+  const float z = 1.f - 2.f * (i + 0.5f) / probe_rays, r = std::sqrt(1.f - z * z);
+  const float angle = 2.3999632f * i;
   return {r * std::cos(angle), r * std::sin(angle), z};
 }
 
@@ -67,7 +67,7 @@ std::vector<Vector3f> roomGrid(const PlanningInput& in, const PlaceRules& rules)
 {
   const Bounds box = bounds(in.scene);
   CounterRandom random(in.seed, 41, 0);
-  const auto stray = [&](float range) { return range * static_cast<float>(random.uniform(-1, 1)); };
+  const auto stray = [&](float range) { return range * random.uniformFloat(-1, 1); };
   std::vector<Vector3f> grid;
   for (float x = box.min.x() + rules.spacing; x < box.max.x(); x += rules.spacing)
     for (float y = box.min.y() + rules.spacing; y < box.max.y(); y += rules.spacing)
@@ -86,10 +86,8 @@ std::vector<Vector3f> meshGrid(const PlanningInput& in)
   CounterRandom random(in.seed, 42, 0);
   std::vector<Vector3f> grid;
   for (int i = 0; i < steps * steps * steps; ++i) {
-    const Vector3f cell(static_cast<float>(i % steps), static_cast<float>(i / steps % steps),
-                        static_cast<float>(i / steps / steps));
-    const Vector3f stray(static_cast<float>(random.uniform()), static_cast<float>(random.uniform()),
-                         static_cast<float>(random.uniform()));
+    const Vector3f cell(i % steps, i / steps % steps, i / steps / steps);
+    const Vector3f stray(random.uniformFloat(), random.uniformFloat(), random.uniformFloat());
     grid.push_back(low + (cell + stray).cwiseProduct(high - low) / steps);
   }
   return grid;
@@ -136,11 +134,11 @@ ScenePlaces sampleSurface(const Scene& scene, int count, std::uint64_t seed)
     until[f] = area += 0.5 * (corner(f, 1) - corner(f, 0)).cross(corner(f, 2) - corner(f, 0)).norm();
   ScenePlaces samples{Points(3, count), Points(3, count)};
   for (int s = 0; s < count; ++s) {
-    CounterRandom random(seed, 43, static_cast<std::uint64_t>(s));
+    CounterRandom random(seed, 43, s);
     const double at = area * (s + random.uniform()) / count;
     const Index f =
         std::min<Index>(std::upper_bound(until.begin(), until.end(), at) - until.begin(), mesh.faceCount() - 1);
-    float u = static_cast<float>(random.uniform()), v = static_cast<float>(random.uniform());
+    float u = random.uniformFloat(), v = random.uniformFloat();
     if (u + v > 1.f)
       u = 1.f - u, v = 1.f - v;
     samples.positions.col(s) = (1 - u - v) * corner(f, 0) + u * corner(f, 1) + v * corner(f, 2);

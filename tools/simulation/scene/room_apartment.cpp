@@ -56,12 +56,10 @@ void addCurtain(SceneBuilder& b, const Vector2f& x, float y, int material)
   for (int strip = 0; strip < folds; ++strip) {
     std::vector<SweepKnot> knots;
     for (int i = 0; i <= 12; ++i) {
-      const float t = static_cast<float>(i) / 12.f;
-      const float at = x.x() + (x.y() - x.x()) * (static_cast<float>(strip) + 0.5f) / folds +
-                       0.012f * std::sin(5.f * t + static_cast<float>(strip));
-      knots.push_back({{at, y + 0.02f * std::sin(static_cast<float>(strip) * 2.1f), 0.02f + 2.38f * t},
-                       0.62f * (x.y() - x.x()) / folds,
-                       0.035f});
+      const float t = i / 12.f;
+      const float at = x.x() + (x.y() - x.x()) * (strip + 0.5f) / folds + 0.012f * std::sin(5.f * t + strip);
+      knots.push_back(
+          {{at, y + 0.02f * std::sin(strip * 2.1f), 0.02f + 2.38f * t}, 0.62f * (x.y() - x.x()) / folds, 0.035f});
     }
     b.sweep(knots, Vector3f::UnitX(), material);
   }

@@ -31,10 +31,10 @@ void addShell(SceneBuilder& b, const Palette& p)
 
 void addTableAndChairs(SceneBuilder& b, const Palette& p, CounterRandom& random)
 {
-  const auto jitter = [&](double range) { return static_cast<float>(random.uniform(-range, range)); };
+  const auto jitter = [&](double range) { return random.uniformFloat(-range, range); };
   conferenceTable(b, p, {{0.1f, -0.1f, 0}, 0.f, 1}, {4.2f, 1.3f});
   for (int k = 0; k < 4; ++k) {
-    const float x = -1.4f + 1.f * static_cast<float>(k);
+    const float x = -1.4f + 1.f * k;
     const int fabric = k % 4 == 2 ? p.fabric_red : p.fabric_blue;
     conferenceChair(b, p, {{x + jitter(0.1), -1.05f + jitter(0.12), 0}, jitter(14), 1}, fabric);
     conferenceChair(b, p, {{x + 0.1f + jitter(0.1), 0.85f + jitter(0.12), 0}, 180.f + jitter(14), 1}, p.fabric_blue);
@@ -51,7 +51,7 @@ void addTableTop(SceneBuilder& b, const Palette& p)
   const Vector3f glazes[] = {{0.85f, 0.84f, 0.8f}, {0.2f, 0.35f, 0.55f}, {0.75f, 0.35f, 0.2f}, {0.3f, 0.45f, 0.32f}};
   const Vector2f places[] = {{-0.45f, -0.5f}, {0.75f, 0.25f}, {1.6f, -0.45f}, {-1.3f, 0.25f}};
   for (int k = 0; k < 4; ++k)
-    cup(b, {{places[k].x(), places[k].y(), top}, 70.f * static_cast<float>(k), 1}, addPaint(b, glazes[k]));
+    cup(b, {{places[k].x(), places[k].y(), top}, 70.f * k, 1}, addPaint(b, glazes[k]));
   bottle(b, p, {{0.55f, -0.05f, top}, 0.f, 1});
   bottle(b, p, {{-0.35f, 0.2f, top}, 0.f, 2});
   papers(b, p, {{0.35f, -0.5f, top}, 12.f, 61}, 3);

@@ -23,8 +23,8 @@ struct Plan {
 /// Skirting board along the four walls; `gaps` (openings) are cut out of it.
 void addSkirting(Shell& shell, const Plan& room, const std::vector<Plan>& gaps, int material);
 
-/// A window in the wall at y = `wall` that looks to +y (sign 1) or -y (sign -1): reveal, frame, panes, sill; and a lamp
-/// for the daylight.
+/// A window in the wall at y = `wall` that looks to +y (sign 1) or -y (sign -1): reveal, frame, panes, sill;
+/// and a lamp for the daylight.
 struct WindowSpec {
   float left = 0, right = 1, low = 0.95f, high = 2.3f; ///< metres, x and z
   float wall = 3, sign = 1;

@@ -15,8 +15,8 @@ struct Part {
 };
 
 /// A quadrilateral (or a triangle: corner 3 equals corner 2), counter-clockwise from the free side. It is the unit that
-/// light is stored for. Coordinates (s, t) of its corners: (0,0) (1,0) (1,1) (0,1), affine on each of its two
-/// triangles.
+/// light is stored for. Coordinates (s, t) of its corners: (0,0) (1,0) (1,1) (0,1),
+/// affine on each of its two triangles.
 struct Cell {
   std::array<int, 4> corners;             ///< columns of the mesh's vertices
   std::array<Eigen::Vector3f, 4> normals; ///< unit, of the smooth shape that the cell is a facet of

@@ -2,12 +2,13 @@
 #include "simulation/scene/scene_builder.h"
 #include <algorithm>
 #include <cmath>
+#include <fresco/core/constants.h>
 namespace fresco::simulation {
 using Eigen::Vector3f;
 
 Eigen::Isometry3f standing(const Vector3f& at, float degrees)
 {
-  const float angle = degrees * 0.01745329252f;
+  const float angle = degrees * static_cast<float>(radians_per_degree);
   return Eigen::Translation3f(at) * Eigen::Isometry3f(Eigen::AngleAxisf(angle, Vector3f::UnitZ()));
 }
 
@@ -16,21 +17,21 @@ SceneBuilder::SceneBuilder(std::string name, float max_edge) : max_edge_(max_edg
 int SceneBuilder::add(const Material& material)
 {
   scene_.materials.push_back(material);
-  return static_cast<int>(scene_.materials.size()) - 1;
+  return scene_.materials.size() - 1;
 }
 
 void SceneBuilder::beginObject(const std::string& name, const Eigen::Isometry3f& T_world_object)
 {
   if (!scene_.objects.empty())
-    scene_.objects.back().end = static_cast<Index>(faces_.size());
-  scene_.objects.push_back({name, static_cast<Index>(faces_.size()), 0});
+    scene_.objects.back().end = faces_.size();
+  scene_.objects.push_back({name, Index(faces_.size()), 0});
   T_world_object_ = T_world_body_ = T_world_object;
   part_of_material_.clear();
 }
 
 int SceneBuilder::part(int material)
 {
-  const auto [found, fresh] = part_of_material_.try_emplace(material, static_cast<int>(scene_.parts.size()));
+  const auto [found, fresh] = part_of_material_.try_emplace(material, scene_.parts.size());
   if (fresh)
     scene_.parts.push_back({material, T_world_object_.inverse()});
   return found->second;
@@ -38,9 +39,8 @@ int SceneBuilder::part(int material)
 
 int SceneBuilder::vertex(const Vector3f& local)
 {
-  const auto key = [&](int axis) { return static_cast<int>(std::lround(1e5f * local[axis])); };
-  const auto [found, fresh] =
-      welded_.try_emplace(std::make_tuple(key(0), key(1), key(2)), static_cast<int>(vertices_.size()));
+  const auto key = [&](int axis) -> int { return std::lround(1e5f * local[axis]); };
+  const auto [found, fresh] = welded_.try_emplace(std::make_tuple(key(0), key(1), key(2)), vertices_.size());
   if (fresh)
     vertices_.push_back(T_world_body_ * local);
   return found->second;
@@ -67,6 +67,8 @@ void SceneBuilder::cell(const std::array<Corner, 4>& corners, int material)
 }
 
 namespace {
+constexpr float full_turn = 2 * pi; // radians
+
 using Steps = std::vector<float>;
 
 /// Coordinates of all box sides along an axis, with further ones so that no gap exceeds `max_edge`.
@@ -79,9 +81,9 @@ Steps gridLines(const std::vector<Box>& boxes, int axis, float max_edge)
   sides.erase(std::unique(sides.begin(), sides.end(), [](float a, float b) { return b - a < 1e-4f; }), sides.end());
   Steps lines;
   for (std::size_t i = 0; i + 1 < sides.size(); ++i) {
-    const int parts = std::max(1, static_cast<int>(std::ceil((sides[i + 1] - sides[i]) / max_edge - 1e-3f)));
+    const int parts = std::max<int>(1, std::ceil((sides[i + 1] - sides[i]) / max_edge - 1e-3f));
     for (int k = 0; k < parts; ++k)
-      lines.push_back(sides[i] + (sides[i + 1] - sides[i]) * static_cast<float>(k) / static_cast<float>(parts));
+      lines.push_back(sides[i] + (sides[i + 1] - sides[i]) * k / parts);
   }
   lines.push_back(sides.back());
   return lines;
@@ -92,7 +94,7 @@ struct Blocks {
   std::array<Steps, 3> lines;
   std::vector<int> box; ///< last box that covers a block, -1 none
 
-  int count(int axis) const { return static_cast<int>(lines[axis].size()) - 1; }
+  int count(int axis) const { return lines[axis].size() - 1; }
   int at(const Eigen::Vector3i& block) const
   {
     for (int axis = 0; axis < 3; ++axis)
@@ -105,7 +107,7 @@ struct Blocks {
 
 int lastCover(const std::vector<Box>& boxes, const Vector3f& middle)
 {
-  for (int b = static_cast<int>(boxes.size()) - 1; b >= 0; --b) {
+  for (int b = boxes.size() - 1; b >= 0; --b) {
     const Box& box = boxes[b];
     if ((middle.array() > box.min.array()).all() && (middle.array() < box.max.array()).all())
       return b;
@@ -205,12 +207,12 @@ void SceneBuilder::lathe(const std::vector<ProfilePoint>& profile, int material,
     const ProfilePoint low = profile[k], high = profile[k + 1];
     const float dr = high.radius - low.radius, dz = high.z - low.z;
     const float length = std::hypot(dr, dz);
-    const int parts = std::max(1, static_cast<int>(std::ceil(length / max_edge_ - 1e-3f)));
+    const int parts = std::max<int>(1, std::ceil(length / max_edge_ - 1e-3f));
     for (int i = 0; i <= parts; ++i) {
-      const float t = static_cast<float>(i) / static_cast<float>(parts);
+      const float t = static_cast<float>(i) / parts;
       std::vector<Corner> row;
       for (int j = 0; j <= segments; ++j) {
-        const float angle = 6.283185307f * static_cast<float>(j % segments) / static_cast<float>(segments);
+        const float angle = full_turn * (j % segments) / segments;
         const Vector3f out(std::cos(angle), std::sin(angle), 0);
         const Vector3f normal = (dz * out - dr * Vector3f::UnitZ()) / length;
         row.push_back({(low.radius + t * dr) * out + (low.z + t * dz) * Vector3f::UnitZ(), normal});
@@ -229,7 +231,7 @@ void SceneBuilder::sweep(const std::vector<SweepKnot>& knots, const Vector3f& wi
     const Vector3f across = (width_axis - width_axis.dot(along) * along).normalized(), up = along.cross(across);
     std::vector<Corner> row;
     for (int j = 0; j <= segments; ++j) {
-      const float angle = 6.283185307f * static_cast<float>(j % segments) / segments;
+      const float angle = full_turn * (j % segments) / segments;
       const Vector3f offset = std::cos(angle) * knot.half_width * across + std::sin(angle) * knot.half_thickness * up;
       const Vector3f out = std::cos(angle) * knot.half_thickness * across + std::sin(angle) * knot.half_width * up;
       row.push_back(
@@ -254,10 +256,9 @@ void SceneBuilder::tube(const std::vector<Vector3f>& line, float radius, int mat
 {
   std::vector<SweepKnot> knots;
   for (std::size_t k = 0; k + 1 < line.size(); ++k) {
-    const int parts = std::max(1, static_cast<int>(std::ceil((line[k + 1] - line[k]).norm() / max_edge_ - 1e-3f)));
+    const int parts = std::max<int>(1, std::ceil((line[k + 1] - line[k]).norm() / max_edge_ - 1e-3f));
     for (int i = 0; i < parts; ++i)
-      knots.push_back(
-          {line[k] + (line[k + 1] - line[k]) * static_cast<float>(i) / static_cast<float>(parts), radius, radius});
+      knots.push_back({line[k] + (line[k + 1] - line[k]) * i / parts, radius, radius});
   }
   knots.push_back({line.back(), radius, radius});
   const Vector3f along = (line.back() - line.front()).normalized();
@@ -272,10 +273,10 @@ void SceneBuilder::cushion(const Vector3f& half_axes, int material)
   Lattice rows;
   const auto power = [](float x, float e) { return std::copysign(std::pow(std::fabs(x), e), x); };
   for (int i = 0; i <= rings; ++i) {
-    const float polar = 3.141592654f * (static_cast<float>(i) / rings - 0.5f);
+    const float polar = full_turn / 2 * (static_cast<float>(i) / rings - 0.5f);
     std::vector<Corner> row;
     for (int j = 0; j <= segments; ++j) {
-      const float angle = 6.283185307f * static_cast<float>(j % segments) / segments;
+      const float angle = full_turn * (j % segments) / segments;
       const bool pole = i == 0 || i == rings;
       const Vector3f unit(pole ? 0.f : power(std::cos(polar), 0.5f) * power(std::cos(angle), 0.5f),
                           pole ? 0.f : power(std::cos(polar), 0.5f) * power(std::sin(angle), 0.5f),
@@ -291,13 +292,13 @@ void SceneBuilder::cushion(const Vector3f& half_axes, int material)
 Scene SceneBuilder::finish()
 {
   if (!scene_.objects.empty())
-    scene_.objects.back().end = static_cast<Index>(faces_.size());
-  scene_.mesh.vertices.resize(3, static_cast<Index>(vertices_.size()));
+    scene_.objects.back().end = faces_.size();
+  scene_.mesh.vertices.resize(3, vertices_.size());
   for (std::size_t v = 0; v < vertices_.size(); ++v)
-    scene_.mesh.vertices.col(static_cast<Index>(v)) = vertices_[v];
-  scene_.mesh.faces.resize(3, static_cast<Index>(faces_.size()));
+    scene_.mesh.vertices.col(v) = vertices_[v];
+  scene_.mesh.faces.resize(3, faces_.size());
   for (std::size_t f = 0; f < faces_.size(); ++f)
-    scene_.mesh.faces.col(static_cast<Index>(f)) = Eigen::Vector3i(faces_[f][0], faces_[f][1], faces_[f][2]);
+    scene_.mesh.faces.col(f) = Eigen::Vector3i(faces_[f][0], faces_[f][1], faces_[f][2]);
   return std::move(scene_);
 }
 } // namespace fresco::simulation

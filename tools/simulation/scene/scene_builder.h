@@ -29,8 +29,8 @@ struct SweepKnot {
   float half_width = 0.01f, half_thickness = 0.01f; ///< metres
 };
 
-/// Puts a scene together from closed solids with outward faces. Bodies are described in a local frame, which place()
-/// and beginObject() set.
+/// Puts a scene together from closed solids with outward faces. Bodies are described in a local frame,
+/// which place() and beginObject() set.
 class SceneBuilder {
 public:
   SceneBuilder(std::string name, float max_edge);
@@ -43,8 +43,8 @@ public:
   /// Frame of the bodies that follow within the object.
   void place(const Eigen::Isometry3f& T_object_body) { T_world_body_ = T_world_object_ * T_object_body; }
 
-  /// Surface of the union of boxes without any face inside it; no side of a cell is longer than the longest edge
-  /// allowed.
+  /// Surface of the union of boxes without any face inside it;
+  /// no side of a cell is longer than the longest edge allowed.
   /// @param background_solid true for rooms: boxes with solid = false are the free space
   void boxes(const std::vector<Box>& boxes, bool background_solid = false);
   void box(const Eigen::Vector3f& min, const Eigen::Vector3f& max, int material)
@@ -56,8 +56,8 @@ public:
     boxes({{min, max, materials, true}});
   }
 
-  /// Body of revolution about z. The profile runs from the axis at the bottom to the axis at the top with the body on
-  /// its left.
+  /// Body of revolution about z. The profile runs from the axis at the bottom
+  /// to the axis at the top with the body on its left.
   void lathe(const std::vector<ProfilePoint>& profile, int material, int segments = 24);
   void cylinder(float radius, float low, float high, int material)
   {

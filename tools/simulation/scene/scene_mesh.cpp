@@ -19,13 +19,13 @@ void addFaces(Scene& scene, const TriangleMesh& mesh)
     const Vector3f normal = cross.normalized();
     const bool smooth = mesh.normals.cols() > 0;
     const auto at = [&](int k) -> Vector3f { return smooth ? Vector3f(mesh.normals.col(v[k])) : normal; };
-    scene.face_cell.push_back(2 * static_cast<int>(scene.cells.size()));
+    scene.face_cell.push_back(2 * scene.cells.size());
     scene.cells.push_back({{v[0], v[1], v[2], v[2]}, {at(0), at(1), at(2), at(2)}, 0});
     kept.push_back(v);
   }
-  scene.mesh.faces.resize(3, static_cast<Index>(kept.size()));
+  scene.mesh.faces.resize(3, kept.size());
   for (std::size_t f = 0; f < kept.size(); ++f)
-    scene.mesh.faces.col(static_cast<Index>(f)) = kept[f];
+    scene.mesh.faces.col(f) = kept[f];
 }
 } // namespace
 

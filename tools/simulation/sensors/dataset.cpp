@@ -54,9 +54,9 @@ std::vector<Pose> writeScans(const Run& run, const Points& stations, std::vector
   std::optional<TriangleTree> surfaces;
   if (run.options.labels)
     surfaces.emplace(run.lit.scene.mesh, run.options.threads);
-  for (int k = 0; k < static_cast<int>(stations.cols()); ++k) {
+  for (int k = 0; k < stations.cols(); ++k) {
     report(progress, "scan " + std::to_string(k + 1) + " of " + std::to_string(stations.cols()),
-           static_cast<double>(k) / static_cast<double>(stations.cols()));
+           static_cast<double>(k) / stations.cols());
     const Eigen::Vector3d station = stations.col(k).cast<double>() + run.lit.scene.mesh.origin;
     const Eigen::Matrix4d pose = randomPose(station, run.options.seed, k);
     LaserOptions laser = run.options.laser;
@@ -93,7 +93,7 @@ void writeTruth(const Run& run, const std::vector<int>& returns)
       const RayHit corner{static_cast<int>(f), 0.f, k == 1 ? 1.f : 0.f, k == 2 ? 1.f : 0.f};
       sum.col(mesh.faces(k, f)) += surfaceColor(run.lit, corner, 0.02f);
       weight[mesh.faces(k, f)] += 1.f;
-      seen[mesh.faces(k, f)] += static_cast<float>(returns[f]);
+      seen[mesh.faces(k, f)] += returns[f];
     }
   mesh.colors.resize(3, mesh.vertexCount());
   for (Index v = 0; v < mesh.vertexCount(); ++v)
@@ -112,7 +112,7 @@ void writePhotographs(const Run& run, const CameraSet& set, const Progress& prog
   gains.write("# image, factors of red, green and blue on the true display values\n");
   for (std::size_t k = 0; k < set.views.size(); ++k) {
     report(progress, "photograph " + std::to_string(k + 1) + " of " + std::to_string(set.views.size()),
-           static_cast<double>(k) / static_cast<double>(set.views.size()));
+           static_cast<double>(k) / set.views.size());
     const View& view = set.views[k];
     Exposure exposure = randomExposure(o.seed, k, o.exposure_spread);
     exposure.noise = o.sensor_noise;

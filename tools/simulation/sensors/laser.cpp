@@ -13,7 +13,8 @@ using Eigen::Vector3d;
 using Eigen::Vector3f;
 
 namespace {
-constexpr double pi = 3.14159265358979, lowest = -pi / 3, highest = pi / 2; // elevations
+constexpr double pi = 3.14159265358979;              // 15 digits: with more of them the scans would have other bytes
+constexpr double lowest = -pi / 3, highest = pi / 2; // elevations
 constexpr int hexagon = 6;             // rays of the first ring around the middle of a beam; the next have 12, 18 ...
 constexpr float same_surface = 0.004f; // metres off the plane that the middle of the beam meets
 
@@ -31,9 +32,8 @@ struct Grid {
   Index rows = 1, columns = 1;
   Vector3d direction(Index beam) const
   {
-    const double elevation =
-        lowest + (highest - lowest) * (static_cast<double>(beam / columns) + 0.5) / static_cast<double>(rows);
-    const double azimuth = 2 * pi * static_cast<double>(beam % columns) / static_cast<double>(columns);
+    const double elevation = lowest + (highest - lowest) * (beam / columns + 0.5) / rows;
+    const double azimuth = 2 * pi * (beam % columns) / columns;
     return {std::cos(elevation) * std::cos(azimuth), std::cos(elevation) * std::sin(azimuth), std::sin(elevation)};
   }
 };
@@ -62,7 +62,7 @@ std::vector<RimRay> rimOf(int rings)
   std::vector<RimRay> rays;
   for (int ring = 1; ring <= rings; ++ring)
     for (int k = 0; k < hexagon * ring; ++k) {
-      const float angle = 2.f * static_cast<float>(pi) * static_cast<float>(k) / static_cast<float>(hexagon * ring);
+      const float angle = 2.f * static_cast<float>(pi) * k / (hexagon * ring);
       rays.push_back({static_cast<float>(1.05 * ring / (rings + 0.5)), std::cos(angle), std::sin(angle)});
     }
   return rays;
@@ -82,7 +82,7 @@ public:
   Laser(const LitScene& lit, const Eigen::Matrix4d& T_world_scan, const LaserOptions& options, int number)
       : lit_(lit), R_(T_world_scan.topLeftCorner<3, 3>()),
         center_((T_world_scan.topRightCorner<3, 1>() - lit.scene.mesh.origin).cast<float>()), options_(options),
-        number_(static_cast<std::uint64_t>(number)), brightness_(brightness()), unit_(sceneUnit(lit.scene)),
+        number_(number), brightness_(brightness()), unit_(sceneUnit(lit.scene)),
         max_range_(options.max_range > 0.f ? options.max_range
                    : lit.scene.furnished   ? 30.f
                                            : 1e30f),
@@ -96,7 +96,7 @@ public:
     const Index beams = coarse.rows * coarse.columns;
     const Index hits = parallelSum(beams, options_.threads, Index(0),
                                    [&](Index b) { return Index(middle(coarse.direction(b)).face >= 0 ? 1 : 0); });
-    return static_cast<double>(hits) / static_cast<double>(beams);
+    return static_cast<double>(hits) / beams;
   }
 
   Return measure(const Vector3d& direction, Index beam) const
@@ -104,7 +104,7 @@ public:
     const RayHit hit = middle(direction);
     if (hit.face < 0 || hit.distance > max_range_)
       return {};
-    CounterRandom random(options_.seed, 1000 + number_, static_cast<std::uint64_t>(beam));
+    CounterRandom random(options_.seed, 1000 + number_, beam);
     const float cosine = std::fabs(faceNormal(lit_.scene.mesh, hit.face).dot(worldRay(direction).direction));
     if (random.uniform() >= answerProbability(hit, cosine))
       return {};
@@ -115,7 +115,7 @@ public:
       widen(direction, hit, back);
     const double grazing = std::sqrt(std::max(cosine, 0.12f));
     const double deviation = options_.noise * (0.6 + 0.1 * back.range) / grazing;
-    back.deviation = static_cast<float>(deviation);
+    back.deviation = deviation;
     back.range += static_cast<float>(deviation * random.gaussian());
     const Vector3f color = brightness_ * surfaceColor(lit_, hit, 2.f * radius(hit.distance));
     back.color = (255.f * color).array().round().max(0.f).min(255.f).cast<std::uint8_t>();
@@ -123,7 +123,7 @@ public:
   }
 
 private:
-  float brightness() const { return static_cast<float>(CounterRandom(options_.seed, 71, number_).uniform(0.92, 1.08)); }
+  float brightness() const { return CounterRandom(options_.seed, 71, number_).uniformFloat(0.92, 1.08); }
   Ray worldRay(const Vector3d& direction) const { return {center_, (R_ * direction).cast<float>().normalized()}; }
   RayHit middle(const Vector3d& direction) const { return lit_.rays.intersect(worldRay(direction)); }
   float radius(float range) const { return options_.beam_radius + options_.divergence * range; }
@@ -199,7 +199,7 @@ private:
 
 Eigen::Matrix4d randomPose(const Vector3d& station, std::uint64_t seed, int number)
 {
-  CounterRandom random(seed, 81, static_cast<std::uint64_t>(number));
+  CounterRandom random(seed, 81, number);
   const double yaw = random.uniform(0, 2 * pi), towards = random.uniform(0, 2 * pi),
                tilt = random.uniform(0, 3) * pi / 180;
   const Eigen::AngleAxisd lean(tilt, Vector3d(std::cos(towards), std::sin(towards), 0));

@@ -3,6 +3,7 @@
 #include "simulation/sensors/random.h"
 #include <algorithm>
 #include <cmath>
+#include <fresco/core/constants.h>
 #include <fresco/core/parallel.h>
 #include <fresco/core/require.h>
 #include <unordered_map>
@@ -10,7 +11,7 @@ namespace fresco::simulation {
 using Eigen::Vector3f;
 
 namespace {
-constexpr float gamma_power = 2.2f, pi = 3.14159265f;
+constexpr float gamma_power = 2.2f, single_pi = pi;
 constexpr float lift = 1e-3f; // metres that rays start above a surface
 
 Vector3f linear(const Vector3f& display) { return display.array().pow(gamma_power); }
@@ -53,7 +54,7 @@ void aimAtLamp(const Lamp& lamp, const Place& place, LampRays& to, std::size_t f
   const Vector3f cross = lamp.half_u.cross(lamp.half_v);
   const Vector3f shines = cross.normalized();
   for (std::size_t k = 0; k < lamp_rays; ++k) {
-    const float u = static_cast<float>(k % 2) - 0.5f, v = (static_cast<float>(k / 2) - 1.5f) / 2.f;
+    const float u = k % 2 - 0.5f, v = (k / 2 - 1.5f) / 2.f;
     const Vector3f way = lamp.center + u * lamp.half_u + v * lamp.half_v - place.position;
     const float square = way.squaredNorm(), towards = way.dot(place.normal), from = -way.dot(shines);
     const bool lit = towards > 0.f && from > 0.f && way.dot(place.facet) > 0.f;
@@ -73,7 +74,7 @@ Vector3f directLight(const Scene& scene, const RayScene& rays, const Place& plac
       aimAtLamp(scene.lamps[first + k], place, to, k * lamp_rays);
     if (*std::max_element(to.light.begin(), to.light.end()) <= 0.f)
       continue;
-    const unsigned blocked = rays.occluded(to.rays, static_cast<int>(count * lamp_rays));
+    const unsigned blocked = rays.occluded(to.rays, count * lamp_rays);
     for (std::size_t i = 0; i < count * lamp_rays; ++i)
       if (!(blocked >> i & 1u))
         sum += to.light[i] * scene.lamps[first + i / lamp_rays].color;
@@ -92,8 +93,8 @@ std::vector<Vector3f> hemisphere(int count)
 {
   std::vector<Vector3f> directions;
   for (int i = 0; i < count; ++i) {
-    const float r = std::sqrt((static_cast<float>(i) + 0.5f) / static_cast<float>(count));
-    const float angle = 2.399963230f * static_cast<float>(i);
+    const float r = std::sqrt((i + 0.5f) / count);
+    const float angle = 2.399963230f * i;
     directions.push_back({r * std::cos(angle), r * std::sin(angle), std::sqrt(1.f - r * r)});
   }
   return directions;
@@ -123,7 +124,7 @@ Gathered gather(const GatherInput& in, const Place& place)
     for (std::size_t i = 0; i < packet_size; ++i) {
       if (hits[i].face < 0)
         continue;
-      const auto cell = static_cast<std::size_t>(in.scene.face_cell[hits[i].face] / 2);
+      const std::size_t cell = in.scene.face_cell[hits[i].face] / 2;
       if (in.facets[cell].dot(packet[i].direction) > 0.f)
         sum.buried += 1.f;
       else
@@ -131,7 +132,7 @@ Gathered gather(const GatherInput& in, const Place& place)
     }
   }
   const float count = in.directions.size();
-  return {sum.light * (pi / count), sum.buried / count};
+  return {sum.light * (single_pi / count), sum.buried / count};
 }
 
 /// Display albedo on a cell.
@@ -157,18 +158,16 @@ std::vector<Vector3f> cellRadiance(const Scene& scene, const RayScene& rays, con
   std::vector<Vector3f> reflectance(scene.cells.size()), direct(scene.cells.size()), radiance(scene.cells.size());
   const auto middle = [&](Index c) { return placeOn(scene, scene.cells[c], {0.5f, 0.5f}); };
   parallelFor(count, threads, [&](Index c) {
-    const auto i = static_cast<std::size_t>(c);
-    reflectance[i] = linear(cellAlbedo(scene, scene.cells[i], {0.5f, 0.5f}, 0.05f)) / pi;
-    direct[i] = directLight(scene, rays, middle(c));
-    radiance[i] = reflectance[i].cwiseProduct(direct[i]);
+    reflectance[c] = linear(cellAlbedo(scene, scene.cells[c], {0.5f, 0.5f}, 0.05f)) / single_pi;
+    direct[c] = directLight(scene, rays, middle(c));
+    radiance[c] = reflectance[c].cwiseProduct(direct[c]);
   });
   const std::vector<Vector3f> directions = hemisphere(2 * packet_size);
   for (int bounce = 0; bounce < 2; ++bounce) {
     std::vector<Vector3f> next(scene.cells.size());
     parallelFor(count, threads, [&](Index c) {
-      const auto i = static_cast<std::size_t>(c);
       const Gathered from = gather({scene, rays, radiance, facets, directions}, middle(c));
-      next[i] = reflectance[i].cwiseProduct(direct[i] + from.light);
+      next[c] = reflectance[c].cwiseProduct(direct[c] + from.light);
     });
     radiance = std::move(next);
   }
@@ -209,8 +208,8 @@ std::array<int, 6> placeKey(const Place& place)
 {
   std::array<int, 6> key;
   for (int axis = 0; axis < 3; ++axis) {
-    key[axis] = static_cast<int>(std::lround(1e4f * place.position[axis]));
-    key[axis + 3] = static_cast<int>(std::lround(100.f * place.normal[axis]));
+    key[axis] = std::lround(1e4f * place.position[axis]);
+    key[axis + 3] = std::lround(100.f * place.normal[axis]);
   }
   return key;
 }
@@ -222,8 +221,8 @@ SharedPlaces sharePlaces(const Scene& scene, const std::vector<Lightmap::Lattice
     {
       std::uint64_t h = 0;
       for (const int k : key)
-        h = scramble(h + static_cast<std::uint64_t>(static_cast<std::uint32_t>(k)) + 0x9e3779b97f4a7c15ull);
-      return static_cast<std::size_t>(h);
+        h = scramble(h + static_cast<std::uint32_t>(k) + 0x9e3779b97f4a7c15ull);
+      return h;
     }
   };
   std::unordered_map<std::array<int, 6>, int, Hash> known;
@@ -231,11 +230,11 @@ SharedPlaces sharePlaces(const Scene& scene, const std::vector<Lightmap::Lattice
   for (std::size_t c = 0; c < lattices.size(); ++c)
     for (int i = 0; i < lattices[c].columns * lattices[c].rows; ++i) {
       const Lightmap::Lattice& lattice = lattices[c];
-      const CellPoint at{static_cast<float>(i % lattice.columns) / static_cast<float>(lattice.columns - 1),
-                         static_cast<float>(i / lattice.columns) / static_cast<float>(lattice.rows - 1)};
+      const CellPoint at{static_cast<float>(i % lattice.columns) / (lattice.columns - 1),
+                         static_cast<float>(i / lattice.columns) / (lattice.rows - 1)};
       const Place place = placeOn(scene, scene.cells[c], at);
       const std::array<int, 6> key = placeKey(place);
-      const auto [found, fresh] = known.try_emplace(key, static_cast<int>(shared.places.size()));
+      const auto [found, fresh] = known.try_emplace(key, shared.places.size());
       if (fresh)
         shared.places.push_back(placeOn(scene, scene.cells[c], inset(scene, scene.cells[c], at)));
       shared.place_of_node.push_back(found->second);
@@ -250,14 +249,13 @@ void spread(const SharedPlaces& shared, const std::vector<Gathered>& light,
   for (const Lightmap::Lattice& lattice : lattices) {
     std::vector<Vector3f> values;
     std::vector<bool> buried;
-    for (std::size_t i = lattice.first; i < lattice.first + static_cast<std::size_t>(lattice.columns * lattice.rows);
-         ++i) {
+    for (std::size_t i = lattice.first; i < lattice.first + lattice.columns * lattice.rows; ++i) {
       const Gathered& from = light[shared.place_of_node[i]];
       values.push_back(from.light);
       buried.push_back(from.buried > 0.5f);
     }
     fillBuried(values, buried);
-    std::copy(values.begin(), values.end(), nodes.begin() + static_cast<std::ptrdiff_t>(lattice.first));
+    std::copy(values.begin(), values.end(), nodes.begin() + lattice.first);
   }
 }
 } // namespace
@@ -265,12 +263,11 @@ void spread(const SharedPlaces& shared, const std::vector<Gathered>& light,
 Vector3f Lightmap::at(int cell, const CellPoint& where) const
 {
   const Lattice& lattice = lattices_[cell];
-  const float x = std::clamp(where.s, 0.f, 1.f) * static_cast<float>(lattice.columns - 1);
-  const float y = std::clamp(where.t, 0.f, 1.f) * static_cast<float>(lattice.rows - 1);
-  const int x0 = std::min(static_cast<int>(x), lattice.columns - 2),
-            y0 = std::min(static_cast<int>(y), lattice.rows - 2);
-  const float tx = x - static_cast<float>(x0), ty = y - static_cast<float>(y0);
-  const Vector3f* row = &nodes_[lattice.first + static_cast<std::size_t>(y0 * lattice.columns + x0)];
+  const float x = std::clamp(where.s, 0.f, 1.f) * (lattice.columns - 1);
+  const float y = std::clamp(where.t, 0.f, 1.f) * (lattice.rows - 1);
+  const int x0 = std::min<int>(x, lattice.columns - 2), y0 = std::min<int>(y, lattice.rows - 2);
+  const float tx = x - x0, ty = y - y0;
+  const Vector3f* row = &nodes_[lattice.first + y0 * lattice.columns + x0];
   const Vector3f* next = row + lattice.columns;
   return (1 - ty) * ((1 - tx) * row[0] + tx * row[1]) + ty * ((1 - tx) * next[0] + tx * next[1]);
 }
@@ -282,11 +279,11 @@ void Lightmap::layOut(const Scene& scene, float spacing)
   for (std::size_t c = 0; c < scene.cells.size(); ++c) {
     const auto p = [&](std::size_t k) -> Vector3f { return scene.mesh.vertices.col(scene.cells[c].corners[k]); };
     const auto along = [&](float a, float b) {
-      return std::clamp(static_cast<int>(std::ceil(std::max(a, b) / spacing - 1e-3f)), 1, 64) + 1;
+      return std::clamp<int>(std::ceil(std::max(a, b) / spacing - 1e-3f), 1, 64) + 1;
     };
     lattices_[c] = {nodes, along((p(1) - p(0)).norm(), (p(2) - p(3)).norm()),
                     along((p(2) - p(1)).norm(), (p(3) - p(0)).norm())};
-    nodes += static_cast<std::size_t>(lattices_[c].columns * lattices_[c].rows);
+    nodes += lattices_[c].columns * lattices_[c].rows;
   }
   nodes_.resize(nodes);
 }
@@ -295,9 +292,8 @@ void Lightmap::layOut(const Scene& scene, float spacing)
 void Lightmap::expose(const LightingOptions& options)
 {
   const Index count = nodes_.size();
-  const double sum =
-      parallelSum(count, options.threads, 0.0, [&](Index n) { return static_cast<double>(nodes_[n].mean()); });
-  const double mean = std::max(sum / static_cast<double>(std::max<Index>(count, 1)), 1e-9);
+  const double sum = parallelSum(count, options.threads, 0.0, [&](Index n) -> double { return nodes_[n].mean(); });
+  const double mean = std::max(sum / std::max<Index>(count, 1), 1e-9);
   const float exposure = std::pow(options.brightness, gamma_power) / mean;
   parallelFor(count, options.threads, [&](Index n) {
     Vector3f& node = nodes_[n];

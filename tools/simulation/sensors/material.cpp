@@ -21,7 +21,7 @@ Flat flatten(const Material& material, const SurfacePoint& at)
   int first = (drop + 1) % 3, second = (drop + 2) % 3;
   if (second == material.along)
     std::swap(first, second);
-  return {at.position[first], at.position[second], at.footprint, 8u * material.seed + static_cast<std::uint32_t>(drop)};
+  return {at.position[first], at.position[second], at.footprint, 8u * material.seed + drop};
 }
 
 float fractal(const Flat& at, float stretch, const NoiseSpectrum& spectrum, std::uint32_t salt)
@@ -32,7 +32,7 @@ float fractal(const Flat& at, float stretch, const NoiseSpectrum& spectrum, std:
 /// 1 within `half_width` of a line of the grid with the given spacing, 0 away from it; faded by the footprint.
 float gridLine(float x, float spacing, float half_width, float footprint)
 {
-  const float distance = std::fabs(x - spacing * static_cast<float>(floorOf(x / spacing + 0.5f)));
+  const float distance = std::fabs(x - spacing * floorOf(x / spacing + 0.5f));
   const float soft = std::max(footprint, 0.25f * half_width);
   const float covered = std::min(1.f, 2.f * half_width / std::max(footprint, 2.f * half_width));
   return covered * (1.f - smoothStep(half_width - 0.5f * soft, half_width + 0.5f * soft, distance));

@@ -4,7 +4,7 @@ namespace fresco::simulation {
 float valueNoise(float x, float y, std::uint32_t seed)
 {
   const int ix = floorOf(x), iy = floorOf(y);
-  const float tx = x - static_cast<float>(ix), ty = y - static_cast<float>(iy);
+  const float tx = x - ix, ty = y - iy;
   const float sx = tx * tx * (3.f - 2.f * tx), sy = ty * ty * (3.f - 2.f * ty);
   const float a = cellNoise(ix, iy, seed), b = cellNoise(ix + 1, iy, seed);
   const float c = cellNoise(ix, iy + 1, seed), d = cellNoise(ix + 1, iy + 1, seed);
@@ -18,8 +18,7 @@ float fractalNoise(const NoisePoint& at, const NoiseSpectrum& spectrum)
   for (int octave = 0; octave < spectrum.octaves; ++octave) {
     const float kept = detailKept(wavelength, at.footprint);
     if (kept > 0.f)
-      sum += amplitude * kept *
-             valueNoise(at.x / wavelength, at.y / wavelength, at.seed + 0x9e37u * static_cast<std::uint32_t>(octave));
+      sum += amplitude * kept * valueNoise(at.x / wavelength, at.y / wavelength, at.seed + 0x9e37u * octave);
     total += amplitude;
     amplitude *= spectrum.gain;
     wavelength *= 0.5f;

@@ -7,17 +7,16 @@ namespace fresco::simulation {
 inline int floorOf(float x)
 {
   const int whole = x;
-  return whole - (static_cast<float>(whole) > x ? 1 : 0);
+  return whole - (whole > x ? 1 : 0);
 }
 
 /// 0 <= value < 1, a function of the cell and the seed.
 inline float cellNoise(int x, int y, std::uint32_t seed)
 {
-  std::uint32_t h = static_cast<std::uint32_t>(x) * 0x8da6b343u ^ static_cast<std::uint32_t>(y) * 0xd8163841u ^
-                    (seed + 1u) * 0xcb1ab31fu;
+  std::uint32_t h = x * 0x8da6b343u ^ y * 0xd8163841u ^ (seed + 1u) * 0xcb1ab31fu;
   h = (h ^ (h >> 16)) * 0x7feb352du;
   h = (h ^ (h >> 15)) * 0x846ca68bu;
-  return static_cast<float>((h ^ (h >> 16)) >> 8) * 0x1.0p-24f;
+  return ((h ^ (h >> 16)) >> 8) * 0x1.0p-24f;
 }
 
 /// 0 at and below `low`, 1 at and above `high`, smooth in between.

@@ -21,11 +21,11 @@ Vector3f pixelNoise(const Exposure& exposure, std::uint64_t pixel)
 {
   Vector3f noise;
   for (int channel = 0; channel < 3; ++channel) {
-    std::uint64_t bits = scramble(scramble(exposure.seed * 0x9e3779b97f4a7c15ull + exposure.number) + 3 * pixel +
-                                  static_cast<std::uint64_t>(channel));
+    std::uint64_t bits =
+        scramble(scramble(exposure.seed * 0x9e3779b97f4a7c15ull + exposure.number) + 3 * pixel + channel);
     float sum = 0.f;
     for (int k = 0; k < 4; ++k, bits >>= 16)
-      sum += static_cast<float>(bits & 0xffffu) / 65536.f;
+      sum += (bits & 0xffffu) / 65536.f;
     noise[channel] = (sum - 2.f) * 1.7320508f;
   }
   return noise;
@@ -35,9 +35,7 @@ void store(Image& image, const Shot& shot, const Eigen::Vector2i& at, const Vect
 {
   Vector3f value = 255.f * color.cwiseProduct(shot.exposure.gain);
   if (shot.exposure.noise > 0.f)
-    value += shot.exposure.noise *
-             pixelNoise(shot.exposure, static_cast<std::uint64_t>(at.y()) * static_cast<std::uint64_t>(image.width) +
-                                           static_cast<std::uint64_t>(at.x()));
+    value += shot.exposure.noise * pixelNoise(shot.exposure, static_cast<std::uint64_t>(at.y()) * image.width + at.x());
   for (int channel = 0; channel < 3; ++channel)
     image.pixel(at.x(), at.y())[channel] = static_cast<std::uint8_t>(std::clamp(value[channel] + 0.5f, 0.f, 255.f));
 }
@@ -94,7 +92,7 @@ Image takePhotograph(const LitScene& lit, const Shot& shot, int threads)
       rows, threads,
       [&](Index row) {
         for (int x = 0; x < camera.width; x += block) {
-          const Eigen::Vector2i at(x, static_cast<int>(row) * block);
+          const Eigen::Vector2i at(x, row * block);
           const RayPacket<packet_size> packet = pixelRays(shot, center, at);
           const HitPacket<packet_size> hits = lit.rays.intersect(packet, RayOrder::coherent);
           for (int pixel = 0; pixel < block * block; ++pixel) {
@@ -103,7 +101,7 @@ Image takePhotograph(const LitScene& lit, const Shot& shot, int threads)
               continue;
             Vector3f sum = Vector3f::Zero();
             for (std::size_t k = 0; k < 4; ++k) {
-              const std::size_t i = 4 * static_cast<std::size_t>(pixel) + k;
+              const std::size_t i = 4 * pixel + k;
               sum += rayColor(lit, camera, packet[i], hits[i]);
             }
             store(image, shot, own, 0.25f * sum);

@@ -5,13 +5,13 @@
 namespace fresco::simulation {
 Picture::Picture(int width, int height, const Eigen::Vector3f& color)
 {
-  levels_.push_back({width, height, std::vector<Eigen::Vector3f>(static_cast<std::size_t>(width) * height, color)});
+  levels_.push_back({width, height, std::vector<Eigen::Vector3f>(width * height, color)});
 }
 
 Picture::Level Picture::halve(const Level& fine)
 {
   Level coarse{(fine.width + 1) / 2, (fine.height + 1) / 2, {}};
-  coarse.data.resize(static_cast<std::size_t>(coarse.width) * coarse.height);
+  coarse.data.resize(coarse.width * coarse.height);
   for (int y = 0; y < coarse.height; ++y)
     for (int x = 0; x < coarse.width; ++x) {
       const int right = std::min(2 * x + 1, fine.width - 1), below = std::min(2 * y + 1, fine.height - 1);
@@ -32,7 +32,7 @@ Eigen::Vector3f Picture::bilinear(const Level& level, float u, float v)
 {
   const float x = std::clamp(u * level.width - 0.5f, 0.f, static_cast<float>(level.width - 1));
   const float y = std::clamp(v * level.height - 0.5f, 0.f, static_cast<float>(level.height - 1));
-  const int x0 = static_cast<int>(x), y0 = static_cast<int>(y);
+  const int x0 = x, y0 = y;
   const int x1 = std::min(x0 + 1, level.width - 1), y1 = std::min(y0 + 1, level.height - 1);
   const float tx = x - x0, ty = y - y0;
   return (1 - ty) * ((1 - tx) * level.at(x0, y0) + tx * level.at(x1, y0)) +
@@ -48,6 +48,6 @@ Eigen::Vector3f Picture::sample(float u, float v, float footprint) const
   const float t = depth - level;
   if (t <= 0.f)
     return fine;
-  return (1 - t) * fine + t * bilinear(levels_[static_cast<std::size_t>(level) + 1], u, v);
+  return (1 - t) * fine + t * bilinear(levels_[level + 1], u, v);
 }
 } // namespace fresco::simulation

@@ -25,8 +25,8 @@ private:
   struct Level {
     int width = 0, height = 0;
     std::vector<Eigen::Vector3f> data;
-    Eigen::Vector3f& at(int x, int y) { return data[static_cast<std::size_t>(y) * width + x]; }
-    const Eigen::Vector3f& at(int x, int y) const { return data[static_cast<std::size_t>(y) * width + x]; }
+    Eigen::Vector3f& at(int x, int y) { return data[y * width + x]; }
+    const Eigen::Vector3f& at(int x, int y) const { return data[y * width + x]; }
   };
   static Level halve(const Level& fine);
   static Eigen::Vector3f bilinear(const Level& level, float u, float v);

@@ -2,6 +2,7 @@
 #pragma once
 #include <cmath>
 #include <cstdint>
+#include <fresco/core/constants.h>
 namespace fresco::simulation {
 /// Finaliser of SplitMix64 (Steele, Lea, Flood 2014): a bijection of 64 bits that looks random.
 inline std::uint64_t scramble(std::uint64_t x)
@@ -23,16 +24,18 @@ public:
   double uniform()
   {
     state_ += step_;
-    return static_cast<double>(scramble(state_) >> 11) * 0x1.0p-53;
+    return (scramble(state_) >> 11) * 0x1.0p-53;
   }
   double uniform(double low, double high) { return low + (high - low) * uniform(); }
+  float uniformFloat() { return uniform(); }
+  float uniformFloat(double low, double high) { return uniform(low, high); }
   int integer(int count) { return static_cast<int>(uniform() * count); } ///< 0 .. count - 1
 
   /// Mean 0, deviation 1 (Box, Muller 1958).
   double gaussian()
   {
     const double radius = std::sqrt(-2.0 * std::log(1.0 - uniform()));
-    return radius * std::cos(6.283185307179586 * uniform());
+    return radius * std::cos(2 * pi * uniform());
   }
 
 private:

@@ -37,7 +37,7 @@ std::vector<Candidate> allCandidates(Index places)
   for (Index p = 0; p < places; ++p)
     for (const float pitch : {-50.f, -15.f, 20.f, 60.f})
       for (int k = 0; k < yaw_steps; ++k)
-        all.push_back({p, 360.f / yaw_steps * (static_cast<float>(k) + (pitch < 0 ? 0.f : 0.5f)), pitch});
+        all.push_back({p, 360.f / yaw_steps * (k + (pitch < 0 ? 0.f : 0.5f)), pitch});
   return all;
 }
 
@@ -94,7 +94,7 @@ std::vector<Candidate> greedy(Planner& planner, const std::vector<Candidate>& al
   using Entry = std::pair<float, std::ptrdiff_t>; // gain, minus index: ties go to the first
   std::priority_queue<Entry> queue;
   for (std::size_t i = 0; i < all.size(); ++i)
-    queue.push({gains[i], -static_cast<std::ptrdiff_t>(i)});
+    queue.push({gains[i], -Index(i)});
   std::vector<Candidate> chosen;
   while (static_cast<int>(chosen.size()) < count && !queue.empty()) {
     Entry top = queue.top();
@@ -132,7 +132,7 @@ CameraSet chooseViews(const PlanningInput& in, const CameraModel& camera, int co
   for (const Candidate& c : greedy(planner, allCandidates(places.cols()), count, in.threads)) {
     const auto number = set.views.size();
     CounterRandom random(in.seed, 51, number);
-    const auto stray = [&](double range) { return static_cast<float>(random.uniform(-range, range)); };
+    const auto stray = [&](double range) { return random.uniformFloat(-range, range); };
     View view;
     char name[32];
     std::snprintf(name, sizeof name, "view_%03zu.jpg", number);

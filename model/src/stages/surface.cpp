@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "surface_stage.h"
-#include "surface_violation.h"
+#include "stages/free_space.h"
+#include "stages/stages.h"
 #include <algorithm>
 #include <fresco/core/parallel.h>
 #include <fresco/core/require.h>
@@ -16,18 +16,19 @@ namespace {
 std::vector<char> farFromPoints(const TriangleMesh& mesh, const PointSet& points, const ModelOptions& options)
 {
   const PointTree tree(points.points, options.threads);
+  const float cell = options.cell;
   const Eigen::Vector3f shift = (mesh.origin - points.origin).cast<float>();
   std::vector<char> far(mesh.vertexCount());
   parallelFor(mesh.vertexCount(), options.threads, [&](Index v) {
     const Eigen::Vector3f place = mesh.vertices.col(v) + shift;
-    far[v] = tree.nearest(place, static_cast<float>(options.cell)).index < 0;
+    far[v] = tree.nearest(place, cell).index < 0;
   });
   return far;
 }
 
-FreeSpace askAllViews(const Points& places, const ModelInput& input, const ModelFiles& files,
-                      const ModelOptions& options)
+FreeSpace askAllViews(const Points& places, const Job& job)
 {
+  const auto& [input, files, options] = job;
   FreeSpace space(places, options.cell, options.threads);
   if (input.rgbd)
     for (const RgbdFrame& frame : input.rgbd->frames)
@@ -49,37 +50,37 @@ FreeSpace askAllViews(const Points& places, const ModelInput& input, const Model
 
 /// 1 for the vertices in places that the sensors saw through and that no point is near to. Poses of depth cameras are
 /// not exact: there, one frame in thirty must have seen through.
-std::vector<char> inFreeSpace(const TriangleMesh& mesh, const PointSet& points, const ModelInput& input,
-                              const ModelFiles& files, const ModelOptions& options)
+std::vector<char> inFreeSpace(const TriangleMesh& mesh, const PointSet& points, const Job& job)
 {
-  std::vector<char> removed = farFromPoints(mesh, points, options);
+  std::vector<char> removed = farFromPoints(mesh, points, job.options);
   std::vector<Index> asked;
   for (Index v = 0; v < mesh.vertexCount(); ++v)
     if (removed[v])
       asked.push_back(v);
   const Points places = (mesh.vertices(Eigen::all, asked).colwise() + mesh.origin.cast<float>()).eval();
-  const int least = input.rgbd ? std::max(2, static_cast<int>(input.rgbd->frames.size()) / 30) : 1;
-  const std::vector<char> empty = askAllViews(places, input, files, options).empty(least);
+  const auto& rgbd = job.input.rgbd;
+  const int least = rgbd ? std::max<int>(2, rgbd->frames.size() / 30) : 1;
+  const std::vector<char> empty = askAllViews(places, job).empty(least);
   for (std::size_t i = 0; i < asked.size(); ++i)
     removed[asked[i]] = empty[i];
   return removed;
 }
 } // namespace
 
-nlohmann::ordered_json makeSurface(const ModelInput& input, const ModelFiles& files, const ModelOptions& options,
-                                   const Progress& progress)
+Figures makeSurface(const Job& job, const Progress& progress)
 {
+  const auto& [input, files, options] = job;
   report(progress, "read", 0.0);
   PointSet points = readPoints(files.points);
   VolumetricOptions volumetric;
   volumetric.cell_size = options.cell;
   volumetric.threads = options.threads;
-  volumetric.trim_levels = static_cast<float>(options.trim);
+  volumetric.trim_levels = options.trim_levels;
   VolumetricResult result = reconstructVolumetric(std::move(points), volumetric, subProgress(progress, 0.0, 0.7));
   Index carved = 0;
-  if (options.trim > 0) {
+  if (options.trim_levels > 0) {
     report(progress, "free space", 0.7);
-    std::vector<char> removed = inFreeSpace(result.mesh, readPoints(files.points), input, files, options);
+    std::vector<char> removed = inFreeSpace(result.mesh, readPoints(files.points), job);
     carved = std::count(removed.begin(), removed.end(), 1);
     result.mesh = withoutVertices(result.mesh, std::move(removed));
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "texture_stage.h"
+#include "stages/stages.h"
 #include <fresco/core/require.h>
 #include <fresco/io/image_io.h>
 #include <fresco/io/mesh_io.h>
@@ -28,9 +28,9 @@ std::vector<TextureView> viewsOf(const ModelInput& input)
 }
 } // namespace
 
-nlohmann::ordered_json makeTexture(const ModelInput& input, const ModelFiles& files, const ModelOptions& options,
-                                   const Progress& progress)
+Figures makeTexture(const Job& job, const Progress& progress)
 {
+  const auto& [input, files, options] = job;
   const TriangleMesh mesh = readMesh(files.mesh);
   TextureOptions texture;
   texture.texel = options.texel;
@@ -42,7 +42,7 @@ nlohmann::ordered_json makeTexture(const ModelInput& input, const ModelFiles& fi
   writeTexturedMesh(files.model_glb, result.model);
   writeTexturedMesh(files.model_obj, result.model);
   writeTexturedMesh(files.viewer_glb, result.model, 90); // smaller, since the report has it inside
-  nlohmann::ordered_json phases;
+  Figures phases;
   for (const auto& [phase, seconds] : result.seconds)
     phases[phase] = seconds;
   return {{"photographs", views.size()},

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "surface_violation.h"
+#include "stages/free_space.h"
 #include <algorithm>
 #include <cmath>
 #include <fresco/core/parallel.h>
 #include <fresco/core/require.h>
+#include <fresco/core/statistics.h>
 #include <fresco/search/neighbors.h>
 #include <fresco/surface/core/mesh_trimming.h>
 namespace fresco::model {
@@ -29,7 +30,7 @@ Range depthAround(const Image16& image, int x, int y)
     for (int u = x - reach; u <= x + reach; ++u) {
       if (u < 0 || v < 0 || u >= image.width || v >= image.height)
         continue;
-      const std::uint16_t raw = image.data[static_cast<std::size_t>(v) * image.width + u];
+      const std::uint16_t raw = image.data[Index(v) * image.width + u];
       if (raw == 0 || raw == 65535)
         continue;
       range.least = std::min(range.least, 1e-3f * raw);
@@ -49,15 +50,12 @@ float beamGap(const PointTree& directions, const Points& beams)
     directions.nearest(beams.col(i), beams_around, found);
     distances.push_back(found.back().squared_distance);
   }
-  const auto place = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() * 3 / 4);
-  std::nth_element(distances.begin(), place, distances.end());
-  return 2.f * std::sqrt(*place);
+  return 2.f * std::sqrt(rankedValue(distances, distances.size() * 3 / 4));
 }
 } // namespace
 
 FreeSpace::FreeSpace(const Points& places, double tolerance, int threads)
-    : places_(places), tolerance_(tolerance), threads_(threads), through_(static_cast<std::size_t>(places.cols())),
-      there_(through_.size())
+    : places_(places), tolerance_(tolerance), threads_(threads), through_(places.cols()), there_(through_.size())
 {
   require(tolerance > 0, "free space: a tolerance of ", tolerance, " is not positive");
 }
@@ -119,7 +117,7 @@ void FreeSpace::ask(const Points& scan, const Eigen::Isometry3d& T_world_scan)
       least = std::min(least, ranges[beam.index]);
       most = std::max(most, ranges[beam.index]);
     }
-    const auto slack = static_cast<float>(tolerance_);
+    const float slack = tolerance_;
     return range > most + slack ? Answer::Unknown : least > range + slack ? Answer::Through : Answer::There;
   });
 }
@@ -134,8 +132,8 @@ std::vector<char> FreeSpace::empty(int least) const
 
 TriangleMesh withoutVertices(const TriangleMesh& mesh, std::vector<char> removed)
 {
-  require(removed.size() == static_cast<std::size_t>(mesh.vertexCount()), "mesh: ", mesh.vertexCount(), " vertices, ",
-          removed.size(), " marks");
+  require(Index(removed.size()) == mesh.vertexCount(), "mesh: ", mesh.vertexCount(), " vertices, ", removed.size(),
+          " marks");
   for (int round = 0; round < 3; ++round) {
     std::vector<int> votes(removed.size(), 0); // for removal less against it, each edge counted once per face
     for (Index f = 0; f < mesh.faceCount(); ++f)

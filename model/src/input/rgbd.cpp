@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "rgbd.h"
+#include "input/rgbd.h"
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <filesystem>
+#include <fresco/core/constants.h>
 #include <fresco/core/parallel.h>
 #include <fresco/core/require.h>
 #include <fresco/io/file.h>
@@ -58,7 +59,7 @@ struct DepthField {
   /// Metres; 0 = none.
   float at(int x, int y) const
   {
-    const std::uint16_t raw = image.data[static_cast<std::size_t>(y) * image.width + x];
+    const std::uint16_t raw = image.data[Index(y) * image.width + x];
     const float z = raw == 65535 ? 0.f : 1e-3f * raw;
     return z >= options.nearest && z <= options.farthest ? z : 0.f;
   }
@@ -75,7 +76,7 @@ struct Plane {
 bool fitPlane(const DepthField& field, int x, int y, Plane& plane)
 {
   const float z = field.at(x, y);
-  const float radius = static_cast<float>(field.options.radius) * z + 0.01f;
+  const float share = field.options.radius, radius = share * z + 0.01f;
   const double widest = std::max(field.image.width, field.image.height);
   const int reach = std::max(2, static_cast<int>(std::min(radius * field.camera.fx / z, widest)));
   const int step = std::max(1, reach / 4);
@@ -98,9 +99,9 @@ bool fitPlane(const DepthField& field, int x, int y, Plane& plane)
     }
   if (used < 12 || 2 * used < asked)
     return false;
-  const Eigen::Vector3f mean = sum / static_cast<float>(used);
+  const Eigen::Vector3f mean = sum / used;
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f> solver;
-  solver.computeDirect(squares / static_cast<float>(used) - mean * mean.transpose());
+  solver.computeDirect(squares / used - mean * mean.transpose());
   plane.center = middle + mean;
   plane.normal = solver.eigenvectors().col(0);
   if (plane.normal.dot(middle) > 0.f)
@@ -155,7 +156,7 @@ PointSet depthPoints(const Image16& depth, const CameraModel& camera, const Dept
   const DepthField field{depth, camera, options, beamsOf(camera)};
   const int columns = (depth.width + options.stride - 1) / options.stride;
   const int rows = (depth.height + options.stride - 1) / options.stride;
-  const float least_cosine = std::cos(options.grazing * EIGEN_PI / 180.0);
+  const float least_cosine = std::cos(options.grazing * pi / 180.0);
   PointSet all;
   all.points.resize(3, Index(columns) * rows);
   all.normals.resize(3, all.size());
@@ -164,7 +165,7 @@ PointSet depthPoints(const Image16& depth, const CameraModel& camera, const Dept
       rows, threads,
       [&](Index row) {
         for (int column = 0; column < columns; ++column) {
-          const int x = column * options.stride, y = static_cast<int>(row) * options.stride;
+          const int x = column * options.stride, y = row * options.stride;
           Plane plane;
           if (field.at(x, y) == 0.f || !fitPlane(field, x, y, plane))
             continue;

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "fusion.h"
+#include "stages/fusion.h"
 #include <algorithm>
 #include <fresco/core/require.h>
+#include <fresco/core/statistics.h>
 namespace fresco::model {
 PointFusion::PointFusion(double cell) : cell_(cell) { require(cell > 0, "fusion: cell ", cell, " is not positive"); }
 
@@ -52,10 +53,8 @@ PointSet PointFusion::result(double least_weight) const
   for (const Sum& sum : sums_)
     weights.push_back(sum.weight);
   double threshold = 0;
-  if (!weights.empty() && least_weight > 0) {
-    std::nth_element(weights.begin(), weights.begin() + static_cast<std::ptrdiff_t>(weights.size() / 2), weights.end());
-    threshold = least_weight * weights[weights.size() / 2];
-  }
+  if (!weights.empty() && least_weight > 0)
+    threshold = least_weight * median(weights);
   std::vector<const Sum*> kept;
   for (const Sum& sum : sums_)
     if (sum.weight >= threshold && sum.normal.norm() > 0)
@@ -63,7 +62,7 @@ PointSet PointFusion::result(double least_weight) const
   const auto all = [&](auto has) { return !kept.empty() && std::all_of(kept.begin(), kept.end(), has); };
   const bool colors = all([](const Sum* sum) { return sum->color_weight > 0; });
   const bool viewpoints = all([](const Sum* sum) { return sum->viewpoint_weight > 0; });
-  const auto count = static_cast<Index>(kept.size());
+  const Index count = kept.size();
   PointSet set;
   set.points.resize(3, count);
   set.normals.resize(3, count);
@@ -74,7 +73,7 @@ PointSet PointFusion::result(double least_weight) const
     const Sum& sum = *kept[i];
     set.points.col(i) = (sum.point / sum.weight).cast<float>();
     set.normals.col(i) = sum.normal.normalized().cast<float>();
-    set.confidences[i] = static_cast<float>(sum.weight);
+    set.confidences[i] = sum.weight;
     if (colors)
       set.colors.col(i) = (sum.color / sum.color_weight).array().round().matrix().cast<std::uint8_t>();
     if (viewpoints)

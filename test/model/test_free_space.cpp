@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "surface_violation.h"
+#include "stages/free_space.h"
 #include <cmath>
 #include <gtest/gtest.h>
 #include <set>

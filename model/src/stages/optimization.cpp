@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "optimization_stage.h"
-#include "fusion.h"
+#include "stages/optimization.h"
+#include "stages/fusion.h"
+#include "stages/stages.h"
 #include <fresco/io/mesh_io.h>
 #include <fresco/io/point_io.h>
 #include <fresco/surface/core/normal_filtering.h>
@@ -21,9 +22,9 @@ PointSet pointsForVertices(PointSet points, Index vertices, double cell)
   return points;
 }
 
-nlohmann::ordered_json makeOptimizedSurface(const ModelFiles& files, const ModelOptions& options,
-                                            const Progress& progress)
+Figures makeOptimizedSurface(const Job& job, const Progress& progress)
 {
+  const auto& [input, files, options] = job;
   report(progress, "read", 0.0);
   const TriangleMesh surface = readMesh(files.surface);
   if (!options.optimize) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "input.h"
+#include "input/model_input.h"
 #include <algorithm>
 #include <filesystem>
 #include <fresco/core/require.h>

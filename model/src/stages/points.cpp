@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "points_stage.h"
-#include "fusion.h"
+#include "stages/fusion.h"
+#include "stages/stages.h"
 #include <Eigen/LU>
 #include <algorithm>
 #include <fresco/core/require.h>
@@ -15,8 +15,6 @@
 #include <utility>
 namespace fresco::model {
 namespace {
-using Json = nlohmann::ordered_json;
-
 /// `set` without points that are not finite or have no normal; normals smoothed.
 PointSet smoothed(const PointSet& set, const ModelOptions& options, const Progress& progress)
 {
@@ -70,11 +68,11 @@ PreparedScan preparedScan(const std::string& file, const ModelOptions& options, 
   return {smoothed(scan, options, subProgress(progress, 0.6, 1.0)), read.size()};
 }
 
-/// World from scan. Without -poses all scans are registered from scratch, as they were measured: what cleaning takes
+/// World from scan. Without -use_poses all scans are registered from scratch, as they were measured: what cleaning takes
 /// from a sparse scan is what its place would be known by. The folder's first pose then only ties the result to the
 /// frame of the photographs.
 std::vector<Pose> placeScans(const ModelInput& input, const ModelOptions& options, const Progress& progress,
-                             Json& figures)
+                             Figures& figures)
 {
   if (options.use_poses) {
     figures["registration"] = "given poses";
@@ -83,18 +81,19 @@ std::vector<Pose> placeScans(const ModelInput& input, const ModelOptions& option
   ScanRegistrationOptions registration;
   registration.threads = options.threads;
   registration.names = input.scans;
-  const ScanSource scans{static_cast<Index>(input.scans.size()), [&](Index i) { return readPoints(input.scans[i]); }};
+  const Index count = input.scans.size();
+  const ScanSource scans{count, [&](Index i) { return readPoints(input.scans[i]); }};
   const ScanRegistrationResult result = registerScans(scans, {}, registration, progress);
   std::vector<Pose> poses = result.poses;
   figures["registration"] = "found";
   figures["registration_rms"] = result.rms;
   Index tie = 0;
-  while (tie < static_cast<Index>(poses.size()) && !poses[tie])
+  while (tie < count && !poses[tie])
     ++tie;
-  if (tie == static_cast<Index>(poses.size()))
+  if (tie == count)
     throw std::runtime_error(input.folder + ": no scan could be placed");
-  if (const auto t = static_cast<std::size_t>(tie); t < input.poses.size() && input.poses[t]) {
-    const Eigen::Matrix4d T_world_group = *input.poses[t] * poses[t]->inverse();
+  if (!input.poses.empty() && input.poses[tie]) {
+    const Eigen::Matrix4d T_world_group = *input.poses[tie] * poses[tie]->inverse();
     for (Pose& pose : poses)
       if (pose)
         pose = T_world_group * *pose;
@@ -102,25 +101,24 @@ std::vector<Pose> placeScans(const ModelInput& input, const ModelOptions& option
   return poses;
 }
 
-Json pointsFromScans(const ModelInput& input, const ModelFiles& files, const ModelOptions& options,
-                     const Progress& progress)
+Figures pointsFromScans(const Job& job, const Progress& progress)
 {
-  Json figures;
-  const auto count = static_cast<Index>(input.scans.size());
-  const std::vector<Pose> poses = placeScans(input, options, subProgress(progress, 0.0, 0.4), figures);
+  Figures figures;
+  const Index count = job.input.scans.size();
+  const std::vector<Pose> poses = placeScans(job.input, job.options, subProgress(progress, 0.0, 0.4), figures);
   Index raw = 0;
-  const double step = 0.55 / static_cast<double>(count);
+  const double step = 0.55 / count;
   const auto prepared = [&](Index s) {
-    const double begin = 0.4 + step * static_cast<double>(s);
+    const double begin = 0.4 + step * s;
     report(progress, concat("scan ", s + 1, " of ", count), begin);
-    PreparedScan scan = preparedScan(input.scans[s], options, subProgress(progress, begin, begin + step));
+    PreparedScan scan = preparedScan(job.input.scans[s], job.options, subProgress(progress, begin, begin + step));
     raw += scan.read;
     return std::move(scan.points);
   };
-  const PointSet merged = mergeScans({count, prepared}, poses, options.threads);
+  const PointSet merged = mergeScans({count, prepared}, poses, job.options.threads);
   report(progress, "write", 0.95);
-  writePoints(files.points, merged);
-  writePoses(files.poses, poses);
+  writePoints(job.files.points, merged);
+  writePoses(job.files.poses, poses);
   figures["scans"] = count;
   figures["raw_points"] = raw; // of the scans that have a place
   figures["points"] = merged.size();
@@ -128,15 +126,14 @@ Json pointsFromScans(const ModelInput& input, const ModelFiles& files, const Mod
   return figures;
 }
 
-Json pointsFromFrames(const ModelInput& input, const ModelFiles& files, const ModelOptions& options,
-                      const Progress& progress)
+Figures pointsFromFrames(const Job& job, const Progress& progress)
 {
+  const auto& [input, files, options] = job;
   PointFusion fusion(options.fuse);
   const RgbdFolder& rgbd = *input.rgbd;
   Index raw = 0;
   for (std::size_t f = 0; f < rgbd.frames.size(); ++f) {
-    report(progress, concat("frame ", f + 1, " of ", rgbd.frames.size()),
-           0.8 * static_cast<double>(f) / static_cast<double>(rgbd.frames.size()));
+    report(progress, concat("frame ", f + 1, " of ", rgbd.frames.size()), 0.8 * f / rgbd.frames.size());
     const Image16 depth = readImage16(rgbd.frames[f].depth);
     if (depth.width != rgbd.camera.width || depth.height != rgbd.camera.height)
       throw std::runtime_error(concat(rgbd.frames[f].depth, ": ", depth.width, "x", depth.height,
@@ -156,9 +153,8 @@ Json pointsFromFrames(const ModelInput& input, const ModelFiles& files, const Mo
 }
 } // namespace
 
-Json makePoints(const ModelInput& input, const ModelFiles& files, const ModelOptions& options, const Progress& progress)
+Figures makePoints(const Job& job, const Progress& progress)
 {
-  return input.rgbd ? pointsFromFrames(input, files, options, progress)
-                    : pointsFromScans(input, files, options, progress);
+  return job.input.rgbd ? pointsFromFrames(job, progress) : pointsFromScans(job, progress);
 }
 } // namespace fresco::model

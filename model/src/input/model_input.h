@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include "rgbd.h"
+#include "input/rgbd.h"
 #include <fresco/core/camera.h>
 #include <fresco/io/pose_file.h>
 #include <optional>
@@ -22,7 +22,6 @@ struct ModelInput {
 /// Looks at a folder and reads everything small (poses, cameras). Folder of scans: `scans/*.pcd` (or .ply, .xyz, .vtk,
 /// .obj), `poses.txt`, `cameras/`, `images/`. RGB-D: see readRgbdFolder().
 /// @throws std::runtime_error naming what is missing or does not fit together: neither kind, no scan, more or fewer
-/// poses
-///         than scans, a photograph that is missing
+///         poses than scans, a photograph that is missing
 ModelInput readModelInput(const std::string& folder);
 } // namespace fresco::model

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "report.h"
+#include "report/report.h"
 #include "viewer/viewer.h"
 #include <fresco/core/require.h>
 #include <fresco/io/file.h>
@@ -8,14 +8,6 @@
 namespace fresco::model {
 namespace {
 using Json = nlohmann::ordered_json;
-
-std::string escaped(const std::string& text)
-{
-  std::string result;
-  for (const char c : text)
-    result += c == '&' ? "&amp;" : c == '<' ? "&lt;" : c == '>' ? "&gt;" : c == '"' ? "&quot;" : std::string(1, c);
-  return result;
-}
 
 std::string fixed(double value, int digits)
 {
@@ -34,17 +26,23 @@ std::string shown(const Json& value)
   return value.is_string() ? value.get<std::string>() : value.dump();
 }
 
-/// Figures for people; lists and what describes the pictures are in report.json.
-std::vector<std::pair<std::string, std::string>> shownFigures(const StageRecord& stage)
+/// What describes the pictures is left out.
+ModelStage publicStage(const StageRecord& record)
 {
-  std::vector<std::pair<std::string, std::string>> figures;
-  for (const auto& [name, value] : stage.figures.items())
+  ModelStage stage{record.name, record.seconds, record.cpu_seconds, record.peak_megabytes, record.resumed, {}};
+  for (const auto& [name, value] : record.figures.items())
     if (name != "pictures" && name != "up")
-      figures.emplace_back(name, shown(value));
-  return figures;
+      stage.figures.emplace_back(name, shown(value));
+  return stage;
 }
 
-Json toJson(const ModelReport& report)
+Eigen::Vector3d vectorOf(const Json& object, const char* name)
+{
+  const auto values = object.value(name, std::vector<double>{0, 0, 1});
+  return Eigen::Vector3d(values.at(0), values.at(1), values.at(2));
+}
+
+Json toJson(const Report& report)
 {
   Json json{
       {"input", report.input}, {"seconds", report.seconds}, {"stages", Json::array()}, {"pictures", Json::array()}};
@@ -59,36 +57,36 @@ Json toJson(const ModelReport& report)
                               {"resumed", stage.resumed},
                               {"figures", figures}});
   }
-  for (const ModelPicture& picture : report.pictures)
+  for (const ReportPicture& picture : report.pictures)
     json["pictures"].push_back({{"file", picture.file}, {"title", picture.title}});
   return json;
 }
 
-std::string stageTable(const ModelReport& report)
+std::string stageTable(const Report& report)
 {
   std::string html = "<table><tr><th>stage<th>time, s<th>CPU, s<th>peak memory, MB<th>figures</tr>\n";
   for (const StageRecord& stage : report.stages) {
-    html += "<tr><td>" + escaped(stage.name) + (stage.resumed ? " (earlier run)" : "") + "<td>" +
+    html += "<tr><td>" + escapedHtml(stage.name) + (stage.resumed ? " (earlier run)" : "") + "<td>" +
             fixed(stage.seconds, 1) + "<td>" + fixed(stage.cpu_seconds, 1) + "<td>" + fixed(stage.peak_megabytes, 0) +
             "<td>";
-    for (const auto& [name, value] : shownFigures(stage))
-      html += "<span><b>" + escaped(name) + "</b> " + escaped(value) + "</span> ";
+    for (const auto& [name, value] : publicStage(stage).figures)
+      html += "<span><b>" + escapedHtml(name) + "</b> " + escapedHtml(value) + "</span> ";
     html += "</tr>\n";
   }
   return html + "</table>\n";
 }
 
-std::string viewer(const ModelReport& report, const ModelFiles& files)
+std::string viewer(const Report& report, const ModelFiles& files)
 {
   ViewerOptions options;
   options.up = report.up;
-  for (const ModelPicture& picture : report.pictures)
+  for (const ReportPicture& picture : report.pictures)
     if (picture.textured && picture.angle > 0)
       options.places.push_back({picture.title, picture.eye, picture.look, picture.angle});
   return "<div class=\"viewer\">" + viewerElement(readFile(files.viewer_glb), options) + "</div>\n";
 }
 
-std::string toHtml(const ModelReport& report, const ModelFiles& files)
+std::string toHtml(const Report& report, const ModelFiles& files)
 {
   std::string html =
       "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>fresco model</title>\n"
@@ -98,29 +96,41 @@ std::string toHtml(const ModelReport& report, const ModelFiles& files)
       ".viewer{height:min(75vh,800px);margin:1em 0}"
       "figure{margin:1.5em 0}img{max-width:100%;border:1px solid #ddd}figcaption{color:#555}"
       "</style></head><body>\n<h1>fresco model</h1>\n<p>Input: " +
-      escaped(report.input) + ". Time of this run: " + fixed(report.seconds, 1) +
+      escapedHtml(report.input) + ". Time of this run: " + fixed(report.seconds, 1) +
       " s. Model: <code>model.glb</code>, <code>model.obj</code>; mesh: <code>mesh.ply</code>; poses: "
       "<code>poses.txt</code>.</p>\n" +
       viewer(report, files) + stageTable(report);
-  for (const ModelPicture& picture : report.pictures)
-    html += "<figure><img alt=\"" + escaped(picture.title) + "\" src=\"data:image/png;base64," +
-            base64(readFile(files.folder + "/" + picture.file)) + "\"><figcaption>" + escaped(picture.title) +
+  for (const ReportPicture& picture : report.pictures)
+    html += "<figure><img alt=\"" + escapedHtml(picture.title) + "\" src=\"data:image/png;base64," +
+            base64(readFile(files.folder + "/" + picture.file)) + "\"><figcaption>" + escapedHtml(picture.title) +
             "</figcaption></figure>\n";
   return html + "</body></html>\n";
 }
 } // namespace
 
-std::string stageSummary(const StageRecord& stage)
+Report makeReport(const std::string& input, const std::vector<StageRecord>& stages, double seconds)
 {
-  std::string line = stage.name + (stage.resumed ? " (earlier run)" : "") + ": " + fixed(stage.seconds, 1) + " s, " +
-                     fixed(stage.cpu_seconds, 1) + " s of CPU, " + fixed(stage.peak_megabytes, 0) + " MB";
-  for (const auto& [name, value] : shownFigures(stage))
-    if (value.find_first_of("{[") == std::string::npos)
-      line += ", " + name + " " + value;
-  return line;
+  Report report{input, stages, {}, Eigen::Vector3d::UnitZ(), seconds};
+  const Json& figures = stages.back().figures;
+  report.up = vectorOf(figures, "up");
+  for (const Json& picture : figures["pictures"])
+    report.pictures.push_back({picture.value("file", ""), picture.value("title", ""), picture.value("textured", false),
+                               vectorOf(picture, "eye"), vectorOf(picture, "look"), picture.value("angle", 0.0)});
+  return report;
 }
 
-void writeReport(const ModelReport& report, const ModelFiles& files)
+ModelReport publicReport(const Report& report)
+{
+  ModelReport result;
+  for (const StageRecord& stage : report.stages)
+    result.stages.push_back(publicStage(stage));
+  for (const ReportPicture& picture : report.pictures)
+    result.pictures.push_back(picture.file);
+  result.seconds = report.seconds;
+  return result;
+}
+
+void writeReport(const Report& report, const ModelFiles& files)
 {
   OutputGroup outputs;
   writeFile(files.report_html, toHtml(report, files));
@@ -128,3 +138,14 @@ void writeReport(const ModelReport& report, const ModelFiles& files)
   outputs.commit();
 }
 } // namespace fresco::model
+
+std::string fresco::stageSummary(const ModelStage& stage)
+{
+  using model::fixed;
+  std::string line = stage.name + (stage.resumed ? " (earlier run)" : "") + ": " + fixed(stage.seconds, 1) + " s, " +
+                     fixed(stage.cpu_seconds, 1) + " s of CPU, " + fixed(stage.peak_megabytes, 0) + " MB";
+  for (const auto& [name, value] : stage.figures)
+    if (value.find_first_of("{[") == std::string::npos)
+      line += ", " + name + " " + value;
+  return line;
+}

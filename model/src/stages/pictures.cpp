@@ -1,17 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "pictures_stage.h"
 #include "rendering/indoor_view.h"
 #include "rendering/picture.h"
+#include "stages/stages.h"
 #include <algorithm>
 #include <cmath>
+#include <fresco/core/constants.h>
 #include <fresco/io/image_io.h>
 #include <fresco/io/mesh_io.h>
 #include <limits>
 namespace fresco::model {
 using namespace rendering;
 namespace {
-using Json = nlohmann::ordered_json;
-
 enum class From { inside, photograph, above };
 
 struct Shot {
@@ -43,7 +42,7 @@ Viewpoint viewOf(const CameraModel& camera, const Eigen::Isometry3d& T_world_cam
   view.eye = T_world_camera.translation();
   view.look = view.eye + T_world_camera.linear().col(2);
   view.up = -T_world_camera.linear().col(1);
-  view.angle = 2 * std::atan(0.5 * camera.height / camera.fy) * 180.0 / EIGEN_PI;
+  view.angle = 2 * std::atan(0.5 * camera.height / camera.fy) * 180.0 / pi;
   return view;
 }
 
@@ -82,8 +81,8 @@ std::vector<Viewpoint> variedViews(const std::vector<Viewpoint>& views, std::siz
   return chosen;
 }
 
-/// Upright direction: that of the frame for scans; for RGB-D frames, whose world may be tilted, the mean of the
-/// cameras'.
+/// Upright direction: that of the frame for scans; for RGB-D frames, whose world may be tilted,
+/// the mean of the cameras'.
 std::optional<Eigen::Vector3d> uprightOf(const ModelInput& input)
 {
   if (!input.rgbd)
@@ -93,9 +92,9 @@ std::optional<Eigen::Vector3d> uprightOf(const ModelInput& input)
     up -= frame.T_world_camera.linear().col(1);
   return up.norm() > 0 ? std::optional<Eigen::Vector3d>(up.normalized()) : std::nullopt;
 }
-Json listOf(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
+Figures listOf(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 
-Json entryOf(const Shot& shot, const Viewpoint& view)
+Figures entryOf(const Shot& shot, const Viewpoint& view)
 {
   return {{"file", "snapshots/" + shot.name + ".png"},
           {"title", shot.title},
@@ -114,9 +113,9 @@ std::vector<std::string> pictureFiles(const ModelFiles& files)
   return paths;
 }
 
-Json makePictures(const ModelInput& input, const ModelFiles& files, const ModelOptions& options,
-                  const Progress& progress)
+Figures makePictures(const Job& job, const Progress& progress)
 {
+  const auto& [input, files, options] = job;
   const TexturedMesh model = readTexturedMesh(files.model_obj);
   const IndoorOptions indoor{uprightOf(input), static_cast<double>(options.width) / options.height, options.threads};
   const Viewpoint above = aboveView(model.mesh, indoor);
@@ -127,15 +126,15 @@ Json makePictures(const ModelInput& input, const ModelFiles& files, const ModelO
   picture.width = options.width;
   picture.height = options.height;
   picture.threads = options.threads;
-  Json list = Json::array();
+  Figures list = Figures::array();
   for (std::size_t i = 0; i < shots().size(); ++i) {
     const Shot& shot = shots()[i];
-    report(progress, shot.name, static_cast<double>(i) / static_cast<double>(shots().size()));
+    report(progress, shot.name, double(i) / shots().size());
     picture.shading = shot.shading;
     picture.oversampling = shot.shading == Shading::Texture ? 2 : 1; // textures hold finer detail than the picture
     picture.view = shot.from == From::above ? above : shot.from == From::inside ? inside : photographs[shot.photograph];
     picture.cull_back_faces = shot.from == From::above;
-    picture.plain = shot.shading == Shading::Gouraud;
+    picture.no_colors = shot.shading == Shading::Gouraud;
     const Image image =
         shot.shading == Shading::Texture ? renderPicture(model, picture) : renderPicture(model.mesh, picture);
     writeImage(pictureFiles(files)[i], image);

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include <fresco/core/export.h>
+#include <fresco/core/progress.h>
+#include <string>
+#include <utility>
+#include <vector>
+namespace fresco {
+/// Options of buildModel(). Lengths in metres.
+struct ModelOptions {
+  bool resume = false;            ///< go on after the last stage that an earlier run finished
+  bool use_poses = false;         ///< take the folder's poses.txt as they are; RGB-D frames always bring theirs
+  double cell = 0.02;             ///< finest cell of the surface reconstruction, > 0
+  double fuse = 0.01;             ///< RGB-D: cell in which the points of all frames are averaged, > 0
+  int bilateral = 2;              ///< rounds of bilateral smoothing of the normals, >= 0
+  bool optimize = true;           ///< move the vertices so that edges become sharp
+  double trim_levels = 2.0;       ///< see VolumetricOptions::trim_levels, >= 0; 0 = keep the surface closed
+  double texel = 0.0;             ///< side of a texel, >= 0; 0 = as fine as the photographs
+  int width = 1280, height = 960; ///< of the pictures, pixels, at least 160 x 120
+  int threads = 0;                ///< 0 = all cores; the result does not depend on it
+};
+
+/// What one stage cost and what it found.
+struct ModelStage {
+  std::string name;          ///< points, surface, optimization, texture or pictures
+  double seconds = 0;        ///< wall clock
+  double cpu_seconds = 0;    ///< of all threads
+  double peak_megabytes = 0; ///< resident memory of the process, highest during the stage
+  bool resumed = false;      ///< taken over from an earlier run
+  /// Name and value, numbers with four digits, lists as JSON; report.json has them in full.
+  std::vector<std::pair<std::string, std::string>> figures;
+};
+
+struct ModelReport {
+  std::vector<ModelStage> stages;    ///< in the order in which they ran
+  std::vector<std::string> pictures; ///< files, relative to the output folder
+  double seconds = 0;                ///< wall clock of this run
+};
+
+/// The whole chain from a folder of measurements to a textured model: points with normals, registration, surface
+/// reconstruction, sharp edges, texture, pictures and a report.
+///
+/// Stages hand over files, so a resumed run gives the same bytes as an undisturbed one. Every file is written whole or
+/// not at all. Written are model.obj with .mtl and .png, model.glb, model_mask.png, mesh.ply, poses.txt,
+/// snapshots/*.png, report.html, report.json, and in work/ what `resume` needs.
+/// @param input_folder  scans and photographs (scans/*.pcd, poses.txt, cameras/ as COLMAP model, images/) or RGB-D
+///                      frames (camera-intrinsics.txt, frame-*.{color.jpg,depth.png,pose.txt}); see docs/model.md
+/// @param output_folder made where it is missing
+/// @param progress      hears "STAGE: STEP" and the share of the stage
+/// @throws std::invalid_argument if an option is out of range
+/// @throws std::runtime_error naming file and reason: an input that is missing or damaged, an output that cannot be
+///                            written. What earlier stages wrote stays
+/// @throws Cancelled if `progress` asks to stop
+FRESCO_EXPORT ModelReport buildModel(const std::string& input_folder, const std::string& output_folder,
+                                     const ModelOptions& options = {}, const Progress& progress = {});
+
+/// One line with time, memory and figures of a stage.
+FRESCO_EXPORT std::string stageSummary(const ModelStage& stage);
+} // namespace fresco

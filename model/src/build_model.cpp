@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "report/report.h"
+#include "stage_log.h"
+#include "stages/stages.h"
+#include <chrono>
+#include <fresco/core/require.h>
+#include <fresco/io/file.h>
+namespace fresco {
+namespace {
+using namespace model;
+
+void validate(const ModelInput& input, const ModelOptions& options)
+{
+  require(options.cell > 0 && options.fuse > 0, "model: a cell of ", options.cell, " m or ", options.fuse, " m");
+  require(options.bilateral >= 0 && options.trim_levels >= 0 && options.texel >= 0, "model: an option is negative");
+  require(options.width >= 160 && options.height >= 120, "model: pictures of ", options.width, "x", options.height,
+          " pixels are too small");
+  if (options.use_poses && input.poses.empty())
+    throw std::runtime_error(input.folder + "/poses.txt: no such file, but its poses are asked for");
+  if (!input.rgbd && input.cameras.views.empty())
+    throw std::runtime_error(input.folder + "/cameras: no photographs, so there is nothing to texture the model with");
+}
+
+/// The steps of the chain, each with the options that its outputs depend on besides the steps before it.
+std::vector<Stage> stagesOf(const Job& job)
+{
+  const auto& [input, files, options] = job;
+  const auto step = [&job](Figures (*make)(const Job&, const Progress&)) {
+    return [&job, make](const Progress& progress) { return make(job, progress); };
+  };
+  return {{"points",
+           concat(options.use_poses, " ", options.fuse, " ", options.bilateral),
+           {files.points, files.poses},
+           step(makePoints)},
+          {"surface", concat(options.cell, " ", options.trim_levels), {files.surface}, step(makeSurface)},
+          {"optimization", concat(options.optimize), {files.mesh}, step(makeOptimizedSurface)},
+          {"texture", concat(options.texel), {files.model_obj, files.model_glb, files.viewer_glb}, step(makeTexture)},
+          {"pictures", concat(options.width, "x", options.height), pictureFiles(files), step(makePictures)}};
+}
+} // namespace
+
+ModelReport buildModel(const std::string& input_folder, const std::string& output_folder, const ModelOptions& options,
+                       const Progress& progress)
+{
+  const Job job{readModelInput(input_folder), ModelFiles(output_folder), options};
+  validate(job.input, options);
+  const auto start = std::chrono::steady_clock::now();
+  makeFolder(job.files.folder);
+  makeFolder(job.files.snapshots);
+  StageLog log(job.files.work, fingerprint(job.input.files()) + fingerprint(programFiles()), options.resume, progress);
+  for (const Stage& stage : stagesOf(job))
+    log.run(stage);
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  const Report report = makeReport(input_folder, log.records(), seconds);
+  writeReport(report, job.files);
+  return publicReport(report);
+}
+} // namespace fresco

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include "files.h"
+#include "input/model_input.h"
+#include <fresco/core/progress.h>
+#include <fresco/model/build_model.h>
+#include <nlohmann/json.hpp>
+namespace fresco::model {
+/// What a stage found, by name; goes into the report.
+using Figures = nlohmann::ordered_json;
+
+/// What all stages of a job share.
+struct Job {
+  ModelInput input;
+  ModelFiles files;
+  ModelOptions options;
+};
+
+/// All scans or frames in one frame with normals: reads the input, writes `files.points` and `files.poses`.
+Figures makePoints(const Job& job, const Progress& progress);
+
+/// Surface of the points: reads `files.points`, writes `files.surface`. Unless it is to be closed, the surface in
+/// places that scans or frames saw through is left out.
+Figures makeSurface(const Job& job, const Progress& progress);
+
+/// Sharp edges: reads `files.surface` and `files.points`, writes `files.mesh`. Without ModelOptions::optimize the
+/// surface is taken as it is.
+Figures makeOptimizedSurface(const Job& job, const Progress& progress);
+
+/// Texture from the photographs: reads `files.mesh`, writes the model and the masks.
+Figures makeTexture(const Job& job, const Progress& progress);
+
+/// Pictures of the model from inside and above: reads `files.model_obj`, writes PNG files into `files.snapshots`.
+/// @return with an array "pictures" of {file, title, textured, eye, look, angle} and the upright direction "up"
+Figures makePictures(const Job& job, const Progress& progress);
+
+/// The files that makePictures() writes.
+std::vector<std::string> pictureFiles(const ModelFiles& files);
+} // namespace fresco::model
