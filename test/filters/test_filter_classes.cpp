@@ -149,8 +149,8 @@ void expectSameNormals(const pcl::PointCloud<pcl::Normal>& a, const pcl::PointCl
   for (std::size_t i = 0; i < a.size(); ++i) {
     ASSERT_EQ(pcl::isNormalFinite(a[i]), pcl::isNormalFinite(b[i])) << i;
     if (pcl::isNormalFinite(a[i])) {
-      EXPECT_LT(test::angleBetween(a[i].getNormalVector3fMap(), b[i].getNormalVector3fMap()), 0.5f) << i; // degrees
-      EXPECT_NEAR(a[i].curvature, b[i].curvature, 1e-4f) << i;
+      EXPECT_LT(test::angleBetween(a[i].getNormalVector3fMap(), b[i].getNormalVector3fMap()), 0.1f) << i; // degrees
+      EXPECT_NEAR(a[i].curvature, b[i].curvature, 1e-5f) << i;
     }
   }
 }
@@ -169,6 +169,7 @@ TEST(OrientedNormalEstimation, TakesNeighborsFromTheSearchMethod)
       pcl::PointCloud<pcl::Normal> a, b;
       for (auto* estimation : {&ours, &theirs}) {
         by_radius ? estimation->setRadiusSearch(0.15) : estimation->setKSearch(12);
+        estimation->setKeepEdges(false); // the refit beside edges has limits that the order of sums may tip
         estimation->setViewPoint(0, 0, 5);
         estimation->setInputCloud(on_surface ? some : cloud);
         if (on_surface)

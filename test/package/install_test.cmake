@@ -69,6 +69,18 @@ foreach(part "libfresco_core.so.${SOVERSION}" "libfresco_surface.so.${SOVERSION}
   endif()
 endforeach()
 
+# No program or library searches the current folder: what an empty entry of its search path means.
+find_program(readelf readelf REQUIRED)
+file(GLOB binaries "${BINARY_DIR}/bin/*" "${BINARY_DIR}/lib/*.so" "${BINARY_DIR}/lib/*/*.so" "${prefix}/bin/*"
+     "${prefix}/lib/*.so" "${prefix}/lib/*/*.so")
+list(FILTER binaries EXCLUDE REGEX "\\.(py|sh|txt)$")
+foreach(binary IN LISTS binaries)
+  execute_process(COMMAND "${readelf}" -d "${binary}" OUTPUT_VARIABLE dynamic ERROR_QUIET)
+  if(dynamic MATCHES "R(UN)?PATH\\)[^[]*\\[([^]]*)\\]" AND ":${CMAKE_MATCH_2}:" MATCHES "::")
+    message(FATAL_ERROR "${binary} searches the current folder: ${CMAKE_MATCH_2}")
+  endif()
+endforeach()
+
 # A component that does not exist is named.
 file(WRITE "${SCRATCH}/wrong/CMakeLists.txt" "cmake_minimum_required(VERSION 3.20)\nproject(wrong LANGUAGES C CXX)\n"
      "find_package(fresco REQUIRED COMPONENTS nonsense)\n")

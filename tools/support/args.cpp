@@ -67,7 +67,7 @@ void Args::option(const std::string& name, int& value, const std::string& help)
     const long long number = integer(name, words[0]);
     if (number < std::numeric_limits<int>::min() || number > std::numeric_limits<int>::max())
       throw UsageError("option -" + name + ": " + words[0] + " is too large");
-    value = static_cast<int>(number);
+    value = number;
   });
   options_.back().shown_default = shown(value);
 }
@@ -78,7 +78,7 @@ void Args::option(const std::string& name, float& value, const std::string& help
     const double given = number(name, words[0]);
     if (std::abs(given) > std::numeric_limits<float>::max())
       throw UsageError("option -" + name + ": " + words[0] + " is too large");
-    value = static_cast<float>(given);
+    value = given;
   });
   options_.back().shown_default = shown(value);
 }
@@ -105,8 +105,8 @@ void Args::size(const std::string& name, int& width, int& height, const std::str
     const long long w = integer(name, words[0].substr(0, cross)), h = integer(name, words[0].substr(cross + 1));
     if (w < 1 || h < 1 || w > most || h > most)
       throw UsageError("option -" + name + ": " + words[0] + " is not within 1x1 and 65536x65536");
-    width = static_cast<int>(w);
-    height = static_cast<int>(h);
+    width = w;
+    height = h;
   });
   options_.back().shown_default = shown(width) + "x" + shown(height);
 }
@@ -132,8 +132,8 @@ std::size_t Args::readOption(const std::vector<std::string>& words, std::size_t 
       continue;
     if (at + option.count >= words.size())
       throw UsageError("option -" + name + " wants " + option.placeholders);
-    const auto first = words.begin() + static_cast<std::ptrdiff_t>(at) + 1;
-    const std::vector<std::string> given(first, first + static_cast<std::ptrdiff_t>(option.count));
+    const auto first = words.begin() + at + 1;
+    const std::vector<std::string> given(first, first + option.count);
     for (const std::string& word : given)
       if (looksLikeOption(word))
         throw UsageError("option -" + name + " wants " + option.placeholders + ", not '" + word + "'");

@@ -52,7 +52,7 @@ void printLine(const std::string& text)
     const ssize_t written = ::write(STDERR_FILENO, line.data() + at, line.size() - at);
     if (written < 0 && errno != EINTR)
       return;
-    at += static_cast<std::size_t>(std::max<ssize_t>(written, 0));
+    at += std::max<ssize_t>(written, 0);
   }
 }
 
@@ -180,7 +180,7 @@ private:
 
   void drawBar(const std::string& step)
   {
-    const auto filled = static_cast<std::size_t>(percent() * 30 / 100);
+    const std::size_t filled = percent() * 30 / 100;
     std::string line = concat('[', std::string(filled, '#'), std::string(30 - filled, '.'), "] ", percent(), " % ",
                               oneLine(step), remaining());
     if (const std::size_t most = terminalWidth() - 1; line.size() > most) // a bar of two lines could not be redrawn
@@ -214,7 +214,7 @@ void CommonOptions::declare(Args& args)
                 const long long given = Args::integer("threads", words[0]);
                 if (given < 0 || given > 4096)
                   throw UsageError("option -threads: " + words[0] + " is not within 0 and 4096");
-                threads = static_cast<int>(given);
+                threads = given;
                 setDefaultThreads(threads); // for what has no option of its own, such as readers
               });
   args.flag("quiet", quiet, "print nothing but errors");

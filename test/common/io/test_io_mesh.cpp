@@ -39,7 +39,7 @@ void put(std::string& bytes, T value, bool swap)
 TEST(MeshIo, EveryAttributeSurvives)
 {
   const std::string folder = test::scratchFolder();
-  for (const char* type : {"ply", "vtk", "obj"}) {
+  for (const char* type : {"ply", "vtk", "vtp", "obj"}) {
     TriangleMesh mesh = fullMesh(12);
     if (type == std::string("obj"))
       mesh.fields.clear(); // the format has no place for them
@@ -61,7 +61,7 @@ TEST(MeshIo, LargeCoordinatesKeepTheirAccuracy)
   const std::string folder = test::scratchFolder();
   TriangleMesh mesh = fullMesh(12);
   mesh.origin = Eigen::Vector3d(691245.125, 5335001.5, 512.25);
-  for (const char* type : {"ply", "vtk", "obj"}) {
+  for (const char* type : {"ply", "vtk", "vtp", "obj"}) {
     const std::string path = folder + "/utm." + type;
     writeMesh(path, mesh);
     const TriangleMesh back = readMesh(path);
@@ -216,6 +216,21 @@ TEST(MeshIo, ReadsWhatVtkWrites)
     }
 }
 
+TEST(MeshIo, StlKeepsTheSurface)
+{
+  const std::string path = test::scratchFolder() + "/mesh.stl";
+  const TriangleMesh mesh = fullMesh(12);
+  writeMesh(path, mesh);
+  const TriangleMesh back = readMesh(path);
+  EXPECT_EQ(back.vertexCount(), mesh.vertexCount());
+  ASSERT_EQ(back.faceCount(), mesh.faceCount());
+  for (Index i = 0; i < mesh.faces.size(); ++i)
+    EXPECT_EQ(back.vertices.col(back.faces.data()[i]), mesh.vertices.col(mesh.faces.data()[i])) << i;
+  test::writeText(path, "solid s\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0.5\n"
+                        "endloop\nendfacet\nendsolid s\n");
+  EXPECT_EQ(readMesh(path).vertices.col(2), Eigen::Vector3f(0, 1, 0.5f));
+}
+
 TEST(MeshIo, ErrorsNameFileAndReason)
 {
   const std::string folder = test::scratchFolder();
@@ -225,7 +240,7 @@ TEST(MeshIo, ErrorsNameFileAndReason)
     EXPECT_NE(error.find(reason), std::string::npos) << error;
   };
   expectError(folder + "/missing.ply", "no such file");
-  expectError(folder + "/mesh.stl", "not a mesh file");
+  expectError(folder + "/mesh.pcd", "not a mesh file: expected .ply, .vtk, .vtp, .stl or .obj");
   test::writeText(folder + "/a.ply",
                   "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty "
                   "float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
@@ -239,7 +254,7 @@ TEST(MeshIo, ErrorsNameFileAndReason)
   expectError(folder + "/c.vtk", "POLYDATA");
   test::writeText(folder + "/d.ply", "solid stl");
   expectError(folder + "/d.ply", "not a PLY file");
-  EXPECT_THROW(writeMesh(folder + "/mesh.stl", fullMesh(3)), std::runtime_error);
+  EXPECT_THROW(writeMesh(folder + "/mesh.pcd", fullMesh(3)), std::runtime_error);
 }
 
 TEST(MeshIo, NamesOfFieldsMayHoldBlanks)
@@ -259,7 +274,7 @@ TEST(MeshIo, NamesOfFieldsMayHoldBlanks)
 TEST(MeshIo, FailedWritesLeaveNothingAndTouchNothing)
 {
   const std::string folder = test::scratchFolder();
-  for (const char* type : {"ply", "obj", "vtk"}) {
+  for (const char* type : {"ply", "obj", "vtk", "vtp", "stl"}) {
     const std::string path = folder + "/mesh." + type;
     EXPECT_THROW(writeMesh(folder + "/none/mesh." + type, fullMesh(3)), std::runtime_error);
     writeMesh(path, fullMesh(3));
@@ -268,7 +283,7 @@ TEST(MeshIo, FailedWritesLeaveNothingAndTouchNothing)
     EXPECT_THROW(writeMesh(path, broken), std::invalid_argument);
     EXPECT_EQ(readMesh(path).vertexCount(), 9);
   }
-  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder), {}), 3);
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder), {}), 5);
 }
 
 TEST(MeshIo, Fandisk)

@@ -4,7 +4,6 @@
 #include <fresco/core/pcl_conversions.h>
 #include <fresco/surface/surface_optimization.h>
 #include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
 #include <pcl/point_types.h>
 namespace fresco {
 namespace {

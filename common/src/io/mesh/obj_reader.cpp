@@ -100,7 +100,7 @@ private:
     const std::int64_t from_zero = index > 0 ? index - 1 : static_cast<std::int64_t>(count) + index;
     if (index == 0 || from_zero < 0 || from_zero > std::numeric_limits<int>::max())
       throw std::runtime_error(concat("index ", index, " is out of range"));
-    return static_cast<int>(from_zero);
+    return from_zero;
   }
 
   void parseFace()
@@ -123,7 +123,7 @@ private:
   {
     auto& names = content_.materials;
     const auto found = std::find(names.begin(), names.end(), name);
-    material_ = static_cast<int>(found - names.begin());
+    material_ = found - names.begin();
     if (found == names.end())
       names.push_back(name);
   }
@@ -237,7 +237,7 @@ PointTable objVertices(const ObjContent& content)
 
 Faces objFaces(const ObjContent& content)
 {
-  Faces faces(3, static_cast<Index>(content.triangles.size()));
+  Faces faces(3, content.triangles.size());
   for (Index f = 0; f < faces.cols(); ++f) {
     const auto& corners = content.triangles[f].vertices;
     faces.col(f) << corners[0], corners[1], corners[2];

@@ -48,7 +48,7 @@ public:
       collector.addTriangle(loadScalar<std::array<int, 3>>(at_ + 1));
     return rows;
   }
-  std::size_t remaining() const { return static_cast<std::size_t>(end_ - at_); }
+  std::size_t remaining() const { return end_ - at_; }
   static std::size_t leastBytes(const PlyElement& element) { return element.fixedSize(); }
   static std::size_t leastItemBytes(Scalar type) { return scalarSize(type); }
 
@@ -87,7 +87,7 @@ std::size_t nextLength(Source& source, const PlyProperty& list)
     const auto length = static_cast<std::int64_t>(raw);
     if (length < 0 || static_cast<std::uint64_t>(length) > source.remaining() / Source::leastItemBytes(list.type))
       throw std::runtime_error(concat("truncated: a list of ", length, " values does not fit"));
-    return static_cast<std::size_t>(length);
+    return length;
   });
 }
 
@@ -136,9 +136,9 @@ PointTable readVertices(Source& source, const PlyElement& element)
       table.addColumn(columnName(property.name), property.type);
   if (table.columns.empty())
     throw std::runtime_error("vertices without properties");
-  table.rows = static_cast<Index>(element.count);
+  table.rows = element.count;
   if (!element.hasList())
-    table.view = source.takeRows(static_cast<std::size_t>(element.count) * table.stride);
+    table.view = source.takeRows(element.count * table.stride);
   if (table.view)
     return table;
   table.allocate(table.rows);
@@ -168,7 +168,7 @@ void readList(Source& source, const PlyProperty& list, std::vector<std::int64_t>
       throw std::runtime_error("vertex indices are no integers");
     else
       for (std::int64_t& item : items)
-        item = static_cast<std::int64_t>(source.template next<T>());
+        item = source.template next<T>();
   });
 }
 
@@ -224,7 +224,7 @@ void readCamera(Source& source, const PlyElement& element, PointTable& sensor)
   const auto value = [&](const std::string& name, double missing) {
     const Column* column = camera.find(name);
     const float given = column && camera.rows > 0 ? columnValues(camera, *column)[0] : std::nanf("");
-    return std::isfinite(given) ? static_cast<double>(given) : missing;
+    return std::isfinite(given) ? given : missing;
   };
   SensorPose pose;
   Eigen::Matrix3f axes;

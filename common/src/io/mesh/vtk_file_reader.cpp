@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "io/mesh/vtk_arrays.h"
 #include "io/mesh/vtk_file.h"
 #include "io/points/text_numbers.h"
 #include <algorithm>
@@ -6,34 +7,6 @@
 #include <fresco/core/require.h>
 namespace fresco::io {
 namespace {
-/// Values of one data array, tuple by tuple, little-endian.
-struct Array {
-  std::string name;
-  Scalar type = Scalar::float32;
-  std::size_t components = 1;
-  std::vector<std::uint8_t> bytes;
-
-  std::vector<std::int64_t> integers() const
-  {
-    return visitScalar(type, [&](auto zero) {
-      using T = decltype(zero);
-      std::vector<std::int64_t> values(bytes.size() / sizeof(T));
-      if (std::is_floating_point_v<T>)
-        throw std::runtime_error("VTK: cell indices are no integers");
-      for (std::size_t i = 0; i < values.size(); ++i)
-        values[i] = static_cast<std::int64_t>(loadScalar<T>(bytes.data() + i * sizeof(T)));
-      return values;
-    });
-  }
-};
-
-std::string lower(std::string_view word)
-{
-  std::string text(word);
-  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
-  return text;
-}
-
 Scalar parseType(std::string_view word)
 {
   static constexpr std::pair<const char*, Scalar> types[] = {{"char", Scalar::int8},
@@ -50,7 +23,7 @@ Scalar parseType(std::string_view word)
                                                              {"vtktypeuint64", Scalar::uint64},
                                                              {"float", Scalar::float32},
                                                              {"double", Scalar::float64}};
-  const std::string name = lower(word);
+  const std::string name = lowerCase(word);
   for (const auto& [known, type] : types)
     if (name == known)
       return type;
@@ -82,11 +55,11 @@ public:
   {
     parseHeader();
     for (std::string_view word = nextKeyword(); !word.empty(); word = nextKeyword())
-      parseSection(lower(word));
+      parseSection(lowerCase(word));
     if (points_.bytes.empty())
       throw std::runtime_error("no points");
     VtkContent content;
-    content.vertices = assemble();
+    content.vertices = tableOfArrays(points_, arrays_);
     content.faces = collector_.faces(content.vertices.rows);
     return content;
   }
@@ -94,14 +67,14 @@ public:
 private:
   void parseHeader()
   {
-    if (lower(scanner_.restOfLine()).rfind("# vtk datafile version", 0) != 0)
+    if (lowerCase(scanner_.restOfLine()).rfind("# vtk datafile version", 0) != 0)
       throw std::runtime_error("not a legacy VTK file");
     scanner_.restOfLine(); // title
-    const std::string storage = lower(scanner_.restOfLine());
+    const std::string storage = lowerCase(scanner_.restOfLine());
     if (storage != "ascii" && storage != "binary")
       throw std::runtime_error("VTK: neither ASCII nor BINARY");
     binary_ = storage == "binary";
-    if (lower(nextKeyword()) != "dataset" || lower(scanner_.wordAcrossLines()) != "polydata")
+    if (lowerCase(nextKeyword()) != "dataset" || lowerCase(scanner_.wordAcrossLines()) != "polydata")
       throw std::runtime_error("VTK: the dataset is not POLYDATA");
   }
 
@@ -121,7 +94,7 @@ private:
     const auto count = parseNumber<std::int64_t>(scanner_.wordAcrossLines());
     if (count < 0)
       throw std::runtime_error(concat("VTK: negative count ", count));
-    return static_cast<std::size_t>(count);
+    return count;
   }
 
   void parseSection(const std::string& keyword)
@@ -182,7 +155,7 @@ private:
   {
     const std::string_view word = scanner_.word();
     const std::size_t components = word.empty() ? 1 : parseNumber<std::uint32_t>(word);
-    if (lower(scanner_.wordAcrossLines()) != "lookup_table" || scanner_.word().empty())
+    if (lowerCase(scanner_.wordAcrossLines()) != "lookup_table" || scanner_.word().empty())
       throw std::runtime_error("VTK: SCALARS without LOOKUP_TABLE");
     return components;
   }
@@ -193,7 +166,7 @@ private:
     const std::size_t arrays = nextCount();
     for (std::size_t i = 0; i < arrays; ++i) {
       std::string_view word = scanner_.wordAcrossLines();
-      if (lower(word) == "metadata") {
+      if (lowerCase(word) == "metadata") {
         parseSection("metadata");
         word = scanner_.wordAcrossLines();
       }
@@ -203,12 +176,12 @@ private:
     }
   }
 
-  Array readArray(const std::string& name, Scalar type, std::size_t components, std::size_t tuples)
+  VtkArray readArray(const std::string& name, Scalar type, std::size_t components, std::size_t tuples)
   {
     const std::size_t least = binary_ ? scalarSize(type) : 2; // bytes per value; the last word needs no separator
     if (components == 0 || components > 1000 || tuples > (scanner_.remaining() + 1) / (least * components))
       throw std::runtime_error(concat("truncated: ", tuples, " tuples of '", name.substr(0, 40), "' do not fit"));
-    Array array{name, type, components, {}};
+    VtkArray array{name, type, components, {}};
     const std::size_t count = tuples * components;
     if (binary_)
       scanner_.nextLine();
@@ -238,7 +211,7 @@ private:
     TextScanner ahead = scanner_;
     while (ahead.atLineEnd() && !ahead.done())
       ahead.nextLine();
-    if (lower(ahead.word()) == "offsets") {
+    if (lowerCase(ahead.word()) == "offsets") {
       readOffsetCells(cells, size, add);
       return;
     }
@@ -247,7 +220,7 @@ private:
     for (std::size_t i = 0; i < cells; ++i) {
       if (at >= list.size() || list[at] < 0 || static_cast<std::size_t>(list[at]) >= list.size() - at)
         throw std::runtime_error("VTK: a cell does not fit into its list");
-      add(list.data() + at + 1, static_cast<std::size_t>(list[at]));
+      add(list.data() + at + 1, list[at]);
       at += static_cast<std::size_t>(list[at]) + 1;
     }
   }
@@ -258,7 +231,7 @@ private:
     scanner_.wordAcrossLines();
     const Scalar offset_type = parseType(scanner_.wordAcrossLines());
     const std::vector<std::int64_t> offsets = readArray("offsets", offset_type, 1, count).integers();
-    if (lower(scanner_.wordAcrossLines()) != "connectivity")
+    if (lowerCase(scanner_.wordAcrossLines()) != "connectivity")
       throw std::runtime_error("VTK: OFFSETS without CONNECTIVITY");
     const Scalar type = parseType(scanner_.wordAcrossLines());
     const std::vector<std::int64_t> corners = readArray("connectivity", type, 1, size).integers();
@@ -266,59 +239,22 @@ private:
       const std::int64_t begin = offsets[i - 1], end = offsets[i];
       if (begin < 0 || end < begin || end > static_cast<std::int64_t>(corners.size()))
         throw std::runtime_error("VTK: a cell does not fit into its list");
-      add(corners.data() + begin, static_cast<std::size_t>(end - begin));
+      add(corners.data() + begin, end - begin);
     }
   }
 
-  void keep(Array array)
+  void keep(VtkArray array)
   {
     const std::size_t tuples = array.bytes.size() / (array.components * scalarSize(array.type));
     if (is_point_data_ && tuples * 3 * scalarSize(points_.type) == points_.bytes.size())
       arrays_.push_back(std::move(array));
   }
 
-  static std::vector<std::string> columnNames(const Array& array)
-  {
-    const std::string name = lower(array.name);
-    if (array.components == 3 && name == "normals")
-      return {std::begin(normal_names), std::end(normal_names)};
-    const bool is_color = array.type == Scalar::uint8 || name == "colors";
-    if (array.components == 3 && is_color)
-      return {std::begin(color_names), std::end(color_names)};
-    if (array.components == 4 && is_color)
-      return {"red", "green", "blue", "alpha"};
-    return {array.name};
-  }
-
-  PointTable assemble() const
-  {
-    PointTable table;
-    std::vector<std::pair<const Array*, std::size_t>> sources; // array and its first column in the table
-    const auto place = [&](const Array& array, const std::vector<std::string>& names) {
-      if (std::any_of(names.begin(), names.end(), [&](const std::string& name) { return table.find(name); }))
-        return;
-      sources.emplace_back(&array, table.columns.size());
-      for (const std::string& name : names)
-        table.addColumn(name, array.type, array.components / names.size());
-    };
-    place(points_, {std::begin(xyz_names), std::end(xyz_names)});
-    for (const Array& array : arrays_)
-      place(array, columnNames(array));
-    table.allocate(static_cast<Index>(points_.bytes.size() / (3 * scalarSize(points_.type))));
-    for (const auto& [array, column] : sources) {
-      const std::size_t bytes = array->components * scalarSize(array->type);
-      for (Index row = 0; row < table.rows; ++row)
-        std::memcpy(table.cell(row, table.columns[column]), array->bytes.data() + static_cast<std::size_t>(row) * bytes,
-                    bytes);
-    }
-    return table;
-  }
-
   TextScanner scanner_;
   bool binary_ = false, is_point_data_ = false;
   std::size_t tuples_ = 0;
-  Array points_;
-  std::vector<Array> arrays_;
+  VtkArray points_;
+  std::vector<VtkArray> arrays_;
   FaceCollector collector_;
 };
 } // namespace

@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "io/mesh/obj.h"
 #include "io/mesh/ply.h"
-#include "io/mesh/vtk_file.h"
 #include "io/points/parse_file.h"
-#include "io/points/pcd.h"
-#include "io/points/xyz.h"
 #include <fresco/io/point_io.h>
 namespace fresco {
 namespace {
@@ -29,44 +25,7 @@ PointSet pointsBetween(const PointSet& set, Index begin, Index end)
     result.viewpoints = part(set.viewpoints);
   return result;
 }
-
-bool isTextCloud(const std::string& type) { return type == ".xyz" || type == ".txt" || type == ".asc"; }
 } // namespace
-
-namespace io {
-PointTable readTable(const std::string& path)
-{
-  const std::string type = extension(path);
-  if (type == ".pcd")
-    return parseFile(path, parsePcd);
-  if (type == ".ply")
-    return parseFile(path, [](std::string_view content) {
-      PointTable vertices = parsePly(content).vertices;
-      vertices.own();
-      return vertices;
-    });
-  if (type == ".vtk")
-    return parseFile(path, [](std::string_view content) { return parseVtk(content).vertices; });
-  if (type == ".obj")
-    return parseFile(path, [](std::string_view content) { return objVertices(parseObj(content)); });
-  if (isTextCloud(type))
-    return parseFile(path, parseXyz);
-  throw std::runtime_error(path + ": not a file of points: expected .pcd, .ply, .vtk, .obj, .xyz, .txt or .asc");
-}
-
-void writeTable(const std::string& path, const PointTable& table, bool compressed)
-{
-  const std::string type = extension(path);
-  if (type == ".pcd")
-    writePcd(path, table, compressed);
-  else if (type == ".ply")
-    writePly(path, table, Faces());
-  else if (isTextCloud(type))
-    writeXyz(path, table);
-  else
-    throw std::runtime_error(path + ": cannot write this type of file of points: use .pcd, .ply or .xyz");
-}
-} // namespace io
 
 PointSet readPoints(const std::string& path)
 {

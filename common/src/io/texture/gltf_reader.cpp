@@ -56,17 +56,17 @@ Eigen::MatrixXd readAccessor(const tinygltf::Model& gltf, int index, int compone
 {
   const tinygltf::Accessor& accessor = at(gltf.accessors, index, "accessor");
   const Scalar type = componentType(accessor.componentType);
-  const int stored = tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(accessor.type));
+  const int stored = tinygltf::GetNumComponentsInType(accessor.type);
   if (stored < components || accessor.sparse.isSparse)
     fail(concat("accessor ", index, " is not of the kind that its use asks for"));
   const tinygltf::BufferView& view = at(gltf.bufferViews, accessor.bufferView, "buffer view");
-  const std::size_t element = scalarSize(type) * static_cast<std::size_t>(stored);
+  const std::size_t element = scalarSize(type) * stored;
   const std::size_t stride = view.byteStride == 0 ? element : view.byteStride;
   if (accessor.count == 0 || stride < element || accessor.count > view.byteLength / stride + 1)
     fail(concat("truncated: accessor ", index, " of ", accessor.count, " elements does not fit"));
   const unsigned char* bytes =
       viewBytes(gltf, accessor.bufferView, accessor.byteOffset, (accessor.count - 1) * stride + element);
-  Eigen::MatrixXd values(components, static_cast<Index>(accessor.count));
+  Eigen::MatrixXd values(components, accessor.count);
   visitScalar(type, [&](auto zero) {
     using T = decltype(zero);
     const double scale = accessor.normalized && std::is_integral_v<T> ? 1.0 / std::numeric_limits<T>::max() : 1.0;
@@ -82,7 +82,7 @@ Eigen::MatrixXd readAccessor(const tinygltf::Model& gltf, int index, int compone
 std::uint8_t displayByte(double linear)
 {
   const double s = linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1.0 / 2.4) - 0.055;
-  return static_cast<std::uint8_t>(s > 0 ? std::lround(255.0 * std::min(s, 1.0)) : 0);
+  return s > 0 ? std::lround(255.0 * std::min(s, 1.0)) : 0;
 }
 
 Image readImageOf(const tinygltf::Model& gltf, const tinygltf::Image& source)
@@ -108,7 +108,7 @@ struct PositionHash {
     std::uint64_t hash = 0;
     for (const float value : p)
       hash = (hash ^ loadScalar<std::uint32_t>(&value)) * 0x9E3779B97F4A7C15ULL;
-    return static_cast<std::size_t>(hash ^ (hash >> 32));
+    return hash ^ (hash >> 32);
   }
 };
 
@@ -130,7 +130,7 @@ public:
     const std::vector<int> vertices = addVertices(primitive, T_scene_mesh, positions);
     const int atlas = atlasOf(primitive);
     const Eigen::MatrixXd texcoords = atlas < 0 ? Eigen::MatrixXd() : attribute(primitive, "TEXCOORD_0", 2);
-    const auto first_texcoord = static_cast<int>(texcoords_.size());
+    const int first_texcoord = texcoords_.size();
     for (Index i = 0; i < texcoords.cols(); ++i)
       texcoords_.emplace_back(static_cast<float>(texcoords(0, i)), static_cast<float>(1.0 - texcoords(1, i)));
     addFaces(cornerIndices(primitive, positions.cols()), vertices, texcoords.cols() > 0 ? atlas : -1, first_texcoord);
@@ -141,16 +141,16 @@ public:
     if (faces_.empty())
       fail("no triangles");
     TriangleMesh& mesh = model_.mesh;
-    mesh.vertices = Eigen::Map<const Points>(positions_[0].data(), 3, static_cast<Index>(positions_.size()));
+    mesh.vertices = Eigen::Map<const Points>(positions_[0].data(), 3, positions_.size());
     if (has_normals_)
-      mesh.normals = Eigen::Map<const Points>(normals_[0].data(), 3, static_cast<Index>(normals_.size()));
+      mesh.normals = Eigen::Map<const Points>(normals_[0].data(), 3, normals_.size());
     if (has_colors_)
-      mesh.colors = Eigen::Map<const Colors>(colors_[0].data(), 3, static_cast<Index>(colors_.size()));
-    const auto faces = static_cast<Index>(atlases_.size());
+      mesh.colors = Eigen::Map<const Colors>(colors_[0].data(), 3, colors_.size());
+    const Index faces = atlases_.size();
     mesh.faces = Eigen::Map<const Faces>(faces_.data(), 3, faces);
     model_.texcoord_faces = Eigen::Map<const Faces>(texcoord_faces_.data(), 3, faces);
     model_.face_atlas = Eigen::Map<const Eigen::VectorXi>(atlases_.data(), faces);
-    model_.texcoords.resize(2, static_cast<Index>(texcoords_.size()));
+    model_.texcoords.resize(2, texcoords_.size());
     for (Index i = 0; i < model_.texcoords.cols(); ++i)
       model_.texcoords.col(i) = texcoords_[i];
     return std::move(model_);
@@ -184,12 +184,12 @@ private:
         normals_.emplace_back(Eigen::Vector3f::Zero());
         colors_.emplace_back(Color::Constant(255));
       }
-      const auto vertex = static_cast<std::size_t>(entry->second);
+      const std::size_t vertex = entry->second;
       if (normals.cols() == positions.cols())
         normals_[vertex] = (moved ? (normal_matrix * normals.col(i)).normalized() : normals.col(i)).cast<float>();
       if (colors.cols() == positions.cols())
         colors_[vertex] << displayByte(colors(0, i)), displayByte(colors(1, i)), displayByte(colors(2, i));
-      vertices.push_back(static_cast<int>(vertex));
+      vertices.push_back(vertex);
     }
     return vertices;
   }
@@ -199,11 +199,11 @@ private:
     std::vector<std::size_t> corners;
     if (primitive.indices < 0) {
       for (Index i = 0; i < positions; ++i)
-        corners.push_back(static_cast<std::size_t>(i));
+        corners.push_back(i);
     } else {
       const Eigen::MatrixXd indices = readAccessor(gltf_, primitive.indices, 1);
       for (Index i = 0; i < indices.cols(); ++i) {
-        if (!(indices(0, i) >= 0 && indices(0, i) < static_cast<double>(positions)))
+        if (!(indices(0, i) >= 0 && indices(0, i) < positions))
           fail(concat("a triangle names vertex ", indices(0, i), ", there are ", positions));
         corners.push_back(static_cast<std::size_t>(indices(0, i)));
       }
@@ -216,7 +216,7 @@ private:
   void addFaces(const std::vector<std::size_t>& corners, const std::vector<int>& vertices, int atlas,
                 int first_texcoord)
   {
-    const std::size_t texcoords = texcoords_.size() - static_cast<std::size_t>(first_texcoord);
+    const std::size_t texcoords = texcoords_.size() - first_texcoord;
     for (std::size_t i = 0; i < corners.size(); ++i) {
       if (atlas >= 0 && corners[i] >= texcoords)
         fail("fewer texture coordinates than positions");
@@ -239,7 +239,7 @@ private:
     const tinygltf::Image& image = at(gltf_.images, source, "image");
     int& atlas = atlas_of_image_[source];
     if (atlas < 0) {
-      atlas = static_cast<int>(model_.atlases.size());
+      atlas = model_.atlases.size();
       model_.atlases.push_back(readImageOf(gltf_, image));
     }
     return atlas;
@@ -308,7 +308,7 @@ tinygltf::Model loadModel(std::string_view content)
   if (content.size() > std::numeric_limits<std::uint32_t>::max())
     fail("larger than the 4 GiB that binary glTF can hold");
   const auto* bytes = reinterpret_cast<const unsigned char*>(content.data());
-  if (!loader.LoadBinaryFromMemory(&gltf, &error, &warning, bytes, static_cast<unsigned>(content.size())))
+  if (!loader.LoadBinaryFromMemory(&gltf, &error, &warning, bytes, content.size()))
     fail(error.empty() ? "not binary glTF" : error.substr(0, error.find('\n')));
   return gltf;
 }

@@ -24,17 +24,17 @@ std::uint16_t linearLight(std::uint8_t value)
 {
   const double s = value / 255.0;
   const double linear = s <= 0.04045 ? s / 12.92 : std::pow((s + 0.055) / 1.055, 2.4);
-  return static_cast<std::uint16_t>(std::lround(65535.0 * linear));
+  return std::lround(65535.0 * linear);
 }
 
 /// Gives each pair of vertex and texture coordinate one place in the part.
 class PartBuilder {
 public:
   PartBuilder(const TexturedMesh& model, bool textured)
-      : model_(model), textured_(textured), first_(static_cast<std::size_t>(model.mesh.vertexCount()), -1)
+      : model_(model), textured_(textured), first_(model.mesh.vertexCount(), -1)
   {
     for (int value = 0; value < 256; ++value)
-      linear_[value] = linearLight(static_cast<std::uint8_t>(value));
+      linear_[value] = linearLight(value);
   }
 
   void addFace(Index f)
@@ -55,11 +55,11 @@ private:
     int& first = first_[vertex];
     for (int at = first; at >= 0; at = places_[at].next)
       if (places_[at].texcoord == texcoord)
-        return static_cast<std::uint32_t>(at);
+        return at;
     places_.push_back({texcoord, first});
-    first = static_cast<int>(places_.size()) - 1;
+    first = places_.size() - 1;
     append(vertex, texcoord);
-    return static_cast<std::uint32_t>(first);
+    return first;
   }
 
   void append(int vertex, int texcoord)
@@ -113,7 +113,7 @@ public:
     texture.sampler = sampler();
     gltf_.textures.push_back(texture);
     tinygltf::Material material = plainMaterial();
-    material.pbrMetallicRoughness.baseColorTexture.index = static_cast<int>(gltf_.textures.size()) - 1;
+    material.pbrMetallicRoughness.baseColorTexture.index = gltf_.textures.size() - 1;
     addPrimitive(part, unlit(material));
   }
 
@@ -179,7 +179,7 @@ private:
     image.mimeType = jpeg_quality > 0 ? "image/jpeg" : "image/png";
     image.bufferView = addView(bytes.data(), bytes.size(), 0);
     gltf_.images.push_back(image);
-    return static_cast<int>(gltf_.images.size()) - 1;
+    return gltf_.images.size() - 1;
   }
 
   int addView(const void* data, std::size_t bytes, int target)
@@ -194,7 +194,7 @@ private:
     const auto* from = static_cast<const unsigned char*>(data);
     buffer.insert(buffer.end(), from, from + bytes);
     gltf_.bufferViews.push_back(view);
-    return static_cast<int>(gltf_.bufferViews.size()) - 1;
+    return gltf_.bufferViews.size() - 1;
   }
 
   template <typename T>
@@ -211,13 +211,13 @@ private:
     return gltf_.accessors.back();
   }
 
-  int lastAccessor() const { return static_cast<int>(gltf_.accessors.size()) - 1; }
+  int lastAccessor() const { return gltf_.accessors.size() - 1; }
 
   void addPrimitive(const Part& part, const tinygltf::Material& material)
   {
     tinygltf::Primitive primitive;
     primitive.mode = TINYGLTF_MODE_TRIANGLES;
-    const Eigen::Map<const Points> positions(part.positions[0].data(), 3, static_cast<Index>(part.positions.size()));
+    const Eigen::Map<const Points> positions(part.positions[0].data(), 3, part.positions.size());
     const Eigen::Vector3d low = positions.rowwise().minCoeff().cast<double>();
     const Eigen::Vector3d high = positions.rowwise().maxCoeff().cast<double>();
     tinygltf::Accessor& accessor = addAccessor(part.positions, TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_VEC3);
@@ -240,7 +240,7 @@ private:
     addAccessor(part.indices, TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT, TINYGLTF_TYPE_SCALAR);
     primitive.indices = lastAccessor();
     gltf_.materials.push_back(material);
-    primitive.material = static_cast<int>(gltf_.materials.size()) - 1;
+    primitive.material = gltf_.materials.size() - 1;
     gltf_.meshes[0].primitives.push_back(primitive);
   }
 
@@ -256,7 +256,7 @@ public:
 protected:
   std::streamsize xsputn(const char* data, std::streamsize count) override
   {
-    file_.write(data, static_cast<std::size_t>(count));
+    file_.write(data, count);
     return count;
   }
   int_type overflow(int_type c) override
@@ -276,7 +276,7 @@ void writeGlb(const std::string& path, const TexturedMesh& model, int jpeg_quali
   OutputFile file(path);
   GltfBuilder builder(model);
   for (std::size_t i = 0; i < model.atlases.size(); ++i)
-    builder.addTexturedPart(static_cast<int>(i), jpeg_quality);
+    builder.addTexturedPart(i, jpeg_quality);
   builder.addUntexturedPart();
   const tinygltf::Model& gltf = builder.finish();
   // The header of the format counts bytes with 32 bits; one MiB is left for the JSON part.

@@ -16,7 +16,7 @@ constexpr int level = 4; // with runs for matches (Z_RLE): rows of a photograph,
 void appendNumber(std::size_t value, Bytes& out)
 {
   for (int shift = 24; shift >= 0; shift -= 8)
-    out.push_back(static_cast<std::uint8_t>(value >> shift));
+    out.push_back(value >> shift);
 }
 
 /// Length, type, data, check sum.
@@ -26,7 +26,7 @@ void appendChunk(const char* type, const Bytes& data, Bytes& out)
   const std::size_t begin = out.size();
   out.insert(out.end(), type, type + 4);
   out.insert(out.end(), data.begin(), data.end());
-  appendNumber(crc32(0, out.data() + begin, static_cast<uInt>(out.size() - begin)), out);
+  appendNumber(crc32(0, out.data() + begin, out.size() - begin), out);
 }
 
 /// A row in each of the filters of the PNG standard that serve photographs, and how much of it is left.
@@ -43,18 +43,18 @@ public:
     const std::uint8_t *row = image_.pixel(0, y), *above = y > 0 ? image_.pixel(0, y - 1) : zero_.data();
     const std::size_t step = image_.channels;
     for (std::size_t i = 0; i < width_; ++i)
-      up_[i] = static_cast<std::uint8_t>(row[i] - above[i]);
+      up_[i] = row[i] - above[i];
     for (std::size_t i = 0; i < std::min(step, width_); ++i) {
       sub_[i] = row[i];
       paeth_[i] = up_[i];
     }
     for (std::size_t i = step; i < width_; ++i)
-      sub_[i] = static_cast<std::uint8_t>(row[i] - row[i - step]);
+      sub_[i] = row[i] - row[i - step];
     for (std::size_t i = step; i < width_; ++i)
-      paeth_[i] = static_cast<std::uint8_t>(row[i] - predicted(row[i - step], above[i], above[i - step]));
+      paeth_[i] = row[i] - predicted(row[i - step], above[i], above[i - step]);
     const std::array<std::size_t, 3> sums = {sumOf(sub_), sumOf(up_), sumOf(paeth_)};
     const auto best = std::min_element(sums.begin(), sums.end()) - sums.begin();
-    out.push_back(static_cast<std::uint8_t>(best == 0 ? 1 : best == 1 ? 2 : 4));
+    out.push_back(best == 0 ? 1 : best == 1 ? 2 : 4);
     const Bytes& chosen = best == 0 ? sub_ : best == 1 ? up_ : paeth_;
     out.insert(out.end(), chosen.begin(), chosen.end());
   }
@@ -96,16 +96,16 @@ Band packRows(const Image& image, int first, int last)
     filter.append(y, rows);
   Band band;
   band.size = rows.size();
-  band.check = adler32(1, rows.data(), static_cast<uInt>(rows.size()));
+  band.check = adler32(1, rows.data(), rows.size());
   z_stream stream{};
   const int raw = -15; // bits of the window; negative: without the stream's own head and check sum
   if (deflateInit2(&stream, level, Z_DEFLATED, raw, 9, Z_RLE) != Z_OK)
     throw std::runtime_error("PNG: out of memory");
-  band.packed.resize(deflateBound(&stream, static_cast<uLong>(rows.size())) + 16);
+  band.packed.resize(deflateBound(&stream, rows.size()) + 16);
   stream.next_in = rows.data();
-  stream.avail_in = static_cast<uInt>(rows.size());
+  stream.avail_in = rows.size();
   stream.next_out = band.packed.data();
-  stream.avail_out = static_cast<uInt>(band.packed.size());
+  stream.avail_out = band.packed.size();
   deflate(&stream, last == image.height ? Z_FINISH : Z_SYNC_FLUSH);
   band.packed.resize(band.packed.size() - stream.avail_out);
   deflateEnd(&stream);
@@ -115,8 +115,8 @@ Band packRows(const Image& image, int first, int last)
 Bytes header(const Image& image)
 {
   Bytes out;
-  appendNumber(static_cast<std::size_t>(image.width), out);
-  appendNumber(static_cast<std::size_t>(image.height), out);
+  appendNumber(image.width, out);
+  appendNumber(image.height, out);
   const std::uint8_t color = image.channels == 1 ? 0 : image.channels == 3 ? 2 : 6;
   out.insert(out.end(), {8, color, 0, 0, 0}); // bits a channel, kind; deflate, filters, not interlaced
   return out;
@@ -131,7 +131,7 @@ std::vector<std::uint8_t> encodePng(const Image& image, int threads)
   parallelFor(
       bands.size(), threads,
       [&](Index b) {
-        const int first = static_cast<int>(b) * rows;
+        const int first = b * rows;
         bands[b] = packRows(image, first, std::min(image.height, first + rows));
       },
       1);
@@ -139,7 +139,7 @@ std::vector<std::uint8_t> encodePng(const Image& image, int threads)
   appendChunk("IHDR", header(image), out);
   uLong check = 1;
   for (std::size_t b = 0; b < bands.size(); ++b) {
-    check = adler32_combine(check, bands[b].check, static_cast<z_off_t>(bands[b].size));
+    check = adler32_combine(check, bands[b].check, bands[b].size);
     if (b == 0)
       bands[b].packed.insert(bands[b].packed.begin(), {0x78, 0x5e}); // a zlib stream with a window of 32 kB
     if (b + 1 == bands.size())

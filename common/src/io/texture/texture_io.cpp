@@ -1,9 +1,32 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "io/texture/texture_io.h"
+#include "io/format_table.h"
 #include "io/points/parse_file.h"
+#include <algorithm>
 #include <fresco/core/require.h>
 #include <fresco/io/mesh_io.h>
 namespace fresco {
+namespace io {
+namespace {
+/// The functions behind a row of the table of formats that is marked as textured.
+struct TextureFormat {
+  const char* extension;
+  TexturedMesh (*read)(const std::string& path);
+  void (*write)(const std::string& path, const TexturedMesh& model, int jpeg_quality);
+};
+
+TexturedMesh readGlb(const std::string& path) { return parseFile(path, parseGlb); }
+void writeObjModel(const std::string& path, const TexturedMesh& model, int) { writeTexturedObj(path, model); }
+
+const TextureFormat& textureFormatOf(const Format& row)
+{
+  static constexpr TextureFormat all[] = {{".obj", readTexturedObj, writeObjModel}, {".glb", readGlb, writeGlb}};
+  return *std::find_if(std::begin(all), std::end(all),
+                       [&](const TextureFormat& format) { return row.extensions[0] == std::string(format.extension); });
+}
+} // namespace
+} // namespace io
+
 void validateTexturedMesh(const TexturedMesh& model)
 {
   validateMesh(model.mesh);
@@ -32,22 +55,11 @@ void writeTexturedMesh(const std::string& path, const TexturedMesh& model, int j
 {
   validateTexturedMesh(model);
   require(jpeg_quality >= 0 && jpeg_quality <= 100, "textured mesh: JPEG quality ", jpeg_quality, " is not in 0..100");
-  const std::string type = extension(path);
-  if (type == ".obj")
-    io::writeTexturedObj(path, model);
-  else if (type == ".glb")
-    io::writeGlb(path, model, jpeg_quality);
-  else
-    throw std::runtime_error(path + ": cannot write this type of textured model: use .obj or .glb");
+  io::textureFormatOf(io::formatToWrite(path, FileKind::textured_mesh)).write(path, model, jpeg_quality);
 }
 
 TexturedMesh readTexturedMesh(const std::string& path)
 {
-  const std::string type = extension(path);
-  if (type == ".obj")
-    return io::readTexturedObj(path);
-  if (type == ".glb")
-    return io::parseFile(path, io::parseGlb);
-  throw std::runtime_error(path + ": not a textured model: expected .obj or .glb");
+  return io::textureFormatOf(io::formatToRead(path, FileKind::textured_mesh)).read(path);
 }
 } // namespace fresco

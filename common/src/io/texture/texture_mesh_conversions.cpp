@@ -96,11 +96,11 @@ TexturedFaces collectFaces(const pcl::TextureMesh& texture, const CornerTexcoord
     std::size_t corner = 0;
     for (std::size_t p = 0; p < texture.tex_polygons[part].size(); ++p) {
       const std::size_t count = texture.tex_polygons[part][p].vertices.size();
-      addFan(texcoords.corners(part, p, corner), count, static_cast<int>(part), faces);
+      addFan(texcoords.corners(part, p, corner), count, part, faces);
       corner += count;
     }
   }
-  const auto last = static_cast<int>(texcoords.all().size());
+  const int last = texcoords.all().size();
   for (const int index : faces.texcoords)
     require(index >= -1 && index < last, "texture mesh: texture coordinate ", index, " is not there");
   return faces;
@@ -134,7 +134,7 @@ void toTextureMesh(const TexturedMesh& model, pcl::TextureMesh& texture, const s
   texture.cloud = std::move(polygons.cloud);
   int coordinates = 0;
   for (std::size_t i = 0; i < model.atlases.size(); ++i) {
-    addSubMesh(model, static_cast<int>(i), coordinates, texture);
+    addSubMesh(model, i, coordinates, texture);
     texture.tex_materials.push_back(
         material(concat("material_", i), image_files.empty() ? concat("texture_", i, ".png") : image_files[i]));
   }
@@ -158,7 +158,7 @@ TexturedMesh toTexturedMesh(const pcl::TextureMesh& texture, const std::string& 
   model.mesh = toTriangleMesh(polygons);
   model.texcoord_faces = Eigen::Map<const Eigen::Matrix3Xi>(faces.texcoords.data(), 3, model.mesh.faceCount());
   model.face_atlas = Eigen::Map<const Eigen::VectorXi>(faces.atlases.data(), model.mesh.faceCount());
-  model.texcoords.resize(2, static_cast<Index>(texcoords.all().size()));
+  model.texcoords.resize(2, texcoords.all().size());
   for (Index i = 0; i < model.texcoords.cols(); ++i)
     model.texcoords.col(i) = texcoords.all()[i];
   model.atlases = atlases.empty() ? readAtlases(texture, folder) : std::move(atlases);

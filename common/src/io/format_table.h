@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include <fresco/core/mesh.h>
+#include <fresco/core/point_table.h>
+#include <fresco/core/textured_mesh.h>
+#include <fresco/io/formats.h>
+#include <string>
+#include <vector>
+namespace fresco::io {
+/// A format of files: what it is called, how its names end, and who reads and writes it (nullptr: nobody).
+struct Format {
+  const char* name;
+  std::vector<const char*> extensions; ///< in lower case, with the dot
+  PointTable (*read_points)(const std::string& path) = nullptr;
+  void (*write_points)(const std::string& path, const PointTable& points, bool compressed) = nullptr;
+  TriangleMesh (*read_mesh)(const std::string& path) = nullptr;
+  void (*write_mesh)(const std::string& path, const TriangleMesh& mesh) = nullptr;
+  bool textured = false; ///< also read and written with texture, by texture_io.cpp, which links the image libraries
+
+  bool reads(FileKind kind) const;
+  bool writes(FileKind kind) const;
+};
+
+/// The one table of file formats, formats.cpp.
+FRESCO_EXPORT const std::vector<Format>& formats();
+
+/// The format by the extension of `path`. @throws std::runtime_error "PATH: not a mesh file: expected ..."
+FRESCO_EXPORT const Format& formatToRead(const std::string& path, FileKind kind);
+FRESCO_EXPORT const Format& formatToWrite(const std::string& path, FileKind kind);
+} // namespace fresco::io

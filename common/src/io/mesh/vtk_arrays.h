@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include <cstdint>
+#include <fresco/core/point_table.h>
+#include <string>
+#include <string_view>
+#include <vector>
+namespace fresco::io {
+/// Values of one array of a VTK file, tuple by tuple, little-endian.
+struct VtkArray {
+  std::string name;
+  Scalar type = Scalar::float32;
+  std::size_t components = 1;
+  std::vector<std::uint8_t> bytes;
+
+  std::size_t tuples() const { return bytes.size() / (components * scalarSize(type)); }
+  /// @throws std::runtime_error if they are no integers
+  std::vector<std::int64_t> integers() const;
+};
+
+/// `points` as x y z, then a column for each array. "normals" become normals, three or four bytes a tuple (or an array
+/// "colors") red green blue alpha; the second array of a name is left out. Every array has as many tuples as `points`.
+PointTable tableOfArrays(const VtkArray& points, const std::vector<VtkArray>& arrays);
+
+std::string lowerCase(std::string_view word);
+} // namespace fresco::io
