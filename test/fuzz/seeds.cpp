@@ -139,7 +139,6 @@ void writeSeeds(const std::string& folder)
   put("ply", "ascii", ascii_ply);
   put("vtk", "binary", written("a.vtk", mesh));
   put("vtk", "ascii", ascii_vtk);
-  put("vtp", "raw", written("a.vtp", mesh));
   put("stl", "binary", written("a.stl", mesh));
   put("xyz", "points", written("a.xyz", points));
   put("xyz", "colors", "# x y z r g b\n0 0 0 255 0 0\n1,2,3,0,0,255\n-1e3 nan 5 1 2 3\n");

@@ -214,7 +214,6 @@ const std::vector<Target>& targets()
       fileTarget("ply", {as_points, as_mesh}),
       fileTarget("pcd", {as_points}),
       fileTarget("vtk", {as_points, as_mesh}),
-      fileTarget("vtp", {as_points, as_mesh}),
       fileTarget("stl", {as_points, as_mesh}),
       fileTarget("xyz", {as_points}),
       fileTarget("glb", {as_model}),

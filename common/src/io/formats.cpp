@@ -56,8 +56,6 @@ TriangleMesh readVtkMesh(const std::string& path)
 
 void writeVtkMesh(const std::string& path, const TriangleMesh& mesh) { writeVtk(path, meshToTable(mesh), mesh.faces); }
 
-PointTable readVtpPoints(const std::string& path) { return readVtp(path).vertices; }
-TriangleMesh readVtpMesh(const std::string& path) { return meshOf(readVtp(path)); }
 void writeVtpMesh(const std::string& path, const TriangleMesh& mesh) { writeVtp(path, meshToTable(mesh), mesh.faces); }
 
 PointTable readStlPoints(const std::string& path) { return readStl(path).vertices; }
@@ -88,7 +86,7 @@ const std::vector<Format>& formats()
       {"PCD", {".pcd"}, readPcd, writePcd},
       {"PLY", {".ply"}, readPlyPoints, writePlyPoints, readPlyMesh, writePlyMesh},
       {"legacy VTK", {".vtk"}, readVtkPoints, nullptr, readVtkMesh, writeVtkMesh},
-      {"VTK XML", {".vtp"}, readVtpPoints, nullptr, readVtpMesh, writeVtpMesh},
+      {"VTK XML", {".vtp"}, nullptr, nullptr, nullptr, writeVtpMesh},
       {"STL", {".stl"}, readStlPoints, nullptr, readStlMesh, writeStlMesh},
       {"OBJ", {".obj"}, readObjPoints, nullptr, readObjMesh, writeObj, true},
       {"XYZ", {".xyz", ".txt", ".asc"}, readXyz, writeXyzPoints},

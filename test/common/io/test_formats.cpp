@@ -49,7 +49,9 @@ TEST(Formats, WhatTheTablePromisesIsDone)
       }
       if (format.writes(FileKind::mesh)) {
         writeMesh(path, test::fullMesh(3));
-        EXPECT_EQ(readMesh(path).vertexCount(), 9);
+        if (format.reads(FileKind::mesh)) {
+          EXPECT_EQ(readMesh(path).vertexCount(), 9);
+        }
       }
       if (format.writes(FileKind::textured_mesh)) {
         writeTexturedMesh(path, test::fullTexturedMesh(3, 1));

@@ -73,16 +73,6 @@ std::string asciiPcd()
   return text;
 }
 
-const char* const ascii_vtp =
-    "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"0.1\" byte_order=\"LittleEndian\">\n<PolyData>\n"
-    "<Piece NumberOfPoints=\"3\" NumberOfVerts=\"0\" NumberOfLines=\"0\" NumberOfStrips=\"0\" NumberOfPolys=\"1\">\n"
-    "<PointData><DataArray type=\"Float32\" Name=\"d\" format=\"ascii\">1 2 3</DataArray></PointData>\n"
-    "<Points><DataArray type=\"Float32\" NumberOfComponents=\"3\" format=\"ascii\">0 0 0 1 0 0 0 1 "
-    "0</DataArray></Points>\n"
-    "<Polys><DataArray type=\"Int64\" Name=\"connectivity\" format=\"ascii\">0 1 2</DataArray>\n"
-    "<DataArray type=\"Int64\" Name=\"offsets\" format=\"ascii\">3</DataArray></Polys>\n"
-    "</Piece>\n</PolyData>\n</VTKFile>\n";
-
 std::vector<Sample> samples(const std::string& folder)
 {
   std::vector<Sample> result;
@@ -103,7 +93,7 @@ std::vector<Sample> samples(const std::string& folder)
   take("cloud.ply", {readAsPoints, readAsMesh}, true);
   writePoints(folder + "/cloud.xyz", set);
   take("cloud.xyz", {readAsPoints}, false);
-  for (const char* name : {"mesh.ply", "mesh.vtk", "mesh.vtp", "mesh.stl", "mesh.obj"}) {
+  for (const char* name : {"mesh.ply", "mesh.vtk", "mesh.stl", "mesh.obj"}) {
     writeMesh(folder + "/" + name, mesh);
     take(name, {readAsPoints, readAsMesh}, name == std::string("mesh.ply"));
   }
@@ -120,8 +110,6 @@ std::vector<Sample> samples(const std::string& folder)
                   "CONNECTIVITY vtktypeint64\n0 1 2\nPOINT_DATA 3\nSCALARS i short 1\nLOOKUP_TABLE "
                   "default\n1 2 3\nFIELD FieldData 1\na%20b 2 3 float\n1 2 3 4 5 6\n");
   take("ascii.vtk", {readAsPoints, readAsMesh}, false);
-  test::writeText(folder + "/ascii.vtp", ascii_vtp);
-  take("ascii.vtp", {readAsPoints, readAsMesh}, false);
   writeTexturedMesh(folder + "/model.glb", test::fullTexturedMesh(3, 1));
   take("model.glb", {readAsModel}, true);
   writeTexturedMesh(folder + "/model.obj", test::fullTexturedMesh(3, 1));

@@ -2,7 +2,6 @@
 #include "io/mesh/vtk_polydata.h"
 #include "io/mesh/vtk_arrays.h"
 #include <algorithm>
-#include <charconv>
 #include <fresco/core/polygon_fans.h>
 #include <fresco/core/require.h>
 #include <fresco/io/file.h>
@@ -17,7 +16,6 @@
 #include <vtkSTLReader.h>
 #include <vtkSTLWriter.h>
 #include <vtkSmartPointer.h>
-#include <vtkXMLPolyDataReader.h>
 #include <vtkXMLPolyDataWriter.h>
 namespace fresco::io {
 namespace {
@@ -222,33 +220,7 @@ void writeByVtk(const std::string& path, vtkPolyData& data, Writer& writer)
   conversation.check(path, writer, written ? writer.GetErrorCode() : 1);
   file.commit();
 }
-/// VTK's XML reader believes the counts of a file, and crashes where they are those of no file of this size.
-void checkCounts(const std::string& path, std::string_view content)
-{
-  const std::string_view markup = content.substr(0, content.find("<AppendedData"));
-  constexpr std::size_t most_packed = 1100; // values in a byte of a compressed file
-  if (markup.find("<!") != std::string_view::npos)
-    throw std::runtime_error(path + ": a declaration of a document type has no place in a VTK file");
-  constexpr std::string_view mark = "NumberOf";
-  for (std::size_t at = markup.find(mark); at != std::string_view::npos; at = markup.find(mark, at + 1)) {
-    const std::size_t quote = markup.find_first_of("\"'<>", at);
-    const std::string_view name = markup.substr(at, quote - at);
-    const std::string_view digits = quote == std::string_view::npos ? "" : markup.substr(quote + 1, 20);
-    const bool is_components = name.find("Components") != std::string_view::npos;
-    std::uint64_t count = 0;
-    const auto end = std::from_chars(digits.data(), digits.data() + digits.size(), count);
-    if (end.ec != std::errc() || (*end.ptr != '"' && *end.ptr != '\'') ||
-        count > (is_components ? 1000 : most_packed * content.size()))
-      throw std::runtime_error(path + ": a count does not fit the size of the file");
-  }
-}
 } // namespace
-
-VtkContent readVtp(const std::string& path)
-{
-  checkCounts(path, readFile(path));
-  return readByVtk<vtkXMLPolyDataReader>(path);
-}
 
 VtkContent readStl(const std::string& path)
 {

@@ -2,10 +2,7 @@
 #pragma once
 #include "io/mesh/vtk_file.h"
 namespace fresco::io {
-/// XML PolyData (.vtp) by VTK. @throws std::runtime_error "PATH: reason" if missing, damaged or without points
-VtkContent readVtp(const std::string& path);
-
-/// XML PolyData, raw and not compressed, with every column as an array.
+/// XML PolyData (.vtp), raw and not compressed, with every column as an array.
 void writeVtp(const std::string& path, const PointTable& vertices, const Faces& faces);
 
 /// STL, ASCII or binary, by VTK; equal corners become one vertex. Nothing but vertices and faces.
