@@ -12,10 +12,7 @@
 #include <unistd.h>
 namespace fresco::benchmark {
 namespace {
-double seconds(const timeval& time)
-{
-  return time.tv_sec + 1e-6 * time.tv_usec;
-}
+double seconds(const timeval& time) { return time.tv_sec + 1e-6 * time.tv_usec; }
 
 double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include "cameras/projector.h"
+#include "views/depth_map.h"
 #include "views/patch_mesh.h"
 #include "views/photo_store.h"
-#include "views/depth_map.h"
 #include <array>
 #include <cmath>
 #include <fresco/core/progress.h>
