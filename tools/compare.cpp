@@ -2,6 +2,7 @@
 #include "compare_report.h"
 #include "support/tool.h"
 #include <fresco/io/file.h>
+#include <fresco/io/formats.h>
 #include <fresco/io/mesh_io.h>
 #include <fresco/surface/core/error_colors.h>
 #include <iostream>
@@ -22,9 +23,11 @@ Options parse(int argc, char** argv)
   Options options;
   Args args(
       "fresco_compare MESH REFERENCE [options]",
-      "Distance between two meshes (PLY, OBJ, VTK): max, mean and RMS over the vertices of one of the exact distance\n"
-      "to the surface of the other, both ways and symmetric (the larger), absolute and in % of the diagonal of the\n"
-      "reference's bounding box; angles between normals; topology. Vertices that no face names do not count.");
+      "Distance between two meshes (" + readableExtensions(FileKind::mesh) +
+          "): max, mean and RMS over the vertices of one of the exact distance\n"
+          "to the surface of the other, both ways and symmetric (the larger), absolute and in % of the diagonal of "
+          "the\n"
+          "reference's bounding box; angles between normals; topology. Vertices that no face names do not count.");
   args.option("json", options.json, "file for all these numbers");
   args.option("colored", options.colored,
               "mesh file (PLY) for MESH coloured by error: red = 0, green, blue = large; the distances are its field "

@@ -7,6 +7,7 @@
 #include <fresco/filters/core/outliers.h>
 #include <fresco/filters/core/voxel_thinning.h>
 #include <fresco/io/cloud_file.h>
+#include <fresco/io/formats.h>
 #include <numeric>
 using namespace fresco;
 
@@ -208,8 +209,8 @@ int main(int argc, char** argv)
     FilterOptions options;
     CommonOptions common;
     Args args("fresco_filter IN OUT [-outliers K SIGMA] [-veil DEG] [-voxel M] [options]",
-              "Removes isolated points and mixed pixels of a scan, and thins it by voxel.\n"
-              "IN: PCD, PLY, VTK, OBJ, XYZ; OUT: PCD, PLY, XYZ.");
+              "Removes isolated points and mixed pixels of a scan, and thins it by voxel.\nIN: " +
+                  readableExtensions(FileKind::points) + "; OUT: " + writableExtensions(FileKind::points) + ".");
     options.declare(args);
     common.declare(args);
     const auto files = args.parse(argc, argv, 2);

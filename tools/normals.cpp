@@ -6,6 +6,7 @@
 #include <fresco/filters/core/bilateral_normals.h>
 #include <fresco/filters/core/oriented_normals.h>
 #include <fresco/io/cloud_file.h>
+#include <fresco/io/formats.h>
 #include <limits>
 #ifdef __GLIBC__
 #include <malloc.h>
@@ -258,10 +259,11 @@ int main(int argc, char** argv)
   return runTool("fresco_normals", [&] {
     ToolOptions options;
     CommonOptions common;
-    Args args("fresco_normals IN OUT [-k N or -radius M] [-viewpoint X Y Z] [-bilateral N] [-sigma_d M] [-sigma_n DEG] "
-              "[options]",
-              "Normals that point to where each point was seen from, then bilateral smoothing of the normal field.\n"
-              "IN: PCD, PLY, VTK, OBJ, XYZ; OUT: PCD, PLY, XYZ.");
+    Args args(
+        "fresco_normals IN OUT [-k N or -radius M] [-viewpoint X Y Z] [-bilateral N] [-sigma_d M] [-sigma_n DEG] "
+        "[options]",
+        "Normals that point to where each point was seen from, then bilateral smoothing of the normal field.\nIN: " +
+            readableExtensions(FileKind::points) + "; OUT: " + writableExtensions(FileKind::points) + ".");
     options.declare(args);
     common.declare(args);
     const auto files = args.parse(argc, argv, 2);

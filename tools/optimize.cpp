@@ -2,6 +2,7 @@
 #include "support/tool.h"
 #include <fresco/core/require.h>
 #include <fresco/io/file.h>
+#include <fresco/io/formats.h>
 #include <fresco/io/mesh_io.h>
 #include <fresco/io/point_io.h>
 #include <fresco/surface/core/normal_filtering.h>
@@ -67,8 +68,11 @@ Request parse(int argc, char** argv)
   Request request;
   Args args("fresco_optimize MESH CLOUD OUT [options]",
             "Moves the vertices of MESH so that it fits the points of CLOUD that it was made of and gets its sharp\n"
-            "edges back. MESH, OUT: PLY, OBJ or VTK; CLOUD: PCD, PLY, VTK, OBJ or XYZ, with or without normals.\n"
-            "OUT has the faces, colours and other attributes of MESH. Vertices without data stay where they were.");
+            "edges back.\nMESH: " +
+                readableExtensions(FileKind::mesh) + "; OUT: " + writableExtensions(FileKind::mesh) +
+                ";\nCLOUD: " + readableExtensions(FileKind::points) +
+                ", with or without normals.\n"
+                "OUT has the faces, colours and other attributes of MESH. Vertices without data stay where they were.");
   declare(args, request);
   const std::vector<std::string> files = args.parse(argc, argv, 3);
   request.mesh = files[0];

@@ -2,6 +2,7 @@
 #include "support/tool.h"
 #include <cmath>
 #include <fresco/core/require.h>
+#include <fresco/io/formats.h>
 #include <fresco/io/mesh_io.h>
 #include <fresco/io/point_io.h>
 #include <fresco/surface/core/volumetric_reconstruction.h>
@@ -21,9 +22,12 @@ Request parse(int argc, char** argv)
   fresco::Args args(
       "fresco_reconstruct IN OUT [options]",
       "Volumetric surface reconstruction (screened Poisson over an octree) of points with normals.\n"
-      "IN: PCD, PLY, VTK, OBJ or XYZ with normals that point to the free side; OUT: PLY, OBJ or VTK mesh, closed\n"
-      "and manifold unless trimmed, with colours and intensity where IN has them and the field `support`: the\n"
-      "octree depth that the data sustain at the vertex.");
+      "IN: " +
+          readableExtensions(FileKind::points) +
+          ", with normals that point to the free side.\nOUT: " + writableExtensions(FileKind::mesh) +
+          ", a mesh, closed\n"
+          "and manifold unless trimmed, with colours and intensity where IN has them and the field `support`: the\n"
+          "octree depth that the data sustain at the vertex.");
   args.option("depth", o.depth, "octree depth, 2..16; finest cell = cube side / 2^depth");
   args.option("cell", o.cell_size,
               "side of the finest cell, unit of the points, which sets the depth; 0 = from -depth");

@@ -5,6 +5,7 @@
 #include <fresco/core/constants.h>
 #include <fresco/core/require.h>
 #include <fresco/io/file.h>
+#include <fresco/io/formats.h>
 #include <fresco/io/point_io.h>
 #include <fresco/io/pose_file.h>
 #include <fresco/registration/core/scan_registration.h>
@@ -19,10 +20,11 @@ struct Request {
   fresco::CommonOptions common;
 };
 
+/// In a folder of scans, text files are notes or poses, and .stl files hold no scans.
 bool isPointFile(const std::filesystem::path& path)
 {
   const std::string ending = fresco::extension(path.string());
-  return ending == ".pcd" || ending == ".ply" || ending == ".vtk" || ending == ".obj" || ending == ".xyz";
+  return fresco::isReadable(path.string(), fresco::FileKind::points) && ending != ".txt" && ending != ".stl";
 }
 
 // Folders are replaced by the point files in them, in the order of their names.
@@ -51,9 +53,11 @@ Request parse(int argc, char** argv)
   Request request;
   fresco::Args args(
       "fresco_register SCAN... -o OUT_DIR [-poses START.txt] [options]",
-      "Brings scans into one frame. SCAN: PCD, PLY, VTK, OBJ or XYZ, each in its own frame, or a folder of them.\n"
-      "Writes poses.txt (world from scan, `none` for a scan without a place), registered.pcd (all placed scans,\n"
-      "normals towards each point's own viewpoint) and registration.json (overlap graph, residuals, unplaced scans).");
+      "Brings scans into one frame.\nSCAN: " + fresco::readableExtensions(fresco::FileKind::points) +
+          ", each in its own frame, or a folder of them.\n"
+          "Writes poses.txt (world from scan, `none` for a scan without a place), registered.pcd (all placed scans,\n"
+          "normals towards each point's own viewpoint) and registration.json (overlap graph, residuals, unplaced "
+          "scans).");
   args.option("o", request.folder, "folder of the output, created; required");
   args.option("poses", request.start_file, "start poses, one a line as in poses.txt; `none` = unknown");
   args.option("voxel", request.options.voxel, "finest thinning, unit of the points; 0 = from the data");

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simulation/sensors/dataset.h"
 #include "support/tool.h"
+#include <fresco/io/formats.h>
 using namespace fresco;
 using namespace fresco::simulation;
 
@@ -31,7 +32,9 @@ void declare(Args& args, DatasetOptions& options, Switches& switches)
   args.flag("truth_images", options.truth_images, "also photographs without exposure differences and noise (PNG)");
   args.option("edge", options.max_edge, "longest side of a face of the rooms' truth, metres, 0.02..10");
   args.note(
-      "SCENE is conference_room, apartment (two rooms and a door) or a mesh file (PLY, OBJ, VTK).\n"
+      "SCENE is conference_room, apartment (two rooms and a door) or a mesh file (" +
+      readableExtensions(FileKind::mesh) +
+      ").\n"
       "Writes scans/scan_NN.pcd, images/view_NNN.jpg, cameras/ (COLMAP text), truth.ply, exposures.txt, poses.txt.\n"
       "Example: fresco_scan conference_room room -stations 6 -noise 0.003 -images 1280x960");
 }

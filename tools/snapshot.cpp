@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <fresco/core/require.h>
 #include <fresco/io/file.h>
+#include <fresco/io/formats.h>
 #include <fresco/io/image_io.h>
 #include <fresco/io/mesh_io.h>
 #include <fresco/io/point_io.h>
@@ -138,7 +139,9 @@ Request parse(int argc, char** argv)
 {
   Request request;
   Args args("fresco_snapshot MODEL OUT.png|OUT.jpg [options]",
-            "Picture of a mesh (PLY, OBJ, VTK, glTF) or a point cloud (PCD, PLY, VTK, OBJ, XYZ). Needs no display.");
+            "Picture of a mesh (" + readableExtensions(FileKind::mesh) + "), a textured model (" +
+                readableExtensions(FileKind::textured_mesh) + ")\nor a point cloud (" +
+                readableExtensions(FileKind::points) + "). Needs no display.");
   declareLook(args, request);
   declareView(args, request);
   request.common.declare(args);

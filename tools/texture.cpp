@@ -4,6 +4,7 @@
 #include <fresco/core/require.h>
 #include <fresco/io/colmap.h>
 #include <fresco/io/file.h>
+#include <fresco/io/formats.h>
 #include <fresco/io/image_io.h>
 #include <fresco/io/mesh_io.h>
 #include <fresco/texture/core/texture_reconstruction.h>
@@ -111,11 +112,12 @@ void run(int argc, char** argv)
   ToolOptions tool;
   CommonOptions common;
   Args args("fresco_texture MESH CAMERAS_DIR IMAGES_DIR OUT [options]",
-            "Textures a mesh from calibrated photographs. MESH: PLY, OBJ or VTK. CAMERAS_DIR: a COLMAP model, text or "
-            "binary.\n"
-            "IMAGES_DIR: the photographs it names. OUT: .obj (with .mtl and .png beside it) or .glb. Beside it "
-            "NAME_mask.png:\n"
-            "white where no photograph saw the surface and the colour is inpainted.");
+            "Textures a mesh from calibrated photographs. MESH: " + readableExtensions(FileKind::mesh) +
+                ".\nCAMERAS_DIR: a COLMAP model, text or "
+                "binary.\n"
+                "IMAGES_DIR: the photographs it names. OUT: .obj (with .mtl and .png beside it) or .glb. Beside it "
+                "NAME_mask.png:\n"
+                "white where no photograph saw the surface and the colour is inpainted.");
   declare(args, options, tool);
   common.declare(args);
   args.note("Example: fresco_texture mesh.ply scan/cameras scan/images model.glb");

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Not a library's loops: a caller that waits for threads which the system does not let run, or that yields in a loop
-// until they are, loses the machine to whatever else runs on it (docs/benchmarks.md).
+// until they are, loses the machine to whatever else runs on it. The gain shows on overloaded machines only: a
+// reconstruction takes 0.44 s against 0.47 s with OpenMP alone, 0.89 s against 1.85 s beside two endless loops on two
+// cores (docs/benchmarks.md).
 #include "core/thread_pool.h"
 #include <algorithm>
 #include <atomic>

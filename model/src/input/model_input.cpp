@@ -5,6 +5,7 @@
 #include <fresco/core/require.h>
 #include <fresco/io/colmap.h>
 #include <fresco/io/file.h>
+#include <fresco/io/formats.h>
 #include <fresco/io/pose_file.h>
 namespace fresco::model {
 namespace {
@@ -14,14 +15,14 @@ std::vector<std::string> scanFiles(const std::string& folder)
 {
   std::vector<std::string> files;
   for (const auto& entry : fs::directory_iterator(folder)) {
-    const std::string kind = extension(entry.path().string());
+    const std::string path = entry.path().string(), kind = extension(path);
     const bool hidden = entry.path().filename().string()[0] == '.';
-    if (!hidden && (kind == ".pcd" || kind == ".ply" || kind == ".xyz" || kind == ".vtk" || kind == ".obj"))
+    if (!hidden && isReadable(path, FileKind::points) && kind != ".txt" && kind != ".stl") // notes; no scans
       files.push_back(entry.path().string());
   }
   std::sort(files.begin(), files.end());
   if (files.empty())
-    throw std::runtime_error(folder + ": no scan (.pcd, .ply, .xyz, .vtk, .obj) in it");
+    throw std::runtime_error(folder + ": no scan (" + readableExtensions(FileKind::points) + ") in it");
   return files;
 }
 
