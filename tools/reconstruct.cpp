@@ -23,8 +23,8 @@ Request parse(int argc, char** argv)
       "fresco_reconstruct IN OUT [options]",
       "Volumetric surface reconstruction (screened Poisson over an octree) of points with normals.\n"
       "IN: " +
-          readableExtensions(FileKind::points) +
-          ", with normals that point to the free side.\nOUT: " + writableExtensions(FileKind::mesh) +
+          fresco::readableExtensions(fresco::FileKind::points) +
+          ", with normals that point to the free side.\nOUT: " + fresco::writableExtensions(fresco::FileKind::mesh) +
           ", a mesh, closed\n"
           "and manifold unless trimmed, with colours and intensity where IN has them and the field `support`: the\n"
           "octree depth that the data sustain at the vertex.");

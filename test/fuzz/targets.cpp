@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "targets.h"
-#include "rgbd.h"
+#include "input/rgbd.h"
 #include "stage_log.h"
 #include "support/args.h"
 #include <filesystem>
