@@ -37,7 +37,7 @@ protected:
   std::string scanFile(const std::string& name) const
   {
     PointSet set;
-    set.points = scanWithVeil(0.01f, 0.002f, 1).points;
+    set.points = scanWithMixedPixels(0.01f, 0.002f, 1).points;
     set.points.col(40).setConstant(nan);
     set.colors = Colors::Constant(3, set.size(), 9);
     for (Index i = 0; i < set.size(); ++i)
