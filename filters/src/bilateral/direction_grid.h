@@ -22,8 +22,8 @@ public:
 
   struct Surroundings {
     std::vector<Eigen::Vector3f> directions; ///< unit, the most frequent first, then their opposites
-    std::vector<float> shares; ///< of each in the weight of all, 0..1; opposite directions have equal shares
-    float noise = 0;           ///< length; 0 = unknown
+    std::vector<float> shares;               ///< weight of each direction / weight of all samples around, 0..1
+    float noise = 0;                         ///< length; 0 = unknown
   };
   /// Once all samples are there. Cells are independent of the number of threads.
   void finish(int threads);
