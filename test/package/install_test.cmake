@@ -76,8 +76,11 @@ file(GLOB binaries "${BINARY_DIR}/bin/*" "${BINARY_DIR}/lib/*.so" "${BINARY_DIR}
 list(FILTER binaries EXCLUDE REGEX "\\.(py|sh|txt)$")
 foreach(binary IN LISTS binaries)
   execute_process(COMMAND "${readelf}" -d "${binary}" OUTPUT_VARIABLE dynamic ERROR_QUIET)
-  if(dynamic MATCHES "R(UN)?PATH\\)[^[]*\\[([^]]*)\\]" AND ":${CMAKE_MATCH_2}:" MATCHES "::")
-    message(FATAL_ERROR "${binary} searches the current folder: ${CMAKE_MATCH_2}")
+  if(dynamic MATCHES "R(UN)?PATH\\)[^[]*\\[([^]]*)\\]")
+    set(search_path "${CMAKE_MATCH_2}")
+    if(":${search_path}:" MATCHES "::")
+      message(FATAL_ERROR "${binary} searches the current folder: ${search_path}")
+    endif()
   endif()
 endforeach()
 
