@@ -192,4 +192,13 @@ TEST(DamagedFiles, WrongExtension)
       }
     }
 }
+
+TEST(DamagedFiles, VtkPrintsNothing)
+{
+  const std::string path = test::scratchFolder() + "/cut.stl";
+  writeFile(path, "solid x\nfacet");
+  testing::internal::CaptureStderr();
+  EXPECT_THROW(readMesh(path), std::runtime_error);
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+}
 } // namespace

@@ -9,6 +9,7 @@
 #include <new>
 #include <vtkCellArray.h>
 #include <vtkDataArray.h>
+#include <vtkLogger.h>
 #include <vtkNew.h>
 #include <vtkOutputWindow.h>
 #include <vtkPointData.h>
@@ -44,11 +45,20 @@ private:
   std::string first_;
 };
 
-/// While it lives VTK talks to a Listener. VTK knows one for the whole program, so that one file is read at a time.
+/// While it lives VTK talks to a Listener, and its log not to the terminal. VTK knows one of each for the whole program,
+/// so that one file is read at a time. It cannot be asked what its log showed before: afterwards that is VTK's default.
 class Conversation {
 public:
-  Conversation() : lock_(mutex()), previous_(vtkOutputWindow::GetInstance()) { vtkOutputWindow::SetInstance(heard_); }
-  ~Conversation() { vtkOutputWindow::SetInstance(previous_); }
+  Conversation() : lock_(mutex()), previous_(vtkOutputWindow::GetInstance())
+  {
+    vtkOutputWindow::SetInstance(heard_);
+    vtkLogger::SetStderrVerbosity(vtkLogger::VERBOSITY_OFF);
+  }
+  ~Conversation()
+  {
+    vtkOutputWindow::SetInstance(previous_);
+    vtkLogger::SetStderrVerbosity(vtkLogger::VERBOSITY_INFO);
+  }
   Conversation(const Conversation&) = delete;
   Conversation& operator=(const Conversation&) = delete;
 
