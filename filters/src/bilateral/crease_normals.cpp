@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fresco/core/parallel.h>
+#include <fresco/core/statistics.h>
 namespace fresco::filters {
 namespace {
 constexpr float cell_spacings = 64.f; // edge of the cells in which directions are counted
@@ -44,10 +45,7 @@ float CreaseNormals::typicalArea(const Eigen::VectorXf& areas)
   for (const float area : areas)
     if (area > 0 && std::isfinite(area))
       sorted.push_back(area);
-  if (sorted.empty())
-    return 1.f;
-  std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2), sorted.end());
-  return sorted[sorted.size() / 2];
+  return sorted.empty() ? 1.f : median(sorted);
 }
 
 /// From the viewer to the point, unit; zero where unknown.

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <fresco/core/parallel.h>
 #include <fresco/core/require.h>
+#include <fresco/core/statistics.h>
 #include <fresco/filters/core/outliers.h>
 #include <fresco/search/neighbors.h>
 namespace fresco {
@@ -30,9 +31,7 @@ Eigen::VectorXf logRatios(const Eigen::VectorXf& values, const NeighborLists& li
     around.clear();
     for (const int* j = lists.first(i); j != lists.last(i); ++j)
       around.push_back(values[*j]);
-    const auto middle = around.begin() + static_cast<std::ptrdiff_t>(around.size() / 2);
-    std::nth_element(around.begin(), middle, around.end());
-    ratios[i] = std::log(std::max(values[i], least) / std::max(*middle, least));
+    ratios[i] = std::log(std::max(values[i], least) / std::max(median(around), least));
   });
   return ratios;
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fresco/core/parallel.h>
+#include <fresco/core/statistics.h>
 #include <fresco/search/batch_knn.h>
 namespace fresco::filters {
 namespace {
@@ -21,9 +22,7 @@ float beamSpacing(const PointTree& directions)
     directions.nearest(directions.point(s * directions.size() / count), around + 1, found);
     squared.push_back(found.back().squared_distance);
   }
-  const auto middle = squared.begin() + count / 2;
-  std::nth_element(squared.begin(), middle, squared.end());
-  return count > 0 ? std::sqrt(*middle * 3.1416f / around) : 0.f;
+  return count > 0 ? std::sqrt(median(squared) * 3.1416f / around) : 0.f;
 }
 
 /// Searches among every m-th beam. Near ones are found together.

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <fresco/core/parallel.h>
+#include <fresco/core/statistics.h>
 namespace fresco::filters {
 namespace {
 constexpr int most_beams = 64;          // of a window
@@ -56,9 +57,7 @@ Misfit misfitOf(const Plane& plane, const Places& beams, int count)
 /// The value below which `share` of the values lie; not empty.
 float quantile(std::vector<float>& values, double share)
 {
-  const auto at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
+  return rankedValue(values, static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1)));
 }
 
 /// What measures too much is held down by the others, since noise neither falls with the range nor grows faster than

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fresco/core/parallel.h>
+#include <fresco/core/statistics.h>
 namespace fresco::filters {
 namespace {
 constexpr std::size_t most_leaves = 65536; // around a group; beyond, each point is searched for alone
@@ -30,9 +31,7 @@ float surfaceNoise(const PointTree& tree, int k, int threads)
       deviations[s] = std::sqrt(variance * moments.weight / std::max(1.f, moments.weight - 3));
     }
   });
-  const auto middle = deviations.begin() + count / 2;
-  std::nth_element(deviations.begin(), middle, deviations.end());
-  return count > 0 ? *middle : 0.f;
+  return count > 0 ? median(deviations) : 0.f;
 }
 
 /// About the sum of the lesser two variances of points, and the least of them.
