@@ -17,11 +17,13 @@ int main(int argc, char** argv)
         "Writes model.obj/.mtl/.png, model.glb, mesh.ply, poses.txt, snapshots/*.png, report.html and\n"
         "report.json to OUT_DIR; OUT_DIR/work holds what -resume needs.");
     args.flag("use_poses", options.use_poses,
-              "take the poses of poses.txt as they are instead of registering the scans");
-    args.flag("poses", options.use_poses, "old name of -use_poses, for one version");
+              "take the poses of the scans (poses.txt) or of RGB-D frames as they are: neither found nor refined");
+    args.flag("poses", options.use_poses, "the same as -use_poses");
     args.flag("resume", options.resume, "go on after the last stage that an earlier run into OUT_DIR finished");
-    args.option("cell", options.cell, "finest cell of the surface reconstruction, metres, > 0");
-    args.option("fuse", options.fuse, "RGB-D: cell in which the points of all frames are averaged, metres, > 0");
+    args.option("cell", options.cell,
+                "finest cell of the surface reconstruction, metres; 0 = 0.02 for scans, 3 pixels at the median depth "
+                "for RGB-D");
+    args.option("fuse", options.fuse, "RGB-D: cell in which the frames are fused, metres; 0 = as -cell");
     args.option("bilateral", options.bilateral, "rounds of bilateral smoothing of the normals, >= 0");
     args.option("trim_levels", options.trim_levels,
                 "octree levels that the data may sustain less than they do elsewhere, else surface is cut off; 0 = "

@@ -11,7 +11,7 @@ using namespace model;
 
 void validate(const ModelInput& input, const ModelOptions& options)
 {
-  require(options.cell > 0 && options.fuse > 0, "model: a cell of ", options.cell, " m or ", options.fuse, " m");
+  require(options.cell >= 0 && options.fuse >= 0, "model: a cell of ", options.cell, " m or ", options.fuse, " m");
   require(options.bilateral >= 0 && options.trim_levels >= 0 && options.texel >= 0, "model: an option is negative");
   require(options.width >= 160 && options.height >= 120, "model: pictures of ", options.width, "x", options.height,
           " pixels are too small");
@@ -28,14 +28,15 @@ std::vector<Stage> stagesOf(const Job& job)
   const auto step = [&job](Figures (*make)(const Job&, const Progress&)) {
     return [&job, make](const Progress& progress) { return make(job, progress); };
   };
-  return {{"points",
-           concat(options.use_poses, " ", options.fuse, " ", options.bilateral),
-           {files.points, files.poses},
-           step(makePoints)},
-          {"surface", concat(options.cell, " ", options.trim_levels), {files.surface}, step(makeSurface)},
-          {"optimization", concat(options.optimize), {files.mesh}, step(makeOptimizedSurface)},
-          {"texture", concat(options.texel), {files.model_obj, files.model_glb, files.viewer_glb}, step(makeTexture)},
-          {"pictures", concat(options.width, "x", options.height), pictureFiles(files), step(makePictures)}};
+  return {
+      {"points",
+       concat(options.use_poses, " ", options.fuse, " ", options.fuse > 0 ? 0.0 : options.cell, " ", options.bilateral),
+       {files.points, files.poses},
+       step(makePoints)},
+      {"surface", concat(options.cell, " ", options.trim_levels), {files.surface}, step(makeSurface)},
+      {"optimization", concat(options.optimize), {files.mesh}, step(makeOptimizedSurface)},
+      {"texture", concat(options.texel), {files.model_obj, files.model_glb, files.viewer_glb}, step(makeTexture)},
+      {"pictures", concat(options.width, "x", options.height), pictureFiles(files), step(makePictures)}};
 }
 } // namespace
 

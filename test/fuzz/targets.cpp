@@ -151,9 +151,7 @@ void readRgbd(Bytes bytes, const std::string& folder)
   readChecked(folder, [&] {
     const RgbdFolder room = readRgbdFolder(folder);
     expect(room.camera.fx > 0 && room.camera.fy > 0 && !room.frames.empty(), "no camera or no frame");
-    const Image16 depth = readImage16(room.frames[0].depth);
-    if (depth.data.size() < 5000)
-      depthPoints(depth, room.camera, {}, 1);
+    readDepth(room, 0);
   });
 }
 

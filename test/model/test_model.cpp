@@ -15,46 +15,6 @@ using namespace fresco::model;
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-constexpr CameraModel camera{160, 120, 146.25, 146.25, 80.5, 60.5, 0, 0, 0, 0};
-
-/// Depth image of the plane n . p = d in front of the camera.
-Image16 planeDepth(const Eigen::Vector3d& n, double d)
-{
-  Image16 image{camera.width, camera.height, {}};
-  for (int y = 0; y < image.height; ++y)
-    for (int x = 0; x < image.width; ++x)
-      image.data.push_back(
-          static_cast<std::uint16_t>(std::lround(1000 * d / n.dot(unproject(camera, {x + 0.5, y + 0.5})))));
-  return image;
-}
-
-TEST(DepthImage, PlaneGivesItsPointsAndNormal)
-{
-  const Eigen::Vector3d n = Eigen::Vector3d(0.2, -0.3, 1.0).normalized();
-  const PointSet set = depthPoints(planeDepth(n, 2.0), camera, {}, 1);
-  ASSERT_GT(set.size(), 80 * 60 / 2);
-  const Eigen::VectorXf off = (n.cast<float>().transpose() * set.points).transpose().array() - 2.f;
-  EXPECT_LT(off.cwiseAbs().maxCoeff(), 2e-3f); // depth is rounded to millimetres
-  EXPECT_LT((set.normals.colwise() + n.cast<float>()).colwise().norm().maxCoeff(), 0.05f);
-  EXPECT_EQ(set.points, depthPoints(planeDepth(n, 2.0), camera, {}, 4).points);
-}
-
-TEST(DepthImage, NoPointsAcrossJumpsAndWhereDepthIsMissing)
-{
-  Image16 image = planeDepth(Eigen::Vector3d::UnitZ(), 2.0);
-  for (int y = 0; y < image.height; ++y)
-    for (int x = 0; x < image.width; ++x) {
-      std::uint16_t& depth = image.data[y * image.width + x];
-      depth = x < 40 ? 0 : x > 120 ? 65535 : x < 80 ? 1500 : depth;
-    }
-  const PointSet set = depthPoints(image, camera, {}, 1);
-  ASSERT_GT(set.size(), 500);
-  for (Index i = 0; i < set.size(); ++i) {
-    const float z = set.points(2, i);
-    EXPECT_TRUE(std::abs(z - 1.5f) < 1e-3f || std::abs(z - 2.f) < 1e-3f) << z;
-  }
-}
-
 TEST(Fusion, SamplesOfOneSurfaceBecomeOneAndBothSidesOfASheetStayTwo)
 {
   PointSet set;
@@ -199,9 +159,12 @@ TEST(RgbdFolder, RealRoomIsRead)
   EXPECT_EQ(room.frames.size(), 100U);
   EXPECT_EQ(room.camera.width, 640);
   EXPECT_EQ(room.camera.fx, 585.0);
-  const PointSet points = depthPoints(readImage16(room.frames[50].depth), room.camera, {}, 0);
-  EXPECT_GT(points.size(), 10000);
-  for (Index i = 0; i < points.size(); ++i)
-    EXPECT_LT(points.normals.col(i).dot(points.points.col(i)), 0.f);
+  const DepthImage depth = readDepth(room, 50);
+  EXPECT_EQ(depth.cols(), 640);
+  EXPECT_GT((depth > 0.f).count(), depth.size() / 2);
+  EXPECT_TRUE((depth == 0.f || (depth >= 0.3f && depth <= 4.f)).all());
+  const double footprint = pixelFootprint(room); // a room is seen from 1 to 3 m
+  EXPECT_GT(footprint, 1.0 / 585);
+  EXPECT_LT(footprint, 3.0 / 585);
 }
 } // namespace

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include <fresco/core/camera.h>
-#include <fresco/core/image.h>
-#include <fresco/core/point_set.h>
+#include <fresco/surface/core/depth_fusion.h>
 #include <string>
 #include <vector>
 namespace fresco::model {
@@ -25,17 +24,11 @@ bool isRgbdFolder(const std::string& folder);
 /// @throws std::runtime_error naming the file that is missing or malformed
 RgbdFolder readRgbdFolder(const std::string& folder);
 
-struct DepthOptions {
-  double nearest = 0.3, farthest = 5.0; ///< metres, range that is used
-  int stride = 2;                       ///< every stride-th pixel in both directions, >= 1
-  double radius = 0.018;                ///< of the fitted plane as a share of the distance: sensor noise grows with it
-  double grazing = 75.0;                ///< degrees between beam and normal beyond which a pixel is dropped, 0..90
-};
+/// Metres; 0 = none. Depths farther than such cameras measure well are left out.
+/// @throws std::runtime_error naming the file if it is damaged or has another size than the first frame's
+DepthImage readDepth(const RgbdFolder& folder, Index frame);
 
-/// Points of a depth image with normals: a plane is fitted around each pixel and the point moved onto it along its
-/// beam. Pixels without depth, at depth jumps and at grazing incidence are dropped.
-/// @param depth millimetres; 0 and 65535 = none
-/// @return in the camera's frame, metres; normals towards the camera; confidence = cos(incidence) / depth^2, for noise
-///         that grows with depth^2; viewpoint (0,0,0)
-PointSet depthPoints(const Image16& depth, const CameraModel& camera, const DepthOptions& options, int threads);
+/// Side of the patch that a pixel sees at the median depth of all frames, metres.
+/// @throws std::runtime_error if no frame has any depth
+double pixelFootprint(const RgbdFolder& folder);
 } // namespace fresco::model

@@ -34,7 +34,7 @@ Figures makeOptimizedSurface(const Job& job, const Progress& progress)
   NormalFilteringOptions filtering;
   filtering.flip = true;
   filtering.threads = options.threads;
-  const PointSet points = pointsForVertices(readPoints(files.points), surface.vertexCount(), options.cell);
+  const PointSet points = pointsForVertices(readPoints(files.points), surface.vertexCount(), finestCell(job));
   const NormalFilteringResult result = filterSurface(surface, points, filtering, progress);
   writeMesh(files.mesh, result.mesh);
   return {{"optimized", true},

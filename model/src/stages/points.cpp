@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "stages/fusion.h"
 #include "stages/stages.h"
 #include <Eigen/LU>
 #include <algorithm>
+#include <cmath>
+#include <fresco/core/constants.h>
 #include <fresco/core/require.h>
 #include <fresco/filters/core/bilateral_normals.h>
 #include <fresco/filters/core/mixed_pixels.h>
 #include <fresco/filters/core/oriented_normals.h>
 #include <fresco/filters/core/outliers.h>
-#include <fresco/io/image_io.h>
 #include <fresco/io/point_io.h>
 #include <fresco/io/pose_file.h>
 #include <fresco/registration/core/scan_registration.h>
@@ -126,32 +126,57 @@ Figures pointsFromScans(const Job& job, const Progress& progress)
   return figures;
 }
 
+/// How far poses were moved: the RMS of the shifts (metres) and of the turns (degrees).
+std::pair<double, double> rmsMoves(const std::vector<Eigen::Isometry3d>& from, const std::vector<Eigen::Isometry3d>& to)
+{
+  double shift = 0, turn = 0;
+  for (std::size_t i = 0; i < from.size(); ++i) {
+    shift += (to[i].translation() - from[i].translation()).squaredNorm() / from.size();
+    turn += std::pow(Eigen::AngleAxisd(to[i].linear() * from[i].linear().transpose()).angle(), 2) / from.size();
+  }
+  return {std::sqrt(shift), std::sqrt(turn) * degrees_per_radian};
+}
+
 Figures pointsFromFrames(const Job& job, const Progress& progress)
 {
   const auto& [input, files, options] = job;
-  PointFusion fusion(options.fuse);
   const RgbdFolder& rgbd = *input.rgbd;
-  Index raw = 0;
-  for (std::size_t f = 0; f < rgbd.frames.size(); ++f) {
-    report(progress, concat("frame ", f + 1, " of ", rgbd.frames.size()), 0.8 * f / rgbd.frames.size());
-    const Image16 depth = readImage16(rgbd.frames[f].depth);
-    if (depth.width != rgbd.camera.width || depth.height != rgbd.camera.height)
-      throw std::runtime_error(concat(rgbd.frames[f].depth, ": ", depth.width, "x", depth.height,
-                                      " pixels, but the first frame has ", rgbd.camera.width, "x", rgbd.camera.height));
-    const PointSet seen = depthPoints(depth, rgbd.camera, {}, options.threads);
-    raw += seen.size();
-    fusion.add(transformPoints(seen, rgbd.frames[f].T_world_camera.matrix()));
-  }
-  PointSet fused = fusion.result(0.1);
-  if (fused.size() < 100)
+  DepthFrames frames;
+  frames.camera = rgbd.camera;
+  for (const RgbdFrame& frame : rgbd.frames)
+    frames.T_world_camera.push_back(frame.T_world_camera);
+  frames.depth = [&](Index f) { return readDepth(rgbd, f); };
+  DepthFusionOptions fusion;
+  fusion.cell = options.fuse > 0 ? options.fuse : finestCell(job);
+  fusion.refine_poses = !options.use_poses;
+  fusion.threads = options.threads;
+  const DepthFusionResult fused = fuseDepthImages(frames, fusion, subProgress(progress, 0.0, 0.8));
+  if (fused.points.size() < 100)
     throw std::runtime_error(input.folder + ": hardly any depth in the frames");
-  const PointSet points = smoothed(fused, options, subProgress(progress, 0.8, 1.0));
+  const PointSet points = smoothed(fused.points, options, subProgress(progress, 0.8, 1.0));
   writePoints(files.points, points);
-  writePoses(files.poses, input.poses);
-  return {
-      {"registration", "given poses"}, {"frames", rgbd.frames.size()}, {"raw_points", raw}, {"points", points.size()}};
+  std::vector<Pose> poses;
+  for (const Eigen::Isometry3d& T : fused.T_world_camera)
+    poses.emplace_back(T.matrix());
+  writePoses(files.poses, poses);
+  const auto [shift, turn] = rmsMoves(frames.T_world_camera, fused.T_world_camera);
+  return {{"registration", options.use_poses ? "given poses" : "given poses, refined"},
+          {"frames", rgbd.frames.size()},
+          {"poses_moved_metres", shift},
+          {"poses_turned_degrees", turn},
+          {"fusion_cell", fusion.cell},
+          {"points", points.size()}};
 }
 } // namespace
+
+double finestCell(const Job& job)
+{
+  constexpr double pixels_per_cell = 3; // finer cells follow the noise of single pixels: docs/measurements/model.md
+  constexpr double scans = 0.02;        // metres: rooms from a few stations, some 1 to 10 mm between points
+  if (job.options.cell > 0)
+    return job.options.cell;
+  return job.input.rgbd ? pixels_per_cell * pixelFootprint(*job.input.rgbd) : scans;
+}
 
 Figures makePoints(const Job& job, const Progress& progress)
 {

@@ -16,6 +16,9 @@ struct Job {
   ModelOptions options;
 };
 
+/// Finest cell of the surface, metres: ModelOptions::cell, or what the data sustain.
+double finestCell(const Job& job);
+
 /// All scans or frames in one frame with normals: reads the input, writes `files.points` and `files.poses`.
 Figures makePoints(const Job& job, const Progress& progress);
 

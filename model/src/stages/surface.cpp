@@ -12,28 +12,31 @@
 #include <fresco/surface/core/volumetric_reconstruction.h>
 namespace fresco::model {
 namespace {
+/// Octree levels. Fused frames have a point in every cell of their surface, so half as many along a line already tell of
+/// invented surface; scans thin out with the distance.
+constexpr double most_trim_of_frames = 0.75;
+
 /// 1 where no point of the data is within a cell.
-std::vector<char> farFromPoints(const TriangleMesh& mesh, const PointSet& points, const ModelOptions& options)
+std::vector<char> farFromPoints(const TriangleMesh& mesh, const PointSet& points, float cell, int threads)
 {
-  const PointTree tree(points.points, options.threads);
-  const float cell = options.cell;
+  const PointTree tree(points.points, threads);
   const Eigen::Vector3f shift = (mesh.origin - points.origin).cast<float>();
   std::vector<char> far(mesh.vertexCount());
-  parallelFor(mesh.vertexCount(), options.threads, [&](Index v) {
+  parallelFor(mesh.vertexCount(), threads, [&](Index v) {
     const Eigen::Vector3f place = mesh.vertices.col(v) + shift;
     far[v] = tree.nearest(place, cell).index < 0;
   });
   return far;
 }
 
-FreeSpace askAllViews(const Points& places, const Job& job)
+FreeSpace askAllViews(const Points& places, const Job& job, double cell)
 {
   const auto& [input, files, options] = job;
-  FreeSpace space(places, options.cell, options.threads);
-  if (input.rgbd)
-    for (const RgbdFrame& frame : input.rgbd->frames)
-      space.ask(readImage16(frame.depth), input.rgbd->camera, frame.T_world_camera);
+  FreeSpace space(places, cell, options.threads);
   const std::vector<Pose> poses = readPoses(files.poses);
+  if (input.rgbd)
+    for (std::size_t f = 0; f < input.rgbd->frames.size(); ++f)
+      space.ask(readImage16(input.rgbd->frames[f].depth), input.rgbd->camera, Eigen::Isometry3d(*poses.at(f)));
   for (std::size_t s = 0; s < input.scans.size(); ++s)
     if (poses.at(s)) {
       const PointSet scan = readPoints(input.scans[s]);
@@ -50,9 +53,9 @@ FreeSpace askAllViews(const Points& places, const Job& job)
 
 /// 1 for the vertices in places that the sensors saw through and that no point is near to. Poses of depth cameras are
 /// not exact: there, one frame in thirty must have seen through.
-std::vector<char> inFreeSpace(const TriangleMesh& mesh, const PointSet& points, const Job& job)
+std::vector<char> inFreeSpace(const TriangleMesh& mesh, const PointSet& points, const Job& job, double cell)
 {
-  std::vector<char> removed = farFromPoints(mesh, points, job.options);
+  std::vector<char> removed = farFromPoints(mesh, points, cell, job.options.threads);
   std::vector<Index> asked;
   for (Index v = 0; v < mesh.vertexCount(); ++v)
     if (removed[v])
@@ -60,7 +63,7 @@ std::vector<char> inFreeSpace(const TriangleMesh& mesh, const PointSet& points, 
   const Points places = (mesh.vertices(Eigen::all, asked).colwise() + mesh.origin.cast<float>()).eval();
   const auto& rgbd = job.input.rgbd;
   const int least = rgbd ? std::max<int>(2, rgbd->frames.size() / 30) : 1;
-  const std::vector<char> empty = askAllViews(places, job).empty(least);
+  const std::vector<char> empty = askAllViews(places, job, cell).empty(least);
   for (std::size_t i = 0; i < asked.size(); ++i)
     removed[asked[i]] = empty[i];
   return removed;
@@ -73,14 +76,14 @@ Figures makeSurface(const Job& job, const Progress& progress)
   report(progress, "read", 0.0);
   PointSet points = readPoints(files.points);
   VolumetricOptions volumetric;
-  volumetric.cell_size = options.cell;
+  volumetric.cell_size = finestCell(job);
   volumetric.threads = options.threads;
-  volumetric.trim_levels = options.trim_levels;
+  volumetric.trim_levels = input.rgbd ? std::min(options.trim_levels, most_trim_of_frames) : options.trim_levels;
   VolumetricResult result = reconstructVolumetric(std::move(points), volumetric, subProgress(progress, 0.0, 0.7));
   Index carved = 0;
   if (options.trim_levels > 0) {
     report(progress, "free space", 0.7);
-    std::vector<char> removed = inFreeSpace(result.mesh, readPoints(files.points), job);
+    std::vector<char> removed = inFreeSpace(result.mesh, readPoints(files.points), job, volumetric.cell_size);
     carved = std::count(removed.begin(), removed.end(), 1);
     result.mesh = withoutVertices(result.mesh, std::move(removed));
   }

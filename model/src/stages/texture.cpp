@@ -3,10 +3,12 @@
 #include <fresco/core/require.h>
 #include <fresco/io/image_io.h>
 #include <fresco/io/mesh_io.h>
+#include <fresco/io/pose_file.h>
 #include <fresco/texture/core/texture_reconstruction.h>
 namespace fresco::model {
 namespace {
-std::vector<TextureView> viewsOf(const ModelInput& input)
+/// @param poses of the frames of an RGB-D folder, world from camera
+std::vector<TextureView> viewsOf(const ModelInput& input, const std::vector<Pose>& poses)
 {
   std::vector<TextureView> views;
   for (const View& view : input.cameras.views) {
@@ -17,11 +19,11 @@ std::vector<TextureView> viewsOf(const ModelInput& input)
     views.push_back(std::move(next));
   }
   if (input.rgbd)
-    for (const RgbdFrame& frame : input.rgbd->frames) {
+    for (std::size_t f = 0; f < input.rgbd->frames.size(); ++f) {
       TextureView next;
       next.camera = input.rgbd->camera;
-      next.T_camera_world = frame.T_world_camera.inverse();
-      next.path = frame.color;
+      next.T_camera_world = Eigen::Isometry3d(*poses.at(f)).inverse();
+      next.path = input.rgbd->frames[f].color;
       views.push_back(std::move(next));
     }
   return views;
@@ -35,7 +37,7 @@ Figures makeTexture(const Job& job, const Progress& progress)
   TextureOptions texture;
   texture.texel = options.texel;
   texture.threads = options.threads;
-  const std::vector<TextureView> views = viewsOf(input);
+  const std::vector<TextureView> views = viewsOf(input, readPoses(files.poses));
   const TextureResult result = reconstructTexture(mesh, views, texture, progress);
   for (std::size_t i = 0; i < result.masks.size(); ++i)
     writeImage(files.mask(i, result.masks.size()), result.masks[i]);

@@ -9,12 +9,14 @@ namespace fresco {
 /// Options of buildModel(). Lengths in metres.
 struct ModelOptions {
   bool resume = false;            ///< go on after the last stage that an earlier run finished
-  bool use_poses = false;         ///< take the folder's poses.txt as they are; RGB-D frames always bring theirs
-  double cell = 0.02;             ///< finest cell of the surface reconstruction, > 0
-  double fuse = 0.01;             ///< RGB-D: cell in which the points of all frames are averaged, > 0
+  bool use_poses = false;         ///< take the poses of scans (poses.txt) or of RGB-D frames as they are
+  double cell = 0;                ///< finest cell of the surface reconstruction, >= 0; 0 = 0.02 for scans, three pixels
+                                  ///< at the median depth for RGB-D
+  double fuse = 0;                ///< RGB-D: cell in which the frames are fused, >= 0; 0 = as `cell`
   int bilateral = 2;              ///< rounds of bilateral smoothing of the normals, >= 0
   bool optimize = true;           ///< move the vertices so that edges become sharp
-  double trim_levels = 2.0;       ///< see VolumetricOptions::trim_levels, >= 0; 0 = keep the surface closed
+  double trim_levels = 2.0;       ///< see VolumetricOptions::trim_levels, >= 0; 0 = keep the surface closed; RGB-D:
+                                  ///< at most 0.75
   double texel = 0.0;             ///< side of a texel, >= 0; 0 = as fine as the photographs
   int width = 1280, height = 960; ///< of the pictures, pixels, at least 160 x 120
   int threads = 0;                ///< 0 = all cores; the result does not depend on it
