@@ -45,7 +45,7 @@ struct Scene {
   std::vector<Material> materials;
   std::vector<Lamp> lamps;
   std::vector<SceneObject> objects;
-  bool furnished = true; ///< made in code: metres, stations stand on the floor
+  bool furnished = true; ///< a room of makeScene(): metres, stations stand on the floor
 };
 
 /// Places on a cell, s and t in 0..1.
