@@ -7,10 +7,10 @@
 #include <complex>
 #include <fresco/core/constants.h>
 #include <fresco/core/require.h>
+#include <numeric>
 #include <vector>
 namespace fresco::rendering {
 namespace {
-
 /// Some faces of a mesh, evenly picked.
 struct FaceSample {
   Eigen::Matrix3Xd normals, centers;
@@ -28,14 +28,11 @@ FaceSample sampleFaces(const TriangleMesh& mesh)
   sample.areas.resize(capacity);
   Index count = 0;
   for (Index f = 0; f < mesh.faceCount(); f += step) {
-    const Eigen::Vector3d a = mesh.vertices.col(mesh.faces(0, f)).cast<double>();
-    const Eigen::Vector3d b = mesh.vertices.col(mesh.faces(1, f)).cast<double>();
-    const Eigen::Vector3d c = mesh.vertices.col(mesh.faces(2, f)).cast<double>();
-    const Eigen::Vector3d normal = (b - a).cross(c - a);
+    const Eigen::Vector3d normal = areaVector(mesh, f);
     if (!(normal.norm() > 0))
       continue;
     sample.normals.col(count) = normal.normalized();
-    sample.centers.col(count) = (a + b + c) / 3;
+    sample.centers.col(count) = (faceCorner(mesh, f, 0) + faceCorner(mesh, f, 1) + faceCorner(mesh, f, 2)) / 3;
     sample.areas[count++] = 0.5 * normal.norm();
   }
   require(count > 0, "view: the mesh has no face with an area");
@@ -87,8 +84,7 @@ std::vector<Eigen::Vector3d> halfSphere(int count)
 double areaQuantile(const Eigen::VectorXd& values, const Eigen::VectorXd& areas, double share)
 {
   std::vector<Index> order(values.size());
-  for (std::size_t i = 0; i < order.size(); ++i)
-    order[i] = i;
+  std::iota(order.begin(), order.end(), Index(0));
   std::sort(order.begin(), order.end(), [&](Index a, Index b) { return values[a] < values[b]; });
   const double wanted = share * areas.sum();
   double below = 0;

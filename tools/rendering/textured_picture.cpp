@@ -73,11 +73,10 @@ Image renderPicture(const TexturedMesh& model, const PictureOptions& options)
   validateTextures(model);
   require(model.mesh.faceCount() > 0, "picture: the textured model has no face");
   const Viewpoint view = chooseView(model.mesh, options);
-  Canvas canvas(options.width, options.height, options.oversampling);
-  setPictureBackground(canvas, options);
+  Canvas canvas(options);
   std::vector<Part> parts = makeParts(model, canvas.largestTexture());
   for (Part& part : parts)
     canvas.add(makeActor(part.drawn, partLook(part, options)));
-  return finishPicture(canvas.draw(view, model.mesh.origin), options);
+  return canvas.draw(view, model.mesh.origin);
 }
 } // namespace fresco::rendering

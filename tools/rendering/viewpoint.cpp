@@ -90,19 +90,6 @@ Viewpoint frame(const Points& given, const Eigen::Vector3d& origin, const Framin
   return {origin + axes * eye, origin + axes * look, axes.col(1), framing.angle};
 }
 
-Points referenced(const TriangleMesh& mesh)
-{
-  std::vector<char> used(mesh.vertexCount(), 0);
-  for (Index i = 0; i < mesh.faces.size(); ++i)
-    used[mesh.faces.data()[i]] = 1;
-  Points points(3, std::count(used.begin(), used.end(), 1));
-  Index next = 0;
-  for (Index v = 0; v < mesh.vertexCount(); ++v)
-    if (used[v])
-      points.col(next++) = mesh.vertices.col(v);
-  return points;
-}
-
 /// The points without stray ones: within the box that holds all but 0.5 % of the points at each of its sides, enlarged
 /// by a fifth of its size to each side.
 Points usualPoints(const Points& points)
@@ -143,7 +130,7 @@ const std::array<std::pair<const char*, Eigen::Vector3d>, 7>& directions()
 Viewpoint frameView(const TriangleMesh& mesh, const Framing& framing)
 {
   validateMesh(mesh);
-  return frame(mesh.faceCount() > 0 ? referenced(mesh) : mesh.vertices, mesh.origin, framing);
+  return frame(mesh.faceCount() > 0 ? removeUnreferencedVertices(mesh).vertices : mesh.vertices, mesh.origin, framing);
 }
 
 Viewpoint frameView(const PointSet& set, const Framing& framing)
