@@ -17,25 +17,9 @@ Box hole(const Vector3f& min, const Vector3f& max, int material) { return {min, 
 
 std::uint64_t seedOf(const Json& placed) { return placed.value("seed", 1u); }
 
-Material picture(const char* name, const std::array<int, 2>& pixels, std::uint64_t seed, float emission = 0.f)
+Material picture(const char* name, const std::array<int, 2>& pixels, std::uint64_t seed)
 {
-  return printed({{"picture", name}, {"pixels", pixels}, {"emission", emission}}, seed);
-}
-
-/// "size" [width, height] of the screen.
-void monitor(Furniture& f, const Json& placed)
-{
-  SceneBuilder& b = f.builder();
-  b.beginObject("monitor", poseOf(placed));
-  const int black = f.material("black");
-  const auto [wide, high] = placed.at("size").get<Pair>();
-  const float half = wide / 2;
-  const Box panel = solid({-half, -0.015f, 0.12f}, {half, 0.012f, 0.12f + high}, black);
-  b.boxes({solid({-half - 0.012f, -0.02f, 0.108f}, {half + 0.012f, 0.016f, 0.132f + high}, black),
-           hole({-half, 0.012f, 0.12f}, {half, 0.016f, 0.12f + high}, black),
-           withPicture(b, panel, 3, picture("screen", {1200, 700}, seedOf(placed), 0.9f)),
-           solid({-0.03f, -0.045f, 0.012f}, {0.03f, -0.02f, 0.3f}, black),
-           solid({-0.13f, -0.1f, 0}, {0.13f, 0.08f, 0.012f}, black)});
+  return printed({{"picture", name}, {"pixels", pixels}}, seed);
 }
 
 /// "count" sheets and a pen.
@@ -269,10 +253,10 @@ bool addComputed(Furniture& furniture, const Json& placed)
 {
   using Make = void (*)(Furniture&, const Json&);
   static const std::map<std::string, Make> known = {
-      {"book_shelf", bookShelf}, {"cable", cable},       {"clock", wallClock},
-      {"coat_stand", coatStand}, {"curtain", curtain},   {"framed_picture", framedPicture},
-      {"handle", handle},        {"monitor", monitor},   {"papers", papers},
-      {"plant", plant},          {"radiator", radiator}, {"sideboard", sideboard}};
+      {"book_shelf", bookShelf}, {"cable", cable},        {"clock", wallClock},
+      {"coat_stand", coatStand}, {"curtain", curtain},    {"framed_picture", framedPicture},
+      {"handle", handle},        {"papers", papers},      {"plant", plant},
+      {"radiator", radiator},    {"sideboard", sideboard}};
   const auto found = known.find(placed.at("thing"));
   if (found == known.end())
     return false;
