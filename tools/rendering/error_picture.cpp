@@ -44,9 +44,7 @@ Image errorRamp()
 
 Eigen::VectorXf drawnDistances(const DrawMesh& drawn, const Eigen::VectorXf& distances)
 {
-  Eigen::VectorXf shown(drawn.vertices.cols());
-  for (Index v = 0; v < shown.size(); ++v)
-    shown[v] = distances[drawn.source[v]];
+  const Eigen::VectorXf shown = distances(drawn.source);
   require(shown.allFinite() && shown.minCoeff() >= 0, "picture: a distance is negative or not finite");
   return shown;
 }
@@ -54,9 +52,9 @@ Eigen::VectorXf drawnDistances(const DrawMesh& drawn, const Eigen::VectorXf& dis
 /// Distances as coordinates into errorRamp(): the colour is looked up per pixel, not mixed between vertices.
 Eigen::Matrix2Xf rampCoordinates(const Eigen::VectorXf& distances, double largest)
 {
-  Eigen::Matrix2Xf texcoords(2, distances.size());
+  Eigen::Matrix2Xf texcoords = Eigen::Matrix2Xf::Constant(2, distances.size(), 0.5f);
   for (Index v = 0; v < texcoords.cols(); ++v)
-    texcoords.col(v) << (0.5 + (ramp_size - 1) * (distances[v] / largest)) / ramp_size, 0.5f;
+    texcoords(0, v) = (0.5 + (ramp_size - 1) * (distances[v] / largest)) / ramp_size;
   return texcoords;
 }
 

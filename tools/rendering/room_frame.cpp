@@ -8,7 +8,6 @@
 #include <fresco/core/constants.h>
 #include <fresco/core/require.h>
 #include <numeric>
-#include <vector>
 namespace fresco::rendering {
 namespace {
 /// Some faces of a mesh, evenly picked.
@@ -69,17 +68,6 @@ Eigen::Vector3d refine(const FaceSample& sample, Eigen::Vector3d direction)
   return direction;
 }
 
-/// Even directions over the upper half of the sphere (Fibonacci lattice).
-std::vector<Eigen::Vector3d> halfSphere(int count)
-{
-  std::vector<Eigen::Vector3d> directions;
-  for (int i = 0; i < count; ++i) {
-    const double z = (i + 0.5) / count, angle = i * pi * (3 - std::sqrt(5.0)), r = std::sqrt(1 - z * z);
-    directions.emplace_back(r * std::cos(angle), r * std::sin(angle), z);
-  }
-  return directions;
-}
-
 /// Value that `share` of the area lies below.
 double areaQuantile(const Eigen::VectorXd& values, const Eigen::VectorXd& areas, double share)
 {
@@ -108,7 +96,7 @@ Eigen::Vector3d upright(const FaceSample& sample)
   const Eigen::Matrix3d moments = spread(sample);
   Eigen::Vector3d best = Eigen::Vector3d::UnitZ();
   double most = -1;
-  for (const Eigen::Vector3d& direction : halfSphere(300)) {
+  for (const Eigen::Vector3d& direction : evenDirections(300, 0, 1)) {
     const double extent = std::sqrt(direction.dot(moments * direction)) + 1e-6 * std::sqrt(moments.trace());
     const double custom = std::abs(direction.z()) > near_axis ? 1.6 : 1.0;
     const double score = custom * parallelArea(sample, direction) / std::sqrt(extent);
@@ -140,6 +128,17 @@ Eigen::Vector3d wallDirection(const FaceSample& sample, const Eigen::Vector3d& u
   return std::cos(angle) * x + std::sin(angle) * y;
 }
 } // namespace
+
+std::vector<Eigen::Vector3d> evenDirections(int count, double first_z, double last_z)
+{
+  std::vector<Eigen::Vector3d> directions;
+  for (int i = 0; i < count; ++i) {
+    const double z = first_z + (last_z - first_z) * (i + 0.5) / count;
+    const double angle = i * pi * (3 - std::sqrt(5.0)), r = std::sqrt(1 - z * z);
+    directions.emplace_back(r * std::cos(angle), r * std::sin(angle), z);
+  }
+  return directions;
+}
 
 Eigen::Vector3d guessUp(const TriangleMesh& mesh) { return upright(sampleFaces(mesh)); }
 

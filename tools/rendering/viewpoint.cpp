@@ -31,12 +31,10 @@ struct Extent {
 /// The finite points in camera axes: x right, y up, z backward.
 Eigen::Matrix3Xd inCameraAxes(const Points& points, const Eigen::Matrix3d& axes)
 {
-  Eigen::Matrix3Xd seen(3, points.cols());
-  Index count = 0;
-  for (Index i = 0; i < points.cols(); ++i)
-    if (points.col(i).allFinite())
-      seen.col(count++) = axes.transpose() * points.col(i).cast<double>();
-  seen.conservativeResize(3, count);
+  const std::vector<Index> finite = finiteColumns(points);
+  Eigen::Matrix3Xd seen(3, finite.size());
+  for (Index i = 0; i < seen.cols(); ++i)
+    seen.col(i) = axes.transpose() * points.col(finite[i]).cast<double>();
   return seen;
 }
 
@@ -94,10 +92,7 @@ Viewpoint frame(const Points& given, const Eigen::Vector3d& origin, const Framin
 /// by a fifth of its size to each side.
 Points usualPoints(const Points& points)
 {
-  std::vector<Index> kept;
-  for (Index i = 0; i < points.cols(); ++i)
-    if (points.col(i).allFinite())
-      kept.push_back(i);
+  std::vector<Index> kept = finiteColumns(points);
   for (int axis = 0; axis < 3 && !kept.empty(); ++axis) {
     std::vector<float> values;
     for (const Index i : kept)
