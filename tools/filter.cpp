@@ -9,6 +9,7 @@
 #include <fresco/io/cloud_file.h>
 #include <fresco/io/formats.h>
 #include <numeric>
+#include <pcl/common/io.h>
 using namespace fresco;
 
 namespace {
@@ -83,15 +84,6 @@ struct Remaining {
   }
 };
 
-std::vector<Index> finitePoints(const PointSet& set)
-{
-  std::vector<Index> finite;
-  for (Index i = 0; i < set.size(); ++i)
-    if (set.points.col(i).allFinite())
-      finite.push_back(i);
-  return finite;
-}
-
 /// Writes `value` into field `name`, of type float or double, of a point.
 void setValue(pcl::PCLPointCloud2& cloud, Index point, const std::string& name, double value)
 {
@@ -118,17 +110,10 @@ void setPosition(pcl::PCLPointCloud2& cloud, Index point, const Eigen::Vector3d&
 /// Keeps the points named by `columns`, ascending.
 void keepPoints(pcl::PCLPointCloud2& cloud, const std::vector<Index>& columns)
 {
-  std::vector<std::uint8_t> data;
-  data.reserve(columns.size() * cloud.point_step);
-  for (const Index column : columns) {
-    const auto first = cloud.data.begin() + static_cast<std::ptrdiff_t>(column) * cloud.point_step;
-    data.insert(data.end(), first, first + cloud.point_step);
-  }
-  cloud.data.swap(data);
-  cloud.width = static_cast<std::uint32_t>(columns.size());
-  cloud.height = 1;
-  cloud.row_step = cloud.width * cloud.point_step;
-  cloud.is_dense = 1;
+  pcl::PCLPointCloud2 kept;
+  pcl::copyPointCloud(cloud, pcl::Indices(columns.begin(), columns.end()), kept);
+  kept.is_dense = 1;
+  cloud = std::move(kept);
 }
 
 void blankOthers(pcl::PCLPointCloud2& cloud, const std::vector<Index>& columns)
@@ -178,7 +163,7 @@ void filterCloud(CloudFile& file, const std::string& name, const Args& args, con
   rest.columns.resize(rest.set.size());
   std::iota(rest.columns.begin(), rest.columns.end(), Index(0));
   std::vector<std::string> lines = {std::to_string(rest.set.size()) + " points"};
-  rest.keep(finitePoints(rest.set));
+  rest.keep(finiteColumns(rest.set.points));
   if (rest.columns.empty())
     throw std::runtime_error(name + ": no finite points");
   const std::vector<Index> finite = rest.columns;

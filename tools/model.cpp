@@ -7,7 +7,6 @@ int main(int argc, char** argv)
   return fresco::runTool("fresco_model", [&] {
     fresco::ModelOptions options; // its defaults are the tool's defaults
     fresco::CommonOptions common;
-    bool no_optimize = false;
     fresco::Args args(
         "fresco_model INPUT OUT_DIR [options]",
         "Makes a textured model of a room: points and normals, poses, surface, texture, pictures, report.\n"
@@ -29,13 +28,13 @@ int main(int argc, char** argv)
                 "octree levels that the data may sustain less than they do elsewhere, else surface is cut off; 0 = "
                 "keep it closed");
     args.option("trim", options.trim_levels, "old name of -trim_levels, for one version");
-    args.flag("no_optimize", no_optimize, "leave the vertices where the reconstruction puts them: rounded edges");
+    args.flag("no_optimize", options.optimize, "leave the vertices where the reconstruction puts them: rounded edges",
+              false);
     args.option("texel", options.texel, "side of a texel, metres; 0 = as fine as the photographs");
     args.size("size", options.width, options.height, "size of the pictures, pixels");
     common.declare(args);
     const auto words = args.parse(argc, argv, 2);
     options.threads = common.threads;
-    options.optimize = !no_optimize;
     const fresco::ModelReport report =
         fresco::buildModel(words[0], words[1], options, fresco::printProgress(common.quiet));
     for (const fresco::ModelStage& stage : report.stages)

@@ -209,10 +209,9 @@ PointSet loadPoints(const CloudFile& file, const std::string& name, const Args& 
     set.viewpoints.resize(3, 0);
   if (set.viewpoints.cols() == 1 && !set.viewpoints.allFinite())
     throw std::runtime_error(name + ": its viewpoint is not finite, give -viewpoint X Y Z or -propagate");
-  for (Index i = 0; i < set.size(); ++i)
-    if (set.points.col(i).allFinite())
-      return set;
-  throw std::runtime_error(name + ": no finite points");
+  if (finiteColumns(set.points).empty())
+    throw std::runtime_error(name + ": no finite points");
+  return set;
 }
 
 /// What the tool needs of the points.

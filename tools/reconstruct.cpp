@@ -8,23 +8,25 @@
 #include <fresco/surface/core/volumetric_reconstruction.h>
 #include <iostream>
 namespace {
+using namespace fresco;
+
 struct Request {
   std::string input, output;
-  fresco::VolumetricOptions options;
-  fresco::CommonOptions common;
+  VolumetricOptions options;
+  CommonOptions common;
   bool estimate = false;
 };
 
 Request parse(int argc, char** argv)
 {
   Request request;
-  fresco::VolumetricOptions& o = request.options;
-  fresco::Args args(
+  VolumetricOptions& o = request.options;
+  Args args(
       "fresco_reconstruct IN OUT [options]",
       "Volumetric surface reconstruction (screened Poisson over an octree) of points with normals.\n"
       "IN: " +
-          fresco::readableExtensions(fresco::FileKind::points) +
-          ", with normals that point to the free side.\nOUT: " + fresco::writableExtensions(fresco::FileKind::mesh) +
+          readableExtensions(FileKind::points) +
+          ", with normals that point to the free side.\nOUT: " + writableExtensions(FileKind::mesh) +
           ", a mesh, closed\n"
           "and manifold unless trimmed, with colours and intensity where IN has them and the field `support`: the\n"
           "octree depth that the data sustain at the vertex.");
@@ -55,39 +57,36 @@ Request parse(int argc, char** argv)
   request.output = files[1];
   o.threads = request.common.threads;
   try {
-    fresco::validateVolumetricOptions(o);
+    validateVolumetricOptions(o);
   } catch (const std::invalid_argument& error) {
-    throw fresco::UsageError(error.what());
+    throw UsageError(error.what());
   }
   return request;
 }
 
-std::string percent(fresco::Index part, fresco::Index whole)
-{
-  return fresco::concat(std::round(1000.0 * part / whole) / 10, " %");
-}
+std::string percent(Index part, Index whole) { return concat(std::round(1000.0 * part / whole) / 10, " %"); }
 
 void run(const Request& request)
 {
-  fresco::PointSet points = fresco::readPoints(request.input);
-  const fresco::Index count = points.size();
+  PointSet points = readPoints(request.input);
+  const Index count = points.size();
   if (request.estimate) {
-    std::cout << std::ceil(fresco::estimateMemory(points, request.options) / 1e6) << '\n';
+    std::cout << std::ceil(estimateMemory(points, request.options) / 1e6) << '\n';
     return;
   }
-  const fresco::VolumetricResult result =
-      fresco::reconstructVolumetric(std::move(points), request.options, fresco::printProgress(request.common.quiet));
-  fresco::writeOutputs([&] { fresco::writeMesh(request.output, result.mesh); });
-  fresco::inform(request.common.quiet,
-                 fresco::concat(result.mesh.vertexCount(), " vertices, ", result.mesh.faceCount(), " faces; depth ",
-                                result.depth, ", cell ", result.cell_size, "; ", result.used_points, " points used, ",
-                                result.left_out_points, " left out (", percent(result.left_out_points, count), ")"));
+  const VolumetricResult result =
+      reconstructVolumetric(std::move(points), request.options, printProgress(request.common.quiet));
+  writeOutputs([&] { writeMesh(request.output, result.mesh); });
+  inform(request.common.quiet,
+         concat(result.mesh.vertexCount(), " vertices, ", result.mesh.faceCount(), " faces; depth ", result.depth,
+                ", cell ", result.cell_size, "; ", result.used_points, " points used, ", result.left_out_points,
+                " left out (", percent(result.left_out_points, count), ")"));
 }
 } // namespace
 
 int main(int argc, char** argv)
 {
-  return fresco::runTool("fresco_reconstruct", [&] {
+  return runTool("fresco_reconstruct", [&] {
     const Request request = parse(argc, argv);
     try {
       run(request);

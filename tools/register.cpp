@@ -11,20 +11,22 @@
 #include <fresco/registration/core/scan_registration.h>
 #include <nlohmann/json.hpp>
 namespace {
+using namespace fresco;
+
 using Json = nlohmann::ordered_json;
 
 struct Request {
   std::vector<std::string> files;
   std::string folder, start_file;
-  fresco::ScanRegistrationOptions options;
-  fresco::CommonOptions common;
+  ScanRegistrationOptions options;
+  CommonOptions common;
 };
 
 /// In a folder of scans, text files are notes or poses, and .stl files hold no scans.
 bool isPointFile(const std::filesystem::path& path)
 {
-  const std::string ending = fresco::extension(path.string());
-  return fresco::isReadable(path.string(), fresco::FileKind::points) && ending != ".txt" && ending != ".stl";
+  const std::string ending = extension(path.string());
+  return isReadable(path.string(), FileKind::points) && ending != ".txt" && ending != ".stl";
 }
 
 // Folders are replaced by the point files in them, in the order of their names.
@@ -51,9 +53,9 @@ std::vector<std::string> scanFiles(const std::vector<std::string>& words)
 Request parse(int argc, char** argv)
 {
   Request request;
-  fresco::Args args(
+  Args args(
       "fresco_register SCAN... -o OUT_DIR [-poses START.txt] [options]",
-      "Brings scans into one frame.\nSCAN: " + fresco::readableExtensions(fresco::FileKind::points) +
+      "Brings scans into one frame.\nSCAN: " + readableExtensions(FileKind::points) +
           ", each in its own frame, or a folder of them.\n"
           "Writes poses.txt (world from scan, `none` for a scan without a place), registered.pcd (all placed scans,\n"
           "normals towards each point's own viewpoint) and registration.json (overlap graph, residuals, unplaced "
@@ -72,7 +74,7 @@ Request parse(int argc, char** argv)
   args.note("example: fresco_register scans/*.pcd -o registered");
   const std::vector<std::string> words = args.parse(argc, argv, 1, 100000);
   if (request.folder.empty())
-    throw fresco::UsageError("-o OUT_DIR is missing");
+    throw UsageError("-o OUT_DIR is missing");
   request.files = scanFiles(words);
   request.options.threads = request.common.threads;
   request.options.names = request.files;
@@ -89,7 +91,7 @@ Json toJson(const Eigen::Matrix4d& T)
   return rows;
 }
 
-Json scanJson(const std::string& file, const fresco::ScanResult& scan, const fresco::Pose& pose)
+Json scanJson(const std::string& file, const ScanResult& scan, const Pose& pose)
 {
   Json json = {{"file", file}, {"placed", scan.placed}, {"group", scan.group}};
   json["pose"] = pose ? toJson(*pose) : Json();
@@ -97,14 +99,14 @@ Json scanJson(const std::string& file, const fresco::ScanResult& scan, const fre
   json["problem"] = scan.problem;
   json["rms"] = scan.rms;
   json["translation_deviation"] = scan.translation_deviation;
-  json["rotation_deviation_deg"] = scan.rotation_deviation * 180.0 / fresco::pi;
+  json["rotation_deviation_deg"] = scan.rotation_deviation * 180.0 / pi;
   if (scan.free_motion)
     json["free_motion"] = {{"translation", toJson(scan.free_motion->translation)},
                            {"rotation", toJson(scan.free_motion->rotation)}};
   return json;
 }
 
-std::string reportText(const Request& request, const fresco::ScanRegistrationResult& result)
+std::string reportText(const Request& request, const ScanRegistrationResult& result)
 {
   Json json;
   json["scans"] = Json::array();
@@ -115,7 +117,7 @@ std::string reportText(const Request& request, const fresco::ScanRegistrationRes
       json["unplaced"].push_back(request.files[i]);
   }
   json["pairs"] = Json::array();
-  for (const fresco::PairResult& pair : result.pairs)
+  for (const PairResult& pair : result.pairs)
     json["pairs"].push_back({{"a", pair.a},
                              {"b", pair.b},
                              {"overlap", pair.overlap},
@@ -131,49 +133,47 @@ std::string reportText(const Request& request, const fresco::ScanRegistrationRes
   return json.dump(1) + "\n";
 }
 
-std::vector<fresco::Pose> startPoses(const Request& request)
+std::vector<Pose> startPoses(const Request& request)
 {
   if (request.start_file.empty())
     return {};
-  std::vector<fresco::Pose> poses = fresco::readPoses(request.start_file);
+  std::vector<Pose> poses = readPoses(request.start_file);
   if (poses.size() != request.files.size())
     throw std::runtime_error(
-        fresco::concat(request.start_file, ": ", poses.size(), " poses for ", request.files.size(), " scans"));
+        concat(request.start_file, ": ", poses.size(), " poses for ", request.files.size(), " scans"));
   return poses;
 }
 
-void write(const Request& request, const fresco::ScanSource& scans, const fresco::ScanRegistrationResult& result)
+void write(const Request& request, const ScanSource& scans, const ScanRegistrationResult& result)
 {
-  fresco::writePoints(request.folder + "/registered.pcd",
-                      fresco::mergeScans(scans, result.poses, request.common.threads));
-  fresco::writePoses(request.folder + "/poses.txt", result.poses);
-  fresco::writeFile(request.folder + "/registration.json", reportText(request, result));
+  writePoints(request.folder + "/registered.pcd", mergeScans(scans, result.poses, request.common.threads));
+  writePoses(request.folder + "/poses.txt", result.poses);
+  writeFile(request.folder + "/registration.json", reportText(request, result));
 }
 
 void run(int argc, char** argv)
 {
   const Request request = parse(argc, argv);
-  const std::vector<fresco::Pose> start = startPoses(request);
-  fresco::makeFolder(request.folder);
-  const fresco::Progress progress = fresco::printProgress(request.common.quiet);
-  const fresco::ScanSource scans(request.files.size(),
-                                 [&](fresco::Index i) { return fresco::readPoints(request.files[i]); });
-  fresco::report(progress, "read", 0.0);
-  const auto result = fresco::registerScans(scans, start, request.options, fresco::subProgress(progress, 0.0, 0.9));
+  const std::vector<Pose> start = startPoses(request);
+  makeFolder(request.folder);
+  const Progress progress = printProgress(request.common.quiet);
+  const ScanSource scans(request.files.size(), [&](Index i) { return readPoints(request.files[i]); });
+  report(progress, "read", 0.0);
+  const auto result = registerScans(scans, start, request.options, subProgress(progress, 0.0, 0.9));
   const auto placed = std::count_if(result.scans.begin(), result.scans.end(), [](const auto& s) { return s.placed; });
   if (placed == 0)
     throw std::runtime_error(request.files[0] + ": " + result.scans[0].problem + "; no scan could be placed");
-  fresco::report(progress, "write", 0.9);
-  fresco::writeOutputs([&] { write(request, scans, result); });
-  fresco::report(progress, "done", 1.0);
+  report(progress, "write", 0.9);
+  writeOutputs([&] { write(request, scans, result); });
+  report(progress, "done", 1.0);
   for (std::size_t i = 0; i < result.scans.size(); ++i)
     if (!result.scans[i].problem.empty())
-      fresco::inform(request.common.quiet, request.files[i] + ": " + result.scans[i].problem);
-  fresco::inform(request.common.quiet, fresco::concat(placed, " of ", scans.count, " scans placed, rms ", result.rms));
+      inform(request.common.quiet, request.files[i] + ": " + result.scans[i].problem);
+  inform(request.common.quiet, concat(placed, " of ", scans.count, " scans placed, rms ", result.rms));
 }
 } // namespace
 
 int main(int argc, char** argv)
 {
-  return fresco::runTool("fresco_register", [&] { run(argc, argv); });
+  return runTool("fresco_register", [&] { run(argc, argv); });
 }

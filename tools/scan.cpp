@@ -6,25 +6,20 @@ using namespace fresco;
 using namespace fresco::simulation;
 
 namespace {
-struct Switches {
-  bool no_veil = false, no_images = false;
-  int seed = 1;
-};
-
-void declare(Args& args, DatasetOptions& options, Switches& switches)
+void declare(Args& args, DatasetOptions& options, int& seed)
 {
   args.option("stations", options.stations, "laser stations, 1..1000");
   args.option("points", options.laser.points, "laser points per station, about");
   args.option("noise", options.laser.noise, "deviation of the range at 4 m, metres; it grows with range and incidence");
-  args.flag("no_veil", switches.no_veil, "thin laser beams: no mixed pixels (veil points) at depth jumps");
+  args.flag("no_veil", options.laser.veil, "thin laser beams: no mixed pixels (veil points) at depth jumps", false);
   args.option("max_range", options.laser.max_range, "of the laser, metres; 0 = 30 in rooms, without limit for meshes");
-  args.option("seed", switches.seed, "of all random numbers; same seed, same bytes; >= 0");
+  args.option("seed", seed, "of all random numbers; same seed, same bytes; >= 0");
   args.size("images", options.width, options.height, "size of the photographs, pixels, 16..20000 each");
   args.option("views", options.views, "photographs");
   args.flag("labels", options.labels,
             "scans get a field label: 0 = of one surface, 1 = of several but within the noise of one, 2 = mixed pixel "
             "(veil point)");
-  args.flag("no_images", switches.no_images, "no photographs");
+  args.values("no_images", "", "no photographs", [](const auto&) {});
   args.option("exposure", options.exposure_spread,
               "spread of the photographs' brightness, 0..0.9; white balance a quarter of it");
   args.option("sensor_noise", options.sensor_noise, "of the photographs, grey levels of 255");
@@ -44,18 +39,17 @@ int main(int argc, char** argv)
 {
   return runTool("fresco_scan", [&] {
     DatasetOptions options;
-    Switches switches;
+    int seed = 1;
     CommonOptions common;
     Args args("fresco_scan SCENE OUT_DIR [options]", "Virtual laser scanner and camera with known truth.");
-    declare(args, options, switches);
+    declare(args, options, seed);
     common.declare(args);
     const auto files = args.parse(argc, argv, 2);
-    if (switches.seed < 0)
-      throw UsageError("-seed: " + std::to_string(switches.seed) + " is negative");
-    options.seed = static_cast<std::uint64_t>(switches.seed);
-    options.laser.veil = !switches.no_veil;
+    if (seed < 0)
+      throw UsageError("-seed: " + std::to_string(seed) + " is negative");
+    options.seed = seed;
     options.threads = common.threads;
-    if (switches.no_images)
+    if (args.given("no_images"))
       options.views = 0;
     writeDataset(files[0], files[1], options, printProgress(common.quiet));
   });

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rendering/indoor_view.h"
 #include "rendering/picture.h"
-#include "support/args.h"
 #include "support/tool.h"
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -182,9 +181,8 @@ Eigen::Vector3d middle(const Model& model)
   const auto* set = std::get_if<PointSet>(&model);
   const Points& points = set ? set->points : meshOf(model)->vertices;
   Eigen::AlignedBox3d box;
-  for (Index i = 0; i < points.cols(); ++i)
-    if (points.col(i).allFinite())
-      box.extend(points.col(i).cast<double>());
+  for (const Index i : finiteColumns(points))
+    box.extend(points.col(i).cast<double>());
   require(!box.isEmpty(), "the model has no finite point");
   return (set ? set->origin : meshOf(model)->origin) + box.center();
 }

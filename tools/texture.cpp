@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "support/tool.h"
-#include <cstdio>
 #include <fresco/core/require.h>
 #include <fresco/io/colmap.h>
 #include <fresco/io/file.h>
@@ -12,8 +11,6 @@ namespace {
 using namespace fresco;
 
 struct ToolOptions {
-  bool no_refine = false;
-  bool no_exposure = false, no_level = false, no_consistency = false, no_examples = false;
   int keep_out = 0;
   std::string cameras_out;
 };
@@ -33,11 +30,11 @@ std::vector<TextureView> viewsOf(const CameraSet& set, const std::string& folder
 
 void declare(Args& args, TextureOptions& options, ToolOptions& tool)
 {
-  args.flag("no_refine", tool.no_refine, "take the cameras as they are given");
-  args.flag("no_exposure", tool.no_exposure, "leave exposure and white balance of the photographs as they are");
-  args.flag("no_consistency", tool.no_consistency, "do not avoid photographs that differ from what most show");
-  args.flag("no_level", tool.no_level, "leave the steps of colour at seams");
-  args.flag("no_examples", tool.no_examples, "colour unseen parts smoothly, without structure");
+  args.flag("no_refine", options.refine, "take the cameras as they are given", false);
+  args.flag("no_exposure", options.exposure, "leave exposure and white balance of the photographs as they are", false);
+  args.flag("no_consistency", options.consistency, "do not avoid photographs that differ from what most show", false);
+  args.flag("no_level", options.level, "leave the steps of colour at seams", false);
+  args.flag("no_examples", options.examples, "colour unseen parts smoothly, without structure", false);
   args.option("blend_width", options.blend_width,
               "pixels over which one photograph passes into the next at a seam, 0..100");
   args.option("strip", options.blend_width, "old name of -blend_width");
@@ -82,28 +79,19 @@ void printResult(const TextureResult& result, std::size_t views, bool quiet)
 {
   for (const std::string& warning : result.warnings)
     inform(quiet, "warning: " + warning);
-  char line[256];
-  std::snprintf(line, sizeof line, "seen %.1f %% of the surface, by %ld of %zu photographs", 100 * result.coverage,
-                static_cast<long>(result.views_used), views);
-  inform(quiet, line);
-  std::snprintf(line, sizeof line, "%ld charts in %zu atlas%s of %dx%d, %.0f %% of the texels used, texel %.3g",
-                static_cast<long>(result.charts), result.model.atlases.size(),
-                result.model.atlases.size() == 1 ? "" : "es", result.model.atlases.front().width,
-                result.model.atlases.front().height, 100 * result.used, result.texel);
-  inform(quiet, line);
-  if (result.disagreement_before > 0) {
-    if (result.refined)
-      std::snprintf(line, sizeof line, "photographs disagree by %.2f pixels, %.2f with the cameras as given",
-                    result.disagreement_after, result.disagreement_before);
-    else
-      std::snprintf(line, sizeof line, "photographs disagree by %.2f pixels; the cameras are left as given",
-                    result.disagreement_before);
-    inform(quiet, line);
-  }
-  for (const auto& [phase, seconds] : result.seconds) {
-    std::snprintf(line, sizeof line, "  %-16s %7.2f s", phase.c_str(), seconds);
-    inform(quiet, line);
-  }
+  const auto say = [&](const char* pattern, auto... values) { inform(quiet, format(pattern, values...)); };
+  say("seen %.1f %% of the surface, by %td of %zu photographs", 100 * result.coverage, result.views_used, views);
+  const Image& atlas = result.model.atlases.front();
+  say("%td charts in %zu atlas%s of %dx%d, %.0f %% of the texels used, texel %.3g", result.charts,
+      result.model.atlases.size(), result.model.atlases.size() == 1 ? "" : "es", atlas.width, atlas.height,
+      100 * result.used, result.texel);
+  if (result.disagreement_before > 0 && result.refined)
+    say("photographs disagree by %.2f pixels, %.2f with the cameras as given", result.disagreement_after,
+        result.disagreement_before);
+  else if (result.disagreement_before > 0)
+    say("photographs disagree by %.2f pixels; the cameras are left as given", result.disagreement_before);
+  for (const auto& [phase, seconds] : result.seconds)
+    say("  %-16s %7.2f s", phase.c_str(), seconds);
 }
 
 void run(int argc, char** argv)
@@ -113,8 +101,7 @@ void run(int argc, char** argv)
   CommonOptions common;
   Args args("fresco_texture MESH CAMERAS_DIR IMAGES_DIR OUT [options]",
             "Textures a mesh from calibrated photographs. MESH: " + readableExtensions(FileKind::mesh) +
-                ".\nCAMERAS_DIR: a COLMAP model, text or "
-                "binary.\n"
+                ".\nCAMERAS_DIR: a COLMAP model, text or binary.\n"
                 "IMAGES_DIR: the photographs it names. OUT: .obj (with .mtl and .png beside it) or .glb. Beside it "
                 "NAME_mask.png:\n"
                 "white where no photograph saw the surface and the colour is inpainted.");
@@ -128,11 +115,6 @@ void run(int argc, char** argv)
   if (tool.keep_out < 0)
     throw UsageError("-keep_out must not be negative");
   options.threads = common.threads;
-  options.refine = !tool.no_refine;
-  options.consistency = !tool.no_consistency;
-  options.level = !tool.no_level;
-  options.exposure = !tool.no_exposure;
-  options.examples = !tool.no_examples;
   const TriangleMesh mesh = readMesh(files[0]);
   if (mesh.faceCount() == 0 || !(surfaceArea(mesh) > 0))
     throw std::runtime_error(files[0] + ": has no face of positive area");

@@ -43,7 +43,7 @@ std::vector<Stage> stagesOf(const Job& job)
 ModelReport buildModel(const std::string& input_folder, const std::string& output_folder, const ModelOptions& options,
                        const Progress& progress)
 {
-  const Job job{readModelInput(input_folder), ModelFiles(output_folder), options};
+  const Job job{readModelInput(input_folder), ModelFiles{output_folder}, options};
   validate(job.input, options);
   const auto start = std::chrono::steady_clock::now();
   makeFolder(job.files.folder);

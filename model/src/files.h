@@ -4,11 +4,17 @@
 namespace fresco::model {
 /// Files that the chain writes into its folder; the ones in `work` are kept for resuming.
 struct ModelFiles {
-  explicit ModelFiles(const std::string& folder);
-  std::string folder, work, snapshots, points, surface, poses, mesh, model_obj, model_glb, viewer_glb, report_json,
-      report_html;
+  std::string folder;
+  std::string work = folder + "/work", snapshots = folder + "/snapshots";
+  std::string points = work + "/registered.ply", surface = work + "/surface.ply", viewer_glb = work + "/viewer.glb";
+  std::string poses = folder + "/poses.txt", mesh = folder + "/mesh.ply";
+  std::string model_obj = folder + "/model.obj", model_glb = folder + "/model.glb";
+  std::string report_json = folder + "/report.json", report_html = folder + "/report.html";
 
   /// Mask `index` of `count`: white where no photograph saw the surface.
-  std::string mask(std::size_t index, std::size_t count) const;
+  std::string mask(std::size_t index, std::size_t count) const
+  {
+    return folder + "/model_mask" + (count > 1 ? "_" + std::to_string(index) : "") + ".png";
+  }
 };
 } // namespace fresco::model

@@ -2,7 +2,6 @@
 #include "input/rgbd.h"
 #include "report/report.h"
 #include "stages/fusion.h"
-#include "stages/optimization.h"
 #include "test_data.h"
 #include <fresco/core/require.h>
 #include <fresco/io/file.h>
@@ -122,7 +121,7 @@ TEST(Report, SummaryOfAStageIsOneLineForPeople)
 
 TEST(Report, IsWholeAndEscaped)
 {
-  const ModelFiles files(test::scratchFolder());
+  const ModelFiles files{test::scratchFolder()};
   makeFolder(files.snapshots);
   writeImage(files.snapshots + "/p.png", Image(8, 8));
   StageRecord stage;

@@ -27,25 +27,24 @@ std::mutex& graphicsMutex()
   return mutex;
 }
 
-/// Mean of blocks of `factor` x `factor` pixels of `rgba` (rows from below, colours multiplied by alpha), rows from the
-/// top, colours divided by alpha.
-Image resolve(const unsigned char* rgba, int width, int height, int factor)
+/// Fills `image` (RGB or RGBA) with means of blocks of `factor` x `factor` pixels of `rgba`: rows from below, colours
+/// multiplied by alpha. Rows of the image are from the top, colours divided by alpha.
+void resolve(const unsigned char* rgba, int factor, Image& image)
 {
-  Image image(width, height, 4);
-  const Index row = Index(width) * factor * 4;
-  for (int y = 0; y < height; ++y)
-    for (int x = 0; x < width; ++x) {
+  const Index row = Index(image.width) * factor * 4;
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x) {
       int sum[4] = {0, 0, 0, 0};
       for (int j = 0; j < factor; ++j)
         for (int i = 0; i < factor; ++i)
           for (int c = 0; c < 4; ++c)
-            sum[c] += rgba[((height - 1 - y) * factor + j) * row + (x * factor + i) * 4 + c];
+            sum[c] += rgba[((image.height - 1 - y) * factor + j) * row + (x * factor + i) * 4 + c];
       const int samples = factor * factor, alpha = sum[3];
       for (int c = 0; c < 3; ++c)
         image.pixel(x, y)[c] = alpha > 0 ? std::min(255, (sum[c] * 255 + alpha / 2) / alpha) : 0;
-      image.pixel(x, y)[3] = (alpha + samples / 2) / samples;
+      if (image.channels == 4)
+        image.pixel(x, y)[3] = (alpha + samples / 2) / samples;
     }
-  return image;
 }
 
 void setCamera(vtkCamera& camera, const Viewpoint& view, const Eigen::Vector3d& origin)
@@ -59,34 +58,39 @@ void setCamera(vtkCamera& camera, const Viewpoint& view, const Eigen::Vector3d& 
 }
 } // namespace
 
-Canvas::Canvas(int width, int height, int oversampling)
-    : lock_(graphicsMutex()), width_(width), height_(height), oversampling_(oversampling)
+Canvas::Canvas(const PictureOptions& options, Lighting lighting)
+    : lock_(graphicsMutex()), width_(options.width), height_(options.height), oversampling_(options.oversampling),
+      channels_(options.transparent ? 4 : 3)
 {
-  require(width >= 1 && height >= 1, "picture: size ", width, "x", height, " is not positive");
-  require(oversampling >= 1 && oversampling <= 4, "picture: oversampling ", oversampling, " is not in 1..4");
   if (window_.samples() < 2)
-    oversampling_ = std::max(oversampling, 2);
+    oversampling_ = std::max(oversampling_, 2);
   const int largest = window_.largestPicture() / oversampling_;
-  if (std::max(width, height) > largest)
+  if (std::max(width_, height_) > largest)
     throw std::runtime_error(
-        concat("picture of ", width, "x", height, " pixels: the graphics driver can do ", largest));
-  window_.window().SetSize(width * oversampling_, height * oversampling_);
+        concat("picture of ", width_, "x", height_, " pixels: the graphics driver can do ", largest));
+  window_.window().SetSize(width_ * oversampling_, height_ * oversampling_);
   window_.window().AddRenderer(renderer_);
-  setLighting(Lighting::Studio);
+  if (!options.transparent) { // else black, so that colours at the rim come back multiplied by alpha
+    const auto& [red, green, blue] = options.background;
+    renderer_->SetBackground(red / 255.0, green / 255.0, blue / 255.0);
+    renderer_->SetBackgroundAlpha(1.0);
+  }
+  renderer_->AutomaticLightCreationOff();
+  const vtkNew<vtkLight> lamp;
+  lamp->SetLightTypeToHeadlight();
+  if (lighting == Lighting::Studio) {
+    addStudioLights();
+    lamp->PositionalOn();
+    lamp->SetConeAngle(180); // to all sides
+    lamp->SetIntensity(eye_lamp);
+  }
+  renderer_->AddLight(lamp);
 }
 
 Canvas::~Canvas() { window_.window().RemoveRenderer(renderer_); }
 
-void Canvas::setLighting(Lighting lighting)
+void Canvas::addStudioLights()
 {
-  renderer_->RemoveAllLights();
-  renderer_->AutomaticLightCreationOff();
-  if (lighting == Lighting::Headlight) {
-    const vtkNew<vtkLight> light;
-    light->SetLightTypeToHeadlight();
-    renderer_->AddLight(light);
-    return;
-  }
   for (const StudioLight& lamp : studio) {
     const vtkNew<vtkLight> light;
     light->SetLightTypeToCameraLight();
@@ -94,24 +98,6 @@ void Canvas::setLighting(Lighting lighting)
     light->SetIntensity(lamp.intensity);
     renderer_->AddLight(light);
   }
-  const vtkNew<vtkLight> lamp;
-  lamp->SetLightTypeToHeadlight();
-  lamp->PositionalOn();
-  lamp->SetConeAngle(180); // to all sides
-  lamp->SetIntensity(eye_lamp);
-  renderer_->AddLight(lamp);
-}
-
-void Canvas::setBackground(const std::array<std::uint8_t, 3>& color)
-{
-  renderer_->SetBackground(color[0] / 255.0, color[1] / 255.0, color[2] / 255.0);
-  renderer_->SetBackgroundAlpha(1.0);
-}
-
-void Canvas::setTransparentBackground()
-{
-  renderer_->SetBackground(0.0, 0.0, 0.0); // so that colours at the rim come back multiplied by alpha
-  renderer_->SetBackgroundAlpha(0.0);
 }
 
 Image Canvas::draw(const Viewpoint& view, const Eigen::Vector3d& origin)
@@ -127,6 +113,8 @@ Image Canvas::draw(const Viewpoint& view, const Eigen::Vector3d& origin)
   messages_.check();
   if (pixels->GetNumberOfValues() != static_cast<vtkIdType>(width) * height * 4)
     throw std::runtime_error("the graphics driver returned no picture");
-  return resolve(pixels->GetPointer(0), width_, height_, oversampling_);
+  Image image(width_, height_, channels_);
+  resolve(pixels->GetPointer(0), oversampling_, image);
+  return image;
 }
 } // namespace fresco::rendering

@@ -25,15 +25,9 @@ Faces renumber(const Faces& faces, Index vertex_count, std::vector<int>& source)
 /// Vertices and colours of `source`.
 void fillVertices(DrawMesh& drawn, const TriangleMesh& mesh)
 {
-  const Index count = drawn.source.size();
-  drawn.vertices.resize(3, count);
-  drawn.colors.resize(3, mesh.colors.cols() > 0 ? count : 0);
-  for (Index v = 0; v < count; ++v) {
-    const int from = drawn.source[v];
-    drawn.vertices.col(v) = mesh.vertices.col(from);
-    if (drawn.colors.cols() > 0)
-      drawn.colors.col(v) = mesh.colors.col(from);
-  }
+  drawn.vertices = mesh.vertices(Eigen::all, drawn.source);
+  if (mesh.colors.cols() > 0)
+    drawn.colors = mesh.colors(Eigen::all, drawn.source);
 }
 
 /// Corners (face * 3 + k) around each vertex, ascending: corners[start[v]] .. corners[start[v + 1]].
@@ -194,9 +188,8 @@ DrawMesh texturedPart(const TexturedMesh& model, int atlas)
       drawn.faces(k, i) = at->second;
     }
   fillVertices(drawn, model.mesh);
-  drawn.texcoords.resize(2, atlas < 0 ? 0 : drawn.vertices.cols());
-  for (Index v = 0; v < drawn.texcoords.cols(); ++v)
-    drawn.texcoords.col(v) = model.texcoords.col(texcoord[v]);
+  if (atlas >= 0)
+    drawn.texcoords = model.texcoords(Eigen::all, texcoord);
   return drawn;
 }
 } // namespace fresco::rendering

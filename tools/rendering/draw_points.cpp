@@ -41,15 +41,6 @@ Colors ramp(const Eigen::ArrayXf& share, const Eigen::Vector3f& from, const Eige
   return colors;
 }
 
-PointSet finitePoints(const PointSet& set)
-{
-  std::vector<Index> finite;
-  for (Index i = 0; i < set.size(); ++i)
-    if (set.points.col(i).allFinite())
-      finite.push_back(i);
-  return selectPoints(set, finite);
-}
-
 Points unitNormals(const Points& normals)
 {
   Points unit = normals;
@@ -64,7 +55,7 @@ Points unitNormals(const Points& normals)
 
 DrawMesh drawPoints(const PointSet& set)
 {
-  const PointSet finite = finitePoints(set);
+  const PointSet finite = selectPoints(set, finiteColumns(set.points));
   DrawMesh drawn;
   drawn.vertices = finite.points;
   drawn.normals = unitNormals(finite.normals);

@@ -87,25 +87,21 @@ EglContext::EglContext()
   static const EGLDisplay shared_display = openDisplay();
   display_ = shared_display;
   eglBindAPI(EGL_OPENGL_API); // a setting of the calling thread
-  const EGLint wanted[] = {EGL_SURFACE_TYPE,
-                           EGL_PBUFFER_BIT,
-                           EGL_RENDERABLE_TYPE,
-                           EGL_OPENGL_BIT,
-                           EGL_RED_SIZE,
-                           8,
-                           EGL_GREEN_SIZE,
-                           8,
-                           EGL_BLUE_SIZE,
-                           8,
-                           EGL_NONE};
+  const EGLint wanted[][2] = {{EGL_SURFACE_TYPE, EGL_PBUFFER_BIT},
+                              {EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT},
+                              {EGL_RED_SIZE, 8},
+                              {EGL_GREEN_SIZE, 8},
+                              {EGL_BLUE_SIZE, 8},
+                              {EGL_NONE}};
   EGLConfig config = nullptr;
   EGLint count = 0;
-  if (!eglChooseConfig(display_, wanted, &config, 1, &count) || count < 1)
+  if (!eglChooseConfig(display_, *wanted, &config, 1, &count) || count < 1)
     fail("no configuration with 8 bits per colour");
-  const EGLint version[] = {
-      EGL_CONTEXT_MAJOR_VERSION,           3,       EGL_CONTEXT_MINOR_VERSION, 2, EGL_CONTEXT_OPENGL_PROFILE_MASK,
-      EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT, EGL_NONE};
-  context_ = eglCreateContext(display_, config, EGL_NO_CONTEXT, version);
+  const EGLint version[][2] = {{EGL_CONTEXT_MAJOR_VERSION, 3},
+                               {EGL_CONTEXT_MINOR_VERSION, 2},
+                               {EGL_CONTEXT_OPENGL_PROFILE_MASK, EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT},
+                               {EGL_NONE}};
+  context_ = eglCreateContext(display_, config, EGL_NO_CONTEXT, *version);
   if (context_ == EGL_NO_CONTEXT)
     fail("no OpenGL 3.2 context");
   const EGLint size[] = {EGL_WIDTH, 8, EGL_HEIGHT, 8, EGL_NONE};

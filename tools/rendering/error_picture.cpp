@@ -44,9 +44,7 @@ Image errorRamp()
 
 Eigen::VectorXf drawnDistances(const DrawMesh& drawn, const Eigen::VectorXf& distances)
 {
-  Eigen::VectorXf shown(drawn.vertices.cols());
-  for (Index v = 0; v < shown.size(); ++v)
-    shown[v] = distances[drawn.source[v]];
+  const Eigen::VectorXf shown = distances(drawn.source);
   require(shown.allFinite() && shown.minCoeff() >= 0, "picture: a distance is negative or not finite");
   return shown;
 }
@@ -54,9 +52,9 @@ Eigen::VectorXf drawnDistances(const DrawMesh& drawn, const Eigen::VectorXf& dis
 /// Distances as coordinates into errorRamp(): the colour is looked up per pixel, not mixed between vertices.
 Eigen::Matrix2Xf rampCoordinates(const Eigen::VectorXf& distances, double largest)
 {
-  Eigen::Matrix2Xf texcoords(2, distances.size());
+  Eigen::Matrix2Xf texcoords = Eigen::Matrix2Xf::Constant(2, distances.size(), 0.5f);
   for (Index v = 0; v < texcoords.cols(); ++v)
-    texcoords.col(v) << (0.5 + (ramp_size - 1) * (distances[v] / largest)) / ramp_size, 0.5f;
+    texcoords(0, v) = (0.5 + (ramp_size - 1) * (distances[v] / largest)) / ramp_size;
   return texcoords;
 }
 
@@ -81,9 +79,7 @@ Image drawColored(DrawMesh& drawn, const Viewpoint& view, const Eigen::Vector3d&
   look.texture = &ramp;
   look.mipmap = false;
   look.cull_back_faces = options.cull_back_faces;
-  Canvas canvas(options.width, options.height, options.oversampling);
-  canvas.setLighting(Lighting::Headlight);
-  setPictureBackground(canvas, options);
+  Canvas canvas(options, Lighting::Headlight);
   canvas.add(makeActor(drawn, look));
   return canvas.draw(view, origin);
 }
@@ -101,13 +97,11 @@ Viewpoint narrowView(const TriangleMesh& mesh, const PictureOptions& part, int w
 /// `picture` with a strip of `width` columns in the background's colour at its right side.
 Image widen(const Image& picture, int width, const PictureOptions& options)
 {
-  Image wide(picture.width + width, picture.height, 4);
+  Image wide(picture.width + width, picture.height, picture.channels);
   for (int y = 0; y < wide.height; ++y) {
-    std::copy_n(picture.pixel(0, y), picture.width * 4, wide.pixel(0, y));
-    for (int x = picture.width; x < wide.width; ++x) {
+    std::copy_n(picture.pixel(0, y), picture.width * picture.channels, wide.pixel(0, y));
+    for (int x = picture.width; x < wide.width; ++x) // alpha stays 0
       std::copy_n(options.background.begin(), 3, wide.pixel(x, y));
-      wide.pixel(x, y)[3] = options.transparent ? 0 : 255;
-    }
   }
   return wide;
 }
@@ -132,6 +126,6 @@ Image renderErrorPicture(const TriangleMesh& mesh, const Eigen::VectorXf& distan
   Image picture = widen(drawColored(drawn, narrowView(mesh, part, options.width), mesh.origin, part),
                         options.width - part.width, options);
   drawScaleBar(picture, bar);
-  return finishPicture(picture, options);
+  return picture;
 }
 } // namespace fresco::rendering

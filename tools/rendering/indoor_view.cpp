@@ -60,19 +60,9 @@ struct Look {
   Eigen::Vector3d direction = Eigen::Vector3d::UnitX();
 };
 
-std::vector<Eigen::Vector3d> sphereDirections(int count)
-{
-  std::vector<Eigen::Vector3d> directions;
-  for (int i = 0; i < count; ++i) {
-    const double z = 1 - 2 * (i + 0.5) / count, angle = i * pi * (3 - std::sqrt(5.0)), r = std::sqrt(1 - z * z);
-    directions.emplace_back(r * std::cos(angle), r * std::sin(angle), z);
-  }
-  return directions;
-}
-
 Stand examine(const RayScene& scene, const Eigen::Vector3d& eye)
 {
-  static const std::vector<Eigen::Vector3d> directions = sphereDirections(200);
+  static const std::vector<Eigen::Vector3d> directions = evenDirections(200, 1, -1);
   Stand stand;
   stand.eye = eye;
   std::vector<double> distances;

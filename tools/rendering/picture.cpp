@@ -69,11 +69,10 @@ struct Shot {
 
 Image drawOne(DrawMesh& drawn, SurfaceLook look, const Shot& shot, const PictureOptions& options)
 {
-  Canvas canvas(options.width, options.height, options.oversampling);
-  setPictureBackground(canvas, options);
+  Canvas canvas(options);
   look.size *= canvas.oversampling();
   canvas.add(makeActor(drawn, look));
-  return finishPicture(canvas.draw(shot.view, shot.origin), options);
+  return canvas.draw(shot.view, shot.origin);
 }
 
 PointSet verticesOf(const TriangleMesh& mesh)
@@ -103,6 +102,22 @@ PointSet drawnPoints(PointSet set, const PictureOptions& options, const Eigen::V
   return selectPoints(set, seen);
 }
 } // namespace
+
+void validatePictureOptions(const PictureOptions& options)
+{
+  require(options.width >= 1 && options.height >= 1, "picture: size ", options.width, "x", options.height,
+          " is not positive");
+  require(options.crease_angle >= 0 && options.crease_angle <= 180, "picture: crease angle ", options.crease_angle,
+          " is not in 0..180 degrees");
+  require(options.point_size >= 0 && options.point_size <= 1000, "picture: point size ", options.point_size,
+          " is not in 0..1000 pixels");
+  require(options.error_limit >= 0 && std::isfinite(options.error_limit), "picture: error limit ", options.error_limit,
+          " is negative or not finite");
+  require(options.oversampling >= 1 && options.oversampling <= 4, "picture: oversampling ", options.oversampling,
+          " is not in 1..4");
+  if (options.view)
+    validateViewpoint(*options.view);
+}
 
 const std::vector<std::string>& shadingNames()
 {

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include "rendering/canvas.h"
 #include "rendering/picture.h"
 namespace fresco::rendering {
 /// @throws std::invalid_argument naming the option that is out of range
@@ -17,9 +16,4 @@ Viewpoint chooseView(const Model& model, const PictureOptions& options)
   framing.aspect = static_cast<double>(options.width) / options.height;
   return frameView(model, framing);
 }
-
-void setPictureBackground(Canvas& canvas, const PictureOptions& options);
-
-/// RGB, or RGBA if a transparent picture was asked for.
-Image finishPicture(const Image& rgba, const PictureOptions& options);
 } // namespace fresco::rendering

@@ -7,10 +7,9 @@
 #include <complex>
 #include <fresco/core/constants.h>
 #include <fresco/core/require.h>
-#include <vector>
+#include <numeric>
 namespace fresco::rendering {
 namespace {
-
 /// Some faces of a mesh, evenly picked.
 struct FaceSample {
   Eigen::Matrix3Xd normals, centers;
@@ -28,14 +27,11 @@ FaceSample sampleFaces(const TriangleMesh& mesh)
   sample.areas.resize(capacity);
   Index count = 0;
   for (Index f = 0; f < mesh.faceCount(); f += step) {
-    const Eigen::Vector3d a = mesh.vertices.col(mesh.faces(0, f)).cast<double>();
-    const Eigen::Vector3d b = mesh.vertices.col(mesh.faces(1, f)).cast<double>();
-    const Eigen::Vector3d c = mesh.vertices.col(mesh.faces(2, f)).cast<double>();
-    const Eigen::Vector3d normal = (b - a).cross(c - a);
+    const Eigen::Vector3d normal = areaVector(mesh, f);
     if (!(normal.norm() > 0))
       continue;
     sample.normals.col(count) = normal.normalized();
-    sample.centers.col(count) = (a + b + c) / 3;
+    sample.centers.col(count) = (faceCorner(mesh, f, 0) + faceCorner(mesh, f, 1) + faceCorner(mesh, f, 2)) / 3;
     sample.areas[count++] = 0.5 * normal.norm();
   }
   require(count > 0, "view: the mesh has no face with an area");
@@ -72,23 +68,11 @@ Eigen::Vector3d refine(const FaceSample& sample, Eigen::Vector3d direction)
   return direction;
 }
 
-/// Even directions over the upper half of the sphere (Fibonacci lattice).
-std::vector<Eigen::Vector3d> halfSphere(int count)
-{
-  std::vector<Eigen::Vector3d> directions;
-  for (int i = 0; i < count; ++i) {
-    const double z = (i + 0.5) / count, angle = i * pi * (3 - std::sqrt(5.0)), r = std::sqrt(1 - z * z);
-    directions.emplace_back(r * std::cos(angle), r * std::sin(angle), z);
-  }
-  return directions;
-}
-
 /// Value that `share` of the area lies below.
 double areaQuantile(const Eigen::VectorXd& values, const Eigen::VectorXd& areas, double share)
 {
   std::vector<Index> order(values.size());
-  for (std::size_t i = 0; i < order.size(); ++i)
-    order[i] = i;
+  std::iota(order.begin(), order.end(), Index(0));
   std::sort(order.begin(), order.end(), [&](Index a, Index b) { return values[a] < values[b]; });
   const double wanted = share * areas.sum();
   double below = 0;
@@ -112,7 +96,7 @@ Eigen::Vector3d upright(const FaceSample& sample)
   const Eigen::Matrix3d moments = spread(sample);
   Eigen::Vector3d best = Eigen::Vector3d::UnitZ();
   double most = -1;
-  for (const Eigen::Vector3d& direction : halfSphere(300)) {
+  for (const Eigen::Vector3d& direction : evenDirections(300, 0, 1)) {
     const double extent = std::sqrt(direction.dot(moments * direction)) + 1e-6 * std::sqrt(moments.trace());
     const double custom = std::abs(direction.z()) > near_axis ? 1.6 : 1.0;
     const double score = custom * parallelArea(sample, direction) / std::sqrt(extent);
@@ -144,6 +128,17 @@ Eigen::Vector3d wallDirection(const FaceSample& sample, const Eigen::Vector3d& u
   return std::cos(angle) * x + std::sin(angle) * y;
 }
 } // namespace
+
+std::vector<Eigen::Vector3d> evenDirections(int count, double first_z, double last_z)
+{
+  std::vector<Eigen::Vector3d> directions;
+  for (int i = 0; i < count; ++i) {
+    const double z = first_z + (last_z - first_z) * (i + 0.5) / count;
+    const double angle = i * pi * (3 - std::sqrt(5.0)), r = std::sqrt(1 - z * z);
+    directions.emplace_back(r * std::cos(angle), r * std::sin(angle), z);
+  }
+  return directions;
+}
 
 Eigen::Vector3d guessUp(const TriangleMesh& mesh) { return upright(sampleFaces(mesh)); }
 

@@ -2,6 +2,7 @@
 #pragma once
 #include <fresco/core/mesh.h>
 #include <optional>
+#include <vector>
 namespace fresco::rendering {
 /// Where the floor and the walls of an indoor model are; coordinates relative to the mesh's origin.
 struct RoomFrame {
@@ -14,6 +15,9 @@ struct RoomFrame {
   Eigen::Vector3d size() const { return high - low; }
   Eigen::Vector3d point(const Eigen::Vector3d& c) const { return c.x() * along + c.y() * across + c.z() * up; }
 };
+
+/// Unit directions, evenly over the part of the sphere between two values of z, each in -1..1 (Fibonacci lattice).
+std::vector<Eigen::Vector3d> evenDirections(int count, double first_z, double last_z);
 
 /// The upright direction: one that large parallel surfaces are orthogonal to, preferably along which the model extends
 /// little (rooms are wider than high) and near the z axis. It points to +z if it is near z, else away from the side

@@ -3,34 +3,9 @@
 #include "rendering/canvas.h"
 #include "rendering/picture.h"
 #include "rendering/picture_parts.h"
-#include <algorithm>
 #include <fresco/core/require.h>
 namespace fresco::rendering {
 namespace {
-void validateTextures(const TexturedMesh& model)
-{
-  const Index faces = model.mesh.faceCount();
-  const int atlases = model.atlases.size();
-  require(atlases > 0, "picture: the model has no texture");
-  require(model.texcoord_faces.cols() == faces && model.face_atlas.size() == faces, "picture: ", faces, " faces, ",
-          model.texcoord_faces.cols(), " with texture coordinates, ", model.face_atlas.size(), " with an atlas");
-  for (const Image& atlas : model.atlases)
-    require(atlas.width > 0 && atlas.height > 0 &&
-                (atlas.channels == 1 || atlas.channels == 3 || atlas.channels == 4) &&
-                atlas.data.size() == std::size_t(atlas.width) * atlas.height * atlas.channels,
-            "picture: an atlas is empty or malformed");
-  for (Index f = 0; f < faces; ++f) {
-    require(model.face_atlas[f] >= -1 && model.face_atlas[f] < atlases, "picture: face ", f, " names atlas ",
-            model.face_atlas[f], " of ", atlases);
-    for (int k = 0; k < 3 && model.face_atlas[f] >= 0; ++k) {
-      const int t = model.texcoord_faces(k, f);
-      require(t >= 0 && t < model.texcoords.cols(), "picture: face ", f, " names texture coordinate ", t, " of ",
-              model.texcoords.cols());
-      require(model.texcoords.col(t).allFinite(), "picture: texture coordinate ", t, " is not finite");
-    }
-  }
-}
-
 /// The faces of one atlas, ready to draw.
 struct Part {
   DrawMesh drawn;
@@ -69,15 +44,14 @@ Image renderPicture(const TexturedMesh& model, const PictureOptions& options)
   if (options.shading != Shading::Texture)
     return renderPicture(model.mesh, options);
   validatePictureOptions(options);
-  validateMesh(model.mesh);
-  validateTextures(model);
+  validateTexturedMesh(model);
+  require(!model.atlases.empty(), "picture: the model has no texture");
   require(model.mesh.faceCount() > 0, "picture: the textured model has no face");
   const Viewpoint view = chooseView(model.mesh, options);
-  Canvas canvas(options.width, options.height, options.oversampling);
-  setPictureBackground(canvas, options);
+  Canvas canvas(options);
   std::vector<Part> parts = makeParts(model, canvas.largestTexture());
   for (Part& part : parts)
     canvas.add(makeActor(part.drawn, partLook(part, options)));
-  return finishPicture(canvas.draw(view, model.mesh.origin), options);
+  return canvas.draw(view, model.mesh.origin);
 }
 } // namespace fresco::rendering

@@ -31,12 +31,10 @@ struct Extent {
 /// The finite points in camera axes: x right, y up, z backward.
 Eigen::Matrix3Xd inCameraAxes(const Points& points, const Eigen::Matrix3d& axes)
 {
-  Eigen::Matrix3Xd seen(3, points.cols());
-  Index count = 0;
-  for (Index i = 0; i < points.cols(); ++i)
-    if (points.col(i).allFinite())
-      seen.col(count++) = axes.transpose() * points.col(i).cast<double>();
-  seen.conservativeResize(3, count);
+  const std::vector<Index> finite = finiteColumns(points);
+  Eigen::Matrix3Xd seen(3, finite.size());
+  for (Index i = 0; i < seen.cols(); ++i)
+    seen.col(i) = axes.transpose() * points.col(finite[i]).cast<double>();
   return seen;
 }
 
@@ -90,27 +88,11 @@ Viewpoint frame(const Points& given, const Eigen::Vector3d& origin, const Framin
   return {origin + axes * eye, origin + axes * look, axes.col(1), framing.angle};
 }
 
-Points referenced(const TriangleMesh& mesh)
-{
-  std::vector<char> used(mesh.vertexCount(), 0);
-  for (Index i = 0; i < mesh.faces.size(); ++i)
-    used[mesh.faces.data()[i]] = 1;
-  Points points(3, std::count(used.begin(), used.end(), 1));
-  Index next = 0;
-  for (Index v = 0; v < mesh.vertexCount(); ++v)
-    if (used[v])
-      points.col(next++) = mesh.vertices.col(v);
-  return points;
-}
-
 /// The points without stray ones: within the box that holds all but 0.5 % of the points at each of its sides, enlarged
 /// by a fifth of its size to each side.
 Points usualPoints(const Points& points)
 {
-  std::vector<Index> kept;
-  for (Index i = 0; i < points.cols(); ++i)
-    if (points.col(i).allFinite())
-      kept.push_back(i);
+  std::vector<Index> kept = finiteColumns(points);
   for (int axis = 0; axis < 3 && !kept.empty(); ++axis) {
     std::vector<float> values;
     for (const Index i : kept)
@@ -143,7 +125,7 @@ const std::array<std::pair<const char*, Eigen::Vector3d>, 7>& directions()
 Viewpoint frameView(const TriangleMesh& mesh, const Framing& framing)
 {
   validateMesh(mesh);
-  return frame(mesh.faceCount() > 0 ? referenced(mesh) : mesh.vertices, mesh.origin, framing);
+  return frame(mesh.faceCount() > 0 ? removeUnreferencedVertices(mesh).vertices : mesh.vertices, mesh.origin, framing);
 }
 
 Viewpoint frameView(const PointSet& set, const Framing& framing)

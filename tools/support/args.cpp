@@ -111,9 +111,9 @@ void Args::size(const std::string& name, int& width, int& height, const std::str
   options_.back().shown_default = shown(width) + "x" + shown(height);
 }
 
-void Args::flag(const std::string& name, bool& value, const std::string& help)
+void Args::flag(const std::string& name, bool& value, const std::string& help, bool given)
 {
-  values(name, "", help, [&value](const auto&) { value = true; });
+  values(name, "", help, [&value, given](const auto&) { value = given; });
 }
 
 bool Args::given(const std::string& name) const

@@ -29,8 +29,8 @@ public:
   void option(const std::string& name, std::string& value, const std::string& help);
   /// `-name WxH`: width and height of a picture, 1..65536 pixels each.
   void size(const std::string& name, int& width, int& height, const std::string& help);
-  /// `-name` without a value sets true.
-  void flag(const std::string& name, bool& value, const std::string& help);
+  /// `-name` without a value sets what is `given`.
+  void flag(const std::string& name, bool& value, const std::string& help, bool given = true);
   /// `-name A B C`: exactly as many values as `placeholders` has words; `apply` gets them and may throw UsageError.
   void values(const std::string& name, const std::string& placeholders, const std::string& help,
               std::function<void(const std::vector<std::string>&)> apply);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include "support/args.h"
+#include <cstdio>
 #include <fresco/core/progress.h>
 #include <functional>
 namespace fresco {
@@ -17,6 +18,15 @@ Progress printProgress(bool quiet);
 
 /// One line on stderr, unless `quiet`.
 void inform(bool quiet, const std::string& line);
+
+/// As std::printf() into a text of at most 255 bytes.
+template <typename... Values>
+std::string format(const char* pattern, Values... values)
+{
+  char line[256];
+  std::snprintf(line, sizeof(line), pattern, values...);
+  return line;
+}
 
 /// Runs `write`, which writes the last outputs of a tool: either all of them are there in the end and the process can
 /// no longer be asked to stop, or none is.

@@ -81,4 +81,20 @@ PointSet PointFusion::result(double least_weight) const
   }
   return set;
 }
+
+PointSet pointsForVertices(PointSet points, Index vertices, double cell)
+{
+  constexpr Index most_per_vertex = 16; // more cost memory and time in every iteration and say little that is new
+  if (points.size() <= most_per_vertex * vertices || !points.hasNormals())
+    return points;
+  points.viewpoints.resize(3, 0);
+  points.colors.resize(3, 0);
+  PointFusion fusion(cell / 3);
+  fusion.add(points);
+  const Eigen::Vector3d origin = points.origin;
+  points = PointSet();
+  points = fusion.result();
+  points.origin = origin;
+  return points;
+}
 } // namespace fresco::model

@@ -1,27 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "stages/optimization.h"
 #include "stages/fusion.h"
 #include "stages/stages.h"
 #include <fresco/io/mesh_io.h>
 #include <fresco/io/point_io.h>
 #include <fresco/surface/core/normal_filtering.h>
 namespace fresco::model {
-PointSet pointsForVertices(PointSet points, Index vertices, double cell)
-{
-  constexpr Index most_per_vertex = 16; // more cost memory and time in every iteration and say little that is new
-  if (points.size() <= most_per_vertex * vertices || !points.hasNormals())
-    return points;
-  points.viewpoints.resize(3, 0);
-  points.colors.resize(3, 0);
-  PointFusion fusion(cell / 3);
-  fusion.add(points);
-  const Eigen::Vector3d origin = points.origin;
-  points = PointSet();
-  points = fusion.result();
-  points.origin = origin;
-  return points;
-}
-
 Figures makeOptimizedSurface(const Job& job, const Progress& progress)
 {
   const auto& [input, files, options] = job;

@@ -48,15 +48,9 @@ PointSet cleaned(const PointSet& scan, int threads)
   return selectPoints(solid, withoutOutliers(solid.points, outliers));
 }
 
-struct PreparedScan {
-  PointSet points;
-  Index read = 0; ///< points in the file
-};
-
-/// One scan in its own frame, cleaned, with normals that point to the scanner.
-PreparedScan preparedScan(const std::string& file, const ModelOptions& options, const Progress& progress)
+/// A scan in its own frame, cleaned, with normals that point to the scanner.
+PointSet preparedScan(PointSet read, const ModelOptions& options, const Progress& progress)
 {
-  PointSet read = readPoints(file);
   if (read.viewpoints.cols() == 0)
     read.viewpoints = (-read.origin).cast<float>(); // the scanner stands at the origin of its scan's frame
   PointSet scan = cleaned(read, options.threads);
@@ -65,7 +59,7 @@ PreparedScan preparedScan(const std::string& file, const ModelOptions& options, 
   const NormalField field = estimateNormals(scan, normals, subProgress(progress, 0.3, 0.6));
   scan.normals = field.normals;
   scan.confidences = field.confidences;
-  return {smoothed(scan, options, subProgress(progress, 0.6, 1.0)), read.size()};
+  return smoothed(scan, options, subProgress(progress, 0.6, 1.0));
 }
 
 /// World from scan. Without -use_poses all scans are registered from scratch, as they were measured: what cleaning takes
@@ -111,9 +105,9 @@ Figures pointsFromScans(const Job& job, const Progress& progress)
   const auto prepared = [&](Index s) {
     const double begin = 0.4 + step * s;
     report(progress, concat("scan ", s + 1, " of ", count), begin);
-    PreparedScan scan = preparedScan(job.input.scans[s], job.options, subProgress(progress, begin, begin + step));
-    raw += scan.read;
-    return std::move(scan.points);
+    PointSet scan = readPoints(job.input.scans[s]);
+    raw += scan.size();
+    return preparedScan(std::move(scan), job.options, subProgress(progress, begin, begin + step));
   };
   const PointSet merged = mergeScans({count, prepared}, poses, job.options.threads);
   report(progress, "write", 0.95);

@@ -3,10 +3,12 @@
 #include "viewer/viewer_sources.h"
 #include <cstdint>
 #include <fresco/core/require.h>
-#include <iomanip>
-#include <sstream>
+#include <nlohmann/json.hpp>
+#include <regex>
 namespace fresco::model {
 namespace {
+using Json = nlohmann::json;
+
 void validate(const std::string& glb, const ViewerOptions& options)
 {
   require(glb.size() >= 20 && glb.compare(0, 4, "glTF") == 0, "viewer: this is no binary glTF");
@@ -19,36 +21,17 @@ void validate(const std::string& glb, const ViewerOptions& options)
   }
 }
 
-/// A string of JavaScript that may stand inside of a <script> element.
-std::string quoted(const std::string& text)
-{
-  std::ostringstream out;
-  out << '"';
-  for (const char c : text)
-    if (const auto code = static_cast<unsigned char>(c); code < 32 || c == '"' || c == '\\' || c == '<')
-      out << "\\u" << std::hex << std::setw(4) << std::setfill('0') << int{code};
-    else
-      out << c;
-  out << '"';
-  return out.str();
-}
+Json listOf(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 
-std::string numbers(const Eigen::Vector3d& v)
-{
-  std::ostringstream out;
-  out << std::setprecision(12) << '[' << v.x() << ',' << v.y() << ',' << v.z() << ']';
-  return out.str();
-}
-
+/// As JavaScript that may stand inside of a <script> element.
 std::string optionsText(const ViewerOptions& options)
 {
-  std::ostringstream out;
-  out << "{up:" << numbers(options.up) << ",places:[";
+  Json places = Json::array();
   for (const ViewerPlace& place : options.places)
-    out << "{name:" << quoted(place.name) << ",eye:" << numbers(place.eye) << ",look:" << numbers(place.look)
-        << ",angle:" << place.angle << "},";
-  out << "]}";
-  return out.str();
+    places.push_back(
+        {{"name", place.name}, {"eye", listOf(place.eye)}, {"look", listOf(place.look)}, {"angle", place.angle}});
+  const Json all = {{"up", listOf(options.up)}, {"places", places}};
+  return std::regex_replace(all.dump(-1, ' ', true, Json::error_handler_t::replace), std::regex("<"), "\\u003c");
 }
 } // namespace
 

@@ -46,7 +46,7 @@ Scene emptyRoom()
   builder.beginObject("room");
   builder.boxes({{{-2, -2, 0}, {2, 2, 2.5f}, allSides(wall), false}}, true);
   builder.beginObject("block");
-  builder.box({-0.5f, -0.5f, 0}, {0.5f, 0.5f, 0.8f}, wall);
+  builder.boxes({{{-0.5f, -0.5f, 0}, {0.5f, 0.5f, 0.8f}, allSides(wall), true}});
   builder.lamp({{0, 0, 2.49f}, {0, 0.3f, 0}, {0.3f, 0, 0}, Vector3f(10, 10, 10)});
   return builder.finish();
 }
@@ -156,9 +156,8 @@ TEST(VirtualLight, DoesNotDependOnThreads)
 
 TEST(VirtualMaterial, DetailFadesWithDistance)
 {
-  for (const Finish finish :
-       {Finish::plain, Finish::plaster, Finish::carpet, Finish::planks, Finish::wood, Finish::fabric,
-        Finish::ceiling_tile, Finish::metal, Finish::cardboard, Finish::tiles, Finish::leaf}) {
+  for (const Finish finish : {Finish::plain, Finish::plaster, Finish::carpet, Finish::planks, Finish::wood,
+                              Finish::fabric, Finish::ceiling_tile, Finish::metal, Finish::cardboard, Finish::leaf}) {
     Material material;
     material.finish = finish;
     const auto variation = [&](float footprint) {

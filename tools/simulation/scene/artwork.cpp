@@ -5,7 +5,7 @@ namespace fresco::simulation {
 using Eigen::Vector2f;
 using Eigen::Vector3f;
 
-PicturePtr drawWhiteboard(const PictureSize& size, std::uint64_t seed)
+Picture drawWhiteboard(const PictureSize& size, std::uint64_t seed)
 {
   Picture picture(size.width, size.height, {0.9f, 0.91f, 0.92f});
   const std::uint32_t salt = seed;
@@ -33,10 +33,10 @@ PicturePtr drawWhiteboard(const PictureSize& size, std::uint64_t seed)
   draw.line({{0.7f * w, 0.61f * h}, {0.76f * w, 0.61f * h}}, red);
   draw.line({{0.64f * w, 0.67f * h}, {0.7f * w, 0.78f * h}}, red);
   draw.line({{0.82f * w, 0.67f * h}, {0.9f * w, 0.78f * h}}, red);
-  return finished(std::move(picture));
+  return picture;
 }
 
-PicturePtr drawFlipChart(const PictureSize& size, std::uint64_t seed)
+Picture drawFlipChart(const PictureSize& size, std::uint64_t seed)
 {
   Picture picture(size.width, size.height, {0.93f, 0.93f, 0.9f});
   Drawing draw(picture, seed);
@@ -51,10 +51,10 @@ PicturePtr drawFlipChart(const PictureSize& size, std::uint64_t seed)
     draw.text(word(draw.random()) + " " + word(draw.random()), {0.18f * w, y}, 0.04f * h, marker);
   }
   drawChart(draw, {{0.15f * w, 0.68f * h}, {0.85f * w, 0.93f * h}, 0}, marker);
-  return finished(std::move(picture));
+  return picture;
 }
 
-PicturePtr drawLandscape(const PictureSize& size, std::uint64_t seed)
+Picture drawLandscape(const PictureSize& size, std::uint64_t seed)
 {
   Picture picture(size.width, size.height, {0, 0, 0});
   const std::uint32_t salt = seed;
@@ -78,10 +78,10 @@ PicturePtr drawLandscape(const PictureSize& size, std::uint64_t seed)
     color += smoothStep(0.f, 0.004f, v - shore) * (Vector3f(0.25f, 0.42f, 0.55f) * (1.f + 0.3f * ripple) - color);
     return color;
   });
-  return finished(std::move(picture));
+  return picture;
 }
 
-PicturePtr drawAbstract(const PictureSize& size, std::uint64_t seed)
+Picture drawAbstract(const PictureSize& size, std::uint64_t seed)
 {
   CounterRandom random(seed, 5, 0);
   Picture picture(size.width, size.height, hue(random, 0.08f, 0.82f));
@@ -103,6 +103,6 @@ PicturePtr drawAbstract(const PictureSize& size, std::uint64_t seed)
   for (int y = 0; y < size.height; ++y) // canvas and brush
     for (int x = 0; x < size.width; ++x)
       picture.pixel(x, y) *= 1.f + 0.1f * noiseAt({x / w, 3.f * y / w}, salt, {0.08f, 5, 0.7f});
-  return finished(std::move(picture));
+  return picture;
 }
 } // namespace fresco::simulation

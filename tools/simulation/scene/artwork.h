@@ -7,25 +7,15 @@
 namespace fresco::simulation {
 using PicturePtr = std::shared_ptr<const Picture>;
 
-/// Pictures that hang, lie or shine in the rooms. All are drawn by rules from a seed; sizes are pixels.
 struct PictureSize {
-  int width = 800, height = 600;
+  int width = 800, height = 600; ///< pixels
 };
 
-PicturePtr drawWhiteboard(const PictureSize& size, std::uint64_t seed);
-PicturePtr drawFlipChart(const PictureSize& size, std::uint64_t seed);
-PicturePtr drawLandscape(const PictureSize& size, std::uint64_t seed); ///< hills, water, sky
-PicturePtr drawAbstract(const PictureSize& size, std::uint64_t seed);  ///< overlapping shapes with gradients
-PicturePtr drawPoster(const PictureSize& size, std::uint64_t seed);    ///< title, diagram, text
-PicturePtr drawMap(const PictureSize& size, std::uint64_t seed);       ///< land, streets, labels
-PicturePtr drawSheet(const PictureSize& size, std::uint64_t seed);     ///< printed page
-PicturePtr drawScreen(const PictureSize& size, std::uint64_t seed);    ///< windows on a computer screen
-PicturePtr drawKeyboard(const PictureSize& size, std::uint64_t seed);
-PicturePtr drawClock(const PictureSize& size, std::uint64_t seed);
-PicturePtr drawCalendar(const PictureSize& size, std::uint64_t seed);
-PicturePtr drawSpine(const PictureSize& size, std::uint64_t seed); ///< back of a book
-PicturePtr drawView(const PictureSize& size, std::uint64_t seed);  ///< what is outside of a window
-PicturePtr drawRug(const PictureSize& size, std::uint64_t seed);   ///< woven pattern
-PicturePtr drawLabel(const PictureSize& size, std::uint64_t seed); ///< on a parcel
-PicturePtr drawDoor(const PictureSize& size, std::uint64_t seed);  ///< wooden leaf with panels
+/// A picture that hangs, lies or shines in the rooms, drawn by rules from a seed.
+/// @param name whiteboard, flip_chart, landscape (hills, water, sky), abstract (overlapping shapes with gradients),
+///             poster (title, diagram, text), map (land, streets, labels), sheet (printed page), screen (windows on a
+///             computer screen), keyboard, clock, calendar, spine (back of a book), view (what is outside of a window),
+///             rug (woven pattern), label (on a parcel) or door (wooden leaf with panels)
+/// @throws std::out_of_range if there is none of that name
+PicturePtr drawPicture(const std::string& name, const PictureSize& size, std::uint64_t seed);
 } // namespace fresco::simulation

@@ -27,12 +27,6 @@ float noiseAt(const Vector2f& at, std::uint32_t seed, const NoiseSpectrum& spect
   return fractalNoise({at.x(), at.y(), seed, 1e-4f}, spectrum);
 }
 
-PicturePtr finished(Picture picture)
-{
-  picture.buildLevels();
-  return std::make_shared<const Picture>(std::move(picture));
-}
-
 void writeText(Drawing& draw, const Sheet& sheet, const Pen& pen)
 {
   for (float y = sheet.min.y(); y + sheet.height < sheet.max.y(); y += 1.7f * sheet.height) {

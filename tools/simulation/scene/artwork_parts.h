@@ -22,8 +22,6 @@ void paint(Picture& picture, const Color& color)
       picture.pixel(x, y) = color((x + 0.5f) / picture.width(), (y + 0.5f) / picture.height());
 }
 
-PicturePtr finished(Picture picture);
-
 struct Sheet {
   Eigen::Vector2f min, max; ///< pixels
   float height = 10;        ///< of a letter
@@ -34,4 +32,10 @@ void writeText(Drawing& draw, const Sheet& sheet, const Pen& pen);
 
 /// Axes, bars and a curve.
 void drawChart(Drawing& draw, const Sheet& at, const Pen& pen);
+
+// Pictures that others are made of, or that are long; see drawPicture().
+Picture drawWhiteboard(const PictureSize& size, std::uint64_t seed);
+Picture drawFlipChart(const PictureSize& size, std::uint64_t seed);
+Picture drawLandscape(const PictureSize& size, std::uint64_t seed);
+Picture drawAbstract(const PictureSize& size, std::uint64_t seed);
 } // namespace fresco::simulation

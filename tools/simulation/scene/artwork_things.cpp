@@ -3,6 +3,7 @@
 #include "simulation/sensors/material.h"
 #include <algorithm>
 #include <cmath>
+#include <map>
 namespace fresco::simulation {
 using Eigen::Vector2f;
 using Eigen::Vector3f;
@@ -11,9 +12,8 @@ namespace {
 const Vector3f ink(0.12f, 0.12f, 0.14f);
 
 Vector2f extent(const PictureSize& size) { return {size.width, size.height}; }
-} // namespace
 
-PicturePtr drawPoster(const PictureSize& size, std::uint64_t seed)
+Picture drawPoster(const PictureSize& size, std::uint64_t seed)
 {
   CounterRandom random(seed, 6, 0);
   const Vector3f ground = hue(random, 0.12f, 0.75f), strong = hue(random, 0.3f, 0.35f);
@@ -33,10 +33,10 @@ PicturePtr drawPoster(const PictureSize& size, std::uint64_t seed)
             {ink, 0.002f * s.y(), 0});
   writeText(draw, {{0.08f * s.x(), 0.84f * s.y()}, {0.94f * s.x(), 0.97f * s.y()}, 0.014f * s.y()},
             {ink, 0.0025f * s.y(), 0});
-  return finished(std::move(picture));
+  return picture;
 }
 
-PicturePtr drawMap(const PictureSize& size, std::uint64_t seed)
+Picture drawMap(const PictureSize& size, std::uint64_t seed)
 {
   Picture picture(size.width, size.height, {0.6f, 0.75f, 0.85f});
   const std::uint32_t salt = seed;
@@ -65,10 +65,10 @@ PicturePtr drawMap(const PictureSize& size, std::uint64_t seed)
   }
   draw.line({{2, 2}, {s.x() - 2, 2}, s - Vector2f(2, 2), {2, s.y() - 2}, {2, 2}},
             {{0.92f, 0.92f, 0.9f}, 0.04f * s.y(), 0});
-  return finished(std::move(picture));
+  return picture;
 }
 
-PicturePtr drawSheet(const PictureSize& size, std::uint64_t seed)
+Picture drawSheet(const PictureSize& size, std::uint64_t seed)
 {
   Picture picture(size.width, size.height, {0.93f, 0.93f, 0.91f});
   Drawing draw(picture, seed);
@@ -80,10 +80,10 @@ PicturePtr drawSheet(const PictureSize& size, std::uint64_t seed)
   drawChart(draw, {{0.15f * s.x(), 0.55f * s.y()}, {0.85f * s.x(), 0.75f * s.y()}, 0}, {ink, 0.004f * s.y(), 0});
   writeText(draw, {{0.1f * s.x(), 0.79f * s.y()}, {0.92f * s.x(), 0.94f * s.y()}, 0.014f * s.y()},
             {{0.25f, 0.25f, 0.27f}, 0.0025f * s.y(), 0});
-  return finished(std::move(picture));
+  return picture;
 }
 
-PicturePtr drawScreen(const PictureSize& size, std::uint64_t seed)
+Picture drawScreen(const PictureSize& size, std::uint64_t seed)
 {
   Picture picture(size.width, size.height, {0.1f, 0.2f, 0.35f});
   paint(picture, [](float u, float v) -> Vector3f {
@@ -98,10 +98,10 @@ PicturePtr drawScreen(const PictureSize& size, std::uint64_t seed)
             {{0.6f, 0.8f, 0.6f}, 0.005f * s.y(), 0});
   draw.rectangle({0.66f * s.x(), 0.1f * s.y()}, {0.96f * s.x(), 0.6f * s.y()}, {0.92f, 0.92f, 0.92f});
   drawChart(draw, {{0.69f * s.x(), 0.16f * s.y()}, {0.93f * s.x(), 0.55f * s.y()}, 0}, {ink, 0.005f * s.y(), 0});
-  return finished(std::move(picture));
+  return picture;
 }
 
-PicturePtr drawKeyboard(const PictureSize& size, std::uint64_t seed)
+Picture drawKeyboard(const PictureSize& size, std::uint64_t seed)
 {
   Picture picture(size.width, size.height, {0.32f, 0.33f, 0.35f});
   Drawing draw(picture, seed);
@@ -116,10 +116,10 @@ PicturePtr drawKeyboard(const PictureSize& size, std::uint64_t seed)
                 a + Vector2f(0.015f * s.x(), 0.04f * s.y()), 0.06f * s.y(), {{0.8f, 0.8f, 0.8f}, 0.01f * s.y(), 0});
     }
   draw.rectangle({0.295f * s.x(), 0.79f * s.y()}, {0.63f * s.x(), 0.94f * s.y()}, {0.1f, 0.1f, 0.11f});
-  return finished(std::move(picture));
+  return picture;
 }
 
-PicturePtr drawClock(const PictureSize& size, std::uint64_t seed)
+Picture drawClock(const PictureSize& size, std::uint64_t seed)
 {
   Picture picture(size.width, size.height, {0.93f, 0.92f, 0.88f});
   Drawing draw(picture, seed);
@@ -136,16 +136,16 @@ PicturePtr drawClock(const PictureSize& size, std::uint64_t seed)
   draw.line({middle, at(10.15f, 0.24f)}, {ink, 0.03f * s.x(), 0});
   draw.line({middle, at(1.8f, 0.37f)}, {ink, 0.02f * s.x(), 0});
   draw.line({at(9.5f, 0.08f), at(3.5f, 0.4f)}, {{0.8f, 0.1f, 0.1f}, 0.007f * s.x(), 0});
-  return finished(std::move(picture));
+  return picture;
 }
 
-PicturePtr drawCalendar(const PictureSize& size, std::uint64_t seed)
+Picture drawCalendar(const PictureSize& size, std::uint64_t seed)
 {
-  const PicturePtr top = drawLandscape({size.width, size.height / 2}, seed);
+  const Picture top = drawLandscape({size.width, size.height / 2}, seed);
   Picture picture(size.width, size.height, {0.93f, 0.93f, 0.92f});
   for (int y = 0; y < size.height / 2; ++y)
     for (int x = 0; x < size.width; ++x)
-      picture.pixel(x, y) = top->pixel(x, y);
+      picture.pixel(x, y) = top.pixel(x, y);
   Drawing draw(picture, seed);
   const Vector2f s = extent(size);
   draw.text("MAY", {0.08f * s.x(), 0.53f * s.y()}, 0.05f * s.y(), {{0.7f, 0.12f, 0.1f}, 0.01f * s.y(), 0});
@@ -154,10 +154,10 @@ PicturePtr drawCalendar(const PictureSize& size, std::uint64_t seed)
     draw.text(std::to_string(day + 1), at, 0.03f * s.y(),
               {(day + 2) % 7 == 6 ? Vector3f(0.7f, 0.12f, 0.1f) : ink, 0.005f * s.y(), 0});
   }
-  return finished(std::move(picture));
+  return picture;
 }
 
-PicturePtr drawSpine(const PictureSize& size, std::uint64_t seed)
+Picture drawSpine(const PictureSize& size, std::uint64_t seed)
 {
   CounterRandom random(seed, 8, 0);
   const Vector3f cover = hue(random, random.uniformFloat(0.02, 0.16), random.uniformFloat(0.18, 0.62))
@@ -179,13 +179,12 @@ PicturePtr drawSpine(const PictureSize& size, std::uint64_t seed)
     for (int x = 0; x < size.width; ++x)
       picture.pixel(x, y) =
           lying.pixel(y, size.width - 1 - x) * (1.f + 0.06f * noiseAt({x / w, y / w}, salt, {0.1f, 5, 0.7f}));
-  return finished(std::move(picture));
+  return picture;
 }
 
-PicturePtr drawView(const PictureSize& size, std::uint64_t seed)
+Picture drawView(const PictureSize& size, std::uint64_t seed)
 {
-  const PicturePtr land = drawLandscape(size, seed);
-  Picture picture = *land;
+  Picture picture = drawLandscape(size, seed);
   Drawing draw(picture, seed);
   CounterRandom& random = draw.random();
   const Vector2f s = extent(size);
@@ -199,10 +198,10 @@ PicturePtr drawView(const PictureSize& size, std::uint64_t seed)
       for (float u = x + 0.012f * s.x(); u + 0.012f * s.x() < x + wide; u += 0.022f * s.x())
         draw.rectangle({u, y}, {u + 0.011f * s.x(), y + 0.04f * s.y()}, {0.3f, 0.36f, 0.42f});
   }
-  return finished(std::move(picture));
+  return picture;
 }
 
-PicturePtr drawRug(const PictureSize& size, std::uint64_t seed)
+Picture drawRug(const PictureSize& size, std::uint64_t seed)
 {
   CounterRandom random(seed, 9, 0);
   const Vector3f ground = hue(random, 0.18f, 0.4f), light(0.82f, 0.76f, 0.62f), dark = hue(random, 0.12f, 0.22f);
@@ -223,10 +222,10 @@ PicturePtr drawRug(const PictureSize& size, std::uint64_t seed)
     color += stripe * (light - color);
     return color * (1.f + 0.16f * noiseAt({x, v}, salt, {0.02f, 4, 0.75f}));
   });
-  return finished(std::move(picture));
+  return picture;
 }
 
-PicturePtr drawLabel(const PictureSize& size, std::uint64_t seed)
+Picture drawLabel(const PictureSize& size, std::uint64_t seed)
 {
   Picture picture(size.width, size.height, {0.92f, 0.91f, 0.88f});
   Drawing draw(picture, seed);
@@ -240,10 +239,10 @@ PicturePtr drawLabel(const PictureSize& size, std::uint64_t seed)
     draw.rectangle({x, 0.65f * s.y()}, {x + bar, 0.93f * s.y()}, ink);
     x += bar + s.x() * draw.random().uniformFloat(0.008, 0.02);
   }
-  return finished(std::move(picture));
+  return picture;
 }
 
-PicturePtr drawDoor(const PictureSize& size, std::uint64_t seed)
+Picture drawDoor(const PictureSize& size, std::uint64_t seed)
 {
   Picture picture(size.width, size.height, {0, 0, 0});
   Material wood;
@@ -265,6 +264,31 @@ PicturePtr drawDoor(const PictureSize& size, std::uint64_t seed)
     draw.line({a, {a.x(), b.y()}}, {{0.35f, 0.23f, 0.14f}, 7, 0});
     draw.line({{b.x(), a.y()}, b, {a.x(), b.y()}}, {{0.82f, 0.68f, 0.52f}, 6, 0});
   }
-  return finished(std::move(picture));
+  return picture;
+}
+} // namespace
+
+PicturePtr drawPicture(const std::string& name, const PictureSize& size, std::uint64_t seed)
+{
+  using Draw = Picture (*)(const PictureSize&, std::uint64_t);
+  static const std::map<std::string, Draw> known = {{"abstract", drawAbstract},
+                                                    {"calendar", drawCalendar},
+                                                    {"clock", drawClock},
+                                                    {"door", drawDoor},
+                                                    {"flip_chart", drawFlipChart},
+                                                    {"keyboard", drawKeyboard},
+                                                    {"label", drawLabel},
+                                                    {"landscape", drawLandscape},
+                                                    {"map", drawMap},
+                                                    {"poster", drawPoster},
+                                                    {"rug", drawRug},
+                                                    {"screen", drawScreen},
+                                                    {"sheet", drawSheet},
+                                                    {"spine", drawSpine},
+                                                    {"view", drawView},
+                                                    {"whiteboard", drawWhiteboard}};
+  Picture picture = known.at(name)(size, seed);
+  picture.buildLevels();
+  return std::make_shared<const Picture>(std::move(picture));
 }
 } // namespace fresco::simulation

@@ -1,72 +1,50 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include "simulation/scene/artwork.h"
 #include "simulation/scene/scene_builder.h"
-#include "simulation/sensors/random.h"
+#include <nlohmann/json.hpp>
 namespace fresco::simulation {
-/// Materials that many things share; numbers as SceneBuilder::add() gives them.
-struct Palette {
-  explicit Palette(SceneBuilder& builder);
-  int wall, wall_accent, ceiling, carpet, parquet, skirting, frame, door;
-  int oak, walnut, white_lacquer, black, chrome, steel, fabric_blue, fabric_grey, fabric_red, linen;
-  int white_plastic, grey_plastic, porcelain, cardboard, terracotta, soil, leaf, rubber, lamp, paper, tiles;
+using Json = nlohmann::json;
+
+Eigen::Vector3f vectorOf(const Json& numbers);
+
+/// Where something stands: "at" [x, y, z], turned by "turn" degrees about z, or by "lean" degrees about the axis "about"
+/// (default x). Things face +y; those on walls have their origin in the middle of their back.
+Eigen::Isometry3f poseOf(const Json& described);
+
+/// A picture as material, named by "picture" (see artwork.h) with "pixels" [width, height] and "emission".
+/// @param seed of what is drawn; "seed" is added
+Material printed(const Json& described, std::uint64_t seed);
+
+/// Gives side `direction` (-x +x -y +y -z +z) of a box a picture, upright and right way round seen from outside.
+Box withPicture(SceneBuilder& builder, Box box, int direction, Material picture);
+
+/// Puts things into a room: those that descriptions/things.json lists and some that are computed.
+///
+/// A thing is a list of parts. {"object": name} with a pose begins a closed solid; what follows belongs to it:
+/// {"boxes": [box ...]}, {"tube": points, "radius"}, {"lathe": profile, "segments"}, {"cushion": half axes} each with a
+/// pose and with a material "of"; {"lamp": center, "half_u", "half_v", "color"}, see Lamp; {"mirrored": parts}, once with
+/// x negated. A box has "from", "to", its material "of" or six "sides", "free" if it carves, and a picture on "side".
+class Furniture {
+public:
+  explicit Furniture(SceneBuilder& builder);
+
+  /// @param placed "thing" and a pose; "seed" of its pictures; other names replace materials of the thing or are
+  ///               parameters of a computed one
+  void add(const Json& placed);
+
+  /// @param placed may replace the name by another one
+  /// @throws nlohmann::json::exception if there is no such material
+  int material(const std::string& name, const Json& placed = Json::object()) const;
+  Box box(const Json& described, const Json& placed = Json::object());
+  SceneBuilder& builder() { return builder_; }
+
+private:
+  void addPart(const Json& part, const Json& placed, float side = 1.f);
+
+  SceneBuilder& builder_;
+  Json things_, materials_; ///< materials: numbers by name
 };
 
-/// A colour without pattern worth a name.
-int addPaint(SceneBuilder& builder, const Eigen::Vector3f& color, Finish finish = Finish::plain);
-
-/// Box with a picture on its side `direction` (-x +x -y +y -z +z), upright, right way round seen from outside.
-struct PictureBox {
-  Eigen::Vector3f min, max;
-  int direction = 3;
-  PicturePtr picture;
-  int body = 0; ///< material of the other sides
-  float emission = 0.f;
-  bool glass = false;
-};
-BoxMaterials pictureSides(SceneBuilder& builder, const PictureBox& box);
-
-/// Where a thing stands, and its own random numbers.
-struct Spot {
-  Eigen::Vector3f position;
-  float degrees = 0.f; ///< turn about z; things face +y
-  std::uint64_t seed = 1;
-  Eigen::Isometry3f pose() const { return standing(position, degrees); }
-};
-
-// Seating and tables
-void conferenceChair(SceneBuilder& builder, const Palette& palette, const Spot& spot, int fabric);
-void woodenChair(SceneBuilder& builder, const Palette& palette, const Spot& spot);
-void conferenceTable(SceneBuilder& builder, const Palette& palette, const Spot& spot, const Eigen::Vector2f& size);
-void coffeeTable(SceneBuilder& builder, const Palette& palette, const Spot& spot);
-void desk(SceneBuilder& builder, const Palette& palette, const Spot& spot);
-void sofa(SceneBuilder& builder, const Palette& palette, const Spot& spot);
-void bed(SceneBuilder& builder, const Palette& palette, const Spot& spot);
-
-// Storage
-void bookShelf(SceneBuilder& builder, const Palette& palette, const Spot& spot, const Eigen::Vector2f& size);
-void sideboard(SceneBuilder& builder, const Palette& palette, const Spot& spot, const Eigen::Vector3f& size);
-void wardrobe(SceneBuilder& builder, const Palette& palette, const Spot& spot);
-
-// On walls (position: middle of the back, things face +y)
-void framedPicture(SceneBuilder& builder, const Palette& palette, const Spot& spot, const PicturePtr& picture);
-void whiteboard(SceneBuilder& builder, const Palette& palette, const Spot& spot);
-void wallClock(SceneBuilder& builder, const Palette& palette, const Spot& spot);
-void socket(SceneBuilder& builder, const Palette& palette, const Spot& spot);
-void radiator(SceneBuilder& builder, const Palette& palette, const Spot& spot, float width);
-
-// Small things
-void laptop(SceneBuilder& builder, const Palette& palette, const Spot& spot);
-void monitor(SceneBuilder& builder, const Palette& palette, const Spot& spot, const Eigen::Vector2f& size);
-void cup(SceneBuilder& builder, const Spot& spot, int material);
-void bottle(SceneBuilder& builder, const Palette& palette, const Spot& spot);
-void papers(SceneBuilder& builder, const Palette& palette, const Spot& spot, int count);
-void cartons(SceneBuilder& builder, const Palette& palette, const Spot& spot);
-void bin(SceneBuilder& builder, const Palette& palette, const Spot& spot);
-void plant(SceneBuilder& builder, const Palette& palette, const Spot& spot, float height);
-void flipChart(SceneBuilder& builder, const Palette& palette, const Spot& spot);
-void coatStand(SceneBuilder& builder, const Palette& palette, const Spot& spot);
-void floorLamp(SceneBuilder& builder, const Palette& palette, const Spot& spot);
-void projector(SceneBuilder& builder, const Palette& palette, const Spot& spot, float ceiling);
-void cable(SceneBuilder& builder, const Palette& palette, const std::vector<Eigen::Vector2f>& line);
+/// Adds a thing that is computed. @return whether there is one of that name
+bool addComputed(Furniture& furniture, const Json& placed);
 } // namespace fresco::simulation

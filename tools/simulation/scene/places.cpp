@@ -19,13 +19,6 @@ Vector3f probeDirection(int i)
   return {r * std::cos(angle), r * std::sin(angle), z};
 }
 
-Vector3f faceNormal(const TriangleMesh& mesh, int face)
-{
-  const Eigen::Vector3i v = mesh.faces.col(face);
-  const Vector3f a = mesh.vertices.col(v[0]);
-  return (Vector3f(mesh.vertices.col(v[1])) - a).cross(Vector3f(mesh.vertices.col(v[2])) - a).normalized();
-}
-
 /// Whether the surfaces that can be seen from a place turn their front to it and keep their distance.
 bool isFree(const PlanningInput& in, const Vector3f& place, float clearance)
 {
@@ -54,23 +47,19 @@ bool aboveFloor(const PlanningInput& in, const Vector3f& place)
   return hit.face >= 0 && place.z() - hit.distance < 0.02f;
 }
 
-struct Bounds {
-  Vector3f min, max;
-};
-
-Bounds bounds(const Scene& scene)
+Eigen::AlignedBox3f bounds(const Scene& scene)
 {
   return {scene.mesh.vertices.rowwise().minCoeff(), scene.mesh.vertices.rowwise().maxCoeff()};
 }
 
 std::vector<Vector3f> roomGrid(const PlanningInput& in, const PlaceRules& rules)
 {
-  const Bounds box = bounds(in.scene);
+  const Eigen::AlignedBox3f box = bounds(in.scene);
   CounterRandom random(in.seed, 41, 0);
   const auto stray = [&](float range) { return range * random.uniformFloat(-1, 1); };
   std::vector<Vector3f> grid;
-  for (float x = box.min.x() + rules.spacing; x < box.max.x(); x += rules.spacing)
-    for (float y = box.min.y() + rules.spacing; y < box.max.y(); y += rules.spacing)
+  for (float x = box.min().x() + rules.spacing; x < box.max().x(); x += rules.spacing)
+    for (float y = box.min().y() + rules.spacing; y < box.max().y(); y += rules.spacing)
       for (const float height : rules.heights)
         grid.push_back({x + stray(0.3f * rules.spacing), y + stray(0.3f * rules.spacing), height + stray(0.1f)});
   return grid;
@@ -80,9 +69,9 @@ std::vector<Vector3f> roomGrid(const PlanningInput& in, const PlaceRules& rules)
 std::vector<Vector3f> meshGrid(const PlanningInput& in)
 {
   constexpr int steps = 13;
-  const Bounds box = bounds(in.scene);
+  const Eigen::AlignedBox3f box = bounds(in.scene);
   const float unit = sceneUnit(in.scene);
-  const Vector3f low = box.min.array() - 1.5f * unit, high = box.max.array() + 1.5f * unit;
+  const Vector3f low = box.min().array() - 1.5f * unit, high = box.max().array() + 1.5f * unit;
   CounterRandom random(in.seed, 42, 0);
   std::vector<Vector3f> grid;
   for (int i = 0; i < steps * steps * steps; ++i) {
@@ -120,8 +109,8 @@ Index bestStation(const Eigen::MatrixXf& sees, const Eigen::VectorXi& seen, cons
 
 float sceneUnit(const Scene& scene)
 {
-  const Bounds box = bounds(scene);
-  return scene.furnished ? 1.f : 0.2f * (box.max - box.min).norm();
+  const Eigen::AlignedBox3f box = bounds(scene);
+  return scene.furnished ? 1.f : 0.2f * box.diagonal().norm();
 }
 
 ScenePlaces sampleSurface(const Scene& scene, int count, std::uint64_t seed)
@@ -142,7 +131,7 @@ ScenePlaces sampleSurface(const Scene& scene, int count, std::uint64_t seed)
     if (u + v > 1.f)
       u = 1.f - u, v = 1.f - v;
     samples.positions.col(s) = (1 - u - v) * corner(f, 0) + u * corner(f, 1) + v * corner(f, 2);
-    samples.normals.col(s) = faceNormal(mesh, static_cast<int>(f));
+    samples.normals.col(s) = faceNormal(mesh, f);
   }
   return samples;
 }

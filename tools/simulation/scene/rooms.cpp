@@ -1,13 +1,31 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "simulation/scene/rooms.h"
+#include "simulation/scene/descriptions.h"
+#include "simulation/scene/furniture.h"
 #include <algorithm>
 #include <fresco/core/require.h>
 namespace fresco::simulation {
+using Eigen::AlignedBox2f;
 using Eigen::Vector2f;
 using Eigen::Vector3f;
 
 namespace {
+/// The shell of rooms: free boxes in solid ground, and the solids that belong to the walls. No face is hidden.
+using Shell = std::vector<Box>;
+using Pair = std::array<float, 2>;
+
 constexpr float skirting_height = 0.08f, skirting_depth = 0.015f;
+
+/// Rectangle of floor [x, y, x, y].
+AlignedBox2f floorOf(const Json& numbers)
+{
+  const auto corners = numbers.get<std::array<float, 4>>();
+  return {Vector2f(corners[0], corners[1]), Vector2f(corners[2], corners[3])};
+}
+
+Box solid(const Vector3f& a, const Vector3f& b, int material)
+{
+  return {a.cwiseMin(b), a.cwiseMax(b), allSides(material), true};
+}
 
 bool within(float at, float low, float high) { return at > low - 1e-4f && at < high + 1e-4f; }
 
@@ -25,106 +43,114 @@ std::vector<Vector2f> remaining(float low, float high, std::vector<Vector2f> cut
     parts.push_back({low, high});
   return parts;
 }
-} // namespace
 
-void addSkirting(Shell& shell, const Plan& room, const std::vector<Plan>& gaps, int material)
+/// Skirting board along the four walls of the room "skirting"; "gaps" (openings) are cut out of it.
+void addSkirting(Furniture& f, Shell& shell, const Json& described)
 {
+  const AlignedBox2f room = floorOf(described.at("skirting"));
   for (const bool upper : {false, true}) {
     std::vector<Vector2f> x_cuts, y_cuts;
-    const float x = upper ? room.max.x() : room.min.x(), y = upper ? room.max.y() : room.min.y();
-    for (const Plan& gap : gaps) {
-      if (within(x, gap.min.x(), gap.max.x()))
-        y_cuts.push_back({gap.min.y(), gap.max.y()});
-      if (within(y, gap.min.y(), gap.max.y()))
-        x_cuts.push_back({gap.min.x(), gap.max.x()});
+    const Vector2f wall = upper ? room.max() : room.min();
+    for (const Json& numbers : described.at("gaps")) {
+      const AlignedBox2f gap = floorOf(numbers);
+      if (within(wall.x(), gap.min().x(), gap.max().x()))
+        y_cuts.push_back({gap.min().y(), gap.max().y()});
+      if (within(wall.y(), gap.min().y(), gap.max().y()))
+        x_cuts.push_back({gap.min().x(), gap.max().x()});
     }
-    const float inward = upper ? -skirting_depth : skirting_depth;
-    for (const Vector2f& part : remaining(room.min.x(), room.max.x(), x_cuts))
-      shell.solid({part.x(), std::min(y, y + inward), 0}, {part.y(), std::max(y, y + inward), skirting_height},
-                  material);
-    for (const Vector2f& part : remaining(room.min.y(), room.max.y(), y_cuts))
-      shell.solid({std::min(x, x + inward), part.x(), 0}, {std::max(x, x + inward), part.y(), skirting_height},
-                  material);
+    const Vector2f inner = wall.array() + (upper ? -skirting_depth : skirting_depth);
+    const int material = f.material("skirting");
+    for (const Vector2f& part : remaining(room.min().x(), room.max().x(), x_cuts))
+      shell.push_back(solid({part.x(), wall.y(), 0}, {part.y(), inner.y(), skirting_height}, material));
+    for (const Vector2f& part : remaining(room.min().y(), room.max().y(), y_cuts))
+      shell.push_back(solid({wall.x(), part.x(), 0}, {inner.x(), part.y(), skirting_height}, material));
   }
 }
 
-void addWindow(SceneBuilder& b, const Palette& p, Shell& shell, const WindowSpec& spec)
+/// A "window" [left, right] in the wall at "y" that looks to +y, "z" [low, high]: reveal, frame, panes, sill; and a lamp
+/// for the daylight.
+void addWindow(Furniture& f, Shell& shell, const Json& described)
 {
-  const auto y = [&](float depth) { return spec.wall + spec.sign * depth; };
-  const auto box = [&](const Vector3f& from, const Vector3f& to, int material) { // y as depth into the wall
-    shell.solid({from.x(), std::min(y(from.y()), y(to.y())), from.z()},
-                {to.x(), std::max(y(from.y()), y(to.y())), to.z()}, material);
-  };
-  const float depth = 0.2f, bar = 0.06f, middle = 0.5f * (spec.left + spec.right);
-  const PictureBox pane{{spec.left, std::min(y(0), y(depth)), spec.low},
-                        {spec.right, std::max(y(0), y(depth)), spec.high},
-                        spec.sign > 0 ? 2 : 3,
-                        drawView({1000, 640}, spec.seed),
-                        p.wall,
-                        1.f,
-                        true};
-  BoxMaterials sides = pictureSides(b, pane); // drawn on the far side of the recess, seen from the room
-  std::swap(sides[2], sides[3]);
-  shell.free(pane.min, pane.max, sides);
-  const float near = depth - 0.05f;
-  box({spec.left, near, spec.low}, {spec.left + bar, depth, spec.high}, p.frame);
-  box({spec.right - bar, near, spec.low}, {spec.right, depth, spec.high}, p.frame);
-  box({middle - bar, near, spec.low}, {middle + bar, depth, spec.high}, p.frame);
-  box({spec.left, near, spec.low}, {spec.right, depth, spec.low + bar}, p.frame);
-  box({spec.left, near, spec.high - bar}, {spec.right, depth, spec.high}, p.frame);
-  box({spec.left - 0.05f, -0.1f, spec.low - 0.03f}, {spec.right + 0.05f, 0.f, spec.low}, p.white_lacquer);
-  const float half_x = 0.5f * (spec.right - spec.left) - bar, half_z = 0.5f * (spec.high - spec.low) - bar;
-  const Vector3f center(middle, y(near - 0.01f), 0.5f * (spec.low + spec.high));
-  b.lamp({center, {half_x, 0, 0}, {0, 0, spec.sign * half_z}, Vector3f(2.6f, 3.0f, 3.5f)});
+  const auto [left, right] = described.at("window").get<Pair>();
+  const auto [low, high] = described.at("z").get<Pair>();
+  const float wall = described.at("y"), depth = 0.2f, bar = 0.06f, middle = 0.5f * (left + right), far = wall + depth,
+              near = wall + (depth - 0.05f);
+  Material view = printed({{"picture", "view"}, {"pixels", {1000, 640}}, {"emission", 1}}, described.at("seed"));
+  view.glass = true;
+  Box recess{{left, wall, low}, {right, far, high}, allSides(f.material("wall")), false};
+  recess = withPicture(f.builder(), recess, 2, view); // drawn on the far side, seen from the room
+  std::swap(recess.materials[2], recess.materials[3]);
+  const int frame = f.material("frame");
+  shell.insert(shell.end(), {recess, solid({left, near, low}, {left + bar, far, high}, frame),
+                             solid({right - bar, near, low}, {right, far, high}, frame),
+                             solid({middle - bar, near, low}, {middle + bar, far, high}, frame),
+                             solid({left, near, low}, {right, far, low + bar}, frame),
+                             solid({left, near, high - bar}, {right, far, high}, frame),
+                             solid({left - 0.05f, wall - 0.1f, low - 0.03f}, {right + 0.05f, wall, low},
+                                   f.material("white_lacquer"))});
+  const float half_x = 0.5f * (right - left) - bar, half_z = 0.5f * (high - low) - bar;
+  const Vector3f center(middle, wall + (depth - 0.05f - 0.01f), 0.5f * (low + high));
+  f.builder().lamp({center, {half_x, 0, 0}, {0, 0, half_z}, Vector3f(2.6f, 3.0f, 3.5f)});
 }
 
-void addDoor(SceneBuilder& b, const Palette& p, Shell& shell, const DoorSpec& spec)
+/// A closed "door" [low, high] in the wall at "x" that looks to -x: recess, casing. Its handle is a thing.
+void addDoor(Furniture& f, Shell& shell, const Json& described)
 {
-  const auto x = [&](float depth) { return spec.wall + spec.sign * depth; };
-  const float depth = 0.07f, high = 2.06f;
-  PictureBox leaf{{std::min(x(0), x(depth)), spec.low, 0},
-                  {std::max(x(0), x(depth)), spec.high, high},
-                  spec.sign > 0 ? 0 : 1,
-                  drawDoor({900, 1900}, spec.seed),
-                  p.frame};
-  BoxMaterials sides = pictureSides(b, leaf);
-  std::swap(sides[0], sides[1]);
-  sides[4] = p.parquet;
-  shell.free(leaf.min, leaf.max, sides);
-  const auto casing = [&](float y0, float y1, const Vector2f& z) {
-    shell.solid({std::min(x(0), x(-0.02f)), y0, z.x()}, {std::max(x(0), x(-0.02f)), y1, z.y()}, p.frame);
-  };
-  casing(spec.low - 0.07f, spec.low, {0, high + 0.07f});
-  casing(spec.high, spec.high + 0.07f, {0, high + 0.07f});
-  casing(spec.low - 0.07f, spec.high + 0.07f, {high, high + 0.07f});
+  const auto [low, high] = described.at("door").get<Pair>();
+  const float wall = described.at("x"), rim = 0.07f, top = 2.06f, out = wall + 0.02f;
+  const int frame = f.material("frame");
+  Box recess{{wall - 0.07f, low, 0}, {wall, high, top}, allSides(frame), false};
+  recess = withPicture(f.builder(), recess, 1,
+                       printed({{"picture", "door"}, {"pixels", {900, 1900}}}, described.at("seed")));
+  std::swap(recess.materials[0], recess.materials[1]);
+  recess.materials[4] = f.material("parquet");
+  shell.insert(shell.end(), {recess, solid({wall, low - rim, 0}, {out, low, top + rim}, frame),
+                             solid({wall, high, 0}, {out, high + rim, top + rim}, frame),
+                             solid({wall, low - rim, top}, {out, high + rim, top + rim}, frame)});
 }
 
-void addHandle(SceneBuilder& b, const Palette& p, const DoorSpec& spec)
+/// A lit "panel" let into the ceiling at "z", and its lamp.
+void addCeilingPanel(Furniture& f, Shell& shell, const Json& described)
 {
-  b.beginObject("door handle");
-  const float leaf = spec.wall + spec.sign * 0.07f, out = -spec.sign, y = spec.high - 0.08f, z = 1.05f;
-  b.box({std::min(leaf, leaf + out * 0.006f), y - 0.02f, z - 0.15f},
-        {std::max(leaf, leaf + out * 0.006f), y + 0.02f, z + 0.06f}, p.chrome);
-  b.tube({{leaf + out * 0.003f, y, z},
-          {leaf + out * 0.05f, y, z},
-          {leaf + out * 0.055f, y - 0.02f, z},
-          {leaf + out * 0.055f, y - 0.13f, z}},
-         0.009f, p.chrome);
+  const AlignedBox2f plan = floorOf(described.at("panel"));
+  const Vector2f a = plan.min(), b = plan.max(), middle = 0.5f * (a + b), half = 0.48f * (b - a);
+  const float z = described.at("z");
+  Box recess{{a.x(), a.y(), z}, {b.x(), b.y(), z + 0.03f}, allSides(f.material("frame")), false};
+  recess.materials[5] = f.material("lamp");
+  shell.push_back(recess);
+  f.builder().lamp(
+      {{middle.x(), middle.y(), z + 0.004f}, {0, half.y(), 0}, {half.x(), 0, 0}, Vector3f(6.5f, 6.2f, 5.6f)});
 }
 
-void addCeilingPanel(SceneBuilder& b, const Palette& p, Shell& shell, const Plan& plan, float ceiling)
+void addShell(Furniture& f, const Json& room)
 {
-  BoxMaterials sides = allSides(p.frame);
-  sides[5] = p.lamp;
-  shell.free({plan.min.x(), plan.min.y(), ceiling}, {plan.max.x(), plan.max.y(), ceiling + 0.03f}, sides);
-  const Vector2f middle = 0.5f * (plan.min + plan.max), half = 0.48f * (plan.max - plan.min);
-  b.lamp({{middle.x(), middle.y(), ceiling + 0.004f}, {0, half.y(), 0}, {half.x(), 0, 0}, Vector3f(6.5f, 6.2f, 5.6f)});
+  Shell shell;
+  for (const Json& part : room.at("shell"))
+    if (part.contains("skirting"))
+      addSkirting(f, shell, part);
+    else if (part.contains("window"))
+      addWindow(f, shell, part);
+    else if (part.contains("door"))
+      addDoor(f, shell, part);
+    else if (part.contains("panel"))
+      addCeilingPanel(f, shell, part);
+    else
+      shell.push_back(f.box(part));
+  f.builder().beginObject(room.at("object"));
+  f.builder().boxes(shell, true);
 }
+} // namespace
 
 Scene makeScene(const std::string& name, float max_edge)
 {
   require(max_edge >= 0.02f && max_edge <= 10.f, "scene: edge ", max_edge, " m is not in 0.02..10");
   require(name == "conference_room" || name == "apartment", "scene: unknown name ", name);
-  return name == "apartment" ? makeApartment(max_edge) : makeConferenceRoom(max_edge);
+  const Json room = Json::parse(name == "apartment" ? apartment_json : conference_room_json);
+  SceneBuilder builder(name, max_edge);
+  Furniture furniture(builder);
+  addShell(furniture, room);
+  for (const Json& placed : room.at("things"))
+    furniture.add(placed);
+  return builder.finish();
 }
 } // namespace fresco::simulation

@@ -45,8 +45,16 @@ struct Scene {
   std::vector<Material> materials;
   std::vector<Lamp> lamps;
   std::vector<SceneObject> objects;
-  bool furnished = true; ///< made in code: metres, stations stand on the floor
+  bool furnished = true; ///< a room of makeScene(): metres, stations stand on the floor
 };
+
+/// Unit; of a face as it lies in the frame of the vertices.
+inline Eigen::Vector3f faceNormal(const TriangleMesh& mesh, Index face)
+{
+  const Eigen::Vector3i v = mesh.faces.col(face);
+  const Eigen::Vector3f a = mesh.vertices.col(v[0]), b = mesh.vertices.col(v[1]), c = mesh.vertices.col(v[2]);
+  return (b - a).cross(c - a).normalized();
+}
 
 /// Places on a cell, s and t in 0..1.
 struct CellPoint {

@@ -131,14 +131,15 @@ Blocks cutIntoBlocks(const std::vector<Box>& boxes, float max_edge)
   return blocks;
 }
 
-/// Side of a block, counter-clockwise seen from `outward` of the block along the axis.
-std::array<Vector3f, 4> blockSide(const Blocks& blocks, const Eigen::Vector3i& block, int axis, bool positive)
+/// Side `direction` (-x +x -y +y -z +z) of a block, counter-clockwise seen from outside, or with `inward` from within.
+std::array<Vector3f, 4> blockSide(const Blocks& blocks, const Eigen::Vector3i& block, int direction, bool inward)
 {
-  const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+  const int axis = direction / 2, u = (axis + 1) % 3, v = (axis + 2) % 3;
+  const bool positive = direction % 2 == 1;
   std::array<Vector3f, 4> side;
   const int du[4] = {0, 1, 1, 0}, dv[4] = {0, 0, 1, 1};
   for (int k = 0; k < 4; ++k) {
-    const int from = positive ? k : 3 - k;
+    const int from = positive != inward ? k : 3 - k;
     Vector3f corner;
     corner[axis] = blocks.line(axis, block[axis] + (positive ? 1 : 0));
     corner[u] = blocks.line(u, block[u] + du[from]);
@@ -168,10 +169,8 @@ void SceneBuilder::boxes(const std::vector<Box>& list, bool background_solid)
         continue;                    // the neighbour draws this side
       const bool flip = !solid(own); // free block in a solid background: the face looks into the block
       const Vector3f normal = (positive != flip ? 1.f : -1.f) * Vector3f(Vector3f::Unit(axis));
-      const auto p = blockSide(blocks, block, axis, positive);
-      const std::array<Corner, 4> seen = {{{p[0], normal}, {p[1], normal}, {p[2], normal}, {p[3], normal}}};
-      const std::array<Corner, 4> turned = {{{p[3], normal}, {p[2], normal}, {p[1], normal}, {p[0], normal}}};
-      cell(flip ? turned : seen, list[own].materials[direction]);
+      const auto p = blockSide(blocks, block, direction, flip);
+      cell({{{p[0], normal}, {p[1], normal}, {p[2], normal}, {p[3], normal}}}, list[own].materials[direction]);
     }
   };
   for (int z = 0; z < blocks.count(2); ++z)
@@ -293,12 +292,8 @@ Scene SceneBuilder::finish()
 {
   if (!scene_.objects.empty())
     scene_.objects.back().end = faces_.size();
-  scene_.mesh.vertices.resize(3, vertices_.size());
-  for (std::size_t v = 0; v < vertices_.size(); ++v)
-    scene_.mesh.vertices.col(v) = vertices_[v];
-  scene_.mesh.faces.resize(3, faces_.size());
-  for (std::size_t f = 0; f < faces_.size(); ++f)
-    scene_.mesh.faces.col(f) = Eigen::Vector3i(faces_[f][0], faces_[f][1], faces_[f][2]);
+  scene_.mesh.vertices = Eigen::Map<const Points>(vertices_.data()->data(), 3, vertices_.size());
+  scene_.mesh.faces = Eigen::Map<const Faces>(faces_.data()->data(), 3, faces_.size());
   return std::move(scene_);
 }
 } // namespace fresco::simulation

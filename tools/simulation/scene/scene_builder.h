@@ -47,22 +47,10 @@ public:
   /// no side of a cell is longer than the longest edge allowed.
   /// @param background_solid true for rooms: boxes with solid = false are the free space
   void boxes(const std::vector<Box>& boxes, bool background_solid = false);
-  void box(const Eigen::Vector3f& min, const Eigen::Vector3f& max, int material)
-  {
-    boxes({{min, max, allSides(material), true}});
-  }
-  void box(const Eigen::Vector3f& min, const Eigen::Vector3f& max, const BoxMaterials& materials)
-  {
-    boxes({{min, max, materials, true}});
-  }
 
   /// Body of revolution about z. The profile runs from the axis at the bottom
   /// to the axis at the top with the body on its left.
   void lathe(const std::vector<ProfilePoint>& profile, int material, int segments = 24);
-  void cylinder(float radius, float low, float high, int material)
-  {
-    lathe({{0, low}, {radius, low}, {radius, high}, {0, high}}, material);
-  }
 
   /// Elliptic cross sections along a line of knots, closed at both ends.
   /// @param width_axis direction that half_width is measured along; made perpendicular to the line

@@ -9,23 +9,19 @@ constexpr float pattern_size = 5.f; // metres that the bounding box's diagonal h
 
 void addFaces(Scene& scene, const TriangleMesh& mesh)
 {
-  std::vector<Eigen::Vector3i> kept;
+  std::vector<Index> kept;
   for (Index f = 0; f < mesh.faceCount(); ++f) {
     const Eigen::Vector3i v = mesh.faces.col(f);
-    const Vector3f a = mesh.vertices.col(v[0]), b = mesh.vertices.col(v[1]), c = mesh.vertices.col(v[2]);
-    const Vector3f cross = (b - a).cross(c - a);
-    if (!(cross.squaredNorm() > 0.f))
+    const Vector3f normal = faceNormal(mesh, f);
+    if (!(normal.squaredNorm() > 0.5f)) // no area, no unit normal
       continue;
-    const Vector3f normal = cross.normalized();
     const bool smooth = mesh.normals.cols() > 0;
     const auto at = [&](int k) -> Vector3f { return smooth ? Vector3f(mesh.normals.col(v[k])) : normal; };
     scene.face_cell.push_back(2 * scene.cells.size());
     scene.cells.push_back({{v[0], v[1], v[2], v[2]}, {at(0), at(1), at(2), at(2)}, 0});
-    kept.push_back(v);
+    kept.push_back(f);
   }
-  scene.mesh.faces.resize(3, kept.size());
-  for (std::size_t f = 0; f < kept.size(); ++f)
-    scene.mesh.faces.col(f) = kept[f];
+  scene.mesh.faces = mesh.faces(Eigen::all, kept);
 }
 } // namespace
 

@@ -2,7 +2,6 @@
 #include "simulation/sensors/dataset.h"
 #include "simulation/scene/labels.h"
 #include "simulation/sensors/views.h"
-#include <cstdio>
 #include <filesystem>
 #include <fresco/core/parallel.h>
 #include <fresco/core/require.h>
@@ -12,6 +11,7 @@
 #include <fresco/io/mesh_io.h>
 #include <fresco/io/point_io.h>
 #include <fresco/io/pose_file.h>
+#include <iomanip>
 #include <optional>
 namespace fresco::simulation {
 using Eigen::Vector3f;
@@ -28,13 +28,6 @@ void validate(const DatasetOptions& o)
           " is not in 0..0.9");
   require(o.sensor_noise >= 0.f && o.sensor_noise <= 100.f, "sensor noise ", o.sensor_noise, " is not in 0..100");
   require(o.jpeg_quality >= 1 && o.jpeg_quality <= 100, "JPEG quality ", o.jpeg_quality, " is not in 1..100");
-}
-
-std::string numbered(const char* format, int number)
-{
-  char name[64];
-  std::snprintf(name, sizeof name, format, number);
-  return name;
 }
 
 /// One run: the scene with its light, and where its files go.
@@ -68,7 +61,7 @@ std::vector<Pose> writeScans(const Run& run, const Points& stations, std::vector
                                " has no point: nothing sends enough light back within the range");
     for (const int face : scan.faces)
       ++returns[face];
-    const std::string file = folder + "/" + numbered("scan_%02d.pcd", k);
+    const std::string file = concat(folder, "/scan_", std::setfill('0'), std::setw(2), k, ".pcd");
     if (surfaces) {
       Eigen::Matrix4d T_truth_scan = pose;
       T_truth_scan.topRightCorner<3, 1>() -= run.lit.scene.mesh.origin;

@@ -44,13 +44,6 @@ Grid gridOf(double beams)
   return {std::max<Index>(1, std::lround((highest - lowest) / step)), std::max<Index>(1, std::lround(2 * pi / step))};
 }
 
-Vector3f faceNormal(const TriangleMesh& mesh, int face)
-{
-  const Eigen::Vector3i v = mesh.faces.col(face);
-  const Vector3f a = mesh.vertices.col(v[0]);
-  return (Vector3f(mesh.vertices.col(v[1])) - a).cross(Vector3f(mesh.vertices.col(v[2])) - a).normalized();
-}
-
 /// A ray beside the middle of a beam.
 struct RimRay {
   float part, cosine, sine; ///< radii from the middle, bearing

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simulation/sensors/lighting.h"
-#include "simulation/sensors/random.h"
 #include <algorithm>
+#include <boost/functional/hash.hpp>
 #include <cmath>
 #include <fresco/core/constants.h>
 #include <fresco/core/parallel.h>
@@ -24,8 +24,7 @@ struct Place {
 Vector3f facetNormal(const Scene& scene, const Cell& cell)
 {
   const auto p = [&](std::size_t k) -> Vector3f { return scene.mesh.vertices.col(cell.corners[k]); };
-  const Vector3f diagonals = (p(2) - p(0)).cross(p(3) == p(2) ? Vector3f(p(2) - p(1)) : Vector3f(p(3) - p(1)));
-  const Vector3f normal = p(3) == p(2) ? Vector3f((p(1) - p(0)).cross(p(2) - p(0))) : diagonals;
+  const Vector3f normal = p(3) == p(2) ? (p(1) - p(0)).cross(p(2) - p(0)) : (p(2) - p(0)).cross(p(3) - p(1));
   return normal.normalized();
 }
 
@@ -216,16 +215,7 @@ std::array<int, 6> placeKey(const Place& place)
 
 SharedPlaces sharePlaces(const Scene& scene, const std::vector<Lightmap::Lattice>& lattices)
 {
-  struct Hash {
-    std::size_t operator()(const std::array<int, 6>& key) const
-    {
-      std::uint64_t h = 0;
-      for (const int k : key)
-        h = scramble(h + static_cast<std::uint32_t>(k) + 0x9e3779b97f4a7c15ull);
-      return h;
-    }
-  };
-  std::unordered_map<std::array<int, 6>, int, Hash> known;
+  std::unordered_map<std::array<int, 6>, int, boost::hash<std::array<int, 6>>> known;
   SharedPlaces shared;
   for (std::size_t c = 0; c < lattices.size(); ++c)
     for (int i = 0; i < lattices[c].columns * lattices[c].rows; ++i) {

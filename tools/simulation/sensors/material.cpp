@@ -53,7 +53,7 @@ Vector3f plaster(const Material& m, const Flat& at)
 
 Vector3f carpet(const Material& m, const Flat& at)
 {
-  const float size = m.size > 0 ? m.size : 0.5f;
+  constexpr float size = 0.5f;
   const int ix = floorOf(at.x / size), iy = floorOf(at.y / size);
   const bool turned = ((ix + iy) & 1) != 0;
   Flat yarn = at;
@@ -80,7 +80,7 @@ Vector3f grain(const Material& m, const Flat& at, float tone)
 
 Vector3f planks(const Material& m, const Flat& at)
 {
-  const float width = m.size > 0 ? m.size : 0.14f, length = 9.f * width;
+  constexpr float width = 0.14f, length = 9.f * width;
   const int row = floorOf(at.y / width);
   const float shifted = at.x + length * cellNoise(row, 3, at.seed);
   const int board = floorOf(shifted / length);
@@ -95,7 +95,8 @@ Vector3f planks(const Material& m, const Flat& at)
 
 Vector3f fabric(const Material& m, const Flat& at)
 {
-  const float thread = m.size > 0 ? m.size : 0.008f, kept = detailKept(thread, at.footprint);
+  constexpr float thread = 0.008f;
+  const float kept = detailKept(thread, at.footprint);
   const float weave = std::sin(6.2832f * at.x / thread) * std::sin(6.2832f * at.y / thread);
   const float fuzz = fractal(at, 1.f, {0.02f, 3, 0.7f}, 1), fold = fractal(at, 1.f, {0.3f, 3, 0.5f}, 2);
   const float mixed = std::clamp(0.4f + m.contrast * (0.22f * kept * weave + 0.24f * fuzz), 0.f, 1.f);
@@ -104,7 +105,7 @@ Vector3f fabric(const Material& m, const Flat& at)
 
 Vector3f ceilingTile(const Material& m, const Flat& at)
 {
-  const float size = m.size > 0 ? m.size : 0.6f;
+  constexpr float size = 0.6f;
   const int ix = floorOf(at.x / size), iy = floorOf(at.y / size);
   const float rail = std::max(gridLine(at.x, size, 0.012f, at.footprint), gridLine(at.y, size, 0.012f, at.footprint));
   const float edge = std::max(
@@ -131,22 +132,14 @@ Vector3f cardboard(const Material& m, const Flat& at)
   return m.color * (1.f + m.contrast * (0.02f * wave + 0.06f * fibres + 0.06f * dirt));
 }
 
-Vector3f tiles(const Material& m, const Flat& at)
-{
-  const float size = m.size > 0 ? m.size : 0.15f;
-  const int ix = floorOf(at.x / size), iy = floorOf(at.y / size);
-  const float joint = std::max(gridLine(at.x, size, 0.002f, at.footprint), gridLine(at.y, size, 0.002f, at.footprint));
-  const float glaze = fractal(at, 1.f, {0.06f, 4, 0.6f}, 1);
-  const Vector3f body = m.color * (1.f + 0.08f * (cellNoise(ix, iy, at.seed) - 0.5f) + 0.03f * m.contrast * glaze);
-  return body + joint * (m.accent - body);
-}
-
 Vector3f leaf(const Material& m, const Flat& at)
 {
   const float veins = fractal(at, 0.2f, {0.02f, 3, 0.7f}, 1), patch = fractal(at, 1.f, {0.1f, 3, 0.6f}, 2);
   const float mixed = std::clamp(0.4f + m.contrast * (0.35f * veins + 0.4f * patch), 0.f, 1.f);
   return m.color + mixed * (m.accent - m.color);
 }
+
+Vector3f wood(const Material& m, const Flat& at) { return grain(m, at, 0.f); }
 
 Vector3f printed(const Material& m, const SurfacePoint& at)
 {
@@ -156,41 +149,17 @@ Vector3f printed(const Material& m, const SurfacePoint& at)
   return m.picture->sample(d.dot(m.right) / wide, d.dot(m.down) / high, at.footprint * pixels_per_metre);
 }
 
-Vector3f pattern(const Material& m, const SurfacePoint& at)
-{
-  const Flat flat = flatten(m, at);
-  switch (m.finish) {
-  case Finish::plain:
-    return plain(m, flat);
-  case Finish::plaster:
-    return plaster(m, flat);
-  case Finish::carpet:
-    return carpet(m, flat);
-  case Finish::planks:
-    return planks(m, flat);
-  case Finish::wood:
-    return grain(m, flat, 0.f);
-  case Finish::fabric:
-    return fabric(m, flat);
-  case Finish::ceiling_tile:
-    return ceilingTile(m, flat);
-  case Finish::metal:
-    return metal(m, flat);
-  case Finish::cardboard:
-    return cardboard(m, flat);
-  case Finish::tiles:
-    return tiles(m, flat);
-  case Finish::leaf:
-    return leaf(m, flat);
-  case Finish::picture:
-    return printed(m, at);
-  }
-  return m.color;
-}
+/// In the order of Finish, up to `picture`.
+constexpr Vector3f (*patterns[])(const Material&, const Flat&) = {plain,  plaster,     carpet, planks,    wood,
+                                                                  fabric, ceilingTile, metal,  cardboard, leaf};
+static_assert(std::size(patterns) == static_cast<std::size_t>(Finish::picture));
 } // namespace
 
 Vector3f albedo(const Material& material, const SurfacePoint& at)
 {
-  return pattern(material, at).cwiseMax(0.02f).cwiseMin(0.98f);
+  const Vector3f color = material.finish == Finish::picture
+                             ? printed(material, at)
+                             : patterns[static_cast<int>(material.finish)](material, flatten(material, at));
+  return color.cwiseMax(0.02f).cwiseMin(0.98f);
 }
 } // namespace fresco::simulation

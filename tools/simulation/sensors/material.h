@@ -15,7 +15,6 @@ enum class Finish {
   ceiling_tile, ///< mineral fibre boards in a grid of 60 cm
   metal,        ///< brushed
   cardboard,    ///< corrugated
-  tiles,        ///< glazed tiles with joints
   leaf,         ///< plant
   picture       ///< a printed or written picture
 };
@@ -26,7 +25,6 @@ struct Material {
   Eigen::Vector3f color = {0.7f, 0.7f, 0.7f};
   Eigen::Vector3f accent = {0.5f, 0.5f, 0.5f}; ///< second colour of the pattern
   float contrast = 1.f;                        ///< of the pattern
-  float size = 0.f;                            ///< metres, of tiles or boards; 0 = the usual one
   int along = 0;                               ///< axis of the object that grain runs along
   std::uint32_t seed = 1;
   float emission = 0.f; ///< 0 = lit by lamps; else shines with color * emission

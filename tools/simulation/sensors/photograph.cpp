@@ -58,10 +58,7 @@ Vector3f rayColor(const LitScene& lit, const CameraModel& camera, const Ray& ray
 {
   if (hit.face < 0)
     return background;
-  const auto v = lit.scene.mesh.faces.col(hit.face);
-  const Vector3f a = lit.scene.mesh.vertices.col(v[0]), b = lit.scene.mesh.vertices.col(v[1]),
-                 c = lit.scene.mesh.vertices.col(v[2]);
-  const float cosine = std::fabs((b - a).cross(c - a).normalized().dot(ray.direction.normalized()));
+  const float cosine = std::fabs(faceNormal(lit.scene.mesh, hit.face).dot(ray.direction.normalized()));
   // distance is a depth, for directions have z = 1; of the four rays of a pixel each stands for half its width
   const float footprint = 0.7f * hit.distance / static_cast<float>(camera.fx) / std::sqrt(std::max(cosine, 0.1f));
   return surfaceColor(lit, hit, footprint);

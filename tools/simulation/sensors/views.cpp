@@ -2,9 +2,9 @@
 #include "simulation/sensors/views.h"
 #include "simulation/sensors/random.h"
 #include <cmath>
-#include <cstdio>
 #include <fresco/core/parallel.h>
 #include <fresco/core/require.h>
+#include <iomanip>
 #include <queue>
 namespace fresco::simulation {
 using Eigen::Matrix3f;
@@ -134,9 +134,7 @@ CameraSet chooseViews(const PlanningInput& in, const CameraModel& camera, int co
     CounterRandom random(in.seed, 51, number);
     const auto stray = [&](double range) { return random.uniformFloat(-range, range); };
     View view;
-    char name[32];
-    std::snprintf(name, sizeof name, "view_%03zu.jpg", number);
-    view.image = name;
+    view.image = concat("view_", std::setfill('0'), std::setw(3), number, ".jpg");
     const Eigen::Matrix3d R =
         Eigen::Quaterniond(lookAlong(c.yaw + stray(3), c.pitch + stray(3), stray(3)).cast<double>())
             .normalized()

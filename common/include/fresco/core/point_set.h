@@ -21,6 +21,16 @@ struct FRESCO_EXPORT PointSet {
 /// @throws std::invalid_argument unless every attribute has 0 or N columns (viewpoints also 1)
 FRESCO_EXPORT void validatePointSet(const PointSet& set);
 
+/// Those that are finite, ascending.
+inline std::vector<Index> finiteColumns(const Points& points)
+{
+  std::vector<Index> finite;
+  for (Index i = 0; i < points.cols(); ++i)
+    if (points.col(i).allFinite())
+      finite.push_back(i);
+  return finite;
+}
+
 /// The points named by `indices`, in that order, with all attributes.
 /// @throws std::invalid_argument if an index is out of range
 FRESCO_EXPORT PointSet selectPoints(const PointSet& set, const std::vector<Index>& indices);
