@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bilateral/exponential.h"
+#include "normals/exponential.h"
 #include "filters/clouds.h"
 #include <fresco/filters/core/bilateral_normals.h>
 #include <fresco/filters/core/local_sampling.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bilateral/crease_normals.h"
-#include "bilateral/exponential.h"
+#include "normals/exponential.h"
 #include "bilateral/smoothing_field.h"
 #include <Eigen/Geometry>
 #include <algorithm>

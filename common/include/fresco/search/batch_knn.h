@@ -6,6 +6,7 @@
 namespace fresco {
 namespace search {
 struct KnnKernels;
+struct KnnPoints;
 }
 
 /// Search for the k nearest neighbours (or those within a radius) of all points of a subtree together. One descent of
@@ -58,6 +59,7 @@ public:
   std::size_t keptWithin(Index i, float radius);
 
 private:
+  search::KnnPoints foundPoints();
   void prepare();
   void makeRoom(std::size_t leaf_count);
   void focus(Index leaf, float reach);
