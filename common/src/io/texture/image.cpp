@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "io/texture/image_codecs.h"
-#include "io/texture/png_writer.h"
 #include "io/texture/texture_io_image.h"
 #include <algorithm>
 #include <fresco/core/require.h>
@@ -102,11 +101,12 @@ std::vector<std::uint8_t> encodeImage(const Image& image, const std::string& ext
   require(extension == ".png" || extension == ".jpg" || extension == ".jpeg", "image: '", extension,
           "' is not .png, .jpg or .jpeg");
   validate(image);
-  if (extension == ".png")
-    return io::encodePng(image);
   io::prepareImageCodecs();
+  // With runs for matches: rows of a photograph, once filtered, repeat little else. The level resets the strategy.
+  const std::vector<int> png = {cv::IMWRITE_PNG_COMPRESSION, 1, cv::IMWRITE_PNG_STRATEGY, cv::IMWRITE_PNG_STRATEGY_RLE};
   std::vector<std::uint8_t> bytes;
-  cv::imencode(extension, toOpenCv(image), bytes, {cv::IMWRITE_JPEG_QUALITY, quality});
+  cv::imencode(extension, toOpenCv(image), bytes,
+               extension == ".png" ? png : std::vector<int>{cv::IMWRITE_JPEG_QUALITY, quality});
   return bytes;
 }
 
