@@ -19,16 +19,16 @@ struct VertexFaces {
 VertexFaces facesOfVertices(const TriangleMesh& mesh)
 {
   VertexFaces around;
-  around.start.assign(static_cast<std::size_t>(mesh.vertexCount()) + 1, 0);
+  around.start.assign(mesh.vertexCount() + 1, 0);
   for (Index i = 0; i < mesh.faces.size(); ++i)
-    ++around.start[static_cast<std::size_t>(mesh.faces.data()[i]) + 1];
+    ++around.start[mesh.faces.data()[i] + 1];
   for (std::size_t v = 1; v < around.start.size(); ++v)
     around.start[v] += around.start[v - 1];
   around.faces.resize(mesh.faces.size());
   std::vector<Index> next(around.start.begin(), around.start.end() - 1);
   for (Index f = 0; f < mesh.faceCount(); ++f)
     for (int k = 0; k < 3; ++k)
-      around.faces[next[mesh.faces(k, f)]++] = static_cast<int>(f);
+      around.faces[next[mesh.faces(k, f)]++] = f;
   return around;
 }
 } // namespace
@@ -63,7 +63,7 @@ Points vertexNormals(const TriangleMesh& mesh, int threads)
   Points normals(3, mesh.vertexCount());
   parallelFor(mesh.vertexCount(), threads, [&](Index v) {
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-    for (Index i = around.start[v]; i < around.start[static_cast<std::size_t>(v) + 1]; ++i)
+    for (Index i = around.start[v]; i < around.start[v + 1]; ++i)
       sum += areaVector(mesh, around.faces[i]);
     normals.col(v) = unitOrZero(sum);
   });
@@ -94,8 +94,8 @@ TriangleMesh removeUnreferencedVertices(const TriangleMesh& mesh)
   std::vector<Index> kept;
   for (std::size_t v = 0; v < renamed.size(); ++v)
     if (renamed[v] == 0) {
-      renamed[v] = static_cast<int>(kept.size());
-      kept.push_back(static_cast<Index>(v));
+      renamed[v] = kept.size();
+      kept.push_back(v);
     }
   TriangleMesh result;
   result.origin = mesh.origin;

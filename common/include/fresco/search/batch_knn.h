@@ -7,7 +7,7 @@ namespace fresco {
 namespace search {
 struct KnnKernels;
 struct KnnPoints;
-}
+} // namespace search
 
 /// Search for the k nearest neighbours (or those within a radius) of all points of a subtree together. One descent of
 /// the tree finds the leaves around the whole group; of these, the leaves near one leaf of the group are picked by
