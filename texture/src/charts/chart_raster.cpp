@@ -108,43 +108,19 @@ private:
   std::vector<int> owner_;
 };
 
-/// Texels without owner take that of a neighbour, round by round; each round looks only around what the last one added.
+/// Texels without owner take that of a neighbour, round by round.
 void growOwners(int rounds, int width, std::vector<int>& owner)
 {
   const int offsets[8][2] = {{1, 0}, {0, 1}, {-1, 0}, {0, -1}, {1, 1}, {-1, 1}, {-1, -1}, {1, -1}};
   const int height = owner.size() / width;
-  const auto ownerBeside = [&](std::size_t at) {
-    const int x = at % width, y = at / width;
-    for (const auto& [dx, dy] : offsets)
-      if (x + dx >= 0 && y + dy >= 0 && x + dx < width && y + dy < height)
-        if (const int other = owner[cellAt(x + dx, y + dy, width)]; other >= 0)
-          return other;
-    return -1;
-  };
-  std::vector<std::pair<std::size_t, int>> grown; // texel, patch
-  std::vector<std::size_t> front;
   for (int round = 0; round < rounds; ++round) {
-    grown.clear();
-    const auto visit = [&](std::size_t at) {
-      if (owner[at] < 0)
-        if (const int patch = ownerBeside(at); patch >= 0)
-          grown.emplace_back(at, patch);
-    };
-    if (round == 0)
-      for (std::size_t at = 0; at < owner.size(); ++at)
-        visit(at);
-    else
-      for (const std::size_t at : front)
-        visit(at);
-    front.clear();
-    for (const auto& [at, patch] : grown) {
-      if (std::exchange(owner[at], patch) >= 0)
-        continue; // was reached from two sides
-      const int x = at % width, y = at / width;
-      for (const auto& [dx, dy] : offsets)
-        if (x + dx >= 0 && y + dy >= 0 && x + dx < width && y + dy < height)
-          front.push_back(cellAt(x + dx, y + dy, width));
-    }
+    const std::vector<int> before = owner;
+    for (std::size_t at = 0; at < owner.size(); ++at)
+      for (int k = 0; k < 8 && owner[at] < 0; ++k) {
+        const int x = at % width + offsets[k][0], y = at / width + offsets[k][1];
+        if (x >= 0 && y >= 0 && x < width && y < height)
+          owner[at] = before[cellAt(x, y, width)];
+      }
   }
 }
 } // namespace
@@ -165,17 +141,6 @@ Eigen::Matrix<double, 2, 3> patchTexels(const PatchMesh& patches, const Chart& c
   for (int k = 0; k < 3; ++k)
     out.col(k) = chart.texel(patches.vertices.col(patches.faces(k, patch)));
   return out;
-}
-
-Eigen::Vector3d barycentric(const Eigen::Matrix<double, 2, 3>& corners, const Eigen::Vector2d& p)
-{
-  const Eigen::Vector2d u = corners.col(1) - corners.col(0), v = corners.col(2) - corners.col(0),
-                        w = p - corners.col(0);
-  const double det = u.x() * v.y() - u.y() * v.x();
-  if (!(std::abs(det) > 1e-12))
-    return Eigen::Vector3d::Constant(1.0 / 3);
-  const double b = (w.x() * v.y() - w.y() * v.x()) / det, c = (u.x() * w.y() - u.y() * w.x()) / det;
-  return {1 - b - c, b, c};
 }
 
 std::vector<int> rasterizeChart(const PatchMesh& patches, const std::vector<int>& first_patch, int border, Chart& chart)

@@ -13,7 +13,4 @@ std::vector<int> rasterizeChart(const PatchMesh& patches, const std::vector<int>
 
 /// Corners of a patch in the chart's texels.
 Eigen::Matrix<double, 2, 3> patchTexels(const PatchMesh& patches, const Chart& chart, Index patch);
-
-/// Weights of the corners at `p`; sums to 1, negative ones outside. (1/3,1/3,1/3) for a triangle without area.
-Eigen::Vector3d barycentric(const Eigen::Matrix<double, 2, 3>& corners, const Eigen::Vector2d& p);
 } // namespace fresco::texture
