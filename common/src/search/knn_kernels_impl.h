@@ -23,7 +23,7 @@ struct Packing {
     }
   }
 };
-constexpr Packing packing;
+inline constexpr Packing packing;
 
 /// Stores the lanes that are set, one behind the other, and anything up to eight. The permutation uses the lowest 3 bits
 /// of each lane.
@@ -73,7 +73,7 @@ std::size_t closer(const KnnLeaves& leaves, const float* query, float bound, con
   return found;
 }
 
-void boxes(const float* coordinates, const KnnBoxes& boxes)
+inline void boxes(const float* coordinates, const KnnBoxes& boxes)
 {
   for (std::size_t l = 0; l < boxes.count; ++l)
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -84,7 +84,7 @@ void boxes(const float* coordinates, const KnnBoxes& boxes)
     }
 }
 
-std::size_t closeBoxes(const KnnBoxes& boxes, std::size_t center, float reach, int* leaves)
+inline std::size_t closeBoxes(const KnnBoxes& boxes, std::size_t center, float reach, int* leaves)
 {
   std::size_t found = 0;
   for (std::size_t l = 0; l < boxes.count; l += 8) {
@@ -104,7 +104,7 @@ std::size_t closeBoxes(const KnnBoxes& boxes, std::size_t center, float reach, i
 
 /// By interpolation, since on a surface the number of points grows in proportion to the squared distance, and by
 /// bisection.
-float limit(float* values, std::size_t count, std::size_t k, float bound)
+inline float limit(float* values, std::size_t count, std::size_t k, float bound)
 {
   store(infinities, values + count);
   if (count == k)
@@ -127,7 +127,7 @@ float limit(float* values, std::size_t count, std::size_t k, float bound)
   return -1.f;
 }
 
-void sum(const KnnPoints& points, float limit, float* sums, int* chosen)
+inline void sum(const KnnPoints& points, float limit, float* sums, int* chosen)
 {
   store(infinities, points.squared + points.count);
   Float8 all[9] = {}, far = {};
@@ -149,7 +149,7 @@ void sum(const KnnPoints& points, float limit, float* sums, int* chosen)
   sums[9] = joined(far, [](const auto& a, const auto& b) { return larger(a, b); });
 }
 
-void rank(float* values, std::size_t count, int* ranks)
+inline void rank(float* values, std::size_t count, int* ranks)
 {
   store(infinities, values + count);
   for (std::size_t i = 0; i < count; i += 8) {
@@ -161,6 +161,6 @@ void rank(float* values, std::size_t count, int* ranks)
   }
 }
 
-constexpr KnnKernels kernels = {closer<false>, closer<true>, boxes, closeBoxes, limit, sum, rank};
+inline constexpr KnnKernels kernels = {closer<false>, closer<true>, boxes, closeBoxes, limit, sum, rank};
 } // namespace
 } // namespace fresco::search

@@ -25,7 +25,7 @@ inline Double4 cosineOfThird(const Double4& x)
 
 /// Least squares planes of four of the sets, from `first` on: the eigenvector of the smallest eigenvalue of the
 /// covariances (Smith 1961, "Eigenvalues of a symmetric 3 x 3 matrix").
-void fitFour(const EightMoments& moments, int first, EightPlanes& planes)
+inline void fitFour(const EightMoments& moments, int first, EightPlanes& planes)
 {
   Double4 sums[9];
   for (int s = 0; s < 9; ++s)
@@ -65,7 +65,7 @@ void fitFour(const EightMoments& moments, int first, EightPlanes& planes)
     planes.planes |= (told[lane] & 1u) << (first + lane);
 }
 
-void fit(const EightMoments& moments, EightPlanes& planes)
+inline void fit(const EightMoments& moments, EightPlanes& planes)
 {
   planes.planes = 0;
   fitFour(moments, 0, planes);
@@ -98,7 +98,8 @@ inline void transpose(const Float8 (&row)[8], Float8 (&column)[8])
 #endif
 }
 
-BestPlane best(const float* planes, const std::uint16_t* list, std::size_t count, const float* own, const float* point)
+inline BestPlane best(const float* planes, const std::uint16_t* list, std::size_t count, const float* own,
+                      const float* point)
 {
   Float8 scores = infinities, cosines = Float8{} + 1.f;
   Int8 which = {}, place = lane_numbers;
@@ -126,7 +127,7 @@ BestPlane best(const float* planes, const std::uint16_t* list, std::size_t count
   return result;
 }
 
-void weightedSums(const WeightedPoints& points, const float* plane, float scale, float* sums)
+inline void weightedSums(const WeightedPoints& points, const float* plane, float scale, float* sums)
 {
   Float8 all[10] = {};
   Int8 place = lane_numbers;
@@ -144,6 +145,6 @@ void weightedSums(const WeightedPoints& points, const float* plane, float scale,
     sums[t] = total(all[t]);
 }
 
-constexpr PlaneKernels kernels = {fit, best, weightedSums};
+inline constexpr PlaneKernels kernels = {fit, best, weightedSums};
 } // namespace
 } // namespace fresco::filters

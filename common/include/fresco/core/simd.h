@@ -17,8 +17,8 @@ using Float8 = float __attribute__((vector_size(32)));
 using Int8 = std::int32_t __attribute__((vector_size(32)));
 using Double4 = double __attribute__((vector_size(32)));
 
-constexpr Int8 lane_numbers = {0, 1, 2, 3, 4, 5, 6, 7};
-constexpr Float8 infinities = Float8{} + __builtin_inff();
+inline constexpr Int8 lane_numbers = {0, 1, 2, 3, 4, 5, 6, 7};
+inline constexpr Float8 infinities = Float8{} + __builtin_inff();
 
 /// @param from of any alignment
 template <typename Vector, typename T>
