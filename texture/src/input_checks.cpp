@@ -51,6 +51,19 @@ int orientationIn(const Tiff& tiff)
     }
   return 1;
 }
+
+void warnOfRotations(const std::vector<TextureView>& views, TextureResult& result)
+{
+  std::string first;
+  Index count = 0;
+  for (const TextureView& view : views)
+    if (view.image.empty() && exifOrientation(view.path) != 1 && count++ == 0)
+      first = view.path;
+  if (count > 0)
+    result.warnings.push_back(
+        concat(first, count > 1 ? concat(" and ", count - 1, " more carry") : " carries",
+               " an EXIF rotation, which is ignored: cameras belong to pixels as they are stored"));
+}
 } // namespace
 
 void validate(const TriangleMesh& mesh, const std::vector<TextureView>& views, const TextureOptions& options)
@@ -79,7 +92,7 @@ void validate(const TriangleMesh& mesh, const std::vector<TextureView>& views, c
 int exifOrientation(const std::string& path)
 {
   std::ifstream file(path, std::ios::binary);
-  const auto next = [&] { return static_cast<unsigned>(file.get()) & 255U; };
+  const auto next = [&] { return file.get() & 255U; };
   if (next() != 0xFF || next() != 0xD8)
     return 1;
   while (file && next() == 0xFF) {
@@ -99,20 +112,6 @@ int exifOrientation(const std::string& path)
   }
   return 1;
 }
-namespace {
-void warnOfRotations(const std::vector<TextureView>& views, TextureResult& result)
-{
-  std::string first;
-  Index count = 0;
-  for (const TextureView& view : views)
-    if (view.image.empty() && exifOrientation(view.path) != 1 && count++ == 0)
-      first = view.path;
-  if (count > 0)
-    result.warnings.push_back(
-        concat(first, count > 1 ? concat(" and ", count - 1, " more carry") : " carries",
-               " an EXIF rotation, which is ignored: cameras belong to pixels as they are stored"));
-}
-} // namespace
 
 void checkPhotos(PhotoStore& photos, const std::vector<TextureView>& views, int threads, TextureResult& result)
 {

@@ -126,7 +126,7 @@ private:
   {
     std::vector<Eigen::Vector2d> out;
     for (const int face : chart.faces)
-      for (int i = first_[face]; i < first_[face + 1]; ++i)
+      for (Index i = first_[face]; i < first_[face + 1]; ++i)
         for (int k = 0; k < 3; ++k)
           out.emplace_back(frame * patches_.vertices.col(patches_.faces(k, i)).cast<double>());
     return out;
@@ -188,7 +188,7 @@ private:
   const FaceGraph& graph_;
   const Eigen::VectorXf& density_;
   const LayoutOptions& options_;
-  std::vector<int> first_;
+  std::vector<Index> first_;
 };
 } // namespace
 

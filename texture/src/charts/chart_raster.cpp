@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <fresco/core/grouped.h>
 #include <utility>
 namespace fresco::texture {
 namespace {
@@ -55,7 +56,7 @@ void forTexels(const PatchMesh& patches, const Chart& chart, int patch, const Vi
 
 class Raster {
 public:
-  Raster(const PatchMesh& patches, const std::vector<int>& first_patch, const Chart& chart)
+  Raster(const PatchMesh& patches, const std::vector<Index>& first_patch, const Chart& chart)
       : patches_(patches), first_(first_patch), chart_(chart), claimed_(cellCount(chart.width, chart.height), 0),
         owner_(claimed_.size(), -1)
   {}
@@ -65,10 +66,10 @@ public:
   {
     bool free = true;
     covered_.clear();
-    for (int i = first_[face]; i < first_[face + 1] && free; ++i)
+    for (Index i = first_[face]; i < first_[face + 1] && free; ++i)
       forTexels(patches_, chart_, i, [&](std::size_t at, double depth) {
         free = free && !(claimed_[at] && depth > inside_margin && patches_.parent[owner_[at]] != face);
-        covered_.push_back({at, i, depth > inside_margin});
+        covered_.push_back({at, int(i), depth > inside_margin});
       });
     for (std::size_t k = 0; k < covered_.size() && free; ++k) {
       const auto& [at, patch, firmly] = covered_[k];
@@ -101,7 +102,7 @@ private:
   };
 
   const PatchMesh& patches_;
-  const std::vector<int>& first_;
+  const std::vector<Index>& first_;
   const Chart& chart_;
   std::vector<Covered> covered_; ///< by the face in work
   std::vector<char> claimed_;    ///< whether the owner's inside, not only its edge, covers the texel's centre
@@ -125,14 +126,9 @@ void growOwners(int rounds, int width, std::vector<int>& owner)
 }
 } // namespace
 
-std::vector<int> patchesOfFaces(const PatchMesh& patches, Index faces)
+std::vector<Index> patchesOfFaces(const PatchMesh& patches, Index faces)
 {
-  std::vector<int> first(faces + 1, 0);
-  for (Index i = 0; i < patches.size(); ++i)
-    ++first[patches.parent[i] + 1];
-  for (Index f = 0; f < faces; ++f)
-    first[f + 1] += first[f];
-  return first;
+  return grouped(patches.size(), faces, [&](Index i) { return patches.parent[i]; }).begin;
 }
 
 Eigen::Matrix<double, 2, 3> patchTexels(const PatchMesh& patches, const Chart& chart, Index patch)
@@ -143,7 +139,8 @@ Eigen::Matrix<double, 2, 3> patchTexels(const PatchMesh& patches, const Chart& c
   return out;
 }
 
-std::vector<int> rasterizeChart(const PatchMesh& patches, const std::vector<int>& first_patch, int border, Chart& chart)
+std::vector<int> rasterizeChart(const PatchMesh& patches, const std::vector<Index>& first_patch, int border,
+                                Chart& chart)
 {
   Raster raster(patches, first_patch, chart);
   std::vector<int> kept, out;
@@ -151,7 +148,7 @@ std::vector<int> rasterizeChart(const PatchMesh& patches, const std::vector<int>
     (raster.draw(face) ? kept : out).push_back(face);
   chart.faces = std::move(kept);
   for (const int face : chart.faces)
-    for (int i = first_patch[face]; i < first_patch[face + 1]; ++i)
+    for (Index i = first_patch[face]; i < first_patch[face + 1]; ++i)
       raster.drawSmallPatch(i);
   std::vector<int> owner = raster.takeOwners();
   growOwners(border, chart.width, owner);

@@ -50,11 +50,7 @@ private:
   float inset(int k) const
   {
     constexpr float edge_pixels = 0.75f, most = 0.2f; // a patch of few pixels keeps its middle
-    Eigen::Matrix<float, 2, 3> c;
-    for (int i = 0; i < 3; ++i) {
-      const Eigen::Vector2f at = map_.place(Eigen::Vector3f::Unit(i));
-      c.col(i) = map_.pixel(at.x(), at.y());
-    }
+    const Eigen::Matrix<float, 2, 3> c = map_.cornerPixels();
     const Eigen::Vector2f side = c.col((k + 2) % 3) - c.col((k + 1) % 3), to = c.col(k) - c.col((k + 1) % 3);
     const float height = std::abs(side.x() * to.y() - side.y() * to.x()) / std::max(side.norm(), 1e-6f);
     return std::min(most, edge_pixels / std::max(height, 1e-6f));

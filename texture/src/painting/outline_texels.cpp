@@ -26,11 +26,7 @@ public:
       const int view = blend.list[s].view;
       if (!frame_.map.look(sources_.views[view]))
         continue;
-      Eigen::Matrix<float, 2, 3> corners;
-      for (int k = 0; k < 3; ++k) {
-        const Eigen::Vector2f at = frame_.map.place(Eigen::Vector3f::Unit(k));
-        corners.col(k) = frame_.map.pixel(at.x(), at.y());
-      }
+      const Eigen::Matrix<float, 2, 3> corners = frame_.map.cornerPixels();
       constexpr float spare = 3; // pixels: texels of the border
       if (sources_.masks[view].touches(corners.rowwise().minCoeff().array() - spare,
                                        corners.rowwise().maxCoeff().array() + spare))

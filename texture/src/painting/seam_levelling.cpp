@@ -13,7 +13,7 @@ using Triplet = Eigen::Triplet<float>;
 
 class Levelling {
 public:
-  Levelling(const BlendInput& input, const VertexPatches& around, const VertexViews& shares)
+  Levelling(const BlendInput& input, const Groups& around, const VertexViews& shares)
       : patches_(input.patches), around_(around), shares_(shares), candidates_(input.candidates), gains_(input.gains)
   {
     out_.begin.assign(1, 0);
@@ -112,7 +112,7 @@ private:
   }
 
   const PatchMesh& patches_;
-  const VertexPatches& around_;
+  const Groups& around_;
   const VertexViews& shares_;
   const Candidates& candidates_;
   const Points& gains_;
@@ -123,7 +123,7 @@ private:
 };
 } // namespace
 
-SeamOffsets levelSeams(const BlendInput& input, const VertexPatches& around, const VertexViews& shares, int threads)
+SeamOffsets levelSeams(const BlendInput& input, const Groups& around, const VertexViews& shares, int threads)
 {
   return Levelling(input, around, shares).run(threads);
 }

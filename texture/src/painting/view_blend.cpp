@@ -92,7 +92,7 @@ private:
   const PatchMesh& patches_;
   const Candidates& candidates_;
   const Eigen::VectorXi& view_;
-  VertexPatches around_;
+  Groups around_;
   VertexViews shares_;
   SeamOffsets offsets_;
 };
