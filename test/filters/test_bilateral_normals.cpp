@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bilateral/exponential.h"
 #include "filters/clouds.h"
+#include "normals/exponential.h"
 #include <fresco/filters/core/bilateral_normals.h>
 #include <fresco/filters/core/local_sampling.h>
 #include <fresco/filters/core/oriented_normals.h>

@@ -46,20 +46,22 @@ KnnResults runAll(const KnnKernels& kernels, const PointTree& tree, float bound)
   KnnResults r(8 * leaf_count + 16);
   const Eigen::Vector3f query = tree.point(tree.size() / 2);
   const float* coordinates = tree.leafCoordinates();
-  const std::size_t found = kernels.closer(coordinates, leaves.data(), leaf_count, query.data(), bound,
-                                           r.squared.data(), r.only_position.data());
+  const KnnLeaves all = {coordinates, leaves.data(), leaf_count};
+  KnnPoints points = {r.squared.data(), r.x.data(), r.y.data(), r.z.data(), r.only_position.data()};
+  const std::size_t found = points.count = kernels.closer(all, query.data(), bound, points);
   kernels.rank(r.squared.data(), found, r.ranks.data());
-  const KnnPoints points = {r.squared.data(), r.x.data(), r.y.data(), r.z.data(), r.position.data()};
-  EXPECT_EQ(kernels.offsets(coordinates, leaves.data(), leaf_count, query.data(), bound, points), found);
+  points.position = r.position.data();
+  EXPECT_EQ(kernels.offsets(all, query.data(), bound, points), found);
   for (std::size_t k = 1; k <= found; k = 2 * k + 1) {
     r.limits.push_back(kernels.limit(r.squared.data(), found, k, bound));
     r.sums.resize(r.sums.size() + 10);
-    kernels.sum(points, found, r.limits.back(), r.sums.data() + r.sums.size() - 10, r.chosen.data());
+    kernels.sum(points, r.limits.back(), r.sums.data() + r.sums.size() - 10, r.chosen.data());
   }
   r.boxes.assign(6 * stride, 0);
-  kernels.boxes(coordinates, leaf_count, stride, r.boxes.data());
+  const KnnBoxes boxes = {r.boxes.data(), leaf_count, stride};
+  kernels.boxes(coordinates, boxes);
   r.close.resize(stride + 8);
-  r.close.resize(kernels.closeBoxes(r.boxes.data(), leaf_count, stride, leaf_count / 2, bound, r.close.data()));
+  r.close.resize(kernels.closeBoxes(boxes, leaf_count / 2, bound, r.close.data()));
   for (auto* values : {&r.squared, &r.x, &r.y, &r.z})
     values->resize(found);
   for (auto* values : {&r.position, &r.only_position, &r.ranks})
@@ -105,12 +107,13 @@ TEST(KnnKernels, CloseBoxesMissNoLeafWithinReach)
 {
   const PointTree tree(unevenPoints(800, 2));
   const auto count = static_cast<std::size_t>(tree.leafCount()), stride = (count + 7) / 8 * 8;
-  std::vector<float> boxes(6 * stride);
+  std::vector<float> ends(6 * stride);
   std::vector<int> close(stride + 8);
-  knnKernels().boxes(tree.leafCoordinates(), count, stride, boxes.data());
+  const KnnBoxes boxes = {ends.data(), count, stride};
+  knnKernels().boxes(tree.leafCoordinates(), boxes);
   for (const std::size_t center : {0ul, 17ul, count - 1})
     for (const float reach : {0.f, 0.05f, 0.4f}) {
-      const std::size_t found = knnKernels().closeBoxes(boxes.data(), count, stride, center, reach, close.data());
+      const std::size_t found = knnKernels().closeBoxes(boxes, center, reach, close.data());
       for (Index i = 0; i < tree.size(); ++i)
         for (Index j = 8 * static_cast<Index>(center); j < std::min(tree.size(), 8 * static_cast<Index>(center) + 8);
              ++j)

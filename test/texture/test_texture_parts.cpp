@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "texture/texture_scene.h"
-#include "views/hidden_parts.h"
+#include "views/visible_surface.h"
 #include <gtest/gtest.h>
 using namespace fresco::texture;
 namespace fresco::test {

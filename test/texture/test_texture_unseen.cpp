@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "filling/exemplar_synthesis.h"
-#include "painting/atlas_gaps.h"
+#include "input_checks.h"
+#include "painting/color_growth.h"
 #include "test_data.h"
 #include "texture/texture_scene.h"
-#include "views/exif.h"
 #include <fresco/io/file.h>
 #include <fresco/io/image_io.h>
 using namespace fresco::texture;

@@ -1,16 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "cameras/camera_placement.h"
+#include "cameras/camera_refinement.h"
 #include "charts/texture_atlas.h"
 #include "filling/color_diffusion.h"
 #include "filling/exemplar_inpainting.h"
 #include "input_checks.h"
-#include "painting/atlas_gaps.h"
 #include "painting/atlas_paint.h"
 #include "painting/back_projection.h"
+#include "painting/color_growth.h"
 #include "painting/outline_texels.h"
 #include "views/exposure.h"
 #include "views/photo_consistency.h"
-#include "views/resolution.h"
 #include "views/view_selection.h"
 #include "views/visible_surface.h"
 #include <chrono>
@@ -52,14 +51,6 @@ std::vector<Projector> projectorsOf(const TriangleMesh& mesh, const std::vector<
   return out;
 }
 
-std::vector<char> paintable(const std::vector<TextureView>& views)
-{
-  std::vector<char> out;
-  for (const TextureView& view : views)
-    out.push_back(view.paint);
-  return out;
-}
-
 /// What all steps read and write.
 struct Job {
   const TextureOptions& options;
@@ -97,17 +88,16 @@ ViewChoice chooseViews(const Job& job, const RayScene& rays, const Progress& pro
 }
 
 /// Paints what photographs show; patches that none shows clean become unseen.
-void paintPhotographs(const Job& job, const PaintScene& scene, const Blend& blend, ViewChoice& choice)
+/// @param view of the scene's patches
+void paintPhotographs(const PaintScene& scene, const PaintSources& sources, Eigen::VectorXi& view,
+                      TextureResult& result)
 {
-  TextureResult& result = job.result;
-  const PaintSources sources{job.views.projectors, result.gains, blend, job.views.photos};
   OutlineTexels beside;
-  if (!choice.surface.outlines.empty())
-    beside = findOutlineTexels(
-        scene, {sources.views, choice.surface.candidates, choice.penalties, blend, choice.surface.outlines});
+  if (!sources.masks.empty())
+    beside = findOutlineTexels(scene, sources);
   for (const int patch : beside.hidden)
-    choice.view[patch] = -1;
-  describeViews(scene.patches, choice.view, result);
+    view[patch] = -1;
+  describeViews(scene.patches, view, result);
   paintSeen(scene, sources, result.model.atlases);
   paintTexels(scene, sources, beside.by_view, result.model.atlases);
   fillUnknown(scene, beside.unknown, result.model.atlases, result.masks);
@@ -128,15 +118,15 @@ void paintModel(const Job& job, ViewChoice& choice)
       blendViews({patches, candidates, choice.view, result.gains}, {blend_width, options.level, options.threads});
 
   steps.begin("painting", 0.8);
-  const Eigen::VectorXi face_chart = chartsOfFaces(charts, result.model.mesh.faceCount());
-  const std::vector<int> slots = texelSlots(charts, patches.size());
-  const PaintScene scene{patches, charts, face_chart, choice.view, slots, options.threads};
-  paintPhotographs(job, scene, blend, choice);
+  const std::vector<TexelSlot> slots = texelSlots(charts, patches.size());
+  const PaintScene scene{patches, charts, choice.view, slots, options.threads};
+  const PaintSources sources{views.projectors, views.photos,     result.gains, blend,
+                             candidates,       choice.penalties, outlines};
+  paintPhotographs(scene, sources, choice.view, result);
 
   steps.begin("back-projection", 0.85);
   if (options.exposure && photographsAgree(result))
-    backProject(scene, {views.projectors, result.gains, views.photos, candidates, choice.penalties}, options.rounds,
-                atlases);
+    backProject(scene, sources, options.rounds, atlases);
 
   steps.begin("inpainting", 0.9);
   paintUnseen(scene, diffuseColors(patches, patchColors(scene, atlases), options.threads), atlases, result.masks);
@@ -158,7 +148,7 @@ TextureResult reconstructTexture(const TriangleMesh& mesh, const std::vector<Tex
   result.model.mesh = mesh;
   Steps steps(progress, result);
   steps.begin("photographs", 0.0);
-  PhotoStore photos(views, static_cast<std::size_t>(options.memory) << 20);
+  PhotoStore photos(views, std::size_t(options.memory) << 20);
   checkPhotos(photos, views, options.threads, result);
 
   steps.begin("camera refinement", 0.05);
@@ -166,7 +156,9 @@ TextureResult reconstructTexture(const TriangleMesh& mesh, const std::vector<Tex
   placeCameras({mesh, *rays, views, photos}, options, subProgress(progress, 0.05, 0.25), result);
 
   const std::vector<Projector> projectors = projectorsOf(mesh, result.cameras);
-  const ViewList list{projectors, photos, paintable(views), poseUncertainty(result)};
+  ViewList list{projectors, photos, {}, poseUncertainty(result)};
+  for (const TextureView& view : views)
+    list.used.push_back(view.paint);
   const Job job{options, list, steps, result};
   ViewChoice choice = chooseViews(job, *rays, progress);
   rays.reset(); // painting needs the memory

@@ -5,7 +5,6 @@
 #include <fresco/core/cloud_table.h>
 #include <fresco/core/require.h>
 #include <pcl/PCLPointCloud2.h>
-#include <tuple>
 namespace fresco::core {
 namespace {
 using Field = pcl::PCLPointField;
@@ -39,7 +38,7 @@ void copyRows(const pcl::PCLPointCloud2& cloud, const std::vector<std::size_t>& 
   for (std::size_t y = 0; y < cloud.height; ++y)
     for (std::size_t x = 0; x < cloud.width; ++x) {
       const std::uint8_t* from = cloud.data.data() + y * cloud.row_step + x * cloud.point_step;
-      const auto row = static_cast<Index>(y * cloud.width + x);
+      const Index row = y * cloud.width + x;
       for (std::size_t c = 0; c < sources.size(); ++c)
         std::memcpy(table.cell(row, table.columns[c]), from + sources[c], table.columns[c].bytes());
     }
@@ -51,7 +50,7 @@ Scalar scalarOfField(std::uint8_t datatype)
   for (const auto& [known, scalar] : field_types)
     if (known == datatype)
       return scalar;
-  throw std::invalid_argument(concat("cloud: unknown field type ", static_cast<int>(datatype)));
+  throw std::invalid_argument(concat("cloud: unknown field type ", int{datatype}));
 }
 
 PointTable tableOfCloud(const pcl::PCLPointCloud2& cloud)
@@ -75,10 +74,12 @@ PointTable tableOfCloud(const pcl::PCLPointCloud2& cloud)
     table.addColumn(field.name, type, count);
     sources.push_back(field.offset);
   }
-  table.allocate(static_cast<Index>(rows));
+  table.allocate(rows);
   copyRows(cloud, sources, table);
-  if (cloud.height > 1)
-    std::tie(table.width, table.height) = std::pair(static_cast<Index>(cloud.width), static_cast<Index>(cloud.height));
+  if (cloud.height > 1) {
+    table.width = cloud.width;
+    table.height = cloud.height;
+  }
   return table;
 }
 
@@ -88,15 +89,15 @@ pcl::PCLPointCloud2 cloudOfTable(PointTable table)
   for (const Column& column : table.columns) {
     Field field;
     field.name = column.name;
-    field.offset = static_cast<pcl::uindex_t>(column.offset);
+    field.offset = column.offset;
     field.datatype = fieldType(column.type);
-    field.count = static_cast<pcl::uindex_t>(column.count);
+    field.count = column.count;
     cloud.fields.push_back(field);
   }
   const bool organised = table.height > 0;
-  cloud.width = static_cast<pcl::uindex_t>(organised ? table.width : table.rows);
-  cloud.height = organised ? static_cast<pcl::uindex_t>(table.height) : 1;
-  cloud.point_step = static_cast<pcl::uindex_t>(table.stride);
+  cloud.width = organised ? table.width : table.rows;
+  cloud.height = organised ? table.height : 1;
+  cloud.point_step = table.stride;
   cloud.row_step = cloud.width * cloud.point_step;
   cloud.is_bigendian = false;
   cloud.is_dense = isDense(table);

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <fresco/core/grouped.h>
 #include <fresco/core/mesh.h>
 #include <fresco/core/parallel.h>
 #include <fresco/core/require.h>
@@ -8,28 +9,6 @@ Eigen::Vector3f unitOrZero(const Eigen::Vector3d& v)
 {
   const double length = v.norm();
   return length > 0 && std::isfinite(length) ? Eigen::Vector3f((v / length).cast<float>()) : Eigen::Vector3f::Zero();
-}
-
-/// Faces around each vertex, ascending: faces[start[v]] .. faces[start[v + 1]].
-struct VertexFaces {
-  std::vector<Index> start;
-  std::vector<int> faces;
-};
-
-VertexFaces facesOfVertices(const TriangleMesh& mesh)
-{
-  VertexFaces around;
-  around.start.assign(static_cast<std::size_t>(mesh.vertexCount()) + 1, 0);
-  for (Index i = 0; i < mesh.faces.size(); ++i)
-    ++around.start[static_cast<std::size_t>(mesh.faces.data()[i]) + 1];
-  for (std::size_t v = 1; v < around.start.size(); ++v)
-    around.start[v] += around.start[v - 1];
-  around.faces.resize(mesh.faces.size());
-  std::vector<Index> next(around.start.begin(), around.start.end() - 1);
-  for (Index f = 0; f < mesh.faceCount(); ++f)
-    for (int k = 0; k < 3; ++k)
-      around.faces[next[mesh.faces(k, f)]++] = static_cast<int>(f);
-  return around;
 }
 } // namespace
 
@@ -59,12 +38,13 @@ Points faceNormals(const TriangleMesh& mesh, int threads)
 
 Points vertexNormals(const TriangleMesh& mesh, int threads)
 {
-  const VertexFaces around = facesOfVertices(mesh);
+  const int* vertices = mesh.faces.data();
+  const Groups corners = grouped(mesh.faces.size(), mesh.vertexCount(), [&](Index i) { return vertices[i]; });
   Points normals(3, mesh.vertexCount());
   parallelFor(mesh.vertexCount(), threads, [&](Index v) {
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-    for (Index i = around.start[v]; i < around.start[static_cast<std::size_t>(v) + 1]; ++i)
-      sum += areaVector(mesh, around.faces[i]);
+    for (Index i = corners.begin[v]; i < corners.begin[v + 1]; ++i)
+      sum += areaVector(mesh, corners.list[i] / 3);
     normals.col(v) = unitOrZero(sum);
   });
   return normals;
@@ -94,8 +74,8 @@ TriangleMesh removeUnreferencedVertices(const TriangleMesh& mesh)
   std::vector<Index> kept;
   for (std::size_t v = 0; v < renamed.size(); ++v)
     if (renamed[v] == 0) {
-      renamed[v] = static_cast<int>(kept.size());
-      kept.push_back(static_cast<Index>(v));
+      renamed[v] = kept.size();
+      kept.push_back(v);
     }
   TriangleMesh result;
   result.origin = mesh.origin;

@@ -23,9 +23,8 @@ std::vector<HalfEdge> sortedHalfEdges(const TriangleMesh& mesh)
     if (face[0] == face[1] || face[1] == face[2] || face[2] == face[0])
       continue;
     for (int k = 0; k < 3; ++k) {
-      const auto a = static_cast<std::uint32_t>(face[k]), b = static_cast<std::uint32_t>(face[(k + 1) % 3]);
-      edges.push_back(
-          {std::uint64_t{std::min(a, b)} << 32 | std::max(a, b), static_cast<std::uint32_t>(3 * f + k), a < b});
+      const std::uint32_t a = face[k], b = face[(k + 1) % 3], corner = 3 * f + k;
+      edges.push_back({std::uint64_t{std::min(a, b)} << 32 | std::max(a, b), corner, a < b});
     }
   }
   std::sort(edges.begin(), edges.end(),
@@ -70,8 +69,8 @@ void countVertices(const TriangleMesh& mesh, MeshTopology& topology, UnionFind& 
     if (face[0] == face[1] || face[1] == face[2] || face[2] == face[0])
       continue;
     for (int k = 0; k < 3; ++k) {
-      const auto v = static_cast<std::size_t>(face[k]);
-      const std::uint32_t root = fans.root(static_cast<std::uint32_t>(3 * f + k));
+      const int v = face[k];
+      const std::uint32_t root = fans.root(3 * f + k);
       if (fan[v] == none) {
         fan[v] = root;
         ++topology.referenced_vertices;
@@ -85,10 +84,10 @@ void countVertices(const TriangleMesh& mesh, MeshTopology& topology, UnionFind& 
 
 Index countComponents(const TriangleMesh& mesh, const std::vector<HalfEdge>& edges)
 {
-  UnionFind sets(static_cast<std::size_t>(mesh.vertexCount()));
+  UnionFind sets(mesh.vertexCount());
   std::vector<bool> used(mesh.vertexCount(), false);
   for (const HalfEdge& edge : edges) {
-    const auto a = static_cast<std::uint32_t>(edge.key >> 32), b = static_cast<std::uint32_t>(edge.key);
+    const std::uint32_t a = edge.key >> 32, b = edge.key & 0xffffffff;
     used[a] = used[b] = true;
     sets.join(a, b);
   }
@@ -105,7 +104,7 @@ MeshTopology meshTopology(const TriangleMesh& mesh)
           "mesh: a face names a vertex that does not exist");
   const std::vector<HalfEdge> edges = sortedHalfEdges(mesh);
   MeshTopology topology;
-  UnionFind fans(static_cast<std::size_t>(mesh.faces.size()));
+  UnionFind fans(mesh.faces.size());
   for (std::size_t begin = 0, end = 0; begin < edges.size(); begin = end) {
     while (end < edges.size() && edges[end].key == edges[begin].key)
       ++end;
@@ -113,7 +112,7 @@ MeshTopology meshTopology(const TriangleMesh& mesh)
   }
   countVertices(mesh, topology, fans);
   topology.components = countComponents(mesh, edges);
-  topology.euler = topology.referenced_vertices - topology.edges + static_cast<Index>(edges.size() / 3);
+  topology.euler = topology.referenced_vertices - topology.edges + Index(edges.size() / 3);
   topology.watertight = !edges.empty() && topology.boundary_edges == 0 && topology.nonmanifold_edges == 0 &&
                         topology.inconsistent_edges == 0 && topology.nonmanifold_vertices == 0;
   return topology;

@@ -34,47 +34,13 @@ void convertCell(const PointTable& table, Index row, const Column& from, const p
     using T = decltype(zero);
     T stored{};
     if constexpr (std::is_floating_point_v<T>)
-      stored = static_cast<T>(value);
-    else if (value >= static_cast<float>(std::numeric_limits<T>::max()))
+      stored = value;
+    else if (value >= float(std::numeric_limits<T>::max()))
       stored = std::numeric_limits<T>::max();
-    else if (value > static_cast<float>(std::numeric_limits<T>::min())) // false for NaN
-      stored = static_cast<T>(std::round(value));
+    else if (value > float(std::numeric_limits<T>::min())) // false for NaN
+      stored = std::round(value);
     std::memcpy(at, &stored, sizeof(stored));
   });
-}
-
-pcl::PCLPointCloud2 verticesToCloud(TriangleMesh vertices, const pcl::PCLHeader& header)
-{
-  vertices.vertices = inWorld(vertices.vertices, vertices.origin);
-  vertices.origin.setZero();
-  vertices.faces.resize(3, 0);
-  pcl::PCLPointCloud2 cloud = cloudOfTable(meshToTable(vertices));
-  cloud.header = header;
-  return cloud;
-}
-
-TriangleMesh cloudToVertices(const pcl::PCLPointCloud2& cloud)
-{
-  try {
-    return tableToMesh(tableOfCloud(cloud));
-  } catch (const std::runtime_error& error) {
-    throw std::invalid_argument(std::string("mesh: ") + error.what());
-  }
-}
-
-void addFans(const pcl::Vertices& polygon, FaceCollector& collector)
-{
-  const std::vector<std::int64_t> corners(polygon.vertices.begin(), polygon.vertices.end());
-  collector.addPolygon(corners.data(), corners.size());
-}
-
-Faces checkedFaces(const FaceCollector& collector, Index vertices)
-{
-  try {
-    return collector.faces(vertices);
-  } catch (const std::runtime_error& error) {
-    throw std::invalid_argument(std::string("mesh: ") + error.what());
-  }
 }
 } // namespace
 
@@ -88,16 +54,16 @@ PointSet pointsFromBytes(const std::vector<pcl::PCLPointField>& fields, const Po
   table.stride = bytes.stride;
   const auto* points = static_cast<const std::uint8_t*>(bytes.data);
   if (!indices) {
-    table.rows = static_cast<Index>(bytes.count);
+    table.rows = bytes.count;
     table.view = points;
     return tableToPoints(table);
   }
-  table.allocate(static_cast<Index>(indices->size()));
-  for (std::size_t i = 0; i < indices->size(); ++i) {
-    const auto index = static_cast<std::size_t>((*indices)[i]);
-    require((*indices)[i] >= 0 && index < bytes.count, "index ", (*indices)[i], " is not one of ", bytes.count,
-            " points");
-    std::memcpy(table.data.data() + i * bytes.stride, points + index * bytes.stride, bytes.stride);
+  table.allocate(indices->size());
+  std::uint8_t* to = table.data.data();
+  for (const std::ptrdiff_t index : *indices) {
+    require(index >= 0 && std::size_t(index) < bytes.count, "index ", index, " is not one of ", bytes.count, " points");
+    std::memcpy(to, points + index * bytes.stride, bytes.stride);
+    to += bytes.stride;
   }
   return tableToPoints(table);
 }
@@ -123,19 +89,29 @@ void pointsToBytes(const PointSet& set, const std::vector<pcl::PCLPointField>& f
 void toPolygonMesh(const TriangleMesh& mesh, pcl::PolygonMesh& polygons)
 {
   validateMesh(mesh);
-  polygons.cloud = core::verticesToCloud(mesh, polygons.cloud.header);
+  TriangleMesh vertices = mesh;
+  vertices.vertices = core::inWorld(mesh.vertices, mesh.origin);
+  vertices.origin.setZero();
+  vertices.faces.resize(3, 0);
+  const pcl::PCLHeader header = polygons.cloud.header;
+  polygons.cloud = core::cloudOfTable(core::meshToTable(vertices));
+  polygons.cloud.header = header;
   polygons.polygons.resize(mesh.faceCount());
   for (Index f = 0; f < mesh.faceCount(); ++f)
     polygons.polygons[f].vertices = {mesh.faces(0, f), mesh.faces(1, f), mesh.faces(2, f)};
 }
 
 TriangleMesh toTriangleMesh(const pcl::PolygonMesh& polygons)
-{
-  TriangleMesh mesh = core::cloudToVertices(polygons.cloud);
+try {
+  TriangleMesh mesh = core::tableToMesh(core::tableOfCloud(polygons.cloud));
   core::FaceCollector collector;
-  for (const pcl::Vertices& polygon : polygons.polygons)
-    core::addFans(polygon, collector);
-  mesh.faces = core::checkedFaces(collector, mesh.vertexCount());
+  for (const pcl::Vertices& polygon : polygons.polygons) {
+    const std::vector<std::int64_t> corners(polygon.vertices.begin(), polygon.vertices.end());
+    collector.addPolygon(corners.data(), corners.size());
+  }
+  mesh.faces = collector.faces(mesh.vertexCount());
   return mesh;
+} catch (const std::runtime_error& error) {
+  throw std::invalid_argument(std::string("mesh: ") + error.what());
 }
 } // namespace fresco

@@ -67,13 +67,13 @@ void PointTable::addColumn(const std::string& name, Scalar type, std::size_t cou
 void PointTable::allocate(Index row_count)
 {
   rows = row_count;
-  data.resize(static_cast<std::size_t>(row_count) * stride);
+  data.resize(row_count * stride);
 }
 
 void PointTable::own()
 {
   if (view)
-    data.assign(view, view + static_cast<std::size_t>(rows) * stride);
+    data.assign(view, view + rows * stride);
   view = nullptr;
 }
 
@@ -100,7 +100,7 @@ const Column* packedColor(const PointTable& table)
 Eigen::VectorXf columnValues(const PointTable& table, const Column& column, std::size_t component)
 {
   Eigen::VectorXf values(table.rows);
-  forEachValue(table, column, component, [&](Index row, auto value) { values[row] = static_cast<float>(value); });
+  forEachValue(table, column, component, [&](Index row, auto value) { values[row] = value; });
   return values;
 }
 
@@ -160,9 +160,9 @@ void unpackColors(PointTable& table)
     const auto value = loadScalar<std::uint32_t>(table.cell(row, *color));
     std::uint8_t* at = bytes.cell(row, first);
     for (int channel = 0; channel < 3; ++channel)
-      at[channel] = static_cast<std::uint8_t>(value >> (16 - 8 * channel));
+      at[channel] = value >> (16 - 8 * channel);
     if (has_alpha)
-      at[3] = static_cast<std::uint8_t>(value >> 24);
+      at[3] = value >> 24;
   }
   table = std::move(bytes);
 }
@@ -183,7 +183,7 @@ CoordinateBounds coordinateBounds(const PointTable& table, const std::array<Colu
   constexpr double infinity = std::numeric_limits<double>::infinity();
   CoordinateBounds bounds{Eigen::Array3d::Constant(infinity), Eigen::Array3d::Constant(-infinity),
                           Eigen::Array3d::Zero()};
-  for (std::size_t axis = 0; axis < 3; ++axis) {
+  for (int axis = 0; axis < 3; ++axis) {
     double low = infinity, high = -infinity, loss = 0;
     forEachValue(
         table, xyz[axis], 0,
@@ -193,13 +193,12 @@ CoordinateBounds coordinateBounds(const PointTable& table, const std::array<Colu
             return;
           low = std::min(low, value);
           high = std::max(high, value);
-          loss = std::max(loss, std::abs(value - static_cast<double>(static_cast<float>(value))));
+          loss = std::max(loss, std::abs(value - float(value)));
         },
         0, table.rows);
-    const auto at = static_cast<Index>(axis);
-    bounds.low[at] = low;
-    bounds.high[at] = high;
-    bounds.loss[at] = loss;
+    bounds.low[axis] = low;
+    bounds.high[axis] = high;
+    bounds.loss[axis] = loss;
   }
   return bounds;
 }
@@ -216,15 +215,15 @@ PointTable convertRows(const std::vector<std::string>& names, const std::vector<
   PointTable table;
   for (const std::string& name : names)
     table.addColumn(name, rowType(name, coordinate));
-  table.allocate(static_cast<Index>(values.size() / names.size()));
+  table.allocate(values.size() / names.size());
   for (std::size_t c = 0; c < names.size(); ++c)
     visitScalar(table.columns[c].type, [&](auto zero) {
       using T = decltype(zero);
       for (Index row = 0; row < table.rows; ++row) {
-        double value = values[static_cast<std::size_t>(row) * names.size() + c];
+        double value = values[row * names.size() + c];
         if constexpr (std::is_integral_v<T>)
           value = value > 0 ? std::min(std::round(value), 255.0) : 0.0;
-        const T stored = static_cast<T>(value);
+        const T stored = value;
         std::memcpy(table.cell(row, table.columns[c]), &stored, sizeof(T));
       }
     });

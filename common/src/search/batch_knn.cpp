@@ -14,6 +14,11 @@ constexpr float point_margin = 1.4f; // squared distance to the k-th neighbour o
 
 BatchKnn::BatchKnn(const PointTree& tree) : tree_(tree), kernels_(search::knnKernels()) {}
 
+search::KnnPoints BatchKnn::foundPoints()
+{
+  return {squared_.data(), x_.data(), y_.data(), z_.data(), position_.data(), count_};
+}
+
 void BatchKnn::enter(Index begin, Index end)
 {
   first_leaf_ = begin;
@@ -77,7 +82,7 @@ void BatchKnn::prepare()
   }
   for (std::size_t l = 0; l < gathered_; ++l)
     std::copy_n(tree_.leafCoordinates() + 24 * Index{leaves_[l]}, 24, coordinates_.data() + 24 * l);
-  kernels_.boxes(coordinates_.data(), gathered_, stride, boxes_.data());
+  kernels_.boxes(coordinates_.data(), {boxes_.data(), gathered_, stride});
 }
 
 /// Narrows the search to the leaves within `reach` of one of the group.
@@ -88,8 +93,8 @@ void BatchKnn::focus(Index leaf, float reach)
   focus_leaf_ = leaf;
   focus_reach_ = reach;
   const Index center = std::lower_bound(leaves_.begin(), leaves_.begin() + gathered_, leaf) - leaves_.begin();
-  focus_count_ = kernels_.closeBoxes(boxes_.data(), gathered_, (gathered_ + 7) / 8 * 8, center, reach * (1 + rounding),
-                                     focus_.data());
+  const search::KnnBoxes boxes{boxes_.data(), gathered_, (gathered_ + 7) / 8 * 8};
+  focus_count_ = kernels_.closeBoxes(boxes, center, reach * (1 + rounding), focus_.data());
   for (std::size_t l = 0; l < focus_count_; ++l)
     focus_leaves_[l] = leaves_[focus_[l]];
 }
@@ -99,8 +104,7 @@ bool BatchKnn::choose(Index i, int k, float bound)
 {
   const Eigen::Vector3f query = tree_.point(i);
   const std::size_t wanted = k;
-  const search::KnnPoints points{squared_.data(), x_.data(), y_.data(), z_.data(), position_.data()};
-  count_ = kernels_.offsets(coordinates_.data(), focus_.data(), focus_count_, query.data(), bound, points);
+  count_ = kernels_.offsets({coordinates_.data(), focus_.data(), focus_count_}, query.data(), bound, foundPoints());
   if (count_ < wanted)
     return false;
   limit_ = kernels_.limit(squared_.data(), count_, wanted, bound);
@@ -172,8 +176,7 @@ void BatchKnn::chooseByKeys(Index i)
 
 const int* BatchKnn::sum(float* sums)
 {
-  kernels_.sum({squared_.data(), x_.data(), y_.data(), z_.data(), position_.data()}, count_, limit_, sums,
-               chosen_.data());
+  kernels_.sum(foundPoints(), limit_, sums, chosen_.data());
   return chosen_.data();
 }
 
@@ -203,8 +206,8 @@ std::size_t BatchKnn::within(Index i, float radius)
   if (leaf != focus_leaf_ || radius > focus_reach_)
     focus(leaf, std::min(reach_, leaf_margin * radius));
   const float limit = std::nextafter(radius * radius, infinity);
-  return kernels_.closer(tree_.leafCoordinates(), focus_leaves_.data(), focus_count_, tree_.point(i).data(), limit,
-                         squared_.data(), position_.data());
+  return kernels_.closer({tree_.leafCoordinates(), focus_leaves_.data(), focus_count_}, tree_.point(i).data(), limit,
+                         foundPoints());
 }
 
 void BatchKnn::thin(float radius, int wanted)
@@ -231,9 +234,8 @@ void BatchKnn::thin(float radius, int wanted)
 std::size_t BatchKnn::keptWithin(Index i, float radius)
 {
   limit_ = std::nextafter(radius * radius, infinity);
-  const search::KnnPoints points{squared_.data(), x_.data(), y_.data(), z_.data(), position_.data()};
-  count_ = kernels_.offsets(thin_coordinates_.data(), thin_leaves_.data(), thin_leaves_.size(), tree_.point(i).data(),
-                            limit_, points);
+  count_ = kernels_.offsets({thin_coordinates_.data(), thin_leaves_.data(), thin_leaves_.size()}, tree_.point(i).data(),
+                            limit_, foundPoints());
   for (std::size_t j = 0; j < count_; ++j)
     position_[j] = thin_codes_[position_[j]];
   return count_;

@@ -39,36 +39,12 @@ NeighborLists joinLists(std::vector<NeighborLists> ranges, int threads)
       all.begin.push_back(all.begin.back() + count);
   }
   all.index.resize(all.begin.back());
-  parallelFor(
-      ranges.size(), threads,
-      [&](Index r) {
-        std::copy(ranges[r].index.begin(), ranges[r].index.end(), all.index.begin() + first[r]);
-        ranges[r] = {}; // frees memory on the way
-      },
-      1);
+  const auto copy = [&](Index r) {
+    std::copy(ranges[r].index.begin(), ranges[r].index.end(), all.index.begin() + first[r]);
+    ranges[r] = {}; // frees memory on the way
+  };
+  parallelFor(ranges.size(), threads, copy, 1);
   return all;
-}
-
-/// find(i, found) for i = 0..n-1, `found` empty at first.
-template <typename Find>
-NeighborLists gatherLists(Index n, int threads, const Find& find)
-{
-  constexpr Index chunk = 2048;
-  std::vector<NeighborLists> ranges((n + chunk - 1) / chunk);
-  parallelRanges(
-      n, threads,
-      [&](Index begin, Index end) {
-        NeighborLists& range = ranges[begin / chunk];
-        std::vector<int> found;
-        for (Index i = begin; i < end; ++i) {
-          found.clear();
-          find(i, found);
-          range.begin.push_back(found.size());
-          range.index.insert(range.index.end(), found.begin(), found.end());
-        }
-      },
-      chunk);
-  return joinLists(std::move(ranges), threads);
 }
 
 /// Every m-th of `positions`, and `self`; ascending as before.
@@ -204,22 +180,24 @@ NeighborLists imageLists(const Points& points, Index width, int k, int threads)
   const Index height = points.cols() / width;
   // A window of twice k pixels holds the k nearest unless the surface is seen at a grazing angle.
   const Index reach = std::ceil((std::sqrt(2.0 * k) - 1) / 2);
-  return gatherLists(points.cols(), threads, [&](Index i, std::vector<int>& found) {
-    thread_local Keys keys;
-    keys.clear();
-    const Eigen::Vector3f center = points.col(i);
-    if (!center.allFinite())
-      return;
-    const Index u = i % width, v = i / width;
-    for (Index y = std::max<Index>(0, v - reach); y <= std::min(height - 1, v + reach); ++y)
-      for (Index x = std::max<Index>(0, u - reach); x <= std::min(width - 1, u + reach); ++x) {
-        const float squared_distance = (points.col(y * width + x) - center).squaredNorm();
-        if (std::isfinite(squared_distance))
-          keys.push_back(PointTree::key(squared_distance, y * width + x));
-      }
-    std::sort(keys.begin(), keys.end());
-    keys.resize(std::min<std::size_t>(keys.size(), k));
-    std::transform(keys.begin(), keys.end(), std::back_inserter(found), PointTree::position);
+  std::vector<NeighborLists> rows(height);
+  parallelFor(height, threads, [&](Index v) {
+    Keys keys;
+    for (Index u = 0; u < width; ++u) {
+      const Eigen::Vector3f center = points.col(v * width + u);
+      keys.clear();
+      for (Index y = std::max<Index>(0, v - reach); y <= std::min(height - 1, v + reach); ++y)
+        for (Index x = std::max<Index>(0, u - reach); x <= std::min(width - 1, u + reach); ++x) {
+          const float squared_distance = (points.col(y * width + x) - center).squaredNorm();
+          if (std::isfinite(squared_distance)) // never where the centre is not
+            keys.push_back(PointTree::key(squared_distance, y * width + x));
+        }
+      std::sort(keys.begin(), keys.end());
+      keys.resize(std::min<std::size_t>(keys.size(), k));
+      rows[v].begin.push_back(keys.size());
+      std::transform(keys.begin(), keys.end(), std::back_inserter(rows[v].index), PointTree::position);
+    }
   });
+  return joinLists(std::move(rows), threads);
 }
 } // namespace fresco

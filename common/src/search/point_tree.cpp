@@ -11,6 +11,8 @@ using search::TreeItem;
 struct PointTree::Part {
   Index node, begin, end;
   Index middle() const { return begin + (end - begin + 1) / 2; }
+  Part left() const { return {node + 1, begin, middle()}; }
+  Part right() const { return {node + middle() - begin, middle(), end}; }
 };
 
 /// The box around points. The fourth of each number is that of no axis.
@@ -45,7 +47,7 @@ PointTree::PointTree(const Points& points, int threads)
   items.reserve(points.cols());
   for (Index i = 0; i < points.cols(); ++i)
     if (points.col(i).allFinite())
-      items.push_back({{points(0, i), points(1, i), points(2, i)}, static_cast<int>(i)});
+      items.push_back({{points(0, i), points(1, i), points(2, i)}, int(i)});
   leaves_ = (items.size() + leaf_size - 1) / leaf_size;
   nodes_.resize(std::max<Index>(0, leaves_ - 1));
   build(items, threads);
@@ -66,23 +68,21 @@ void PointTree::build(std::vector<TreeItem>& items, int threads)
     parts.push_back({{0, 0, leaves_}, Box(items.data(), items.data() + items.size())});
   for (int level = 0; level < 7 && !parts.empty(); ++level) {
     std::vector<std::vector<OpenPart>> halves(parts.size());
-    parallelFor(
-        parts.size(), threads, [&](Index p) { split(items, parts[p], halves[p]); }, 1);
+    const auto cut = [&](Index p) { split(items, parts[p], halves[p]); };
+    parallelFor(parts.size(), threads, cut, 1);
     parts.clear();
     for (const auto& two : halves)
       parts.insert(parts.end(), two.begin(), two.end());
   }
-  parallelFor(
-      parts.size(), threads,
-      [&](Index p) {
-        std::vector<OpenPart> open = {parts[p]};
-        while (!open.empty()) {
-          const OpenPart part = open.back();
-          open.pop_back();
-          split(items, part, open);
-        }
-      },
-      1);
+  const auto cutWhole = [&](Index p) {
+    std::vector<OpenPart> open = {parts[p]};
+    while (!open.empty()) {
+      const OpenPart part = open.back();
+      open.pop_back();
+      split(items, part, open);
+    }
+  };
+  parallelFor(parts.size(), threads, cutWhole, 1);
 }
 
 void PointTree::split(std::vector<TreeItem>& items, const OpenPart& open, std::vector<OpenPart>& parts)
@@ -96,9 +96,9 @@ void PointTree::split(std::vector<TreeItem>& items, const OpenPart& open, std::v
   const Box left(begin, middle), right(middle, end);
   nodes_[part.node] = {left.high[axis], right.low[axis], axis};
   if (part.middle() - part.begin > 1)
-    parts.push_back({{part.node + 1, part.begin, part.middle()}, left});
+    parts.push_back({part.left(), left});
   if (part.end - part.middle() > 1)
-    parts.push_back({{part.node + part.middle() - part.begin, part.middle(), part.end}, right});
+    parts.push_back({part.right(), right});
 }
 
 Points PointTree::points() const
@@ -181,10 +181,8 @@ void PointTree::search(const Eigen::Vector3f& query, Collector& collector) const
       continue;
     while (open.part.end - open.part.begin > 1) {
       const Node& node = nodes_[open.part.node];
-      const Index middle = open.part.middle();
       const float x = query[node.axis];
-      const Part left = {open.part.node + 1, open.part.begin, middle};
-      const Part right = {open.part.node + middle - open.part.begin, middle, open.part.end};
+      const Part left = open.part.left(), right = open.part.right();
       const bool left_first = x + x < node.low + node.high;
       const float gap = left_first ? node.high - x : x - node.low;
       Open& other = stack[height];
@@ -219,8 +217,7 @@ void PointTree::nearestKeys(const Eigen::Vector3f& query, int k, std::vector<Key
 {
   require(k > 0, "neighbour search: k ", k, " is below 1");
   found.resize(3 * std::min<Index>(k, size()) + 64);
-  NearestFew collector{found, static_cast<std::size_t>(k),
-                       std::nextafter(bound, std::numeric_limits<float>::infinity())};
+  NearestFew collector{found, std::size_t(k), std::nextafter(bound, std::numeric_limits<float>::infinity())};
   search(query, collector);
   collector.shrink();
   found.resize(collector.size);
@@ -248,15 +245,12 @@ void PointTree::leavesWithin(const Eigen::Vector3f& low, const Eigen::Vector3f& 
     Part part = stack[--height];
     while (part.end - part.begin > 1) {
       const Node& node = nodes_[part.node];
-      const Index middle = part.middle();
-      const Part left = {part.node + 1, part.begin, middle};
-      const Part right = {part.node + middle - part.begin, middle, part.end};
       const bool in_left = low[node.axis] <= node.low, in_right = high[node.axis] >= node.high;
       if (!in_left && !in_right)
         break;
       if (in_left && in_right)
-        stack[height++] = right;
-      part = in_left ? left : right;
+        stack[height++] = part.right();
+      part = in_left ? part.left() : part.right();
     }
     if (part.end - part.begin == 1)
       leaves.push_back(part.begin);
@@ -276,8 +270,8 @@ std::vector<Index> PointTree::subtrees(Index most) const
       first.push_back(part.begin);
       continue;
     }
-    open.push_back({0, part.middle(), part.end}); // nodes are not needed
-    open.push_back({0, part.begin, part.middle()});
+    open.push_back(part.right());
+    open.push_back(part.left());
   }
   first.push_back(leaves_);
   return first;

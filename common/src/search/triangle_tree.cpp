@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "search/embree_scene.h"
-#include "search/morton_order.h"
+#include <algorithm>
 #include <cmath>
+#include <fresco/core/morton.h>
 #include <fresco/core/parallel.h>
 #include <fresco/core/require.h>
 #include <fresco/search/closest_on_triangle.h>
@@ -104,6 +105,23 @@ void requireQuery(const Vector3d& query)
   require(inRange(query), "TriangleTree: the query is not finite or exceeds ", largest_coordinate);
 }
 
+/// Columns of points along a Morton curve of 1024 cells per axis, each in the lower half of a number: neighbours in the
+/// order are neighbours in space.
+std::vector<std::uint64_t> mortonOrder(const Eigen::Matrix3Xd& points, int threads)
+{
+  std::vector<std::uint64_t> order(points.cols());
+  if (order.empty())
+    return order;
+  const Eigen::Array3d low = points.rowwise().minCoeff();
+  const double side = (points.rowwise().maxCoeff().array() - low).maxCoeff(), scale = side > 0.0 ? 1024.0 / side : 0.0;
+  parallelFor(points.cols(), threads, [&](Index i) {
+    const Eigen::Array3d cell = ((points.col(i).array() - low) * scale).max(0.0).min(1023.0);
+    order[i] = mortonCode(cell[2], cell[1], cell[0]) << 32 | i;
+  });
+  std::sort(order.begin(), order.end());
+  return order;
+}
+
 std::shared_ptr<const TriangleTreeData> treeOf(const Points& vertices, const Faces& faces, int threads)
 {
   for (Index f = 0; f < faces.cols(); ++f)
@@ -124,8 +142,7 @@ TriangleTree::TriangleTree(const TriangleMesh& mesh, int threads)
 TriangleTree TriangleTree::ofPoints(const Points& points, int threads)
 {
   require(points.cols() > 0, "TriangleTree: no points");
-  const Faces faces =
-      Eigen::RowVectorXi::LinSpaced(points.cols(), 0, static_cast<int>(points.cols()) - 1).replicate(3, 1);
+  const Faces faces = Eigen::RowVectorXi::LinSpaced(points.cols(), 0, points.cols() - 1).replicate(3, 1);
   return TriangleTree(treeOf(points, faces, threads));
 }
 
@@ -146,12 +163,12 @@ std::vector<ClosestPoint> closestPoints(const TriangleTree& tree, const Eigen::M
 {
   for (Index i = 0; i < queries.cols(); ++i)
     requireQuery(queries.col(i));
-  const std::vector<std::int32_t> order = search::mortonOrder(queries, threads);
+  const std::vector<std::uint64_t> order = mortonOrder(queries, threads);
   std::vector<ClosestPoint> answers(order.size());
   parallelRanges(queries.cols(), threads, [&](Index begin, Index end) {
     int last = -1; // the previous answer bounds the next one
     for (Index i = begin; i < end; ++i) {
-      const std::int32_t column = order[i];
+      const Index column = order[i] & 0xffffffff;
       Search search(*tree.data_, queries.col(column));
       if (last >= 0)
         search.test(last);

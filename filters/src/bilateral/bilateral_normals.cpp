@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bilateral/crease_normals.h"
-#include "bilateral/exponential.h"
 #include "bilateral/smoothing_field.h"
+#include "normals/exponential.h"
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -58,7 +58,7 @@ struct Neighborhood {
 
 void weigh(const Field& field, const Points& normals, Neighborhood& around)
 {
-  const Index i = around.point, count = static_cast<Index>(around.list.size());
+  const Index i = around.point, count = around.list.size();
   const int* list = around.list.data();
   const Eigen::Vector3f point = field.point(i), normal = normals.col(i);
   const float scale_d = field.scales_d[field.scales_d.size() == 1 ? 0 : i];

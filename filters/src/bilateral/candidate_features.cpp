@@ -25,10 +25,11 @@ float logCount(float count)
   static const std::array<float, 256> logs = [] {
     std::array<float, 256> values{};
     for (std::size_t n = 0; n < values.size(); ++n)
-      values[n] = std::log(static_cast<float>(n) + 0.5f);
+      values[n] = std::log(n + 0.5f);
     return values;
   }();
-  return logs[static_cast<Index>(std::min(count, 255.f))];
+  const Index n = std::min(count, 255.f);
+  return logs[n];
 }
 } // namespace
 
@@ -37,7 +38,7 @@ void NormalCandidateFeatures::set(const std::vector<CandidateNeighbor>& neighbor
   constexpr float least_noise = 0.05f; // spacings: surfaces between beams are not flatter, however exact these are
   constexpr float fading = 16.f;       // squared spacings across the beam at which a neighbour places a plane by half
   sortIntoRings(neighbors);
-  const auto n = static_cast<Index>(neighbors.size());
+  const Index n = neighbors.size();
   beam_ = beam;
   offsets_.resize(3, n);
   normals_.resize(3, n);
@@ -62,7 +63,7 @@ void NormalCandidateFeatures::sortIntoRings(const std::vector<CandidateNeighbor>
 {
   order_.clear();
   for (std::size_t j = 0; j < neighbors.size(); ++j)
-    order_.emplace_back(neighbors[j].offset.squaredNorm(), static_cast<int>(j));
+    order_.emplace_back(neighbors[j].offset.squaredNorm(), j);
   auto end = order_.end();
   for (int ring = ring_count - 2; ring >= 0; --ring)
     if (order_.begin() + rings[ring] < end) {
@@ -177,7 +178,7 @@ void NormalCandidateFeatures::measureSpread(const Vector3f& direction, Features&
   features[from_spread + 2] = std::log(shorter + 0.1f);
   features[from_spread + 3] = std::log(std::max(shorter * spacing_ / thickness_, 0.1f));
   features[from_spread + 4] = std::log(noise_ / spacing_);
-  features[from_spread + 5] = std::log(static_cast<float>(across_.size()) + 1.f);
+  features[from_spread + 5] = std::log(across_.size() + 1.f);
 }
 /// How far the neighbours are from the plane, and how far those that it holds agree with it.
 void NormalCandidateFeatures::measureFit(const Vector3f& direction, Features& features)

@@ -3,29 +3,22 @@
 #include "networks/mlp.h"
 namespace fresco::filters {
 namespace {
-constexpr int inputs = NormalCandidateFeatures::count, first = CandidateScore::first_size, second = 16;
+enum { of_candidate, of_own_normal }; // matrices of the first layer
 
-struct Network : Mlp<inputs, first, second> {
-  explicit Network(const Weights& weights)
-      : Mlp(weights), of_candidate(weights.values("of_candidate", {inputs, first})),
-        of_own_normal(weights.values("of_own_normal", {inputs, first}))
-  {}
-  const float *of_candidate, *of_own_normal; ///< matrices of the first layer
-};
-
-const Network& network()
+const auto& network()
 {
-  static const Network loaded{Weights(candidateScoreData())};
+  static const Mlp<NormalCandidateFeatures::count, CandidateScore::first_size, 16> loaded(
+      Weights(candidateScoreData()), {"of_candidate", "of_own_normal"});
   return loaded;
 }
 } // namespace
 
 CandidateScore::CandidateScore(const NormalCandidateFeatures::Features& own)
-    : from_own_(network().firstSums(network().of_own_normal, own))
+    : from_own_(network().firstSums(of_own_normal, own))
 {}
 
 float CandidateScore::of(const NormalCandidateFeatures::Features& features) const
 {
-  return network().output(network().firstSums(network().of_candidate, features) + from_own_);
+  return network().output(network().firstSums(of_candidate, features) + from_own_);
 }
 } // namespace fresco::filters

@@ -4,13 +4,11 @@
 #include <cmath>
 #include <fresco/core/parallel.h>
 namespace fresco::filters {
-namespace {} // namespace
-
 std::array<std::int32_t, 3> DirectionGrid::placeOf(const Eigen::Vector3f& point) const
 {
   std::array<std::int32_t, 3> place;
   for (int axis = 0; axis < 3; ++axis)
-    place[axis] = static_cast<std::int32_t>(std::clamp(std::floor(point[axis] / edge_), -1048570.f, 1048570.f));
+    place[axis] = std::clamp(std::floor(point[axis] / edge_), -1048570.f, 1048570.f);
   return place;
 }
 
@@ -18,7 +16,7 @@ std::uint64_t DirectionGrid::key(const std::array<std::int32_t, 3>& place) const
 {
   std::uint64_t key = 0;
   for (const std::int32_t coordinate : place)
-    key = key << 21 | static_cast<std::uint64_t>(coordinate + (1 << 20));
+    key = key << 21 | std::uint64_t(coordinate + (1 << 20));
   return key;
 }
 
@@ -84,25 +82,19 @@ DirectionGrid::Surroundings DirectionGrid::surroundingsOf(const Cell& cell) cons
     around.directions.emplace_back(-around.directions[k]);
     around.shares.push_back(around.shares[k]);
   }
-  around.noise = measured >= enough ? static_cast<float>(noise / static_cast<double>(measured)) : 0.f;
+  around.noise = measured >= enough ? noise / measured : 0.0;
   return around;
-}
-
-/// Mean of what was measured anywhere; 0 if nothing was.
-float DirectionGrid::noiseOfAll() const
-{
-  double noise = 0;
-  Index measured = 0;
-  for (const Cell& cell : cells_) {
-    noise += cell.noise;
-    measured += cell.measured;
-  }
-  return measured > 0 ? static_cast<float>(noise / static_cast<double>(measured)) : 0.f;
 }
 
 void DirectionGrid::finish(int threads)
 {
-  const float noise = noiseOfAll();
+  double sum = 0;
+  Index measured = 0;
+  for (const Cell& cell : cells_) {
+    sum += cell.noise;
+    measured += cell.measured;
+  }
+  const float noise = measured > 0 ? sum / measured : 0.0; // mean of what was measured anywhere
   parallelFor(cells_.size(), threads, [&](Index c) {
     Cell& cell = cells_[c];
     cell.around = surroundingsOf(cell);

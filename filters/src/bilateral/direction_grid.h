@@ -46,7 +46,6 @@ private:
   std::uint64_t key(const std::array<std::int32_t, 3>& place) const;
   std::array<std::int32_t, 3> placeOf(const Eigen::Vector3f& point) const;
   Surroundings surroundingsOf(const Cell& cell) const;
-  float noiseOfAll() const;
 
   float edge_;
   std::unordered_map<std::uint64_t, std::size_t> numbers_;

@@ -16,7 +16,7 @@ Eigen::VectorXf meanDistances(const PointTree& tree, const NeighborLists& lists,
     double sum = 0;
     for (const int* j = lists.first(i); j != lists.last(i); ++j)
       sum += (tree.point(*j) - tree.point(i)).norm();
-    means[i] = static_cast<float>(sum / static_cast<double>(std::max<Index>(1, lists.count(i) - 1)));
+    means[i] = sum / std::max<Index>(1, lists.count(i) - 1);
   });
   return means;
 }
@@ -42,8 +42,8 @@ double threshold(const Eigen::VectorXf& values, const OutlierOptions& options)
   const Index n = values.size();
   const Sums sums = parallelSum(n, options.threads, Sums(0, 0),
                                 [&](Index i) { return Sums(values[i], static_cast<double>(values[i]) * values[i]); });
-  const double mean = sums[0] / static_cast<double>(n);
-  const double variance = n > 1 ? std::max(0.0, (sums[1] - sums[0] * mean) / static_cast<double>(n - 1)) : 0.0;
+  const double mean = sums[0] / n;
+  const double variance = n > 1 ? std::max(0.0, (sums[1] - sums[0] * mean) / (n - 1)) : 0.0;
   return mean + options.sigma * std::sqrt(variance);
 }
 } // namespace

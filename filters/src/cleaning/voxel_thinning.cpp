@@ -70,15 +70,14 @@ VoxelThinning thinByVoxel(const Points& points, float cell, int threads)
       return (points.col(a.point).cast<double>() - centroid).squaredNorm() <
              (points.col(b.point).cast<double>() - centroid).squaredNorm();
     };
-    const auto first = entries.begin() + static_cast<std::ptrdiff_t>(begin);
-    const auto nearest = std::min_element(first, entries.begin() + static_cast<std::ptrdiff_t>(end), nearer);
+    const auto nearest = std::min_element(entries.begin() + begin, entries.begin() + end, nearer);
     found.emplace_back(nearest->point, centroid.cast<float>());
   }
   std::sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
-  VoxelThinning result{{}, Points(3, static_cast<Index>(found.size()))};
+  VoxelThinning result{{}, Points(3, found.size())};
   for (std::size_t v = 0; v < found.size(); ++v) {
     result.kept.push_back(found[v].first);
-    result.centroids.col(static_cast<Index>(v)) = found[v].second;
+    result.centroids.col(v) = found[v].second;
   }
   return result;
 }

@@ -33,10 +33,47 @@ public:
   {}
 
   /// Those around the beams begin..end-1.
-  void gather(Index begin, Index end, int count);
+  void gather(Index begin, Index end, int count)
+  {
+    middle_.setZero();
+    for (Index i = begin; i < end; ++i)
+      middle_ += directions_.point(i) / static_cast<float>(end - begin);
+    search(middle_, count);
+    gathered_.clear();
+    PointTree::Key farthest = 0;
+    for (const PointTree::Key key : keys_) {
+      gathered_.push_back(PointTree::position(key));
+      farthest = std::max(farthest, key);
+    }
+    radius_ = std::sqrt(PointTree::squaredDistance(farthest));
+  }
+
   /// The `count` nearest of a beam without those closer than half of least_spacing, nearest first; positions in
   /// `directions`.
-  void list(Index i, int count, std::vector<PointTree::Key>& found);
+  void list(Index i, int count, std::vector<PointTree::Key>& found)
+  {
+    const Eigen::Vector3f beam = directions_.point(i);
+    const auto sortNearest = [&] {
+      const auto apart = [](PointTree::Key key) {
+        return PointTree::squaredDistance(key) > 0.25f * least_spacing * least_spacing;
+      };
+      found.erase(std::partition(found.begin(), found.end(), apart), found.end());
+      const auto last = found.begin() + std::min<std::ptrdiff_t>(count, std::distance(found.begin(), found.end()));
+      std::partial_sort(found.begin(), last, found.end());
+      found.erase(last, found.end());
+    };
+    found.clear();
+    for (const int j : gathered_)
+      found.push_back(PointTree::key((directions_.point(j) - beam).squaredNorm(), j));
+    sortNearest();
+    const bool all = Index(found.size()) == count &&
+                     std::sqrt(PointTree::squaredDistance(found.back())) + (beam - middle_).norm() < radius_;
+    if (all)
+      return;
+    search(beam, 2 * count);
+    found = keys_;
+    sortNearest();
+  }
 
 private:
   void search(const Eigen::Vector3f& beam, int count)
@@ -54,46 +91,6 @@ private:
   float radius_ = 0;          ///< all within it are there
 };
 
-void SomeBeams::gather(Index begin, Index end, int count)
-{
-  middle_.setZero();
-  for (Index i = begin; i < end; ++i)
-    middle_ += directions_.point(i) / static_cast<float>(end - begin);
-  search(middle_, count);
-  gathered_.clear();
-  PointTree::Key farthest = 0;
-  for (const PointTree::Key key : keys_) {
-    gathered_.push_back(PointTree::position(key));
-    farthest = std::max(farthest, key);
-  }
-  radius_ = std::sqrt(PointTree::squaredDistance(farthest));
-}
-
-void SomeBeams::list(Index i, int count, std::vector<PointTree::Key>& found)
-{
-  const Eigen::Vector3f beam = directions_.point(i);
-  const auto sortNearest = [&] {
-    const auto apart = [](PointTree::Key key) {
-      return PointTree::squaredDistance(key) > 0.25f * least_spacing * least_spacing;
-    };
-    found.erase(std::partition(found.begin(), found.end(), apart), found.end());
-    const auto last = found.begin() + std::min<std::ptrdiff_t>(count, std::distance(found.begin(), found.end()));
-    std::partial_sort(found.begin(), last, found.end());
-    found.erase(last, found.end());
-  };
-  found.clear();
-  for (const int j : gathered_)
-    found.push_back(PointTree::key((directions_.point(j) - beam).squaredNorm(), j));
-  sortNearest();
-  const bool all = static_cast<int>(found.size()) == count &&
-                   std::sqrt(PointTree::squaredDistance(found.back())) + (beam - middle_).norm() < radius_;
-  if (all)
-    return;
-  search(beam, 2 * count);
-  found = keys_;
-  sortNearest();
-}
-
 /// As nearestLists() of every m-th beam, without those closer than half of least_spacing; the beam itself comes first.
 NeighborLists thinnedLists(const PointTree& directions, Index m, const MixedPixelOptions& options)
 {
@@ -101,7 +98,7 @@ NeighborLists thinnedLists(const PointTree& directions, Index m, const MixedPixe
   for (Index i = 0; i < every.cols(); ++i)
     every.col(i) = directions.point(m * i);
   const PointTree tree(every, options.threads);
-  const auto each = static_cast<Index>(options.k) + 1;
+  const Index each = options.k + 1;
   NeighborLists lists = evenLists(directions.size(), each);
   const Index of_group = std::max(m, PointTree::leaf_size);
   const Index groups = (directions.size() + of_group - 1) / of_group;
@@ -113,7 +110,7 @@ NeighborLists thinnedLists(const PointTree& directions, Index m, const MixedPixe
       some.gather(begin, end, 3 * options.k);
       for (Index i = begin; i < end; ++i) {
         int* list = lists.index.data() + lists.begin[i];
-        std::fill_n(list, each, static_cast<int>(i));
+        std::fill_n(list, each, i);
         some.list(i, options.k, found);
         std::transform(found.begin(), found.end(), list + 1, PointTree::position);
       }
@@ -126,7 +123,7 @@ NeighborLists thinnedLists(const PointTree& directions, Index m, const MixedPixe
 BeamScan makeBeamScan(const Points& points, const Eigen::Vector3f& viewpoint, const std::vector<Index>& columns,
                       const MixedPixelOptions& options)
 {
-  const auto n = static_cast<Index>(columns.size());
+  const Index n = columns.size();
   Points directions(3, n);
   parallelFor(n, options.threads, [&](Index i) {
     const Eigen::Vector3f beam = points.col(columns[i]) - viewpoint;
@@ -134,7 +131,7 @@ BeamScan makeBeamScan(const Points& points, const Eigen::Vector3f& viewpoint, co
   });
   auto tree = std::make_unique<PointTree>(directions, options.threads);
   const float times = least_spacing / beamSpacing(*tree);
-  const Index m = times * times < static_cast<float>(tree->size()) ? static_cast<Index>(times * times) : 1;
+  const Index m = times * times < tree->size() ? times * times : 1.f;
   BeamScan scan{{}, tree->points(), Eigen::VectorXf(tree->size()), {}, nullptr, false, {}};
   scan.lists = m > 1 ? thinnedLists(*tree, m, options) : nearestLists(*tree, options.k + 1, options.threads);
   for (Index i = 0; i < tree->size(); ++i) {
@@ -148,10 +145,9 @@ BeamScan makeBeamScan(const Points& points, const Eigen::Vector3f& viewpoint, co
 
 float RangeNoise::at(float range) const
 {
-  const auto above = std::upper_bound(ranges.begin(), ranges.end(), range) - ranges.begin();
-  if (above == 0)
+  const std::size_t k = std::upper_bound(ranges.begin(), ranges.end(), range) - ranges.begin();
+  if (k == 0)
     return deviations.front();
-  const auto k = static_cast<std::size_t>(above);
   if (k == ranges.size())
     return deviations.back();
   const float part = (range - ranges[k - 1]) / (ranges[k] - ranges[k - 1]);

@@ -43,7 +43,7 @@ Misfit misfitOf(const Plane& plane, const Places& beams, int count)
   double largest = -1;
   for (int k = 0; k < count; ++k) {
     const double on_plane = plane.inverse_depth.dot(Eigen::Vector3d(1, beams[k]->place.x(), beams[k]->place.y()));
-    const double off = std::abs(1 / static_cast<double>(beams[k]->inverse_depth) - 1 / on_plane);
+    const double off = std::abs(1.0 / beams[k]->inverse_depth - 1 / on_plane);
     misfit.rms += off * off;
     if (off > largest) {
       largest = off;
@@ -55,10 +55,7 @@ Misfit misfitOf(const Plane& plane, const Places& beams, int count)
 }
 
 /// The value below which `share` of the values lie; not empty.
-float quantile(std::vector<float>& values, double share)
-{
-  return rankedValue(values, static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1)));
-}
+float quantile(std::vector<float>& values, double share) { return rankedValue(values, share * (values.size() - 1)); }
 
 /// What measures too much is held down by the others, since noise neither falls with the range nor grows faster than
 /// its square: groups between the ranges of surfaces, whose planes all cross a jump.
@@ -134,8 +131,7 @@ std::optional<Continuation> continueSide(const BeamWindow& window, const WindowS
     const auto scaled = noise / static_cast<float>(std::sqrt(cosine));
     const Misfit misfit = misfitOf(plane, beams, count);
     if (misfit.rms <= largest_rms * scaled)
-      return Continuation{static_cast<float>(1 / at[0]),
-                          scaled * std::sqrt(1 + std::min(largest_leverage, static_cast<float>(plane.leverage)))};
+      return Continuation{float(1 / at[0]), scaled * std::sqrt(1 + std::min(largest_leverage, float(plane.leverage)))};
     std::swap(beams[misfit.worst], beams[count - 1]);
   }
   return {};
@@ -152,13 +148,12 @@ RangeNoise measureNoise(const BeamScan& scan, int threads)
     Places beams{};
     for (Index i = begin; i < end; ++i) {
       fillWindow(scan, i, scan.lists.first(i), scan.lists.last(i), window);
-      const int count = std::min(around, static_cast<int>(window.beams.size()));
+      const int count = std::min<int>(around, window.beams.size());
       for (int k = 0; k < count; ++k)
         beams[k] = &window.beams[k];
       const Plane plane = fitInverseDepth(beams, count);
-      const auto at = static_cast<float>(1 / plane.inverse_depth[0]); // unlike the range free of the beam's own noise
-      const float off =
-          std::abs(window.range - at) / std::sqrt(1 + std::min(largest_leverage, static_cast<float>(plane.leverage)));
+      const float at = 1 / plane.inverse_depth[0]; // unlike the range free of the beam's own noise
+      const float off = std::abs(window.range - at) / std::sqrt(1 + std::min(largest_leverage, float(plane.leverage)));
       const bool known = count >= 4 && std::isfinite(off) && at > 0;
       differences[i] = {known ? at : window.range, known ? off : 0.f};
     }

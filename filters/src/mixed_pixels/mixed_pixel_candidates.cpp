@@ -31,9 +31,40 @@ public:
   {}
 
   /// @return whether it is a candidate
-  bool fill(Index i);
+  bool fill(Index i)
+  {
+    noise_ = scan_.noise.at(scan_.ranges[i]);
+    BeamWindow& listed = scan_.thinned ? wide_ : near_;
+    fillWindow(scan_, i, scan_.lists.first(i), scan_.lists.last(i), listed);
+    if (listed.beams.size() < beside)
+      return false;
+    if (!scan_.thinned)
+      return isBetween(near_, noise_, slope_);
+    if (!canBeBetween())
+      return false;
+    listNearest(i, k_);
+    fillFromList(i, near_);
+    return near_.beams.size() >= beside && (isBetween(wide_, noise_, slope_) || isBetween(near_, noise_, slope_));
+  }
+
   /// Without beams of positive scores, where enough others are there.
-  void fillWithout(Index i, const std::vector<float>& scores);
+  void fillWithout(Index i, const std::vector<float>& scores)
+  {
+    const auto leaveOut = [&] {
+      const auto high = [&](int j) { return j != i && scores[j] > 0; };
+      list_.erase(std::remove_if(list_.begin(), list_.end(), high), list_.end());
+      list_.resize(std::min<std::size_t>(list_.size(), k_ + 1));
+      return list_.size() > beside;
+    };
+    listNearest(i, reach);
+    if (leaveOut())
+      fillFromList(i, near_);
+    if (!scan_.thinned)
+      return;
+    list_.assign(scan_.lists.first(i), scan_.lists.last(i));
+    if (leaveOut())
+      fillFromList(i, wide_);
+  }
   BeamSurroundings around() const { return {near_, scan_.thinned ? wide_ : near_, noise_}; }
   /// ringsAround() over farther beams than those of around().
   auto rings(Index i, const std::vector<float>& scores)
@@ -44,12 +75,30 @@ public:
   }
 
 private:
-  void listNearest(Index i, Index count); ///< nearest first
+  /// Nearest first.
+  void listNearest(Index i, Index count)
+  {
+    scan_.tree->nearestKeys(scan_.directions.col(i), count + 1, found_);
+    std::sort(found_.begin(), found_.end());
+    list_.clear();
+    for (const PointTree::Key key : found_)
+      list_.push_back(PointTree::position(key));
+  }
   void fillFromList(Index i, BeamWindow& window) const
   {
     fillWindow(scan_, i, list_.data(), list_.data() + list_.size(), window);
   }
-  bool canBeBetween() const;
+
+  /// Whether anything of the wide window is nearer and anything farther.
+  bool canBeBetween() const
+  {
+    float least = wide_.range, most = wide_.range;
+    for (const BeamWindow::Beam& beam : wide_.beams) {
+      least = std::min(least, beam.range);
+      most = std::max(most, beam.range);
+    }
+    return least < wide_.range - clear * noise_ && most > wide_.range + clear * noise_;
+  }
 
   const BeamScan& scan_;
   Index k_;
@@ -58,60 +107,6 @@ private:
   std::vector<PointTree::Key> found_;
   std::vector<int> list_;
 };
-
-void BeamWindows::listNearest(Index i, Index count)
-{
-  scan_.tree->nearestKeys(scan_.directions.col(i), count + 1, found_);
-  std::sort(found_.begin(), found_.end());
-  list_.clear();
-  for (const PointTree::Key key : found_)
-    list_.push_back(static_cast<int>(PointTree::position(key)));
-}
-
-/// Whether anything of the wide window is nearer and anything farther.
-bool BeamWindows::canBeBetween() const
-{
-  float least = wide_.range, most = wide_.range;
-  for (const BeamWindow::Beam& beam : wide_.beams) {
-    least = std::min(least, beam.range);
-    most = std::max(most, beam.range);
-  }
-  return least < wide_.range - clear * noise_ && most > wide_.range + clear * noise_;
-}
-
-bool BeamWindows::fill(Index i)
-{
-  noise_ = scan_.noise.at(scan_.ranges[i]);
-  BeamWindow& listed = scan_.thinned ? wide_ : near_;
-  fillWindow(scan_, i, scan_.lists.first(i), scan_.lists.last(i), listed);
-  if (listed.beams.size() < beside)
-    return false;
-  if (!scan_.thinned)
-    return isBetween(near_, noise_, slope_);
-  if (!canBeBetween())
-    return false;
-  listNearest(i, k_);
-  fillFromList(i, near_);
-  return near_.beams.size() >= beside && (isBetween(wide_, noise_, slope_) || isBetween(near_, noise_, slope_));
-}
-
-void BeamWindows::fillWithout(Index i, const std::vector<float>& scores)
-{
-  const auto leaveOut = [&] {
-    const auto high = [&](int j) { return j != i && scores[j] > 0; };
-    list_.erase(std::remove_if(list_.begin(), list_.end(), high), list_.end());
-    list_.resize(std::min(list_.size(), static_cast<std::size_t>(k_) + 1));
-    return list_.size() > beside;
-  };
-  listNearest(i, reach);
-  if (leaveOut())
-    fillFromList(i, near_);
-  if (!scan_.thinned)
-    return;
-  list_.assign(scan_.lists.first(i), scan_.lists.last(i));
-  if (leaveOut())
-    fillFromList(i, wide_);
-}
 
 /// How many neighbours of a mixed pixel are mixed pixels: beams that score above 0 among the nearest in 8 directions, of
 /// `near`, then of `wide`, on average over the beams that do so themselves. Where these are few, mostly what is usual.
@@ -131,8 +126,8 @@ Eigen::Vector2f mixedNeighborCounts(const BeamScan& scan, const MixedPixelOption
         ++beams;
       }
   });
-  const Eigen::Vector2f sums(static_cast<float>(near), static_cast<float>(wide));
-  return (sums.array() + usual * as_many) / (static_cast<float>(beams) + as_many);
+  const Eigen::Vector2f sums(near, wide);
+  return (sums.array() + usual * as_many) / (beams + as_many);
 }
 } // namespace
 

@@ -29,7 +29,7 @@ public:
     sideways_ = sides < 0 ? Eigen::Vector2f(-across) : across;
   }
   const Eigen::Vector2f& forward() const { return forward_; } ///< where ranges grow, unit
-  Eigen::Vector2f way(int b) const { return wayAt(static_cast<float>(b) * (circle / bearings)); }
+  Eigen::Vector2f way(int b) const { return wayAt(b * (circle / bearings)); }
   Eigen::Vector2f wayAt(float angle) const { return std::cos(angle) * forward_ + std::sin(angle) * sideways_; }
 
 private:
@@ -127,11 +127,10 @@ float joinedShare(const BeamWindow& window, float noise, float slope)
 {
   const std::size_t half = (window.beams.size() + 1) / 2;
   const auto joined =
-      std::count_if(window.beams.begin(), window.beams.begin() + static_cast<std::ptrdiff_t>(half),
-                    [&](const BeamWindow::Beam& beam) {
-                      return std::abs(beam.range - window.range) <= std::max(beam.sideways * slope, clear * noise);
-                    });
-  return static_cast<float>(joined) / static_cast<float>(std::max<std::size_t>(1, half));
+      std::count_if(window.beams.begin(), window.beams.begin() + half, [&](const BeamWindow::Beam& beam) {
+        return std::abs(beam.range - window.range) <= std::max(beam.sideways * slope, clear * noise);
+      });
+  return 1.f * joined / std::max<std::size_t>(1, half);
 }
 
 MixedPixelFeatures mixedPixelFeatures(const BeamSurroundings& around)
@@ -168,8 +167,8 @@ Eigen::Matrix<float, of_rings, 1> ringsAround(const BeamWindow& window, float no
   int at = 0;
   for (int ring = 1; ring <= rings; ++ring)
     for (int k = 0; k < of_ring; ++k) {
-      const Eigen::Vector2f way = compass.wayAt(static_cast<float>(k) * circle / of_ring);
-      const BeamWindow::Beam& beam = beamAt(window, way, static_cast<float>(ring));
+      const Eigen::Vector2f way = compass.wayAt(k * circle / of_ring);
+      const BeamWindow::Beam& beam = beamAt(window, way, ring);
       found[at] = flattened((beam.range - window.range) / noise);
       found[at + rings * of_ring] = std::max(scores[beam.position], least_score);
       ++at;

@@ -6,14 +6,12 @@ namespace {
 template <int inputs, int first, int second>
 struct Classifier : Mlp<inputs, first, second> {
   explicit Classifier(const Weights& weights)
-      : Mlp<inputs, first, second>(weights), first_weights(weights.values("first_weights", {inputs, first})),
-        last_bias(*weights.values("last_bias", {1, 1}))
+      : Mlp<inputs, first, second>(weights, {"first_weights"}), last_bias(*weights.values("last_bias", {1, 1}))
   {}
   float score(const Eigen::Matrix<float, inputs, 1>& features) const
   {
-    return this->output(this->firstSums(first_weights, features)) + last_bias;
+    return this->output(this->firstSums(0, features)) + last_bias;
   }
-  const float* first_weights;
   float last_bias;
 };
 } // namespace

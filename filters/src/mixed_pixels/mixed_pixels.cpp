@@ -13,7 +13,7 @@ namespace {
 void judge(BeamScan scan, const MixedPixelOptions& options, std::vector<char>& mixed)
 {
   constexpr Index fewest = 12; // points of a viewpoint that can be judged
-  if (static_cast<Index>(scan.columns.size()) <= fewest)
+  if (Index(scan.columns.size()) <= fewest)
     return;
   if (options.noise > 0)
     scan.noise = {{0}, {options.noise}};
@@ -85,7 +85,7 @@ std::vector<Index> withoutMixedPixels(const Points& points, const Points& viewpo
   const auto groups = groupByViewpoint(points, viewpoints);
   std::vector<Index> first(points.cols(), -1);
   for (std::size_t g = 0; g < groups.size(); ++g) {
-    report(progress, "judge points", static_cast<double>(g) / static_cast<double>(groups.size()));
+    report(progress, "judge points", 1.0 * g / groups.size());
     const std::vector<Index> single = withoutRepetitions(points, groups[g], first);
     if (!single.empty())
       judge(makeBeamScan(points, viewpoints.col(viewpoints.cols() == 1 ? 0 : single.front()), single, options), options,

@@ -2,35 +2,41 @@
 #pragma once
 #include "networks/weights.h"
 #include <Eigen/Core>
+#include <initializer_list>
+#include <vector>
 namespace fresco::filters {
 /// A multilayer perceptron with two hidden layers of rectified linear units and one output:
 ///
 ///   f = clip(features, lowest, highest)   (what lies beyond the training data counts as its limits)
 ///   a = max(0, W1' f + b1),   b = max(0, W2' a + b2),   output = w3 . b + b3
 ///
-/// Matrices have a row per input. The first layer may have several matrices, one for each set of features.
+/// Matrices have a row per input. The first layer may have several matrices W1, one for each set of features.
 template <int inputs, int first, int second>
 class Mlp {
 public:
   using Features = Eigen::Matrix<float, inputs, 1>;
   using Sums = Eigen::Matrix<float, first, 1>;
 
-  /// @param weights lowest, highest, first_bias, second_weights, second_bias, last_weights; last_bias is left to callers
+  /// @param weights lowest, highest, first_bias, second_weights, second_bias, last_weights, and the matrices W1;
+  /// last_bias is left to callers
+  /// @param matrices names of the matrices W1
   /// @throws std::runtime_error if one is missing or has another shape
-  explicit Mlp(const Weights& weights)
+  Mlp(const Weights& weights, std::initializer_list<const char*> matrices)
       : lowest_(weights.values("lowest", {1, inputs})), highest_(weights.values("highest", {1, inputs})),
         first_bias_(weights.values("first_bias", {1, first})),
         second_weights_(weights.values("second_weights", {first, second})),
         second_bias_(weights.values("second_bias", {1, second})),
         last_weights_(weights.values("last_weights", {second, 1}))
-  {}
+  {
+    for (const char* name : matrices)
+      first_weights_.emplace_back(weights.values(name, {inputs, first}));
+  }
 
   /// W1' f of one of the matrices of the first layer.
-  /// @param matrix inputs x first, row by row
-  Sums firstSums(const float* matrix, const Features& features) const
+  Sums firstSums(int matrix, const Features& features) const
   {
     const Features within = features.cwiseMax(lowest_).cwiseMin(highest_);
-    return Eigen::Map<const Eigen::Matrix<float, first, inputs>>(matrix) * within;
+    return first_weights_[matrix] * within;
   }
 
   /// w3 . b.
@@ -46,6 +52,7 @@ private:
   template <int rows, int columns>
   using Map = Eigen::Map<const Eigen::Matrix<float, rows, columns>>;
   Map<inputs, 1> lowest_, highest_;
+  std::vector<Map<first, inputs>> first_weights_;
   Map<first, 1> first_bias_;
   Map<second, first> second_weights_;
   Map<second, 1> second_bias_, last_weights_;

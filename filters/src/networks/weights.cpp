@@ -10,7 +10,7 @@ extern "C" const char fresco_second_stage_begin[], fresco_second_stage_end[];
 namespace fresco::filters {
 namespace {
 
-std::string_view between(const char* begin, const char* end) { return {begin, static_cast<std::size_t>(end - begin)}; }
+std::string_view between(const char* begin, const char* end) { return {begin, std::size_t(end - begin)}; }
 
 void check(bool ok)
 {
@@ -41,7 +41,7 @@ const float* Weights::values(const std::string& name, Shape shape) const
   const char* at = values_;
   for (const Matrix& matrix : matrices_) {
     if (name.compare(0, name.size(), matrix.name, strnlen(matrix.name, sizeof matrix.name)) == 0 &&
-        static_cast<int>(matrix.rows) == shape.rows && static_cast<int>(matrix.columns) == shape.columns)
+        matrix.rows == shape.rows && matrix.columns == shape.columns)
       return reinterpret_cast<const float*>(at);
     at += sizeof(float) * matrix.rows * matrix.columns;
   }

@@ -19,7 +19,7 @@ public:
   explicit Weights(std::string_view data);
 
   struct Shape {
-    int rows, columns;
+    std::uint32_t rows, columns;
   };
   /// @return the values of a matrix, row by row
   /// @throws std::runtime_error if no matrix has this name and shape

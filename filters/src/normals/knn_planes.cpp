@@ -9,7 +9,6 @@ namespace {
 constexpr std::size_t most_leaves = 65536; // around a group; beyond, each point is searched for alone
 constexpr float least_width = 6.f;         // radius of a neighbourhood / deviation of the points from the surface
 constexpr int spread = 3;                  // times the neighbours of a point are kept in dense parts
-// Sums of the lesser two variances of a neighbourhood over the squared deviation:
 
 /// Deviation of the points from their surfaces: the median of planes through the k nearest.
 float surfaceNoise(const PointTree& tree, int k, int threads)
@@ -62,17 +61,121 @@ class GroupFitter {
 public:
   GroupFitter(const PointTree& tree, int k, float width, Fits& fits)
       : tree_(tree), k_(k), width_(width), variance_(width * width / (least_width * least_width)), fits_(fits),
-        group_(tree), wide_(tree), evenly_(static_cast<std::size_t>(k)),
-        batch_([this](Index i, const Plane& plane) { fits_.planes[i] = plane; })
+        group_(tree), wide_(tree), evenly_(k), batch_([this](Index i, const Plane& plane) { fits_.planes[i] = plane; })
   {}
-  GroupLists fit(Index first_leaf, Index end_leaf, std::uint16_t* codes);
+
+  /// @param codes of the first point of the tree
+  GroupLists fit(Index first_leaf, Index end_leaf, std::uint16_t* codes)
+  {
+    constexpr float reach_margin = 1.5f; // how far to look for neighbours / distance expected
+    group_.enter(first_leaf, end_leaf);
+    encoder_.begin(group_.begin(), group_.end());
+    const float expected = group_.expectedReach(k_);
+    group_.gather(std::max(width_, reach_margin * expected), most_leaves);
+    const bool dense = expected < width_;
+    thinned_ = false;
+    lines_.clear();
+    for (Index i = group_.begin(); i < group_.end(); ++i)
+      if (!dense || !fitKept(i))
+        fitNearest(i);
+    batch_.finish();
+    if (width_ > 0 && !lines_.empty())
+      widenLines(first_leaf, end_leaf);
+    return encoder_.finish(group_.leaves(), codes + group_.begin() * k_);
+  }
 
 private:
-  bool fitKept(Index i);
-  void fitNearest(Index i);
-  void take(Index i, float weight, const float* sums);
-  void widenLines(Index first_leaf, Index end_leaf);
-  bool settled(Index i, float radius);
+  /// With the points kept, if there are enough. Of them, k evenly chosen ones are the list.
+  bool fitKept(Index i)
+  {
+    if (!thinned_)
+      group_.thin(width_, spread * k_);
+    thinned_ = true;
+    const std::size_t found = group_.keptWithin(i, width_), k = evenly_.size();
+    if (found < k)
+      return false;
+    float sums[10];
+    const int* codes = group_.sum(sums);
+    takeEvenly(codes, found);
+    encoder_.add(evenly_.data(), k);
+    take(i, found, sums);
+    return true;
+  }
+
+  void fitNearest(Index i)
+  {
+    float sums[10];
+    group_.nearest(i, k_);
+    const int* codes = group_.sum(sums);
+    if (sums[9] < width_ * width_ && fitKept(i))
+      return;
+    if (sums[9] < width_ * width_) {
+      group_.nearest(i, k_);
+      codes = group_.sum(sums);
+    }
+    encoder_.add(codes, k_);
+    take(i, k_, sums);
+  }
+
+  void take(Index i, float weight, const float* sums)
+  {
+    const Moments moments(weight, sums);
+    fits_.reaches[i] = sums[9];
+    if (isLine(moments, variance_))
+      lines_.push_back(i);
+    batch_.add(i, tree_.point(i), moments);
+  }
+
+  /// As many codes as a list has, evenly chosen of those found.
+  void takeEvenly(const int* codes, std::size_t found)
+  {
+    const double step = 1.0 * found / evenly_.size();
+    for (std::size_t j = 0; j < evenly_.size(); ++j) {
+      const Index at = (j + 0.5) * step;
+      evenly_[j] = codes[at];
+    }
+  }
+
+  void widenLines(Index first_leaf, Index end_leaf)
+  {
+    constexpr int doublings = 4; // of the radius around a line
+    float radius = width_;
+    for (const Index i : lines_)
+      radius = std::max(radius, std::sqrt(fits_.reaches[i]));
+    for (int doubling = 0; doubling < doublings && !lines_.empty(); ++doubling) {
+      radius *= 2;
+      wide_.enter(first_leaf, end_leaf);
+      wide_.gather(radius, most_leaves);
+      wide_.thin(radius, spread * k_);
+      lines_.erase(std::remove_if(lines_.begin(), lines_.end(), [&](Index i) { return settled(i, radius); }),
+                   lines_.end());
+    }
+  }
+
+  /// Goes over to points spread evenly over `radius` if they have a plane.
+  /// @return false if wider ones may have it
+  bool settled(Index i, float radius)
+  {
+    constexpr float clear_breadth = 12.f; // that of the wider one that takes its place
+    constexpr float thickest = 2.25f;     // of a plane that takes the place of a line
+    constexpr float others = 4.5f;        // of a thin thing and what is around it
+    const std::size_t found = wide_.keptWithin(i, radius), k = evenly_.size();
+    float sums[10];
+    const int* codes = wide_.sum(sums);
+    const Moments moments(found, sums);
+    if (found < k || lesserVariances(moments).first < clear_breadth * variance_)
+      return false;
+    const Plane plane = fitPlane(moments, tree_.point(i));
+    if (plane.variance > thickest * variance_)
+      return plane.variance > others * variance_;
+    takeEvenly(codes, found);
+    for (int& code : evenly_)
+      code = group_.codeOf(wide_.position(code));
+    encoder_.replace(i, evenly_.data(), k);
+    fits_.planes[i] = plane;
+    fits_.reaches[i] = sums[9];
+    return true;
+  }
 
   const PointTree& tree_;
   int k_;
@@ -87,113 +190,6 @@ private:
   PlaneBatch<std::function<void(Index, const Plane&)>> batch_;
 };
 
-void GroupFitter::take(Index i, float weight, const float* sums)
-{
-  Moments moments;
-  moments.weight = weight;
-  std::copy_n(sums, 9, moments.sums);
-  fits_.reaches[i] = sums[9];
-  if (isLine(moments, variance_))
-    lines_.push_back(i);
-  batch_.add(i, tree_.point(i), moments);
-}
-
-/// Goes over to points spread evenly over `radius` if they have a plane.
-/// @return false if wider ones may have it
-bool GroupFitter::settled(Index i, float radius)
-{
-  constexpr float clear_breadth = 12.f; // that of the wider one that takes its place
-  constexpr float thickest = 2.25f;     // of a plane that takes the place of a line
-  constexpr float others = 4.5f;        // of a thin thing and what is around it
-  const std::size_t found = wide_.keptWithin(i, radius), k = evenly_.size();
-  float sums[10];
-  const int* codes = wide_.sum(sums);
-  Moments moments;
-  moments.weight = static_cast<float>(found);
-  std::copy_n(sums, 9, moments.sums);
-  if (found < k || lesserVariances(moments).first < clear_breadth * variance_)
-    return false;
-  const Plane plane = fitPlane(moments, tree_.point(i));
-  if (plane.variance > thickest * variance_)
-    return plane.variance > others * variance_;
-  const double step = static_cast<double>(found) / static_cast<double>(k);
-  for (std::size_t j = 0; j < k; ++j)
-    evenly_[j] = group_.codeOf(wide_.position(codes[static_cast<Index>((static_cast<double>(j) + 0.5) * step)]));
-  encoder_.replace(i, evenly_.data(), k);
-  fits_.planes[i] = plane;
-  fits_.reaches[i] = sums[9];
-  return true;
-}
-
-void GroupFitter::widenLines(Index first_leaf, Index end_leaf)
-{
-  constexpr int doublings = 4; // of the radius around a line
-  float radius = width_;
-  for (const Index i : lines_)
-    radius = std::max(radius, std::sqrt(fits_.reaches[i]));
-  for (int doubling = 0; doubling < doublings && !lines_.empty(); ++doubling) {
-    radius *= 2;
-    wide_.enter(first_leaf, end_leaf);
-    wide_.gather(radius, most_leaves);
-    wide_.thin(radius, spread * k_);
-    lines_.erase(std::remove_if(lines_.begin(), lines_.end(), [&](Index i) { return settled(i, radius); }),
-                 lines_.end());
-  }
-}
-
-/// With the points kept, if there are enough. Of them, k evenly chosen ones are the list.
-bool GroupFitter::fitKept(Index i)
-{
-  if (!thinned_)
-    group_.thin(width_, spread * k_);
-  thinned_ = true;
-  const std::size_t found = group_.keptWithin(i, width_), k = evenly_.size();
-  if (found < k)
-    return false;
-  float sums[10];
-  const int* codes = group_.sum(sums);
-  const double step = static_cast<double>(found) / static_cast<double>(k);
-  for (std::size_t j = 0; j < k; ++j)
-    evenly_[j] = codes[static_cast<Index>((static_cast<double>(j) + 0.5) * step)];
-  encoder_.add(evenly_.data(), k);
-  take(i, static_cast<float>(found), sums);
-  return true;
-}
-
-void GroupFitter::fitNearest(Index i)
-{
-  float sums[10];
-  group_.nearest(i, k_);
-  const int* codes = group_.sum(sums);
-  if (sums[9] < width_ * width_ && fitKept(i))
-    return;
-  if (sums[9] < width_ * width_) {
-    group_.nearest(i, k_);
-    codes = group_.sum(sums);
-  }
-  encoder_.add(codes, static_cast<std::size_t>(k_));
-  take(i, static_cast<float>(k_), sums);
-}
-
-/// @param codes of the first point of the tree
-GroupLists GroupFitter::fit(Index first_leaf, Index end_leaf, std::uint16_t* codes)
-{
-  constexpr float reach_margin = 1.5f; // how far to look for neighbours / distance expected
-  group_.enter(first_leaf, end_leaf);
-  encoder_.begin(group_.begin(), group_.end());
-  const float expected = group_.expectedReach(k_);
-  group_.gather(std::max(width_, reach_margin * expected), most_leaves);
-  const bool dense = expected < width_;
-  thinned_ = false;
-  lines_.clear();
-  for (Index i = group_.begin(); i < group_.end(); ++i)
-    if (!dense || !fitKept(i))
-      fitNearest(i);
-  batch_.finish();
-  if (width_ > 0 && !lines_.empty())
-    widenLines(first_leaf, end_leaf);
-  return encoder_.finish(group_.leaves(), codes + group_.begin() * k_);
-}
 } // namespace
 
 Fits fitNearest(Neighborhoods& all, int k, int threads)

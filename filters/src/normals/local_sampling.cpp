@@ -9,19 +9,14 @@
 namespace fresco {
 namespace {
 
-float smallestPositive(const Eigen::VectorXf& values)
-{
-  float smallest = std::numeric_limits<float>::infinity();
-  for (const float value : values)
-    if (value > 0)
-      smallest = std::min(smallest, value);
-  return std::isfinite(smallest) ? smallest : 1.f;
-}
-
+/// A thousandth of the smallest positive value in place of zeros.
 Eigen::VectorXf withoutZeros(const Eigen::VectorXf& areas)
 {
-  const float least = smallestPositive(areas) / 1000;
-  return areas.cwiseMax(least);
+  if (areas.size() == 0)
+    return areas;
+  const float infinity = std::numeric_limits<float>::infinity();
+  const float smallest = (areas.array() > 0).select(areas, infinity).minCoeff();
+  return areas.cwiseMax((smallest < infinity ? smallest : 1.f) / 1000);
 }
 
 /// @param near positions by distance, the point itself included
@@ -29,7 +24,7 @@ float areaOf(const PointTree& tree, Index i, const int* near, Index count)
 {
   const Index others = count - 1;
   const float squared = others > 0 ? (tree.point(near[count - 1]) - tree.point(i)).squaredNorm() : 0.f;
-  return others > 0 && std::isfinite(squared) ? static_cast<float>(pi) * squared / static_cast<float>(others) : 0.f;
+  return others > 0 && std::isfinite(squared) ? float(pi) * squared / others : 0.f;
 }
 } // namespace
 

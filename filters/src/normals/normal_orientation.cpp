@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "normals/parity_union_find.h"
 #include <algorithm>
 #include <cmath>
 #include <fresco/core/parallel.h>
@@ -8,8 +7,46 @@
 #include <fresco/filters/core/normal_orientation.h>
 #include <numeric>
 namespace fresco {
-using namespace filters;
 namespace {
+/// Disjoint sets (union by size, so that paths stay short) of elements that also have a sign against the root
+/// of their set.
+class ParityUnionFind {
+public:
+  explicit ParityUnionFind(Index n) : parent_(n), size_(n, 1), turned_(n)
+  {
+    std::iota(parent_.begin(), parent_.end(), 0);
+  }
+  Index root(Index i) const
+  {
+    while (parent_[i] != i)
+      i = parent_[i];
+    return i;
+  }
+  int sign(Index i) const
+  {
+    bool turned = false;
+    for (; parent_[i] != i; i = parent_[i])
+      turned ^= turned_[i] != 0;
+    return turned ? -1 : 1;
+  }
+  /// Joins the sets of i and j, in which the signs of i and j then are the same or opposite.
+  void join(Index i, Index j, bool same)
+  {
+    const bool turned = (sign(i) == sign(j)) != same;
+    Index a = root(i), b = root(j);
+    if (a == b)
+      return;
+    if (size_[a] < size_[b])
+      std::swap(a, b);
+    parent_[b] = a;
+    size_[a] += size_[b];
+    turned_[b] = turned;
+  }
+
+private:
+  std::vector<int> parent_, size_;
+  std::vector<char> turned_; ///< against the parent
+};
 
 /// The points with normals, in the order of a tree.
 struct Field {
@@ -36,7 +73,7 @@ Field makeField(const Points& points, const Points& normals, int threads)
     const Eigen::Vector3f point = tree.point(i), normal = field.normals.col(i);
     float height = 0;
     for (const int* j = field.lists.first(i); j != field.lists.last(i); ++j)
-      height += normal.dot(tree.point(*j) - point) / static_cast<float>(field.lists.count(i));
+      height += normal.dot(tree.point(*j) - point) / field.lists.count(i);
     field.points.col(i) = point + (std::isfinite(height) ? height : 0.f) * normal;
   });
   return field;
@@ -65,7 +102,7 @@ std::vector<std::int64_t> entriesByCost(const Field& field, int threads)
   parallelFor(field.lists.size(), threads, [&](Index i) {
     for (auto e = field.lists.begin[i]; e < field.lists.begin[i + 1]; ++e) {
       const float cost = compare(field, i, field.lists.index[e]).cost * (levels - 1) / 3;
-      costs[e] = static_cast<std::uint16_t>(std::clamp(cost, 0.f, static_cast<float>(levels - 1)));
+      costs[e] = std::clamp<float>(cost, 0, levels - 1);
     }
   });
   std::vector<std::int64_t> first(levels + 1, 0), order(costs.size());
@@ -73,7 +110,7 @@ std::vector<std::int64_t> entriesByCost(const Field& field, int threads)
     ++first[cost + 1];
   std::partial_sum(first.begin(), first.end(), first.begin());
   for (std::size_t e = 0; e < costs.size(); ++e)
-    order[first[costs[e]]++] = static_cast<std::int64_t>(e);
+    order[first[costs[e]]++] = e;
   return order;
 }
 

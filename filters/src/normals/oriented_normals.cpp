@@ -81,7 +81,7 @@ Eigen::Vector3f normalOf(const Plane& fit, const Eigen::Vector3f& view)
 /// @param densities points per area of each neighbourhood, any common factor
 float confidenceOf(const GroupLists& lists, const std::vector<float>& densities, Index i)
 {
-  const auto count = static_cast<float>(lists.count(i));
+  const float count = lists.count(i);
   float around = 0;
   for (std::size_t j = 0; j < lists.count(i); ++j)
     around += densities[lists.position(lists.list(i)[j])] / count;
@@ -102,7 +102,7 @@ void toConfidences(const Neighborhoods& all, std::vector<float>& reaches, int th
   };
   forGroups([&](const GroupLists& lists, Index i) {
     float& reach = reaches[i];
-    reach = reach > 0 ? static_cast<float>(lists.count(i)) / reach : 0.f;
+    reach = reach > 0 ? lists.count(i) / reach : 0.f;
   });
   forGroups([&](const GroupLists& lists, Index i) { result[i] = confidenceOf(lists, reaches, i); });
   reaches.swap(result);

@@ -50,9 +50,9 @@ Plane fitPlane(const Moments& m, const Eigen::Vector3f& origin)
   const Eigen::Vector3d values = eigenvalues(A);
   const bool plane = values[1] > rounding_share;
   fit.normal = eigenvector(A, values[plane ? 0 : 2]).cast<float>();
-  fit.curvature = plane ? static_cast<float>(std::max(0.0, values[0])) : -1.f;
+  fit.curvature = plane ? std::max(0.0, values[0]) : -1.0;
   if (plane)
-    fit.variance = static_cast<float>(std::max(values[0], rounding_share) * trace);
+    fit.variance = std::max(values[0], rounding_share) * trace;
   return fit;
 }
 } // namespace fresco::filters

@@ -2,6 +2,7 @@
 #pragma once
 #include "normals/plane_kernels.h"
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <fresco/search/neighborhoods.h>
 namespace fresco::filters {
 /// Weighted sums over points given as offsets from a point nearby, which keeps single precision exact enough.
@@ -9,6 +10,8 @@ struct Moments {
   float weight = 0;
   float sums[9] = {}; ///< x, y, z, xx, xy, xz, yy, yz, zz
 
+  Moments() = default;
+  Moments(float all, const float* nine) : weight(all) { std::copy_n(nine, 9, sums); }
   void add(const Eigen::Vector3f& offset, float w = 1)
   {
     const float x = w * offset.x(), y = w * offset.y(), z = w * offset.z();
@@ -83,11 +86,10 @@ void PlaneBatch<Use>::finish()
                              origins_[i] + offset,
                              fits.curvature[i]});
     } else {
-      Moments moments;
-      moments.weight = moments_.weight[i];
+      float sums[9];
       for (int t = 0; t < 9; ++t)
-        moments.sums[t] = moments_.sums[t][i];
-      use_(points_[i], fitPlane(moments, origins_[i]));
+        sums[t] = moments_.sums[t][i];
+      use_(points_[i], fitPlane({moments_.weight[i], sums}, origins_[i]));
     }
   }
   count_ = 0;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fresco/core/parallel.h>
+#include <fresco/core/rigid_motion.h>
 #include <fresco/core/statistics.h>
 namespace fresco::texture {
 namespace {
@@ -15,27 +16,13 @@ constexpr int pose_count = 6;    // 3 turn, 3 shift
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 using SharedVector = Eigen::Matrix<double, shared_count, 1>;
 
-Eigen::Matrix3d crossMatrix(const Eigen::Vector3d& v)
-{
-  Eigen::Matrix3d m;
-  m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
-  return m;
-}
-
 Eigen::Isometry3d motion(const Vector6& x)
 {
   Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
-  if (const double angle = x.head<3>().norm(); angle > 0)
-    T.linear() = Eigen::AngleAxisd(angle, x.head<3>() / angle).toRotationMatrix();
+  T.linear() = rotation(x.head<3>());
   T.translation() = x.tail<3>();
   return T;
 }
-
-/// What is estimated: corrections of the initial cameras.
-struct Corrections {
-  std::vector<SharedVector> shared; ///< per camera
-  std::vector<Vector6> pose;        ///< per view
-};
 
 CameraModel corrected(CameraModel camera, const SharedVector& x)
 {
@@ -46,17 +33,6 @@ CameraModel corrected(CameraModel camera, const SharedVector& x)
   camera.k1 += x[9];
   camera.k2 += x[10];
   return camera;
-}
-
-/// Turn before shift and mount after pose: T = mount * pose * initial.
-CameraState apply(const CameraState& initial, const Corrections& x)
-{
-  CameraState state = initial;
-  for (std::size_t g = 0; g < x.shared.size(); ++g)
-    state.cameras[g] = corrected(initial.cameras[g], x.shared[g]);
-  for (std::size_t v = 0; v < x.pose.size(); ++v)
-    state.T_camera_mesh[v] = motion(x.shared[state.group[v]].head<6>()) * motion(x.pose[v]) * initial.T_camera_mesh[v];
-  return state;
 }
 
 /// Pixel of a point and its derivatives.
@@ -78,7 +54,7 @@ Projection projectAll(const CameraModel& camera, const Eigen::Isometry3d& T, con
         (project(camera, q + step * Eigen::Vector3d::Unit(k)) - project(camera, q - step * Eigen::Vector3d::Unit(k))) /
         (2 * step);
   out.by_point = by_camera_point * T.linear();
-  out.by_shared.leftCols<3>() = -by_camera_point * crossMatrix(q);
+  out.by_shared.leftCols<3>() = -by_camera_point * skew(q);
   out.by_shared.middleCols<3>(3) = by_camera_point;
   for (int k = 6; k < shared_count; ++k) {
     const SharedVector x = 1e-5 * SharedVector::Unit(k);
@@ -141,14 +117,16 @@ private:
   int size() const { return groups_ * shared_count + views_ * pose_count; }
   int poseAt(int view) const { return groups_ * shared_count + view * pose_count; }
 
+  /// Corrections of the initial cameras: turn before shift and mount after pose, T = mount * pose * initial.
   CameraState stateOf(const Eigen::VectorXd& x) const
   {
-    Corrections c;
+    CameraState state = initial_;
     for (int g = 0; g < groups_; ++g)
-      c.shared.emplace_back(x.segment<shared_count>(g * shared_count));
+      state.cameras[g] = corrected(initial_.cameras[g], x.segment<shared_count>(g * shared_count));
     for (int v = 0; v < views_; ++v)
-      c.pose.emplace_back(x.segment<pose_count>(poseAt(v)));
-    return apply(initial_, c);
+      state.T_camera_mesh[v] = motion(x.segment<pose_count>(initial_.group[v] * shared_count)) *
+                               motion(x.segment<pose_count>(poseAt(v))) * initial_.T_camera_mesh[v];
+    return state;
   }
 
   double costOf(const CameraState& state, const Eigen::VectorXd& x) const

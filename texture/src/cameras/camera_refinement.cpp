@@ -3,10 +3,14 @@
 #include "cameras/camera_adjustment.h"
 #include <algorithm>
 #include <fresco/core/parallel.h>
+#include <fresco/core/require.h>
 #include <fresco/core/statistics.h>
 #include <tuple>
 namespace fresco::texture {
 namespace {
+/// Cameras that agree so well are left alone: half a pixel is what matching itself errs by.
+constexpr double agreement_pixels = 0.5;
+
 auto numbersOf(const CameraModel& c)
 {
   return std::tie(c.width, c.height, c.fx, c.fy, c.cx, c.cy, c.k1, c.k2, c.p1, c.p2);
@@ -38,13 +42,11 @@ std::vector<MatchPhoto> prepare(PhotoStore& photos, Index count, int threads)
   const Index pixels = std::clamp<double>(share, least_pixels, most_pixels);
   photos.setAside(with_halvings * (pixels * count));
   std::vector<MatchPhoto> out(count);
-  parallelFor(
-      count, threads,
-      [&](Index v) {
-        out[v].pyramid = buildPyramid(*photos.get(v), pixels, levels);
-        out[v].corners = findCorners(out[v].pyramid.levels[0], corner_cells);
-      },
-      1);
+  const auto prepareOne = [&](Index v) {
+    out[v].pyramid = buildPyramid(*photos.get(v), pixels, levels);
+    out[v].corners = findCorners(out[v].pyramid.levels[0], corner_cells);
+  };
+  parallelFor(count, threads, prepareOne, 1);
   return out;
 }
 
@@ -90,45 +92,71 @@ int widestOf(const CameraState& state)
     width = std::max(width, camera.width);
   return width;
 }
-} // namespace
 
-RefinedCameras refineCameras(const RefinementInput& input, int threads, const Progress& progress)
+/// Leaves the cameras as they are where they agree already or no correction makes them agree clearly better.
+void refineCameras(const RefinementInput& input, int threads, const Progress& progress, TextureResult& result)
 {
   constexpr double searches[] = {0.06, 0.025, 0.0125, 0.008}; // of the image's width: shrinks with what is left to find
   constexpr double least_gain = 0.9;                          // of the error: a smaller gain may be chance
-  constexpr Index least_matches = 50;                         // for a median, and for priors not to be all that decides
-  const Index views = input.views.size();
+  constexpr std::size_t least_matches = 50;                   // for a median, and for priors not to be all that decides
+  double &before = result.disagreement_before, &after = result.disagreement_after;
+  const std::size_t views = input.views.size();
   const CameraState initial = stateOf(input.mesh, input.views);
   CameraState state = initial;
-  RefinedCameras out;
   const std::vector<MatchPhoto> prepared = prepare(input.photos, views, threads);
+  std::vector<PhotoMatch> matches;
   MatchOptions options;
   options.threads = threads;
   double done = 0;
   for (const double search : searches) {
     report(progress, "camera refinement", done);
     options.search = search * widestOf(state);
-    const std::vector<PhotoMatch> matches = matchPhotos(input.scene, prepared, state, options);
-    out.matches = matches.size();
-    if (out.matches < least_matches)
+    matches = matchPhotos(input.scene, prepared, state, options);
+    if (matches.size() < least_matches)
       break;
-    out.before = medianError(matches, initial);
-    if (done == 0 && out.before < agreement_pixels) {
-      out.after = out.before;
+    before = medianError(matches, initial);
+    if (done == 0 && before < agreement_pixels) {
+      after = before;
       break;
     }
     state = adjustCameras(thinned(matches, views), initial, priorFor(medianDistance(matches, initial)), threads);
-    out.after = medianError(matches, state);
+    after = medianError(matches, state);
     done += 1.0 / std::size(searches);
   }
   input.photos.setAside(0);
-  out.changed = out.matches >= least_matches && out.after < least_gain * out.before;
-  if (!out.changed)
-    state = initial;
-  for (Index v = 0; v < views; ++v) {
-    out.cameras.push_back(state.cameras[state.group[v]]);
-    out.T_camera_world.push_back(state.T_camera_mesh[v] * Eigen::Translation3d(-input.mesh.origin));
-  }
-  return out;
+  result.refined = matches.size() >= least_matches && after < least_gain * before;
+  if (!result.refined)
+    after = before;
+  for (std::size_t v = 0; v < views && result.refined; ++v)
+    result.cameras[v] = {state.cameras[state.group[v]],
+                         state.T_camera_mesh[v] * Eigen::Translation3d(-input.mesh.origin)};
+}
+} // namespace
+
+void placeCameras(const RefinementInput& input, const TextureOptions& options, const Progress& progress,
+                  TextureResult& result)
+{
+  constexpr std::size_t most_views = 400; // the normal equations are solved densely
+  const std::size_t views = input.views.size();
+  for (const TextureView& view : input.views)
+    result.cameras.push_back({view.camera, view.T_camera_world});
+  if (options.refine && views > most_views)
+    result.warnings.push_back(
+        concat("cameras are taken as given: ", views, " views are more than the ", most_views, " that are refined"));
+  else if (options.refine && views >= 2)
+    refineCameras(input, options.threads, progress, result);
+}
+
+double poseUncertainty(const TextureResult& result)
+{
+  constexpr double exact = 0.3, vague = 0.7; // pixels: what matching itself errs by, and a disagreement that shows
+  constexpr double least = 0.2;              // the mesh itself stays uncertain
+  const double uncertainty = (result.disagreement_after - exact) / (vague - exact);
+  return result.disagreement_before > 0 ? std::clamp(uncertainty, least, 1.0) : 1.0;
+}
+
+bool photographsAgree(const TextureResult& result)
+{
+  return result.disagreement_before > 0 && result.disagreement_after <= agreement_pixels;
 }
 } // namespace fresco::texture

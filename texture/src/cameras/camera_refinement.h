@@ -4,9 +4,6 @@
 #include <fresco/core/progress.h>
 #include <fresco/search/ray_scene.h>
 namespace fresco::texture {
-/// Cameras that agree so well are left alone: half a pixel is what matching itself errs by.
-constexpr double agreement_pixels = 0.5;
-
 /// What cameras are refined by.
 struct RefinementInput {
   const TriangleMesh& mesh;
@@ -15,17 +12,17 @@ struct RefinementInput {
   PhotoStore& photos;
 };
 
-/// Cameras made to agree with each other on the mesh.
-struct RefinedCameras {
-  std::vector<CameraModel> cameras;              ///< per view
-  std::vector<Eigen::Isometry3d> T_camera_world; ///< per view
-  double before = 0;    ///< pixels, median distance between matched points and where the given cameras project them
-  double after = 0;     ///< the same with the refined cameras
-  Index matches = 0;    ///< of the last round
-  bool changed = false; ///< false: they agreed already, or there were too few matches
-};
+/// Fills the cameras of the result and what is known of their accuracy: as given, or made to agree with each other on the
+/// mesh. Bundle adjustment with the mesh as structure: alternates matching of photographs on the mesh with the adjustment
+/// of poses and intrinsics; the search shrinks from round to round.
+void placeCameras(const RefinementInput& input, const TextureOptions& options, const Progress& progress,
+                  TextureResult& result);
 
-/// Bundle adjustment with the mesh as structure: alternates matching of photographs on the mesh with the adjustment of
-/// poses and intrinsics; the search shrinks from round to round.
-RefinedCameras refineCameras(const RefinementInput& input, int threads, const Progress& progress);
+/// Pose uncertainty factor, 0.2..1: how far what is seen close to an outline is to be distrusted. Small where the
+/// photographs agree on the mesh to a fraction of a pixel, because then mesh and cameras are nearly exact; 1 where that
+/// is not known.
+double poseUncertainty(const TextureResult& result);
+
+/// Whether the photographs are known to agree so well that texels may be made of several of them.
+bool photographsAgree(const TextureResult& result);
 } // namespace fresco::texture

@@ -2,6 +2,7 @@
 #include "charts/atlas_packing.h"
 #include "grid.h"
 #include <algorithm>
+#include <boost/dynamic_bitset.hpp>
 #include <cmath>
 #include <cstdint>
 #include <map>
@@ -9,8 +10,7 @@
 #include <stdexcept>
 namespace fresco::texture {
 namespace {
-using Word = std::uint64_t;
-using BitRow = std::vector<Word>;
+using BitRow = boost::dynamic_bitset<std::uint64_t>;
 
 struct Run {
   int begin, length;
@@ -44,25 +44,12 @@ Mask maskOf(const Chart& chart, int block)
   return mask;
 }
 
-/// out |= row shifted so that bit x of `out` takes bit x + shift
-void orShifted(const BitRow& row, int shift, BitRow& out)
-{
-  const std::size_t words = shift / 64, bits = shift % 64;
-  for (std::size_t i = 0; i + words < row.size(); ++i) {
-    Word w = row[i + words] >> bits;
-    if (bits > 0 && i + words + 1 < row.size())
-      w |= row[i + words + 1] << (64 - bits);
-    out[i] |= w;
-  }
-}
-
 /// Bit x of the result: whether any of the bits x .. x + length - 1 is set.
 BitRow anyOf(BitRow row, int length)
 {
   for (int have = 1; have < length;) {
     const int step = std::min(have, length - have);
-    const BitRow before = row;
-    orShifted(before, step, row);
+    row |= row >> step;
     have += step;
   }
   return row;
@@ -80,8 +67,8 @@ public:
     if (mask.width > width_)
       return false;
     for (int y = from; height_ == 0 || y + mask.height <= height_; ++y) {
-      while (static_cast<Index>(rows_.size()) < y + mask.height)
-        rows_.push_back(emptyRow());
+      while (Index(rows_.size()) < y + mask.height)
+        rows_.emplace_back(width_);
       if (const int x = firstFree(mask, y); x >= 0) {
         place = {x, y};
         return true;
@@ -94,39 +81,22 @@ public:
   {
     for (int j = 0; j < mask.height; ++j)
       for (const Run& run : mask.rows[j])
-        for (int x = place.x() + run.begin; x < place.x() + run.begin + run.length; ++x)
-          rows_[place.y() + j][x / 64] |= Word(1) << (x % 64);
+        rows_[place.y() + j].set(place.x() + run.begin, run.length, true);
     top_ = std::max(top_, place.y() + mask.height);
   }
 
   int top() const { return top_; } ///< rows in use
 
 private:
-  /// Bits beyond the width are set: taken.
-  BitRow emptyRow() const
-  {
-    BitRow row(width_ / 64 + 1, 0);
-    for (std::size_t x = width_; x < row.size() * 64; ++x)
-      row[x / 64] |= Word(1) << (x % 64);
-    return row;
-  }
-
   int firstFree(const Mask& mask, int y) const
   {
-    BitRow taken = emptyRow();
-    const auto full = [](Word w) { return w == ~Word(0); };
-    for (int x = std::max(0, width_ - mask.width + 1); x < width_; ++x)
-      taken[x / 64] |= Word(1) << (x % 64);
-    for (int j = 0; j < mask.height; ++j) {
+    BitRow taken(width_);
+    taken.set(width_ - mask.width + 1, mask.width - 1, true);
+    for (int j = 0; j < mask.height && !taken.all(); ++j)
       for (const Run& run : mask.rows[j])
-        orShifted(anyOf(rows_[y + j], run.length), run.begin, taken);
-      if (std::all_of(taken.begin(), taken.end(), full))
-        return -1;
-    }
-    for (int x = 0; x < width_; ++x)
-      if (!(taken[x / 64] >> (x % 64) & 1))
-        return x;
-    return -1;
+        taken |= anyOf(rows_[y + j], run.length) >> run.begin;
+    const std::size_t free = (~taken).find_first();
+    return free == BitRow::npos ? -1 : int(free);
   }
 
   int width_, height_, top_ = 0;

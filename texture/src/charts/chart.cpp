@@ -161,8 +161,7 @@ FaceGraph buildFaceGraph(const TriangleMesh& mesh, int threads)
   graph.normals = faceNormals(mesh, threads);
   graph.neighbors = faceNeighbors(mesh.faces);
   graph.areas.resize(n);
-  parallelFor(n, threads,
-              [&](Index f) { graph.areas[f] = 0.5 * doubleAreaVector(mesh.vertices, mesh.faces.col(f)).norm(); });
+  parallelFor(n, threads, [&](Index f) { graph.areas[f] = 0.5 * areaVector(mesh, f).norm(); });
   graph.smooth_normals = smoothed(graph, graph.normals, threads);
   const Eigen::VectorXf flat = flatness(graph, threads);
   for (Index f = 0; f < n; ++f)
@@ -170,6 +169,18 @@ FaceGraph buildFaceGraph(const TriangleMesh& mesh, int threads)
       graph.seeds.push_back(f);
   std::stable_sort(graph.seeds.begin(), graph.seeds.end(), [&](int a, int b) { return flat[a] > flat[b]; });
   return graph;
+}
+
+double weightedQuantile(std::vector<std::pair<double, double>> values, double share)
+{
+  std::sort(values.begin(), values.end());
+  double total = 0, sum = 0;
+  for (const auto& [value, weight] : values)
+    total += weight;
+  for (const auto& [value, weight] : values)
+    if ((sum += weight) >= share * total)
+      return value;
+  return values.back().first;
 }
 
 std::vector<Chart> segmentFaces(const FaceGraph& graph, const std::vector<int>& faces)

@@ -29,6 +29,10 @@ struct FaceGraph {
 
 FaceGraph buildFaceGraph(const TriangleMesh& mesh, int threads);
 
+/// The value that `share` of all the weight does not exceed.
+/// @param values with their weights, at least one
+double weightedQuantile(std::vector<std::pair<double, double>> values, double share);
+
 /// Groups `faces` into charts whose faces are all turned towards the chart's axis, large ones first.
 /// @param faces subset of graph.seeds, in that order
 std::vector<Chart> segmentFaces(const FaceGraph& graph, const std::vector<int>& faces);

@@ -10,34 +10,13 @@
 #include <stdexcept>
 namespace fresco::texture {
 namespace {
-/// Value that `share` of the area does not exceed.
-float areaQuantile(const FaceGraph& graph, const std::vector<int>& faces, const Eigen::VectorXf& value, double share)
-{
-  std::vector<int> order = faces;
-  std::sort(order.begin(), order.end(),
-            [&](int a, int b) { return value[a] != value[b] ? value[a] < value[b] : a < b; });
-  double total = 0, sum = 0;
-  for (const int f : order)
-    total += graph.areas[f];
-  for (const int f : order)
-    if ((sum += graph.areas[f]) >= share * total)
-      return value[f];
-  return value[order.back()];
-}
-
-struct Extent {
-  Eigen::Vector2d low, high;
-  Eigen::Vector2d size() const { return high - low; }
-};
+using Extent = Eigen::AlignedBox2d;
 
 Extent extentOf(const std::vector<Eigen::Vector2d>& points, const Eigen::Matrix2d& T)
 {
-  Extent box{Eigen::Vector2d::Constant(1e300), Eigen::Vector2d::Constant(-1e300)};
-  for (const Eigen::Vector2d& point : points) {
-    const Eigen::Vector2d p = T * point;
-    box.low = box.low.cwiseMin(p);
-    box.high = box.high.cwiseMax(p);
-  }
+  Extent box;
+  for (const Eigen::Vector2d& point : points)
+    box.extend(T * point);
   return box;
 }
 
@@ -120,16 +99,19 @@ private:
   {
     constexpr double density_share =
         0.75; // of the area that gets all the resolution it wants: a small near part does not decide
-    const double density = areaQuantile(graph_, chart.faces, density_, density_share);
+    std::vector<std::pair<double, double>> densities; // with areas
+    for (const int f : chart.faces)
+      densities.emplace_back(density_[f], graph_.areas[f]);
+    const double density = weightedQuantile(densities, density_share);
     const Eigen::Matrix<double, 2, 3> frame = density * frameAcross(chart.axis);
     const std::vector<Eigen::Vector2d> points = cornersIn(frame, chart);
     constexpr int steps = 30;
     double least = 1e300;
-    Extent box{};
+    Extent box;
     for (int i = 0; i < steps; ++i) {
       const Eigen::Matrix2d turn = Eigen::Rotation2Dd(-i * (pi / 2) / steps).toRotationMatrix();
       const Extent turned = extentOf(points, turn);
-      const double area = (turned.size().array() + 2.0 * options_.border).prod();
+      const double area = (turned.sizes().array() + 2.0 * options_.border).prod();
       if (area < least * (1 - 1e-9)) {
         least = area;
         box = turned;
@@ -144,7 +126,7 @@ private:
   {
     std::vector<Eigen::Vector2d> out;
     for (const int face : chart.faces)
-      for (int i = first_[face]; i < first_[face + 1]; ++i)
+      for (Index i = first_[face]; i < first_[face + 1]; ++i)
         for (int k = 0; k < 3; ++k)
           out.emplace_back(frame * patches_.vertices.col(patches_.faces(k, i)).cast<double>());
     return out;
@@ -153,26 +135,24 @@ private:
   void fit(Chart& chart, const Extent& box) const
   {
     const double spare = options_.border + 0.5;
-    chart.offset = -box.low.array() + spare;
-    const Eigen::Array2d size = (box.size().array() + 2 * spare).ceil().min(1e9);
+    chart.offset = -box.min().array() + spare;
+    const Eigen::Array2d size = (box.sizes().array() + 2 * spare).ceil().min(1e9);
     chart.width = size.x();
     chart.height = size.y();
   }
 
-  void shrink(Chart& chart, Extent box) const
+  void shrink(Chart& chart, const Extent& box) const
   {
-    const double scale = (options_.largest - 2 * options_.border - 2) / box.size().maxCoeff();
+    const double scale = (options_.largest - 2 * options_.border - 2) / box.sizes().maxCoeff();
     chart.T_texel *= scale;
-    box.low *= scale;
-    box.high *= scale;
-    fit(chart, box);
+    fit(chart, {box.min() * scale, box.max() * scale});
   }
 
   /// Two charts, to either side of the middle of the longer side.
   void split(const Chart& chart, const Extent& box, std::vector<Chart>& out) const
   {
-    const int across = box.size().x() >= box.size().y() ? 0 : 1;
-    const double middle = 0.5 * (box.low[across] + box.high[across]);
+    const int across = box.sizes().x() >= box.sizes().y() ? 0 : 1;
+    const double middle = 0.5 * (box.min()[across] + box.max()[across]);
     Chart half[2];
     for (const int face : chart.faces) {
       const Eigen::Vector2d p = patchTexels(patches_, chart, first_[face]).rowwise().mean() - chart.offset;
@@ -208,7 +188,7 @@ private:
   const FaceGraph& graph_;
   const Eigen::VectorXf& density_;
   const LayoutOptions& options_;
-  std::vector<int> first_;
+  std::vector<Index> first_;
 };
 } // namespace
 

@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <fresco/core/grouped.h>
 #include <utility>
 namespace fresco::texture {
 namespace {
@@ -55,7 +56,7 @@ void forTexels(const PatchMesh& patches, const Chart& chart, int patch, const Vi
 
 class Raster {
 public:
-  Raster(const PatchMesh& patches, const std::vector<int>& first_patch, const Chart& chart)
+  Raster(const PatchMesh& patches, const std::vector<Index>& first_patch, const Chart& chart)
       : patches_(patches), first_(first_patch), chart_(chart), claimed_(cellCount(chart.width, chart.height), 0),
         owner_(claimed_.size(), -1)
   {}
@@ -65,10 +66,10 @@ public:
   {
     bool free = true;
     covered_.clear();
-    for (int i = first_[face]; i < first_[face + 1] && free; ++i)
+    for (Index i = first_[face]; i < first_[face + 1] && free; ++i)
       forTexels(patches_, chart_, i, [&](std::size_t at, double depth) {
         free = free && !(claimed_[at] && depth > inside_margin && patches_.parent[owner_[at]] != face);
-        covered_.push_back({at, i, depth > inside_margin});
+        covered_.push_back({at, int(i), depth > inside_margin});
       });
     for (std::size_t k = 0; k < covered_.size() && free; ++k) {
       const auto& [at, patch, firmly] = covered_[k];
@@ -101,62 +102,33 @@ private:
   };
 
   const PatchMesh& patches_;
-  const std::vector<int>& first_;
+  const std::vector<Index>& first_;
   const Chart& chart_;
   std::vector<Covered> covered_; ///< by the face in work
   std::vector<char> claimed_;    ///< whether the owner's inside, not only its edge, covers the texel's centre
   std::vector<int> owner_;
 };
 
-/// Texels without owner take that of a neighbour, round by round; each round looks only around what the last one added.
+/// Texels without owner take that of a neighbour, round by round.
 void growOwners(int rounds, int width, std::vector<int>& owner)
 {
   const int offsets[8][2] = {{1, 0}, {0, 1}, {-1, 0}, {0, -1}, {1, 1}, {-1, 1}, {-1, -1}, {1, -1}};
   const int height = owner.size() / width;
-  const auto ownerBeside = [&](std::size_t at) {
-    const int x = at % width, y = at / width;
-    for (const auto& [dx, dy] : offsets)
-      if (x + dx >= 0 && y + dy >= 0 && x + dx < width && y + dy < height)
-        if (const int other = owner[cellAt(x + dx, y + dy, width)]; other >= 0)
-          return other;
-    return -1;
-  };
-  std::vector<std::pair<std::size_t, int>> grown; // texel, patch
-  std::vector<std::size_t> front;
   for (int round = 0; round < rounds; ++round) {
-    grown.clear();
-    const auto visit = [&](std::size_t at) {
-      if (owner[at] < 0)
-        if (const int patch = ownerBeside(at); patch >= 0)
-          grown.emplace_back(at, patch);
-    };
-    if (round == 0)
-      for (std::size_t at = 0; at < owner.size(); ++at)
-        visit(at);
-    else
-      for (const std::size_t at : front)
-        visit(at);
-    front.clear();
-    for (const auto& [at, patch] : grown) {
-      if (std::exchange(owner[at], patch) >= 0)
-        continue; // was reached from two sides
-      const int x = at % width, y = at / width;
-      for (const auto& [dx, dy] : offsets)
-        if (x + dx >= 0 && y + dy >= 0 && x + dx < width && y + dy < height)
-          front.push_back(cellAt(x + dx, y + dy, width));
-    }
+    const std::vector<int> before = owner;
+    for (std::size_t at = 0; at < owner.size(); ++at)
+      for (int k = 0; k < 8 && owner[at] < 0; ++k) {
+        const int x = at % width + offsets[k][0], y = at / width + offsets[k][1];
+        if (x >= 0 && y >= 0 && x < width && y < height)
+          owner[at] = before[cellAt(x, y, width)];
+      }
   }
 }
 } // namespace
 
-std::vector<int> patchesOfFaces(const PatchMesh& patches, Index faces)
+std::vector<Index> patchesOfFaces(const PatchMesh& patches, Index faces)
 {
-  std::vector<int> first(faces + 1, 0);
-  for (Index i = 0; i < patches.size(); ++i)
-    ++first[patches.parent[i] + 1];
-  for (Index f = 0; f < faces; ++f)
-    first[f + 1] += first[f];
-  return first;
+  return grouped(patches.size(), faces, [&](Index i) { return patches.parent[i]; }).begin;
 }
 
 Eigen::Matrix<double, 2, 3> patchTexels(const PatchMesh& patches, const Chart& chart, Index patch)
@@ -167,18 +139,8 @@ Eigen::Matrix<double, 2, 3> patchTexels(const PatchMesh& patches, const Chart& c
   return out;
 }
 
-Eigen::Vector3d barycentric(const Eigen::Matrix<double, 2, 3>& corners, const Eigen::Vector2d& p)
-{
-  const Eigen::Vector2d u = corners.col(1) - corners.col(0), v = corners.col(2) - corners.col(0),
-                        w = p - corners.col(0);
-  const double det = u.x() * v.y() - u.y() * v.x();
-  if (!(std::abs(det) > 1e-12))
-    return Eigen::Vector3d::Constant(1.0 / 3);
-  const double b = (w.x() * v.y() - w.y() * v.x()) / det, c = (u.x() * w.y() - u.y() * w.x()) / det;
-  return {1 - b - c, b, c};
-}
-
-std::vector<int> rasterizeChart(const PatchMesh& patches, const std::vector<int>& first_patch, int border, Chart& chart)
+std::vector<int> rasterizeChart(const PatchMesh& patches, const std::vector<Index>& first_patch, int border,
+                                Chart& chart)
 {
   Raster raster(patches, first_patch, chart);
   std::vector<int> kept, out;
@@ -186,7 +148,7 @@ std::vector<int> rasterizeChart(const PatchMesh& patches, const std::vector<int>
     (raster.draw(face) ? kept : out).push_back(face);
   chart.faces = std::move(kept);
   for (const int face : chart.faces)
-    for (int i = first_patch[face]; i < first_patch[face + 1]; ++i)
+    for (Index i = first_patch[face]; i < first_patch[face + 1]; ++i)
       raster.drawSmallPatch(i);
   std::vector<int> owner = raster.takeOwners();
   growOwners(border, chart.width, owner);

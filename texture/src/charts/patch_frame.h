@@ -11,7 +11,8 @@ class PatchFrame {
 public:
   /// @param patch that has texels
   PatchFrame(const PaintScene& scene, Index patch)
-      : chart(*scene.chartOf(patch)), slot_(scene.slots[patch]), first_(chart.texels.spans[chart.texels.begin[slot_]]),
+      : chart(scene.chartOf(patch)), slot_(scene.slots[patch].number),
+        first_(chart.texels.spans[chart.texels.begin[slot_]]),
         map(scene.patches, patch, patchTexels(scene.patches, chart, patch), {first_.x, first_.y})
   {}
 
@@ -41,7 +42,28 @@ public:
   Eigen::Vector2f place(int x, int y) const { return {x - first_.x + 0.5f, y - first_.y + 0.5f}; }
 
   /// The part of a span whose centres lie in the patch or at most `edge` (in weight of a corner) beyond.
-  TexelSpan insideOf(const TexelSpan& span, float edge) const;
+  TexelSpan insideOf(const TexelSpan& span, float edge) const
+  {
+    const Eigen::Vector2f start = place(span.x, span.y);
+    const Eigen::Vector3f at = map.weights(start.x(), start.y()), step = map.weights(start.x() + 1, start.y()) - at;
+    float low = 0, high = span.length - 1; // texels from the span's first
+    for (int k = 0; k < 3; ++k) {
+      const float least = -edge - at[k];
+      if (step[k] > 1e-9f)
+        low = std::max(low, std::ceil(least / step[k]));
+      else if (step[k] < -1e-9f)
+        high = std::min(high, std::floor(least / step[k]));
+      else if (least > 0)
+        high = -1;
+    }
+    TexelSpan out = span;
+    out.length = 0;
+    if (high >= low) {
+      out.x += low;
+      out.length = high - low + 1;
+    }
+    return out;
+  }
 
   /// Weights of the corners, moved into the patch.
   Eigen::Vector3f inside(const Eigen::Vector2f& place) const
@@ -59,27 +81,4 @@ private:
 public:
   PatchMap map;
 };
-
-inline TexelSpan PatchFrame::insideOf(const TexelSpan& span, float edge) const
-{
-  const Eigen::Vector2f start = place(span.x, span.y);
-  const Eigen::Vector3f at = map.weights(start.x(), start.y()), step = map.weights(start.x() + 1, start.y()) - at;
-  float low = 0, high = span.length - 1; // texels from the span's first
-  for (int k = 0; k < 3; ++k) {
-    const float least = -edge - at[k];
-    if (step[k] > 1e-9f)
-      low = std::max(low, std::ceil(least / step[k]));
-    else if (step[k] < -1e-9f)
-      high = std::min(high, std::floor(least / step[k]));
-    else if (least > 0)
-      high = -1;
-  }
-  TexelSpan out = span;
-  out.length = 0;
-  if (high >= low) {
-    out.x += low;
-    out.length = high - low + 1;
-  }
-  return out;
-}
 } // namespace fresco::texture

@@ -39,6 +39,16 @@ bool PatchMap::look(const Projector& view)
   return true;
 }
 
+Eigen::Matrix<float, 2, 3> PatchMap::cornerPixels() const
+{
+  Eigen::Matrix<float, 2, 3> pixels;
+  for (int k = 0; k < 3; ++k) {
+    const Eigen::Vector2f at = place(Eigen::Vector3f::Unit(k));
+    pixels.col(k) = pixel(at.x(), at.y());
+  }
+  return pixels;
+}
+
 Eigen::Matrix2f PatchMap::steps(float x, float y) const
 {
   const Eigen::Vector2f at = pixel(x, y);

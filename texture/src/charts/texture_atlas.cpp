@@ -2,10 +2,10 @@
 #include "charts/texture_atlas.h"
 #include "charts/atlas_packing.h"
 #include "charts/chart_layout.h"
-#include "views/resolution.h"
 #include <algorithm>
 #include <cmath>
 #include <fresco/core/require.h>
+#include <fresco/core/statistics.h>
 #include <iomanip>
 namespace fresco::texture {
 namespace {
@@ -41,19 +41,13 @@ void fillTexcoords(const std::vector<Chart>& charts, int side, TexturedMesh& mod
 double typicalTexel(const std::vector<Chart>& charts, const FaceGraph& graph)
 {
   std::vector<std::pair<double, double>> sizes; // texel, area
-  double total = 0, sum = 0;
   for (const Chart& chart : charts) {
     double area = 0;
     for (const int f : chart.faces)
       area += graph.areas[f];
     sizes.emplace_back(1 / chart.T_texel.row(0).norm(), area);
-    total += area;
   }
-  std::sort(sizes.begin(), sizes.end());
-  for (const auto& [texel, area] : sizes)
-    if ((sum += area) >= 0.5 * total)
-      return texel;
-  return 0;
+  return sizes.empty() ? 0 : weightedQuantile(sizes, 0.5);
 }
 
 /// How much larger texels have to be than wanted.
@@ -61,7 +55,58 @@ double coarsening(const FaceGraph& graph, const Eigen::VectorXf& density)
 {
   return std::sqrt(graph.areas.cast<double>().dot(density.cast<double>().cwiseAbs2()) / most_texels);
 }
+
+/// F, texels per mesh unit for each face.
+/// @param texel mesh units; 0 = as the photographs show it, and coarsely where none does
+Eigen::VectorXf wantedDensities(const PatchMesh& patches, Index faces, const Eigen::VectorXf& resolution, double texel)
+{
+  if (texel > 0)
+    return Eigen::VectorXf::Constant(faces, 1 / texel);
+  Eigen::VectorXf sum = Eigen::VectorXf::Zero(faces), area = sum;
+  for (Index i = 0; i < patches.size(); ++i)
+    if (resolution[i] > 0) {
+      sum[patches.parent[i]] += patches.areas[i] * resolution[i];
+      area[patches.parent[i]] += patches.areas[i];
+    }
+  std::vector<float> seen;
+  for (Index f = 0; f < faces; ++f)
+    if (area[f] > 0)
+      seen.push_back(sum[f] / area[f]);
+  constexpr float oversampling = 1.4f;      // texels per pixel: interpolating a second time would blur otherwise
+  constexpr float unseen_share = 0.25f;     // of the typical density: there is no detail
+  constexpr double side_without_views = 64; // texels along the root of the area: any number does
+  const float typical =
+      seen.empty() ? side_without_views / std::sqrt(patches.areas.cast<double>().sum()) : median(seen);
+  Eigen::VectorXf out(faces);
+  for (Index f = 0; f < faces; ++f)
+    out[f] = oversampling * std::max(unseen_share * typical, area[f] > 0 ? sum[f] / area[f] : 0.f);
+  return out;
+}
 } // namespace
+
+Eigen::VectorXf patchResolutions(const PatchMesh& patches, const std::vector<Projector>& views,
+                                 const Eigen::VectorXi& view)
+{
+  Eigen::VectorXf out = Eigen::VectorXf::Zero(patches.size());
+  for (Index i = 0; i < patches.size(); ++i) {
+    if (view[i] < 0)
+      continue;
+    const Projector& camera = views[view[i]];
+    const Eigen::Vector3f ray = camera.center() - patches.middle(i);
+    const float cosine = std::abs(patches.normals.col(i).dot(ray.normalized()));
+    out[i] = camera.focal() / ray.norm() * std::sqrt(cosine); // geometric mean of 1 and the cosine
+  }
+  return out;
+}
+
+double pixelSize(const Eigen::VectorXf& resolution)
+{
+  std::vector<float> sizes;
+  for (const float r : resolution)
+    if (r > 0)
+      sizes.push_back(1 / r);
+  return sizes.empty() ? 0 : median(sizes);
+}
 
 std::vector<Chart> makeAtlas(const PatchMesh& patches, const Eigen::VectorXf& resolution, const TextureOptions& options,
                              TextureResult& result)
@@ -90,14 +135,5 @@ std::vector<Chart> makeAtlas(const PatchMesh& patches, const Eigen::VectorXf& re
   result.charts = charts.size();
   result.texel = typicalTexel(charts, graph);
   return charts;
-}
-
-Eigen::VectorXi chartsOfFaces(const std::vector<Chart>& charts, Index faces)
-{
-  Eigen::VectorXi out = Eigen::VectorXi::Constant(faces, -1);
-  for (std::size_t c = 0; c < charts.size(); ++c)
-    for (const int f : charts[c].faces)
-      out[f] = c;
-  return out;
 }
 } // namespace fresco::texture

@@ -1,29 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "filling/color_diffusion.h"
+#include <fresco/core/grouped.h>
 #include <fresco/core/parallel.h>
 #include <vector>
 namespace fresco::texture {
 namespace {
-/// Vertices joined by an edge, each as often as patches share the edge.
-struct Rings {
-  std::vector<int> begin, list;
-};
-
-Rings ringsOf(const PatchMesh& patches)
+/// Of each vertex those joined with it by an edge, as often as patches share the edge.
+Groups ringsOf(const PatchMesh& patches)
 {
-  Rings rings;
-  rings.begin.assign(patches.vertices.cols() + 1, 0);
-  for (Index i = 0; i < patches.faces.size(); ++i)
-    rings.begin[patches.faces.data()[i] + 1] += 2;
-  for (std::size_t v = 1; v < rings.begin.size(); ++v)
-    rings.begin[v] += rings.begin[v - 1];
-  rings.list.resize(rings.begin.back());
-  std::vector<int> next(rings.begin.begin(), rings.begin.end() - 1);
-  for (Index i = 0; i < patches.size(); ++i)
-    for (int k = 0; k < 3; ++k) {
-      rings.list[next[patches.faces(k, i)]++] = patches.faces((k + 1) % 3, i);
-      rings.list[next[patches.faces(k, i)]++] = patches.faces((k + 2) % 3, i);
-    }
+  const auto vertex = [&](Index i) { return patches.faces.data()[i / 2]; }; // two entries per corner of a patch
+  Groups rings = grouped(2 * patches.faces.size(), patches.vertices.cols(), vertex);
+  for (int& i : rings.list)
+    i = patches.faces((i / 2 + 1 + i % 2) % 3, i / 6);
   return rings;
 }
 
@@ -52,7 +40,7 @@ Known seenVertices(const PatchMesh& patches, const Points& patch_colors)
 
 /// Breadth first from the known vertices: each takes the mean of its neighbours reached before it.
 /// @return the vertices reached, none of them fixed
-std::vector<int> spread(const Rings& rings, Known& known)
+std::vector<int> spread(const Groups& rings, Known& known)
 {
   std::vector<int> order;
   std::vector<char> reached = known.fixed;
@@ -65,7 +53,7 @@ std::vector<int> spread(const Rings& rings, Known& known)
     const int v = order[i];
     Eigen::Vector3f sum = Eigen::Vector3f::Zero();
     float count = 0;
-    for (int r = rings.begin[v]; r < rings.begin[v + 1]; ++r) {
+    for (Index r = rings.begin[v]; r < rings.begin[v + 1]; ++r) {
       const int other = rings.list[r];
       if (valued[other] && !known.fixed[v]) {
         sum += known.value.col(other);
@@ -83,7 +71,7 @@ std::vector<int> spread(const Rings& rings, Known& known)
   return {order.begin() + given, order.end()};
 }
 
-void smooth(const Rings& rings, const std::vector<int>& free, int threads, Points& value)
+void smooth(const Groups& rings, const std::vector<int>& free, int threads, Points& value)
 {
   constexpr int rounds =
       100; // takes the streaks of the breadth-first start away; a solution to the last digit is not needed
@@ -92,9 +80,9 @@ void smooth(const Rings& rings, const std::vector<int>& free, int threads, Point
     parallelFor(free.size(), threads, [&](Index i) {
       const int v = free[i];
       Eigen::Vector3f sum = Eigen::Vector3f::Zero();
-      for (int r = rings.begin[v]; r < rings.begin[v + 1]; ++r)
+      for (Index r = rings.begin[v]; r < rings.begin[v + 1]; ++r)
         sum += value.col(rings.list[r]);
-      next.col(v) = sum / static_cast<float>(rings.begin[v + 1] - rings.begin[v]);
+      next.col(v) = sum / (rings.begin[v + 1] - rings.begin[v]);
     });
     value.swap(next);
   }
@@ -119,7 +107,7 @@ Points diffuseColors(const PatchMesh& patches, const Points& patch_colors, int t
   for (Index v = 0; v < known.value.cols(); ++v)
     if (!known.fixed[v])
       known.value.col(v) = mean;
-  const Rings rings = ringsOf(patches);
+  const Groups rings = ringsOf(patches);
   const std::vector<int> free = spread(rings, known);
   smooth(rings, free, threads, known.value);
   if (colored)

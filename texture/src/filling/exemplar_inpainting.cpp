@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fresco/core/parallel.h>
+#include <numeric>
 namespace fresco::texture {
 namespace {
 /// Texels of a chart that are unseen and joined.
@@ -86,45 +87,42 @@ HolePicture pictureOf(const ChartTexels& texels, const Hole& hole, const Eigen::
   return out;
 }
 
-/// Mean of each row's pixels within 8 texels, of those inside the picture; then transposed.
-struct Smoothing {
-  std::vector<Eigen::Vector4f> value; ///< sum of colours, count
-
-  void rows(int width, int height)
-  {
-    constexpr int smooth_reach = 8; // texels: coarser structure is what the smooth colours hold
-    std::vector<Eigen::Vector4f> out(value.size());
-    for (int y = 0; y < height; ++y) {
-      Eigen::Vector4f sum = Eigen::Vector4f::Zero();
-      const Eigen::Vector4f* row = value.data() + cellAt(0, y, width);
-      for (int x = -smooth_reach; x < width; ++x) {
-        if (x + smooth_reach < width)
-          sum += row[x + smooth_reach];
-        if (x - smooth_reach - 1 >= 0)
-          sum -= row[x - smooth_reach - 1];
-        if (x >= 0)
-          out[cellAt(y, x, height)] = sum;
-      }
+/// Sum of each row's pixels within 8 texels, of those inside the picture; then transposed.
+/// @param value sum of colours, count
+void sumRows(std::vector<Eigen::Vector4f>& value, int width, int height)
+{
+  constexpr int smooth_reach = 8; // texels: coarser structure is what the smooth colours hold
+  std::vector<Eigen::Vector4f> out(value.size());
+  for (int y = 0; y < height; ++y) {
+    Eigen::Vector4f sum = Eigen::Vector4f::Zero();
+    const Eigen::Vector4f* row = value.data() + cellAt(0, y, width);
+    for (int x = -smooth_reach; x < width; ++x) {
+      if (x + smooth_reach < width)
+        sum += row[x + smooth_reach];
+      if (x - smooth_reach - 1 >= 0)
+        sum -= row[x - smooth_reach - 1];
+      if (x >= 0)
+        out[cellAt(y, x, height)] = sum;
     }
-    value.swap(out);
   }
-};
+  value.swap(out);
+}
 
 /// The picture without its fine structure.
 std::vector<Eigen::Vector3f> smoothed(const HolePicture& picture)
 {
-  Smoothing s;
+  std::vector<Eigen::Vector4f> value;
   for (std::size_t i = 0; i < picture.color.size(); ++i)
-    s.value.push_back(picture.state[i] == HolePicture::outside ? Eigen::Vector4f::Zero()
-                                                               : Eigen::Vector4f(picture.color[i].homogeneous()));
+    value.push_back(picture.state[i] == HolePicture::outside ? Eigen::Vector4f::Zero()
+                                                             : Eigen::Vector4f(picture.color[i].homogeneous()));
   for (int round = 0; round < 2; ++round) { // box over box: nearly a Gaussian
-    s.rows(picture.width, picture.height);
-    s.rows(picture.height, picture.width);
-    for (Eigen::Vector4f& v : s.value)
+    sumRows(value, picture.width, picture.height);
+    sumRows(value, picture.height, picture.width);
+    for (Eigen::Vector4f& v : value)
       v = v.w() > 0.5f ? Eigen::Vector4f(v / v.w()) : Eigen::Vector4f::Zero();
   }
   std::vector<Eigen::Vector3f> out;
-  for (const Eigen::Vector4f& v : s.value)
+  for (const Eigen::Vector4f& v : value)
     out.push_back(v.head<3>());
   return out;
 }
@@ -160,8 +158,8 @@ Index inpaintByExample(const PaintScene& scene, const std::vector<Image>& masks,
 {
   const auto texelsOf = [&](std::size_t c) { return ChartTexels{scene.charts[c], masks[scene.charts[c].atlas]}; };
   std::vector<std::vector<Hole>> by_chart(scene.charts.size());
-  parallelFor(
-      scene.charts.size(), scene.threads, [&](Index c) { by_chart[c] = holesOf(texelsOf(c), c); }, 1);
+  const auto findHoles = [&](Index c) { by_chart[c] = holesOf(texelsOf(c), c); };
+  parallelFor(scene.charts.size(), scene.threads, findHoles, 1);
   std::vector<Hole> holes;
   for (auto& list : by_chart)
     std::move(list.begin(), list.end(), std::back_inserter(holes));
@@ -169,16 +167,11 @@ Index inpaintByExample(const PaintScene& scene, const std::vector<Image>& masks,
   std::stable_sort(holes.begin(), holes.end(),
                    [](const Hole& a, const Hole& b) { return a.texels.size() > b.texels.size(); });
   std::vector<Index> filled(holes.size(), 0);
-  parallelFor(
-      holes.size(), scene.threads,
-      [&](Index h) {
-        if (fill(texelsOf(holes[h].chart), holes[h], atlases[scene.charts[holes[h].chart].atlas]))
-          filled[h] = holes[h].texels.size();
-      },
-      1);
-  Index total = 0;
-  for (const Index count : filled)
-    total += count;
-  return total;
+  const auto fillHole = [&](Index h) {
+    if (fill(texelsOf(holes[h].chart), holes[h], atlases[scene.charts[holes[h].chart].atlas]))
+      filled[h] = holes[h].texels.size();
+  };
+  parallelFor(holes.size(), scene.threads, fillHole, 1);
+  return std::accumulate(filled.begin(), filled.end(), Index{0});
 }
 } // namespace fresco::texture

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <fresco/core/statistics.h>
 #include <limits>
+#include <opencv2/imgproc.hpp>
 namespace fresco::texture {
 namespace {
 constexpr int reach = 3; // of a window to each side: 7 x 7 hold a structure and still repeat
@@ -128,19 +129,8 @@ private:
   /// Maximum over the window around each pixel, in place.
   void spread(std::vector<std::uint8_t>& flags) const
   {
-    const int w = picture_.width, h = picture_.height;
-    std::vector<std::uint8_t> rows(flags.size(), 0);
-    for (int y = 0; y < h; ++y)
-      for (int x = 0; x < w; ++x)
-        for (int i = std::max(0, x - reach); i <= std::min(w - 1, x + reach); ++i)
-          rows[picture_.at(x, y)] |= flags[picture_.at(i, y)];
-    for (int y = 0; y < h; ++y)
-      for (int x = 0; x < w; ++x) {
-        std::uint8_t any = 0;
-        for (int j = std::max(0, y - reach); j <= std::min(h - 1, y + reach); ++j)
-          any |= rows[picture_.at(x, j)];
-        flags[picture_.at(x, y)] = any;
-      }
+    cv::Mat picture(picture_.height, picture_.width, CV_8U, flags.data());
+    cv::dilate(picture, picture, cv::Mat::ones(2 * reach + 1, 2 * reach + 1, CV_8U));
   }
 
   bool isUsable(const Pixel& p) const
@@ -251,28 +241,13 @@ private:
 
 int holeRadius(const HolePicture& picture)
 {
-  const int w = picture.width, h = picture.height;
-  std::vector<int> distance(picture.state.size(), 0);
-  /// One more than the least of the four neighbours that lie behind in the order of the pass.
-  const auto next = [&](int x, int y, int step) {
-    int least = 1 << 28;
-    for (const Pixel& aside : {Pixel(-step, 0), Pixel(-1, -step), Pixel(0, -step), Pixel(1, -step)}) {
-      const int i = x + aside.x(), j = y + aside.y();
-      least = std::min(least, i < 0 || j < 0 || i >= w || j >= h ? 0 : distance[picture.at(i, j)]);
-    }
-    return least + 1;
-  };
-  for (int y = 0; y < h; ++y)
-    for (int x = 0; x < w; ++x)
-      if (picture.state[picture.at(x, y)] == HolePicture::hole)
-        distance[picture.at(x, y)] = next(x, y, 1);
-  int largest = 0;
-  for (int y = h - 1; y >= 0; --y)
-    for (int x = w - 1; x >= 0; --x)
-      if (int& d = distance[picture.at(x, y)]; d > 0) {
-        d = std::min(d, next(x, y, -1));
-        largest = std::max(largest, d);
-      }
+  cv::Mat hole, distance;
+  cv::compare(cv::Mat(picture.height, picture.width, CV_8U, const_cast<std::uint8_t*>(picture.state.data())),
+              HolePicture::hole, hole, cv::CMP_EQ);
+  cv::copyMakeBorder(hole, hole, 1, 1, 1, 1, cv::BORDER_CONSTANT, 0);
+  cv::distanceTransform(hole, distance, cv::DIST_C, 3);
+  double largest = 0;
+  cv::minMaxLoc(distance, nullptr, &largest);
   return largest;
 }
 

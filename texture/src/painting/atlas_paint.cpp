@@ -50,11 +50,7 @@ private:
   float inset(int k) const
   {
     constexpr float edge_pixels = 0.75f, most = 0.2f; // a patch of few pixels keeps its middle
-    Eigen::Matrix<float, 2, 3> c;
-    for (int i = 0; i < 3; ++i) {
-      const Eigen::Vector2f at = map_.place(Eigen::Vector3f::Unit(i));
-      c.col(i) = map_.pixel(at.x(), at.y());
-    }
+    const Eigen::Matrix<float, 2, 3> c = map_.cornerPixels();
     const Eigen::Vector2f side = c.col((k + 2) % 3) - c.col((k + 1) % 3), to = c.col(k) - c.col((k + 1) % 3);
     const float height = std::abs(side.x() * to.y() - side.y() * to.x()) / std::max(side.norm(), 1e-6f);
     return std::min(most, edge_pixels / std::max(height, 1e-6f));
@@ -95,7 +91,7 @@ std::vector<std::vector<PaintedShare>> sharesByView(const PaintScene& scene, con
     for (Index s = begin; s < end; ++s)
       lowest = std::min(lowest, sources.blend.list[s].view);
     for (Index s = begin; s < end; ++s)
-      out[sources.blend.list[s].view].push_back({static_cast<int>(i), sources.blend.list[s].view == lowest, s});
+      out[sources.blend.list[s].view].push_back({int(i), sources.blend.list[s].view == lowest, s});
   }
   return out;
 }
@@ -186,16 +182,16 @@ Points patchColors(const PaintScene& scene, const std::vector<Image>& atlases)
   parallelFor(scene.patches.size(), scene.threads, [&](Index i) {
     if (!scene.isSeen(i))
       return;
-    const Chart& chart = *scene.chartOf(i);
+    const Chart& chart = scene.chartOf(i);
     int sum[3] = {0, 0, 0}, count = 0;
-    chart.texels.forTexels(scene.slots[i], [&](int x, int y) {
+    chart.texels.forTexels(scene.slots[i].number, [&](int x, int y) {
       const std::uint8_t* p = atlases[chart.atlas].pixel(chart.x + x, chart.y + y);
       for (int c = 0; c < 3; ++c)
         sum[c] += p[c];
       ++count;
     });
     if (count > 0)
-      colors.col(i) = Eigen::Vector3f(sum[0], sum[1], sum[2]) / static_cast<float>(count);
+      colors.col(i) = Eigen::Vector3f(sum[0], sum[1], sum[2]) / count;
   });
   return colors;
 }
@@ -203,28 +199,27 @@ Points patchColors(const PaintScene& scene, const std::vector<Image>& atlases)
 void paintUnseen(const PaintScene& scene, const Points& colors, std::vector<Image>& atlases, std::vector<Image>& masks)
 {
   parallelFor(scene.patches.size(), scene.threads, [&](Index i) {
-    const Chart* chart = scene.chartOf(i);
-    if (scene.view[i] >= 0 || scene.slots[i] < 0)
+    if (scene.view[i] >= 0 || !scene.hasTexels(i))
       return;
     Eigen::Matrix3f corners;
     for (int k = 0; k < 3; ++k)
       corners.col(k) = colors.col(scene.patches.faces(k, i));
     const PatchFrame frame(scene, i);
     frame.forTexels([&](const Eigen::Vector2f& center, int x, int y) {
-      x += chart->x;
-      y += chart->y;
-      store(corners * frame.inside(center), atlases[chart->atlas].pixel(x, y));
-      *masks[chart->atlas].pixel(x, y) = 255;
+      x += frame.chart.x;
+      y += frame.chart.y;
+      store(corners * frame.inside(center), atlases[frame.chart.atlas].pixel(x, y));
+      *masks[frame.chart.atlas].pixel(x, y) = 255;
     });
   });
 }
 
-std::vector<int> texelSlots(const std::vector<Chart>& charts, Index patches)
+std::vector<TexelSlot> texelSlots(const std::vector<Chart>& charts, Index patches)
 {
-  std::vector<int> slots(patches, -1);
-  for (const Chart& chart : charts)
-    for (std::size_t s = 0; s < chart.texels.patches.size(); ++s)
-      slots[chart.texels.patches[s]] = s;
+  std::vector<TexelSlot> slots(patches);
+  for (std::size_t c = 0; c < charts.size(); ++c)
+    for (std::size_t s = 0; s < charts[c].texels.patches.size(); ++s)
+      slots[charts[c].texels.patches[s]] = {int(c), int(s)};
   return slots;
 }
 

@@ -2,23 +2,27 @@
 #pragma once
 #include "charts/chart.h"
 #include "painting/view_blend.h"
+#include "views/outline_mask.h"
 namespace fresco::texture {
+/// Where the texels of a patch are.
+struct TexelSlot {
+  int chart = -1;  ///< -1 = it has none
+  int number = -1; ///< of the patch in the chart's texels
+};
+
 /// What painting reads.
 struct PaintScene {
   const PatchMesh& patches;
   const std::vector<Chart>& charts;
-  const Eigen::VectorXi& face_chart; ///< F, -1 = none
-  const Eigen::VectorXi& view;       ///< P, -1 = unseen
-  const std::vector<int>& slots;     ///< P, number of the patch in its chart's texels, -1 = it has none
+  const Eigen::VectorXi& view;         ///< P, -1 = unseen
+  const std::vector<TexelSlot>& slots; ///< P
   int threads;
 
-  const Chart* chartOf(Index patch) const ///< null = none
-  {
-    const int c = face_chart[patches.parent[patch]];
-    return c < 0 ? nullptr : &charts[c];
-  }
+  bool hasTexels(Index patch) const { return slots[patch].chart >= 0; }
+  /// @param patch that has texels
+  const Chart& chartOf(Index patch) const { return charts[slots[patch].chart]; }
   /// Whether a patch has texels and is painted from photographs.
-  bool isSeen(Index patch) const { return view[patch] >= 0 && slots[patch] >= 0; }
+  bool isSeen(Index patch) const { return view[patch] >= 0 && hasTexels(patch); }
 };
 
 /// A texel of a patch, in its chart.
@@ -27,7 +31,7 @@ struct PatchTexel {
 };
 
 /// P, see PaintScene::slots.
-std::vector<int> texelSlots(const std::vector<Chart>& charts, Index patches);
+std::vector<TexelSlot> texelSlots(const std::vector<Chart>& charts, Index patches);
 
 /// Whether the seen surface goes on straight beyond a side of the patch, the one from corner `side` to the next.
 bool goesOn(const PaintScene& scene, Index patch, int side);
@@ -35,9 +39,12 @@ bool goesOn(const PaintScene& scene, Index patch, int side);
 /// Where colours come from.
 struct PaintSources {
   const std::vector<Projector>& views;
-  const Points& gains; ///< 3xV, factor per view and channel
-  const Blend& blend;
   PhotoStore& photos;
+  const Points& gains;                   ///< 3xV, factor per view and channel
+  const Blend& blend;                    ///< views that each patch is painted from
+  const Candidates& candidates;          ///< views that show each patch
+  const std::vector<float>& penalties;   ///< octaves, of each candidate: photo-consistency
+  const std::vector<OutlineMask>& masks; ///< of the views, or none
 };
 
 /// Fills the texels of the seen patches from their photographs.

@@ -7,15 +7,9 @@
 #include <fresco/core/parallel.h>
 namespace fresco::texture {
 namespace {
-/// For every view the patches it shows, in their order.
-struct ViewPatches {
-  std::vector<Index> begin;
-  std::vector<int> list;
-};
-
 class BackProjection {
 public:
-  BackProjection(const PaintScene& scene, const BackProjectionSources& sources, std::vector<Image>& atlases)
+  BackProjection(const PaintScene& scene, const PaintSources& sources, std::vector<Image>& atlases)
       : scene_(scene), sources_(sources), atlases_(atlases), weights_(sources.candidates.list.size(), 0.f)
   {
     parallelFor(scene.patches.size(), scene.threads, [&](Index i) {
@@ -61,36 +55,23 @@ private:
   void listPatches()
   {
     const Candidates& all = sources_.candidates;
-    shown_.begin.assign(sources_.views.size() + 1, 0);
-    const auto each = [&](const auto& visit) {
-      for (Index i = 0; i < scene_.patches.size(); ++i)
-        for (Index c = all.begin[i]; c < all.begin[i + 1] && scene_.isSeen(i); ++c)
-          visit(i, all.list[c].view);
-    };
-    each([&](Index, int view) { ++shown_.begin[view + 1]; });
-    for (std::size_t v = 1; v < shown_.begin.size(); ++v)
-      shown_.begin[v] += shown_.begin[v - 1];
-    shown_.list.resize(shown_.begin.back());
-    std::vector<Index> next(shown_.begin.begin(), shown_.begin.end() - 1);
-    each([&](Index i, int view) { shown_.list[next[view]++] = i; });
+    shown_.resize(sources_.views.size());
+    for (Index i = 0; i < scene_.patches.size(); ++i)
+      for (Index c = all.begin[i]; c < all.begin[i + 1] && scene_.isSeen(i); ++c)
+        shown_[all.list[c].view].push_back(i);
   }
 
   void computeResiduals(Index first, Index last)
   {
     residuals_.clear();
     residuals_.resize(sources_.views.size());
-    parallelFor(
-        last - first, scene_.threads,
-        [&](Index i) {
-          const Index v = first + i;
-          if (shown_.begin[v] == shown_.begin[v + 1])
-            return;
-          const int* list = shown_.list.data();
-          const Prediction prediction{scene_, atlases_, sources_.views[v], list + shown_.begin[v],
-                                      list + shown_.begin[v + 1]};
-          residuals_[v] = residualOf(prediction, *sources_.photos.get(v), sources_.gains.col(v));
-        },
-        1);
+    const auto compute = [&](Index i) {
+      const Index v = first + i;
+      if (!shown_[v].empty())
+        residuals_[v] = residualOf({scene_, atlases_, sources_.views[v], shown_[v]}, *sources_.photos.get(v),
+                                   sources_.gains.col(v));
+    };
+    parallelFor(last - first, scene_.threads, compute, 1);
   }
 
   void backProjectResidual(Index first, Index last)
@@ -173,15 +154,15 @@ private:
   }
 
   const PaintScene& scene_;
-  const BackProjectionSources& sources_;
+  const PaintSources& sources_;
   std::vector<Image>& atlases_;
-  std::vector<float> weights_; ///< of each candidate, 0..1; those of a patch sum to 1
-  ViewPatches shown_;
+  std::vector<float> weights_;           ///< of each candidate, 0..1; those of a patch sum to 1
+  std::vector<std::vector<int>> shown_;  ///< by view, patches in their order
   std::vector<PhotoResidual> residuals_; ///< by view, of those in work
 };
 } // namespace
 
-void backProject(const PaintScene& scene, const BackProjectionSources& sources, int rounds, std::vector<Image>& atlases)
+void backProject(const PaintScene& scene, const PaintSources& sources, int rounds, std::vector<Image>& atlases)
 {
   if (rounds == 0)
     return;

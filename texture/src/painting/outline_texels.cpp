@@ -2,9 +2,11 @@
 #include "painting/outline_texels.h"
 #include "charts/patch_frame.h"
 #include "grid.h"
+#include "painting/color_growth.h"
 #include <algorithm>
 #include <cmath>
 #include <fresco/core/parallel.h>
+#include <limits>
 namespace fresco::texture {
 namespace {
 enum : int { as_painted = -2, none = -1 }; // instead of a view
@@ -12,7 +14,7 @@ enum : int { as_painted = -2, none = -1 }; // instead of a view
 /// Decides for the texels of one patch.
 class PatchChoice {
 public:
-  PatchChoice(const PaintScene& scene, const OutlineSources& sources, Index patch)
+  PatchChoice(const PaintScene& scene, const PaintSources& sources, Index patch)
       : sources_(sources), patch_(patch), frame_(scene, patch)
   {}
 
@@ -24,11 +26,7 @@ public:
       const int view = blend.list[s].view;
       if (!frame_.map.look(sources_.views[view]))
         continue;
-      Eigen::Matrix<float, 2, 3> corners;
-      for (int k = 0; k < 3; ++k) {
-        const Eigen::Vector2f at = frame_.map.place(Eigen::Vector3f::Unit(k));
-        corners.col(k) = frame_.map.pixel(at.x(), at.y());
-      }
+      const Eigen::Matrix<float, 2, 3> corners = frame_.map.cornerPixels();
       constexpr float spare = 3; // pixels: texels of the border
       if (sources_.masks[view].touches(corners.rowwise().minCoeff().array() - spare,
                                        corners.rowwise().maxCoeff().array() + spare))
@@ -92,7 +90,7 @@ private:
     }
   }
 
-  const OutlineSources& sources_;
+  const PaintSources& sources_;
   Index patch_;
   PatchFrame frame_;
 };
@@ -104,8 +102,8 @@ void append(const PaintScene& scene, Index patch, const std::vector<int>& choice
     return;
   }
   std::size_t k = 0;
-  scene.chartOf(patch)->texels.forTexels(scene.slots[patch], [&](int x, int y) {
-    const PatchTexel texel{static_cast<int>(patch), x, y};
+  scene.chartOf(patch).texels.forTexels(scene.slots[patch].number, [&](int x, int y) {
+    const PatchTexel texel{int(patch), x, y};
     if (choice[k] >= 0)
       out.by_view[choice[k]].push_back(texel);
     else if (choice[k] == none)
@@ -114,62 +112,22 @@ void append(const PaintScene& scene, Index patch, const std::vector<int>& choice
   });
 }
 
-/// The unknown texels of one chart.
-class ChartFill {
-public:
-  ChartFill(const PaintScene& scene, const Chart& chart, std::vector<PatchTexel> unknown, Image& atlas)
-      : chart_(chart), atlas_(atlas), unknown_(std::move(unknown)), known_(cellCount(chart.width, chart.height), 0)
-  {
-    for (std::size_t s = 0; s < chart.texels.patches.size(); ++s)
-      if (scene.isSeen(chart.texels.patches[s]))
-        chart.texels.forTexels(s, [&](int x, int y) { known_[at(x, y)] = 1; });
-    for (const PatchTexel& texel : unknown_)
-      known_[at(texel.x, texel.y)] = 0;
-  }
-
-  /// Round by round, each texel the mean of its neighbours known before.
-  void run()
-  {
-    std::vector<PatchTexel> open = unknown_, next, done;
-    while (!open.empty()) {
-      next.clear();
-      done.clear();
-      for (const PatchTexel& texel : open)
-        (fill(texel) ? done : next).push_back(texel);
-      if (done.empty())
-        return;
-      for (const PatchTexel& texel : done)
-        known_[at(texel.x, texel.y)] = 1;
-      open.swap(next);
-    }
-  }
-
-private:
-  std::size_t at(int x, int y) const { return cellAt(x, y, chart_.width); }
-
-  bool fill(const PatchTexel& texel)
-  {
-    int sum[3] = {0, 0, 0}, count = 0;
-    for (int y = std::max(0, texel.y - 1); y <= std::min(chart_.height - 1, texel.y + 1); ++y)
-      for (int x = std::max(0, texel.x - 1); x <= std::min(chart_.width - 1, texel.x + 1); ++x)
-        if (known_[at(x, y)]) {
-          for (int c = 0; c < 3; ++c)
-            sum[c] += atlas_.pixel(chart_.x + x, chart_.y + y)[c];
-          ++count;
-        }
-    for (int c = 0; c < 3 && count > 0; ++c)
-      atlas_.pixel(chart_.x + texel.x, chart_.y + texel.y)[c] = (sum[c] + count / 2) / count;
-    return count > 0;
-  }
-
-  const Chart& chart_;
-  Image& atlas_;
-  std::vector<PatchTexel> unknown_;
-  std::vector<char> known_;
-};
+/// Gives the unknown texels of one chart the colours around them.
+void fillChart(const PaintScene& scene, const Chart& chart, const std::vector<PatchTexel>& unknown, Image& atlas)
+{
+  ColorGrowth growth{{chart.x, chart.y}, chart.width, true, std::numeric_limits<int>::max(), {}};
+  growth.states.assign(cellCount(chart.width, chart.height), ColorGrowth::left_alone);
+  const auto set = [&](int x, int y, ColorGrowth::State state) { growth.states[cellAt(x, y, chart.width)] = state; };
+  for (std::size_t s = 0; s < chart.texels.patches.size(); ++s)
+    if (scene.isSeen(chart.texels.patches[s]))
+      chart.texels.forTexels(s, [&](int x, int y) { set(x, y, ColorGrowth::known); });
+  for (const PatchTexel& texel : unknown)
+    set(texel.x, texel.y, ColorGrowth::open);
+  growColors(std::move(growth), atlas);
+}
 } // namespace
 
-OutlineTexels findOutlineTexels(const PaintScene& scene, const OutlineSources& sources)
+OutlineTexels findOutlineTexels(const PaintScene& scene, const PaintSources& sources)
 {
   OutlineTexels out;
   out.by_view.resize(sources.views.size());
@@ -193,16 +151,14 @@ void fillUnknown(const PaintScene& scene, const std::vector<PatchTexel>& unknown
 {
   std::vector<std::vector<PatchTexel>> by_chart(scene.charts.size());
   for (const PatchTexel& texel : unknown) {
-    const Chart& chart = *scene.chartOf(texel.patch);
+    const Chart& chart = scene.chartOf(texel.patch);
     *masks[chart.atlas].pixel(chart.x + texel.x, chart.y + texel.y) = 255;
-    by_chart[scene.face_chart[scene.patches.parent[texel.patch]]].push_back(texel);
+    by_chart[scene.slots[texel.patch].chart].push_back(texel);
   }
-  parallelFor(
-      by_chart.size(), scene.threads,
-      [&](Index c) {
-        if (!by_chart[c].empty())
-          ChartFill(scene, scene.charts[c], std::move(by_chart[c]), atlases[scene.charts[c].atlas]).run();
-      },
-      1);
+  const auto fill = [&](Index c) {
+    if (!by_chart[c].empty())
+      fillChart(scene, scene.charts[c], by_chart[c], atlases[scene.charts[c].atlas]);
+  };
+  parallelFor(by_chart.size(), scene.threads, fill, 1);
 }
 } // namespace fresco::texture

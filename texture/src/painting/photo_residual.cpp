@@ -98,8 +98,8 @@ PhotoResidual residualOf(const Prediction& prediction, const Image& photo, const
   out.width = photo.width;
   out.height = photo.height;
   out.pixels.assign(cellCount(photo.width, photo.height), Eigen::Vector4f::Zero());
-  for (const int* patch = prediction.first; patch != prediction.last; ++patch)
-    draw(prediction, *patch, out);
+  for (const int patch : prediction.patches)
+    draw(prediction, patch, out);
   const std::uint8_t* p = photo.data.data();
   for (Eigen::Vector4f& pixel : out.pixels) {
     const float trust = std::max({p[0], p[1], p[2]}) < overexposed ? coverageWeight(pixel.w()) : 0.f;

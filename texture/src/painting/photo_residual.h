@@ -26,7 +26,7 @@ struct Prediction {
   const PaintScene& scene;
   const std::vector<Image>& atlases;
   const Projector& view;
-  const int *first, *last; ///< patches
+  const std::vector<int>& patches;
 };
 
 /// A pixel is predicted as the mean of what bilinear interpolation of the texels gives over its area. Pixels that the

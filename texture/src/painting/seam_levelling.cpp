@@ -11,16 +11,10 @@ namespace {
 using Sparse = Eigen::SparseMatrix<float, Eigen::RowMajor>;
 using Triplet = Eigen::Triplet<float>;
 
-Eigen::Vector3f colorOf(const Candidate& c, const Points& gains)
-{
-  return Eigen::Vector3f(c.color[0], c.color[1], c.color[2]).cwiseProduct(gains.col(c.view));
-}
-
 class Levelling {
 public:
-  Levelling(const PatchMesh& patches, const SharedVertices& vertices, const LevellingColors& colors)
-      : patches_(patches), around_(vertices.around), shares_(vertices.shares), candidates_(colors.candidates),
-        gains_(colors.gains)
+  Levelling(const BlendInput& input, const Groups& around, const VertexViews& shares)
+      : patches_(input.patches), around_(around), shares_(shares), candidates_(input.candidates), gains_(input.gains)
   {
     out_.begin.assign(1, 0);
     for (const auto& list : shares_)
@@ -38,16 +32,14 @@ public:
     addSmoothness();
     const Sparse A = matrix();
     Eigen::MatrixXf channels(n, 3); // columns, so that threads do not write side by side
-    parallelFor(
-        n > 0 ? 3 : 0, threads,
-        [&](Index c) {
-          Eigen::ConjugateGradient<Sparse, Eigen::Lower> solver;
-          solver.setMaxIterations(300);
-          solver.setTolerance(1e-3); // of a grey level, about
-          solver.compute(A);
-          channels.col(c) = solver.solve(right_.col(c));
-        },
-        1);
+    const auto solve = [&](Index c) {
+      Eigen::ConjugateGradient<Sparse, Eigen::Lower> solver;
+      solver.setMaxIterations(300);
+      solver.setTolerance(1e-3); // of a grey level, about
+      solver.compute(A);
+      channels.col(c) = solver.solve(right_.col(c));
+    };
+    parallelFor(n > 0 ? 3 : 0, threads, solve, 1);
     out_.offsets = channels.transpose();
     return std::move(out_);
   }
@@ -89,7 +81,7 @@ private:
                           *cb = candidates_.find(around_.list[k], list[b].view);
           if (!ca || !cb)
             continue;
-          step += colorOf(*cb, gains_) - colorOf(*ca, gains_);
+          step += cb->corrected(gains_) - ca->corrected(gains_);
           ++count;
         }
         if (!(count > 0))
@@ -120,7 +112,7 @@ private:
   }
 
   const PatchMesh& patches_;
-  const VertexPatches& around_;
+  const Groups& around_;
   const VertexViews& shares_;
   const Candidates& candidates_;
   const Points& gains_;
@@ -131,9 +123,8 @@ private:
 };
 } // namespace
 
-SeamOffsets levelSeams(const PatchMesh& patches, const SharedVertices& vertices, const LevellingColors& colors,
-                       int threads)
+SeamOffsets levelSeams(const BlendInput& input, const Groups& around, const VertexViews& shares, int threads)
 {
-  return Levelling(patches, vertices, colors).run(threads);
+  return Levelling(input, around, shares).run(threads);
 }
 } // namespace fresco::texture

@@ -28,7 +28,7 @@ public:
         shares_(shareVertices(patches_, around_, view_, roundsFor(patches_, options.blend_width)))
   {
     if (options.level)
-      offsets_ = levelSeams(patches_, {around_, shares_}, {candidates_, input.gains}, options.threads);
+      offsets_ = levelSeams(input, around_, shares_, options.threads);
   }
 
   Blend run() const
@@ -92,7 +92,7 @@ private:
   const PatchMesh& patches_;
   const Candidates& candidates_;
   const Eigen::VectorXi& view_;
-  VertexPatches around_;
+  Groups around_;
   VertexViews shares_;
   SeamOffsets offsets_;
 };

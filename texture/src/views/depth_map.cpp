@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "views/depth_map.h"
+#include "grid.h"
 #include <algorithm>
 #include <cmath>
+#include <opencv2/imgproc.hpp>
 namespace fresco::texture {
 namespace {
 constexpr int packet = 8; // rays traced together
@@ -15,36 +17,16 @@ RayPacket<packet> raysOf(const Projector& view, const DepthMap& map, int x, int 
   return rays;
 }
 
-/// select() over the square of `radius` cells around each cell.
-template <typename Select>
-DepthMap selectWithin(const DepthMap& map, int radius, const Select& select)
-{
-  DepthMap rows = map, out;
-  for (int y = 0; y < map.height; ++y)
-    for (int x = 0; x < map.width; ++x) {
-      float& value = rows.depth[static_cast<std::size_t>(y) * map.width + x];
-      for (int i = std::max(0, x - radius); i <= std::min(map.width - 1, x + radius); ++i)
-        value = select(value, map.at(i, y));
-    }
-  out = rows;
-  for (int y = 0; y < map.height; ++y)
-    for (int j = std::max(0, y - radius); j <= std::min(map.height - 1, y + radius); ++j)
-      for (int x = 0; x < map.width; ++x) {
-        float& value = out.depth[static_cast<std::size_t>(y) * map.width + x];
-        value = select(value, rows.at(x, j));
-      }
-  return out;
-}
 } // namespace
 
 DepthMap depthMap(const RayScene& scene, const Projector& view, Index most_cells)
 {
   DepthMap map;
-  const double pixels = static_cast<double>(view.camera().width) * view.camera().height;
-  map.step = std::max(1.0, std::sqrt(pixels / static_cast<double>(most_cells)));
+  const double pixels = cellCount(view.camera().width, view.camera().height);
+  map.step = std::max(1.0, std::sqrt(pixels / most_cells));
   map.width = std::ceil(view.camera().width / map.step);
   map.height = std::ceil(view.camera().height / map.step);
-  map.depth.reserve(static_cast<std::size_t>(map.width) * map.height);
+  map.depth.reserve(cellCount(map.width, map.height));
   for (int y = 0; y < map.height; ++y)
     for (int x = 0; x < map.width; x += packet) {
       const HitPacket<packet> hits = scene.intersect(raysOf(view, map, x, y), RayOrder::coherent);
@@ -54,13 +36,17 @@ DepthMap depthMap(const RayScene& scene, const Projector& view, Index most_cells
   return map;
 }
 
-DepthMap nearestWithin(const DepthMap& map, int radius)
+DepthMap nearestWithin(DepthMap map, int radius)
 {
-  return selectWithin(map, radius, [](float a, float b) { return std::min(a, b); });
+  cv::Mat depth(map.height, map.width, CV_32F, map.depth.data());
+  cv::erode(depth, depth, cv::Mat::ones(2 * radius + 1, 2 * radius + 1, CV_8U));
+  return map;
 }
 
-DepthMap farthestWithin(const DepthMap& map, int radius)
+DepthMap farthestWithin(DepthMap map, int radius)
 {
-  return selectWithin(map, radius, [](float a, float b) { return std::max(a, b); });
+  cv::Mat depth(map.height, map.width, CV_32F, map.depth.data());
+  cv::dilate(depth, depth, cv::Mat::ones(2 * radius + 1, 2 * radius + 1, CV_8U));
+  return map;
 }
 } // namespace fresco::texture

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include "cameras/projector.h"
+#include "grid.h"
 #include <fresco/search/ray_scene.h>
 #include <vector>
 namespace fresco::texture {
@@ -10,14 +11,14 @@ struct DepthMap {
   float step = 1;           ///< pixels of the image per cell
   std::vector<float> depth; ///< rows from the top; infinite where nothing is hit
 
-  float at(int x, int y) const { return depth[static_cast<std::size_t>(y) * width + x]; }
+  float at(int x, int y) const { return depth[cellAt(x, y, width)]; }
 };
 
 /// One ray through the centre of each cell; as fine as the image, but at most `most_cells`.
 DepthMap depthMap(const RayScene& scene, const Projector& view, Index most_cells);
 
 /// Minimum over the square of `radius` cells around each cell.
-DepthMap nearestWithin(const DepthMap& map, int radius);
+DepthMap nearestWithin(DepthMap map, int radius);
 /// Maximum likewise; 0 beyond the image's border.
-DepthMap farthestWithin(const DepthMap& map, int radius);
+DepthMap farthestWithin(DepthMap map, int radius);
 } // namespace fresco::texture

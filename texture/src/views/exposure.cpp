@@ -8,10 +8,8 @@
 #include <numeric>
 namespace fresco::texture {
 namespace {
-struct Pair {
-  std::vector<Eigen::Vector3f> ratios; ///< logarithms of first over second
-};
-using Pairs = std::map<std::pair<int, int>, Pair>;
+/// Logarithms of the first view's colours over the second's.
+using Pairs = std::map<std::pair<int, int>, std::vector<Eigen::Vector3f>>;
 
 bool isClear(const Candidate& c)
 {
@@ -29,15 +27,13 @@ void addPatch(const Candidates& candidates, Index patch, Pairs& pairs)
   constexpr float trusted = 0.2f;            // of the best quality: views that show much less blur the colour
   constexpr std::size_t most_samples = 1000; // per pair of views: more hardly change a median
   const Candidate* list = candidates.of(patch);
-  float best = 0;
-  for (Index i = 0; i < candidates.count(patch); ++i)
-    best = std::max(best, list[i].quality());
+  const float best = candidates.bestQuality(patch);
   for (Index i = 0; i < candidates.count(patch); ++i) {
     if (list[i].quality() < trusted * best || !isClear(list[i]))
       continue;
     for (Index j = i + 1; j < candidates.count(patch); ++j)
       if (list[j].quality() >= trusted * best && isClear(list[j])) {
-        auto& ratios = pairs[{list[i].view, list[j].view}].ratios;
+        auto& ratios = pairs[{list[i].view, list[j].view}];
         if (ratios.size() < most_samples)
           ratios.push_back(logColor(list[i]) - logColor(list[j]));
       }
@@ -106,9 +102,9 @@ Points solveGains(const Candidates& candidates, Index views)
   for (int c = 0; c < 3 && views > 0; ++c) {
     std::vector<Equation> equations;
     std::vector<char> known(views, 0);
-    for (const auto& [key, pair] : pairs)
-      if (pair.ratios.size() >= least_samples) {
-        equations.push_back({key.first, key.second, channelMedian(pair.ratios, c), std::sqrt(pair.ratios.size())});
+    for (const auto& [key, ratios] : pairs)
+      if (ratios.size() >= least_samples) {
+        equations.push_back({key.first, key.second, channelMedian(ratios, c), std::sqrt(ratios.size())});
         known[key.first] = known[key.second] = 1;
       }
     const double count = std::count(known.begin(), known.end(), 1);

@@ -109,13 +109,11 @@ std::vector<OutlineMask> outlineMasks(const PatchMesh& patches, const Visibility
   constexpr float reach_pixels = 2.f; // of cubic interpolation
   const float step = limitsFor(patches, views, input.options).tolerance;
   std::vector<OutlineMask> masks(views.used.size());
-  parallelFor(
-      masks.size(), input.options.threads,
-      [&](Index v) {
-        if (views.used[v])
-          masks[v] = OutlineMask(depthMap(input.scene, views.projectors[v], most_cells), reach_pixels, step);
-      },
-      1);
+  const auto make = [&](Index v) {
+    if (views.used[v])
+      masks[v] = OutlineMask(depthMap(input.scene, views.projectors[v], most_cells), reach_pixels, step);
+  };
+  parallelFor(masks.size(), input.options.threads, make, 1);
   return masks;
 }
 } // namespace fresco::texture

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <fresco/core/parallel.h>
+#include <numeric>
 #include <unordered_map>
 namespace fresco::texture {
 namespace {
@@ -95,31 +96,17 @@ bool cutLongEdges(Patches& patches, float longest_edge)
   return !middle.empty();
 }
 
-Patches copyOf(const TriangleMesh& mesh)
-{
-  Patches patches;
-  patches.vertices.resize(mesh.vertexCount());
-  for (Index v = 0; v < mesh.vertexCount(); ++v)
-    patches.vertices[v] = mesh.vertices.col(v);
-  for (Index v = 0; v < mesh.colors.cols(); ++v)
-    patches.colors.emplace_back(mesh.colors.col(v).cast<float>());
-  for (Index f = 0; f < mesh.faceCount(); ++f) {
-    patches.faces.emplace_back(mesh.faces.col(f));
-    patches.parent.push_back(f);
-  }
-  return patches;
-}
-
-Patches copyOf(const PatchMesh& mesh)
+/// @param mesh a TriangleMesh or PatchMesh
+template <typename Mesh>
+Patches copyOf(const Mesh& mesh)
 {
   Patches patches;
   for (Index v = 0; v < mesh.vertices.cols(); ++v)
     patches.vertices.emplace_back(mesh.vertices.col(v));
   for (Index v = 0; v < mesh.colors.cols(); ++v)
-    patches.colors.emplace_back(mesh.colors.col(v));
-  for (Index i = 0; i < mesh.size(); ++i)
-    patches.faces.emplace_back(mesh.faces.col(i));
-  patches.parent.assign(mesh.parent.data(), mesh.parent.data() + mesh.size());
+    patches.colors.emplace_back(mesh.colors.col(v).template cast<float>());
+  for (Index f = 0; f < mesh.faces.cols(); ++f)
+    patches.faces.emplace_back(mesh.faces.col(f));
   return patches;
 }
 
@@ -137,7 +124,8 @@ PatchMesh finish(const Patches& patches, int threads)
   out.normals.resize(3, n);
   out.areas.resize(n);
   parallelFor(n, threads, [&](Index i) {
-    const Eigen::Vector3d cross = doubleAreaVector(out.vertices, out.faces.col(i));
+    const auto corner = [&](int k) { return out.vertices.col(out.faces(k, i)).cast<double>(); };
+    const Eigen::Vector3d cross = areaVector(corner(0), corner(1), corner(2));
     const double length = cross.norm();
     out.areas[i] = 0.5 * length;
     out.normals.col(i) = (length > 0 ? Eigen::Vector3d(cross / length) : Eigen::Vector3d::Zero()).cast<float>();
@@ -150,6 +138,8 @@ PatchMesh cutFaces(const TriangleMesh& mesh, float longest_edge, int threads)
 {
   constexpr int most_rounds = 16; // each halves the longest edge: a face of 65,000 pixels at most
   Patches patches = copyOf(mesh);
+  patches.parent.resize(mesh.faceCount());
+  std::iota(patches.parent.begin(), patches.parent.end(), 0);
   for (int round = 0; round < most_rounds && cutLongEdges(patches, longest_edge); ++round)
     ;
   return finish(patches, threads);
@@ -158,18 +148,12 @@ PatchMesh cutFaces(const TriangleMesh& mesh, float longest_edge, int threads)
 PatchMesh cutPatches(const PatchMesh& patches, const std::vector<char>& marked, int threads)
 {
   Patches parts = copyOf(patches);
+  parts.parent.assign(patches.parent.begin(), patches.parent.end());
   const Midpoints middle = cutEdges(parts, [&](std::size_t i, int) { return marked[i] != 0; });
   if (middle.empty())
     return patches;
   cutAt(middle, parts);
   return finish(parts, threads);
-}
-
-Eigen::Vector3d doubleAreaVector(const Points& vertices, const Eigen::Vector3i& face)
-{
-  const Eigen::Vector3d a = vertices.col(face[0]).cast<double>(), b = vertices.col(face[1]).cast<double>(),
-                        c = vertices.col(face[2]).cast<double>();
-  return (b - a).cross(c - a);
 }
 
 Eigen::Matrix3Xi faceNeighbors(const Faces& faces)

@@ -14,6 +14,10 @@ struct PatchMesh {
   Eigen::VectorXf areas;      ///< P
 
   Index size() const { return faces.cols(); }
+  Eigen::Vector3f middle(Index i) const
+  {
+    return vertices.col(faces(0, i)) / 3 + vertices.col(faces(1, i)) / 3 + vertices.col(faces(2, i)) / 3;
+  }
 };
 
 /// Cuts every edge longer than `longest_edge` at its middle until none is left; the cuts of two neighbours meet.
@@ -22,9 +26,6 @@ PatchMesh cutFaces(const TriangleMesh& mesh, float longest_edge, int threads);
 /// Cuts the marked patches into four, and their neighbours so that the cuts meet.
 /// @param marked P
 PatchMesh cutPatches(const PatchMesh& patches, const std::vector<char>& marked, int threads);
-
-/// Of a triangle: along its normal, twice its area long.
-Eigen::Vector3d doubleAreaVector(const Points& vertices, const Eigen::Vector3i& face);
 
 /// 3xF, face across the edge from corner k to corner k+1; -1 at boundaries and where more than two faces meet.
 Eigen::Matrix3Xi faceNeighbors(const Faces& faces);

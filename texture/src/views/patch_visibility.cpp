@@ -92,10 +92,7 @@ Eigen::Vector3f pixelWithin(const Projector& view, const Eigen::Vector3f& vertex
 
 float cosineTowards(const PatchMesh& patches, Index patch, const Projector& view)
 {
-  Eigen::Vector3f middle = Eigen::Vector3f::Zero();
-  for (int k = 0; k < 3; ++k)
-    middle += patches.vertices.col(patches.faces(k, patch)) / 3;
-  return patches.normals.col(patch).dot((view.center() - middle).normalized());
+  return patches.normals.col(patch).dot((view.center() - patches.middle(patch)).normalized());
 }
 
 Footprint footprintOf(const Eigen::Matrix3f& pixels, float step)

@@ -5,11 +5,6 @@
 #include <fresco/core/statistics.h>
 namespace fresco::texture {
 namespace {
-Eigen::Vector3f colorOf(const Candidate& c, const Points& gains)
-{
-  return Eigen::Vector3f(c.color[0], c.color[1], c.color[2]).cwiseProduct(gains.col(c.view));
-}
-
 /// Median per channel over the views with a vote; false if they are too few.
 bool consensus(const Candidates& candidates, Index patch, const Points& gains, Eigen::Vector3f& color)
 {
@@ -17,14 +12,12 @@ bool consensus(const Candidates& candidates, Index patch, const Points& gains, E
   constexpr float trusted = 0.1f;        // of the best quality: views that show much less blur the colour
   const Candidate* list = candidates.of(patch);
   const Index n = candidates.count(patch);
-  float best = 0;
-  for (Index i = 0; i < n; ++i)
-    best = std::max(best, list[i].quality());
+  const float best = candidates.bestQuality(patch);
   std::vector<float> values[3];
   for (Index i = 0; i < n; ++i)
     if (list[i].quality() >= trusted * best)
       for (int c = 0; c < 3; ++c)
-        values[c].push_back(colorOf(list[i], gains)[c]);
+        values[c].push_back(list[i].corrected(gains)[c]);
   if (values[0].size() < least_views)
     return false;
   for (int c = 0; c < 3; ++c)
@@ -67,7 +60,7 @@ std::vector<float> photoConsistencyPenalties(const PatchMesh& patches, const Can
     if (!consensus(candidates, i, gains, usual))
       return;
     for (Index c = candidates.begin[i]; c < candidates.begin[i + 1]; ++c)
-      difference[c] = (colorOf(candidates.list[c], gains) - usual).cwiseAbs().maxCoeff();
+      difference[c] = (candidates.list[c].corrected(gains) - usual).cwiseAbs().maxCoeff();
   });
   for (int round = 0; round < smoothing_rounds; ++round)
     difference = smoothed(patches, candidates, difference, threads);

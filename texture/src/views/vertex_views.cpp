@@ -33,7 +33,7 @@ void tidy(std::vector<VertexShare>& shares)
   std::sort(shares.begin(), shares.end(), [](const VertexShare& a, const VertexShare& b) { return a.view < b.view; });
 }
 
-VertexViews fromPatches(const PatchMesh& patches, const VertexPatches& around, const Eigen::VectorXi& view)
+VertexViews fromPatches(const PatchMesh& patches, const Groups& around, const Eigen::VectorXi& view)
 {
   VertexViews out(around.begin.size() - 1);
   for (std::size_t v = 0; v < out.size(); ++v) {
@@ -64,23 +64,16 @@ std::vector<int> atSeams(const PatchMesh& patches, const VertexViews& shares)
 }
 } // namespace
 
-VertexPatches vertexPatches(const PatchMesh& patches)
+Groups vertexPatches(const PatchMesh& patches)
 {
-  VertexPatches out;
-  out.begin.assign(patches.vertices.cols() + 1, 0);
-  for (Index i = 0; i < patches.faces.size(); ++i)
-    ++out.begin[patches.faces.data()[i] + 1];
-  for (std::size_t v = 1; v < out.begin.size(); ++v)
-    out.begin[v] += out.begin[v - 1];
-  out.list.resize(out.begin.back());
-  std::vector<int> next(out.begin.begin(), out.begin.end() - 1);
-  for (Index i = 0; i < patches.faces.size(); ++i)
-    out.list[next[patches.faces.data()[i]]++] = i / 3;
+  const int* vertices = patches.faces.data();
+  Groups out = grouped(patches.faces.size(), patches.vertices.cols(), [&](Index i) { return vertices[i]; });
+  for (int& i : out.list)
+    i /= 3;
   return out;
 }
 
-VertexViews shareVertices(const PatchMesh& patches, const VertexPatches& around, const Eigen::VectorXi& view,
-                          int rounds)
+VertexViews shareVertices(const PatchMesh& patches, const Groups& around, const Eigen::VectorXi& view, int rounds)
 {
   VertexViews shares = fromPatches(patches, around, view);
   for (int round = 0; round < rounds; ++round) {

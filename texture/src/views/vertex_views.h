@@ -1,14 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include "views/patch_mesh.h"
+#include <fresco/core/grouped.h>
 #include <vector>
 namespace fresco::texture {
 /// Patches at every vertex.
-struct VertexPatches {
-  std::vector<int> begin, list;
-};
-
-VertexPatches vertexPatches(const PatchMesh& patches);
+Groups vertexPatches(const PatchMesh& patches);
 
 /// A view's part in the colour at a vertex.
 struct VertexShare {
@@ -20,6 +17,5 @@ struct VertexShare {
 using VertexViews = std::vector<std::vector<VertexShare>>;
 
 /// Shares of the views of the patches around each vertex, widened by `rounds` of averaging over neighbours.
-VertexViews shareVertices(const PatchMesh& patches, const VertexPatches& around, const Eigen::VectorXi& view,
-                          int rounds);
+VertexViews shareVertices(const PatchMesh& patches, const Groups& around, const Eigen::VectorXi& view, int rounds);
 } // namespace fresco::texture

@@ -176,6 +176,14 @@ Candidates CandidateTable::take()
   return out;
 }
 
+float Candidates::bestQuality(Index patch) const
+{
+  float best = 0;
+  for (Index c = begin[patch]; c < begin[patch + 1]; ++c)
+    best = std::max(best, list[c].quality());
+  return best;
+}
+
 const Candidate* Candidates::find(Index patch, int view) const
 {
   const Candidate *first = of(patch), *last = first + count(patch);
@@ -192,17 +200,14 @@ Candidates findCandidates(const PatchMesh& patches, const VisibilityInput& input
   std::vector<std::vector<Seen>> seen(batch);
   const VisibilityLimits limits = limitsFor(patches, views, input.options);
   for (Index first = 0; first < n; first += batch) {
-    report(progress, "visibility", static_cast<double>(first) / n);
+    report(progress, "visibility", 1.0 * first / n);
     const Index count = std::min(batch, n - first);
-    parallelFor(
-        count, input.options.threads,
-        [&](Index i) {
-          seen[i].clear();
-          if (views.used[first + i])
-            seen[i] =
-                ViewTest(patches, views.projectors[first + i], limits).run(input.scene, *views.photos.get(first + i));
-        },
-        1);
+    const auto test = [&](Index i) {
+      seen[i].clear();
+      if (const Index v = first + i; views.used[v])
+        seen[i] = ViewTest(patches, views.projectors[v], limits).run(input.scene, *views.photos.get(v));
+    };
+    parallelFor(count, input.options.threads, test, 1);
     for (Index i = 0; i < count; ++i)
       for (const Seen& s : seen[i])
         table.add(s.patch, {static_cast<int>(first + i), s.color, s.penalty, s.resolution});

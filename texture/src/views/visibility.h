@@ -17,6 +17,11 @@ struct Candidate {
   float resolution;     ///< pixels per mesh unit in the direction seen most obliquely
 
   float quality() const { return resolution * std::exp2(penalty * (-1 / 16.f)); }
+  /// @param gains 3xV, factor per view and channel
+  Eigen::Vector3f corrected(const Points& gains) const
+  {
+    return Eigen::Vector3f(color[0], color[1], color[2]).cwiseProduct(gains.col(view));
+  }
 };
 
 /// For each patch the views that show the whole of it, by view number.
@@ -26,6 +31,7 @@ struct Candidates {
 
   Index count(Index patch) const { return begin[patch + 1] - begin[patch]; }
   const Candidate* of(Index patch) const { return list.data() + begin[patch]; }
+  float bestQuality(Index patch) const; ///< 0 without candidates
   /// The candidate of that view, or null.
   const Candidate* find(Index patch, int view) const;
 };

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "views/visible_surface.h"
-#include "views/hidden_parts.h"
+#include "views/patch_visibility.h"
 #include "views/view_selection.h"
 #include <algorithm>
 #include <cmath>
+#include <fresco/core/parallel.h>
 #include <fresco/core/statistics.h>
 namespace fresco::texture {
 namespace {
@@ -46,18 +47,68 @@ Eigen::VectorXi viewsOfFaces(const PatchMesh& patches, const Eigen::VectorXi& vi
   }
   return out;
 }
+std::vector<DepthMap> coarseMaps(const RayScene& scene, const ViewList& views, int threads)
+{
+  constexpr Index cells_of_all = 64'000'000; // 256 MB
+  const Index n = views.projectors.size();
+  std::vector<DepthMap> maps(views.projectors.size());
+  const auto make = [&](Index v) {
+    if (views.used[v])
+      maps[v] = depthMap(scene, views.projectors[v], std::min(most_cells, cells_of_all / n));
+  };
+  parallelFor(n, threads, make, 1);
+  return maps;
+}
+
+struct DepthTest {
+  const std::vector<Projector>& projectors;
+  const std::vector<DepthMap>& maps; ///< of each; empty where not in use
+  float tolerance;                   ///< mesh units
+};
+
+/// Whether some view shows a part of the patch, but none the whole.
+bool isOnlySeenInPart(const PatchMesh& patches, Index patch, const DepthTest& test)
+{
+  const auto& [projectors, maps, tolerance] = test;
+  bool in_part = false;
+  for (std::size_t v = 0; v < maps.size(); ++v) {
+    if (maps[v].depth.empty() || !(cosineTowards(patches, patch, projectors[v]) >= least_cosine))
+      continue;
+    Eigen::Matrix3f pixels;
+    for (int k = 0; k < 3; ++k)
+      pixels.col(k) = pixelWithin(projectors[v], patches.vertices.col(patches.faces(k, patch)));
+    if (!(pixels.row(2).minCoeff() > 0))
+      continue;
+    const Footprint footprint = footprintOf(pixels, maps[v].step);
+    if (visibilityOf(footprint, maps[v], tolerance) != Visibility::hidden)
+      return false;
+    in_part = in_part || isSeenInPart(footprint, maps[v], tolerance);
+  }
+  return in_part;
+}
 } // namespace
 
 double diagonalOf(const TriangleMesh& mesh)
 {
-  Eigen::Vector3f low = mesh.vertices.col(mesh.faces(0, 0)), high = low;
-  for (Index i = 0; i < mesh.faces.size(); ++i) {
-    low = low.cwiseMin(mesh.vertices.col(mesh.faces.data()[i]));
-    high = high.cwiseMax(mesh.vertices.col(mesh.faces.data()[i]));
-  }
-  return (high - low).norm();
+  Eigen::AlignedBox3f box;
+  for (Index i = 0; i < mesh.faces.size(); ++i)
+    box.extend(mesh.vertices.col(mesh.faces.data()[i]));
+  return box.sizes().norm();
 }
 
+PatchMesh cutHiddenParts(PatchMesh patches, const VisibilityInput& input)
+{
+  const int threads = input.options.threads;
+  const std::vector<DepthMap> maps = coarseMaps(input.scene, input.views, threads);
+  const DepthTest test{input.views.projectors, maps, limitsFor(patches, input.views, input.options).tolerance};
+  constexpr int rounds = 3; // each halves the sides: patches of 2 pixels
+  for (int round = 0; round < rounds; ++round) {
+    std::vector<char> marked(patches.size());
+    parallelFor(patches.size(), threads, [&](Index i) { marked[i] = isOnlySeenInPart(patches, i, test); });
+    patches = cutPatches(patches, marked, threads);
+  }
+  return patches;
+}
 VisibleSurface findVisibleSurface(const TriangleMesh& mesh, const VisibilityInput& input, const Progress& progress)
 {
   const bool exact = input.views.pose_uncertainty < 1; // else outlines are too uncertain to be followed closely

@@ -12,6 +12,10 @@ struct VisibleSurface {
 /// Patches of about 16 pixels of a typical view, smaller ones beside outlines, and the views that show them.
 VisibleSurface findVisibleSurface(const TriangleMesh& mesh, const VisibilityInput& input, const Progress& progress);
 
+/// Cuts the patches that no view shows whole, though some view shows a part of them, to an eighth of their side: what
+/// is seen beside something that stands before it can then be painted, and only the rest is unseen.
+PatchMesh cutHiddenParts(PatchMesh patches, const VisibilityInput& input);
+
 /// Fills coverage, views_used, seam_length and face_view of the result.
 /// @param view P, -1 = unseen
 void describeViews(const PatchMesh& patches, const Eigen::VectorXi& view, TextureResult& result);

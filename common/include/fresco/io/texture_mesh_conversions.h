@@ -2,7 +2,6 @@
 #pragma once
 #include <fresco/core/export.h>
 #include <fresco/core/textured_mesh.h>
-#include <fresco/io/texture_mesh_conversions.h>
 #include <pcl/TextureMesh.h>
 #include <string>
 #include <vector>

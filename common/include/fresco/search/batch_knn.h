@@ -6,7 +6,8 @@
 namespace fresco {
 namespace search {
 struct KnnKernels;
-}
+struct KnnPoints;
+} // namespace search
 
 /// Search for the k nearest neighbours (or those within a radius) of all points of a subtree together. One descent of
 /// the tree finds the leaves around the whole group; of these, the leaves near one leaf of the group are picked by
@@ -58,6 +59,7 @@ public:
   std::size_t keptWithin(Index i, float radius);
 
 private:
+  search::KnnPoints foundPoints();
   void prepare();
   void makeRoom(std::size_t leaf_count);
   void focus(Index leaf, float reach);

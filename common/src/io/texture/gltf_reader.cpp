@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "io/texture/texture_io.h"
-#include "io/texture/texture_io_image.h"
 #include <Eigen/Geometry>
 #include <cmath>
 #include <fresco/core/point_table.h>
 #include <fresco/core/require.h>
 #include <limits>
+#include <map>
 #include <tiny_gltf.h>
 #include <unordered_map>
 namespace fresco::io {
@@ -15,29 +15,21 @@ namespace {
 template <typename T>
 const T& at(const std::vector<T>& items, int index, const char* what)
 {
-  if (index < 0 || static_cast<std::size_t>(index) >= items.size())
+  if (index < 0 || std::size_t(index) >= items.size())
     fail(concat("there is no ", what, ' ', index));
   return items[index];
 }
 
 Scalar componentType(int type)
 {
-  switch (type) {
-  case TINYGLTF_COMPONENT_TYPE_BYTE:
-    return Scalar::int8;
-  case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
-    return Scalar::uint8;
-  case TINYGLTF_COMPONENT_TYPE_SHORT:
-    return Scalar::int16;
-  case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
-    return Scalar::uint16;
-  case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
-    return Scalar::uint32;
-  case TINYGLTF_COMPONENT_TYPE_FLOAT:
-    return Scalar::float32;
-  default:
+  static const std::map<int, Scalar> types = {
+      {TINYGLTF_COMPONENT_TYPE_BYTE, Scalar::int8},           {TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE, Scalar::uint8},
+      {TINYGLTF_COMPONENT_TYPE_SHORT, Scalar::int16},         {TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT, Scalar::uint16},
+      {TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT, Scalar::uint32}, {TINYGLTF_COMPONENT_TYPE_FLOAT, Scalar::float32}};
+  const auto found = types.find(type);
+  if (found == types.end())
     fail(concat("unknown component type ", type));
-  }
+  return found->second;
 }
 
 /// Bytes `offset` .. `offset + length` of a buffer view.
@@ -72,8 +64,7 @@ Eigen::MatrixXd readAccessor(const tinygltf::Model& gltf, int index, int compone
     const double scale = accessor.normalized && std::is_integral_v<T> ? 1.0 / std::numeric_limits<T>::max() : 1.0;
     for (Index i = 0; i < values.cols(); ++i)
       for (int k = 0; k < components; ++k)
-        values(k, i) = scale * static_cast<double>(loadScalar<T>(bytes + static_cast<std::size_t>(i) * stride +
-                                                                 static_cast<std::size_t>(k) * sizeof(T)));
+        values(k, i) = scale * loadScalar<T>(bytes + i * stride + k * sizeof(T));
   });
   return values;
 }
@@ -87,10 +78,13 @@ std::uint8_t displayByte(double linear)
 
 Image readImageOf(const tinygltf::Model& gltf, const tinygltf::Image& source)
 {
-  if (source.bufferView < 0)
-    return decodeImage(source.image.data(), source.image.size());
-  const std::size_t length = at(gltf.bufferViews, source.bufferView, "buffer view").byteLength;
-  return decodeImage(viewBytes(gltf, source.bufferView, 0, length), length);
+  const unsigned char* bytes = source.image.data();
+  std::size_t length = source.image.size();
+  if (source.bufferView >= 0) {
+    length = at(gltf.bufferViews, source.bufferView, "buffer view").byteLength;
+    bytes = viewBytes(gltf, source.bufferView, 0, length);
+  }
+  return decodeImage({reinterpret_cast<const char*>(bytes), length});
 }
 
 /// The bytes of an image outside of the buffers; those inside are decoded later.
@@ -132,7 +126,7 @@ public:
     const Eigen::MatrixXd texcoords = atlas < 0 ? Eigen::MatrixXd() : attribute(primitive, "TEXCOORD_0", 2);
     const int first_texcoord = texcoords_.size();
     for (Index i = 0; i < texcoords.cols(); ++i)
-      texcoords_.emplace_back(static_cast<float>(texcoords(0, i)), static_cast<float>(1.0 - texcoords(1, i)));
+      texcoords_.emplace_back(texcoords(0, i), 1.0 - texcoords(1, i));
     addFaces(cornerIndices(primitive, positions.cols()), vertices, texcoords.cols() > 0 ? atlas : -1, first_texcoord);
   }
 
@@ -205,7 +199,7 @@ private:
       for (Index i = 0; i < indices.cols(); ++i) {
         if (!(indices(0, i) >= 0 && indices(0, i) < positions))
           fail(concat("a triangle names vertex ", indices(0, i), ", there are ", positions));
-        corners.push_back(static_cast<std::size_t>(indices(0, i)));
+        corners.push_back(indices(0, i));
       }
     }
     if (corners.size() % 3 != 0)
@@ -221,7 +215,7 @@ private:
       if (atlas >= 0 && corners[i] >= texcoords)
         fail("fewer texture coordinates than positions");
       faces_.push_back(vertices[corners[i]]);
-      texcoord_faces_.push_back(atlas < 0 ? -1 : first_texcoord + static_cast<int>(corners[i]));
+      texcoord_faces_.push_back(atlas < 0 ? -1 : first_texcoord + int(corners[i]));
       if (i % 3 == 0)
         atlases_.push_back(atlas);
     }

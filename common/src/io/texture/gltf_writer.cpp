@@ -27,20 +27,18 @@ std::uint16_t linearLight(std::uint8_t value)
   return std::lround(65535.0 * linear);
 }
 
-/// Gives each pair of vertex and texture coordinate one place in the part.
+/// Makes the part of the faces with one atlas: each pair of vertex and texture coordinate gets one place in it.
 class PartBuilder {
 public:
-  PartBuilder(const TexturedMesh& model, bool textured)
-      : model_(model), textured_(textured), first_(model.mesh.vertexCount(), -1)
+  /// @param atlas -1: the faces without texture
+  PartBuilder(const TexturedMesh& model, int atlas)
+      : model_(model), textured_(atlas >= 0), first_(model.mesh.vertexCount(), -1)
   {
     for (int value = 0; value < 256; ++value)
       linear_[value] = linearLight(value);
-  }
-
-  void addFace(Index f)
-  {
-    for (int k = 0; k < 3; ++k)
-      part_.indices.push_back(place(model_.mesh.faces(k, f), textured_ ? model_.texcoord_faces(k, f) : -1));
+    for (Index f = 0; f < model.mesh.faceCount(); ++f)
+      for (int k = 0; k < 3 && model.face_atlas[f] == atlas; ++k)
+        part_.indices.push_back(place(model.mesh.faces(k, f), textured_ ? model.texcoord_faces(k, f) : -1));
   }
 
   Part take() { return std::move(part_); }
@@ -83,16 +81,6 @@ private:
   Part part_;
 };
 
-/// Faces with atlas `atlas`, -1: without texture.
-Part buildPart(const TexturedMesh& model, int atlas)
-{
-  PartBuilder builder(model, atlas >= 0);
-  for (Index f = 0; f < model.mesh.faceCount(); ++f)
-    if (model.face_atlas[f] == atlas)
-      builder.addFace(f);
-  return builder.take();
-}
-
 class GltfBuilder {
 public:
   explicit GltfBuilder(const TexturedMesh& model) : source_(model)
@@ -103,29 +91,25 @@ public:
     gltf_.meshes.emplace_back();
   }
 
-  void addTexturedPart(int atlas, int jpeg_quality)
+  /// @param atlas -1: the faces without texture
+  void addPart(int atlas, int jpeg_quality)
   {
-    const Part part = buildPart(source_, atlas);
+    const Part part = PartBuilder(source_, atlas).take();
     if (part.indices.empty())
       return;
-    tinygltf::Texture texture;
-    texture.source = addImage(source_.atlases[atlas], jpeg_quality);
-    texture.sampler = sampler();
-    gltf_.textures.push_back(texture);
-    tinygltf::Material material = plainMaterial();
-    material.pbrMetallicRoughness.baseColorTexture.index = gltf_.textures.size() - 1;
-    addPrimitive(part, unlit(material));
-  }
-
-  void addUntexturedPart()
-  {
-    const Part part = buildPart(source_, -1);
-    if (part.indices.empty())
-      return;
-    tinygltf::Material material = plainMaterial();
-    if (part.colors.empty())
-      material.pbrMetallicRoughness.baseColorFactor = {0.5, 0.5, 0.5, 1.0};
-    addPrimitive(part, part.colors.empty() ? material : unlit(material));
+    tinygltf::Material material;
+    tinygltf::PbrMetallicRoughness& surface = material.pbrMetallicRoughness;
+    surface.metallicFactor = 0.0;
+    surface.roughnessFactor = 1.0;
+    if (atlas >= 0)
+      surface.baseColorTexture.index = addTexture(source_.atlases[atlas], jpeg_quality);
+    else if (part.colors.empty())
+      surface.baseColorFactor = {0.5, 0.5, 0.5, 1.0};
+    if (atlas >= 0 || !part.colors.empty()) { // photographs hold the light already: they are shown as they are
+      material.extensions["KHR_materials_unlit"] = tinygltf::Value(tinygltf::Value::Object());
+      gltf_.extensionsUsed = {"KHR_materials_unlit"};
+    }
+    addPrimitive(part, material);
   }
 
   const tinygltf::Model& finish()
@@ -144,42 +128,25 @@ public:
   }
 
 private:
-  static tinygltf::Material plainMaterial()
+  int addTexture(const Image& atlas, int jpeg_quality)
   {
-    tinygltf::Material material;
-    material.pbrMetallicRoughness.metallicFactor = 0.0;
-    material.pbrMetallicRoughness.roughnessFactor = 1.0;
-    return material;
-  }
-
-  /// Photographs hold the light already: they are shown as they are.
-  tinygltf::Material unlit(tinygltf::Material material)
-  {
-    material.extensions["KHR_materials_unlit"] = tinygltf::Value(tinygltf::Value::Object());
-    gltf_.extensionsUsed = {"KHR_materials_unlit"};
-    return material;
-  }
-
-  int sampler()
-  {
+    const bool jpeg = jpeg_quality > 0;
+    const std::vector<std::uint8_t> bytes =
+        jpeg ? encodeImage(atlas, ".jpg", jpeg_quality) : encodeImage(atlas, ".png");
+    tinygltf::Image image;
+    image.mimeType = jpeg ? "image/jpeg" : "image/png";
+    image.bufferView = addView(bytes.data(), bytes.size(), 0);
+    gltf_.images.push_back(image);
     if (gltf_.samplers.empty()) {
       gltf_.samplers.emplace_back();
       gltf_.samplers[0].minFilter = TINYGLTF_TEXTURE_FILTER_LINEAR_MIPMAP_LINEAR;
       gltf_.samplers[0].magFilter = TINYGLTF_TEXTURE_FILTER_LINEAR;
       gltf_.samplers[0].wrapS = gltf_.samplers[0].wrapT = TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE;
     }
-    return 0;
-  }
-
-  int addImage(const Image& atlas, int jpeg_quality)
-  {
-    const std::vector<std::uint8_t> bytes =
-        jpeg_quality > 0 ? encodeImage(atlas, ".jpg", jpeg_quality) : encodeImage(atlas, ".png");
-    tinygltf::Image image;
-    image.mimeType = jpeg_quality > 0 ? "image/jpeg" : "image/png";
-    image.bufferView = addView(bytes.data(), bytes.size(), 0);
-    gltf_.images.push_back(image);
-    return gltf_.images.size() - 1;
+    gltf_.textures.emplace_back();
+    gltf_.textures.back().source = gltf_.images.size() - 1;
+    gltf_.textures.back().sampler = 0;
+    return gltf_.textures.size() - 1;
   }
 
   int addView(const void* data, std::size_t bytes, int target)
@@ -197,8 +164,9 @@ private:
     return gltf_.bufferViews.size() - 1;
   }
 
+  /// @return its number
   template <typename T>
-  tinygltf::Accessor& addAccessor(const std::vector<T>& values, int component_type, int type)
+  int addAccessor(const std::vector<T>& values, int component_type, int type)
   {
     const bool is_index = type == TINYGLTF_TYPE_SCALAR;
     tinygltf::Accessor accessor;
@@ -208,10 +176,8 @@ private:
     accessor.type = type;
     accessor.count = values.size();
     gltf_.accessors.push_back(accessor);
-    return gltf_.accessors.back();
+    return gltf_.accessors.size() - 1;
   }
-
-  int lastAccessor() const { return gltf_.accessors.size() - 1; }
 
   void addPrimitive(const Part& part, const tinygltf::Material& material)
   {
@@ -220,25 +186,22 @@ private:
     const Eigen::Map<const Points> positions(part.positions[0].data(), 3, part.positions.size());
     const Eigen::Vector3d low = positions.rowwise().minCoeff().cast<double>();
     const Eigen::Vector3d high = positions.rowwise().maxCoeff().cast<double>();
-    tinygltf::Accessor& accessor = addAccessor(part.positions, TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_VEC3);
-    accessor.minValues.assign(low.data(), low.data() + 3);
-    accessor.maxValues.assign(high.data(), high.data() + 3);
-    primitive.attributes["POSITION"] = lastAccessor();
+    const int vertices = addAccessor(part.positions, TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_VEC3);
+    gltf_.accessors[vertices].minValues.assign(low.data(), low.data() + 3);
+    gltf_.accessors[vertices].maxValues.assign(high.data(), high.data() + 3);
+    primitive.attributes["POSITION"] = vertices;
     const auto is_unit = [](const Eigen::Vector3f& normal) { return std::abs(normal.squaredNorm() - 1.f) < 1e-3f; };
-    if (!part.normals.empty() && std::all_of(part.normals.begin(), part.normals.end(), is_unit)) {
-      addAccessor(part.normals, TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_VEC3);
-      primitive.attributes["NORMAL"] = lastAccessor();
-    }
-    if (!part.texcoords.empty()) {
-      addAccessor(part.texcoords, TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_VEC2);
-      primitive.attributes["TEXCOORD_0"] = lastAccessor();
-    }
+    if (!part.normals.empty() && std::all_of(part.normals.begin(), part.normals.end(), is_unit))
+      primitive.attributes["NORMAL"] = addAccessor(part.normals, TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_VEC3);
+    if (!part.texcoords.empty())
+      primitive.attributes["TEXCOORD_0"] =
+          addAccessor(part.texcoords, TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_VEC2);
     if (!part.colors.empty()) {
-      addAccessor(part.colors, TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT, TINYGLTF_TYPE_VEC4).normalized = true;
-      primitive.attributes["COLOR_0"] = lastAccessor();
+      const int colors = addAccessor(part.colors, TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT, TINYGLTF_TYPE_VEC4);
+      gltf_.accessors[colors].normalized = true;
+      primitive.attributes["COLOR_0"] = colors;
     }
-    addAccessor(part.indices, TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT, TINYGLTF_TYPE_SCALAR);
-    primitive.indices = lastAccessor();
+    primitive.indices = addAccessor(part.indices, TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT, TINYGLTF_TYPE_SCALAR);
     gltf_.materials.push_back(material);
     primitive.material = gltf_.materials.size() - 1;
     gltf_.meshes[0].primitives.push_back(primitive);
@@ -276,8 +239,8 @@ void writeGlb(const std::string& path, const TexturedMesh& model, int jpeg_quali
   OutputFile file(path);
   GltfBuilder builder(model);
   for (std::size_t i = 0; i < model.atlases.size(); ++i)
-    builder.addTexturedPart(i, jpeg_quality);
-  builder.addUntexturedPart();
+    builder.addPart(i, jpeg_quality);
+  builder.addPart(-1, jpeg_quality);
   const tinygltf::Model& gltf = builder.finish();
   // The header of the format counts bytes with 32 bits; one MiB is left for the JSON part.
   if (gltf.buffers[0].data.size() > std::numeric_limits<std::uint32_t>::max() - (std::size_t{1} << 20))

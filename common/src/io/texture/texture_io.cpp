@@ -2,36 +2,18 @@
 #include "io/texture/texture_io.h"
 #include "io/format_table.h"
 #include "io/points/parse_file.h"
-#include <algorithm>
 #include <fresco/core/require.h>
 #include <fresco/io/mesh_io.h>
 namespace fresco {
-namespace io {
 namespace {
-/// The functions behind a row of the table of formats that is marked as textured.
-struct TextureFormat {
-  const char* extension;
-  TexturedMesh (*read)(const std::string& path);
-  void (*write)(const std::string& path, const TexturedMesh& model, int jpeg_quality);
-};
-
-TexturedMesh readGlb(const std::string& path) { return parseFile(path, parseGlb); }
-void writeObjModel(const std::string& path, const TexturedMesh& model, int) { writeTexturedObj(path, model); }
-
-const TextureFormat& textureFormatOf(const Format& row)
-{
-  static constexpr TextureFormat all[] = {{".obj", readTexturedObj, writeObjModel}, {".glb", readGlb, writeGlb}};
-  return *std::find_if(std::begin(all), std::end(all),
-                       [&](const TextureFormat& format) { return row.extensions[0] == std::string(format.extension); });
-}
+bool isGlb(const io::Format& format) { return format.extensions[0] == std::string(".glb"); }
 } // namespace
-} // namespace io
 
 void validateTexturedMesh(const TexturedMesh& model)
 {
   validateMesh(model.mesh);
   const Index faces = model.mesh.faceCount(), texcoords = model.texcoords.cols();
-  const auto atlases = static_cast<Index>(model.atlases.size());
+  const Index atlases = model.atlases.size();
   require(model.texcoord_faces.cols() == faces && model.face_atlas.size() == faces, "textured mesh: ", faces,
           " faces, ", model.texcoord_faces.cols(), " with texture coordinates, ", model.face_atlas.size(),
           " with an atlas");
@@ -47,7 +29,7 @@ void validateTexturedMesh(const TexturedMesh& model)
   }
   for (const Image& image : model.atlases)
     require(image.width > 0 && image.height > 0 && image.channels == 3 &&
-                image.data.size() == static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height) * 3,
+                image.data.size() == std::size_t{3} * image.width * image.height,
             "textured mesh: an atlas is no RGB image");
 }
 
@@ -55,11 +37,16 @@ void writeTexturedMesh(const std::string& path, const TexturedMesh& model, int j
 {
   validateTexturedMesh(model);
   require(jpeg_quality >= 0 && jpeg_quality <= 100, "textured mesh: JPEG quality ", jpeg_quality, " is not in 0..100");
-  io::textureFormatOf(io::formatToWrite(path, FileKind::textured_mesh)).write(path, model, jpeg_quality);
+  if (isGlb(io::formatToWrite(path, FileKind::textured_mesh)))
+    io::writeGlb(path, model, jpeg_quality);
+  else
+    io::writeTexturedObj(path, model);
 }
 
 TexturedMesh readTexturedMesh(const std::string& path)
 {
-  return io::textureFormatOf(io::formatToRead(path, FileKind::textured_mesh)).read(path);
+  if (isGlb(io::formatToRead(path, FileKind::textured_mesh)))
+    return io::parseFile(path, io::parseGlb);
+  return io::readTexturedObj(path);
 }
 } // namespace fresco

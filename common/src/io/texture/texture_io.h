@@ -14,6 +14,9 @@ TexturedMesh readTexturedObj(const std::string& path);
 /// @param jpeg_quality of the images inside, 1..100; 0: PNG
 void writeGlb(const std::string& path, const TexturedMesh& model, int jpeg_quality);
 
+/// RGB image from the content of a file, see readImage(). @throws std::runtime_error
+Image decodeImage(std::string_view bytes);
+
 /// All triangles of all nodes; vertices at the same place become one. @throws std::runtime_error if malformed
 TexturedMesh parseGlb(std::string_view content);
 } // namespace fresco::io

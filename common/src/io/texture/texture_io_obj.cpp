@@ -53,7 +53,7 @@ void writeModel(OutputFile& file, const TexturedMesh& model, const std::string& 
     writer.text("vt ").number(model.texcoords(0, i)).text(" ").number(model.texcoords(1, i)).text("\n");
   for (std::size_t i = 0; i < model.atlases.size(); ++i) {
     writer.text(concat("usemtl material_", i, "\n"));
-    writeFaces(writer, model, static_cast<int>(i));
+    writeFaces(writer, model, i);
   }
   if (hasUntextured(model)) {
     writer.text("usemtl untextured\n");
@@ -108,7 +108,7 @@ std::vector<int> readAtlases(const std::string& path, const ObjContent& obj, std
       of_material.push_back(-1);
       continue;
     }
-    const auto [entry, is_new] = known.emplace(file->second, static_cast<int>(atlases.size()));
+    const auto [entry, is_new] = known.emplace(file->second, atlases.size());
     if (is_new)
       atlases.push_back(readFor(path, [&] { return readImage(file->second); }));
     of_material.push_back(entry->second);
@@ -145,8 +145,7 @@ TexturedMesh readTexturedObj(const std::string& path)
   TexturedMesh model;
   model.mesh = tableToMesh(objVertices(obj));
   model.mesh.faces = objFaces(obj);
-  model.texcoords =
-      Eigen::Map<const Eigen::Matrix2Xf>(obj.texcoords.data(), 2, static_cast<Index>(obj.texcoords.size() / 2));
+  model.texcoords = Eigen::Map<const Eigen::Matrix2Xf>(obj.texcoords.data(), 2, obj.texcoords.size() / 2);
   const std::vector<int> atlas_of_material = readAtlases(path, obj, model.atlases);
   const Index faces = model.mesh.faceCount();
   model.texcoord_faces.setConstant(3, faces, -1);

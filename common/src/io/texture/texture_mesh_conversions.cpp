@@ -42,42 +42,12 @@ void addSubMesh(const TexturedMesh& model, int atlas, int& coordinates, pcl::Tex
   }
 }
 
-/// Texture coordinate of each corner of a sub-mesh.
-class CornerTexcoords {
-public:
-  explicit CornerTexcoords(const pcl::TextureMesh& texture) : texture_(texture)
-  {
-    for (const auto& part : texture.tex_coordinates)
-      all_.insert(all_.end(), part.begin(), part.end());
-  }
-
-  /// Indices into all texture coordinates of a polygon's corners; empty where it has no texture.
-  std::vector<int> corners(std::size_t part, std::size_t polygon, std::size_t corner_before) const
-  {
-    const auto& indices = texture_.tex_coord_indices;
-    if (part < indices.size() && polygon < indices[part].size())
-      return {indices[part][polygon].vertices.begin(), indices[part][polygon].vertices.end()};
-    if (part >= texture_.tex_coordinates.size() || texture_.tex_coordinates[part].empty())
-      return {};
-    std::size_t before = corner_before;
-    for (std::size_t i = 0; i < part; ++i)
-      before += texture_.tex_coordinates[i].size();
-    std::vector<int> result(texture_.tex_polygons[part][polygon].vertices.size());
-    std::iota(result.begin(), result.end(), static_cast<int>(before));
-    return result;
-  }
-
-  const std::vector<Eigen::Vector2f>& all() const { return all_; }
-
-private:
-  const pcl::TextureMesh& texture_;
-  std::vector<Eigen::Vector2f> all_;
-};
-
 struct TexturedFaces {
-  std::vector<int> texcoords, atlases; ///< 3 and 1 per triangle of the fans, in the order of toTriangleMesh()
+  std::vector<Eigen::Vector2f> texcoords; ///< of all sub-meshes
+  std::vector<int> corners, atlases;      ///< 3 and 1 per triangle of the fans, in the order of toTriangleMesh()
 };
 
+/// @param corners of a polygon, indices into all texture coordinates; empty where it has no texture
 void addFan(const std::vector<int>& corners, std::size_t count, int atlas, TexturedFaces& faces)
 {
   require(corners.empty() || corners.size() == count, "texture mesh: a polygon with ", count, " corners has ",
@@ -85,24 +55,35 @@ void addFan(const std::vector<int>& corners, std::size_t count, int atlas, Textu
   for (std::size_t i = 2; i < count; ++i) {
     faces.atlases.push_back(corners.empty() ? -1 : atlas);
     for (const std::size_t k : {std::size_t{0}, i - 1, i})
-      faces.texcoords.push_back(corners.empty() ? -1 : corners[k]);
+      faces.corners.push_back(corners.empty() ? -1 : corners[k]);
   }
 }
 
-TexturedFaces collectFaces(const pcl::TextureMesh& texture, const CornerTexcoords& texcoords)
+TexturedFaces collectFaces(const pcl::TextureMesh& texture)
 {
   TexturedFaces faces;
+  for (const auto& part : texture.tex_coordinates)
+    faces.texcoords.insert(faces.texcoords.end(), part.begin(), part.end());
+  int first = 0; // texture coordinate of the sub-mesh
   for (std::size_t part = 0; part < texture.tex_polygons.size(); ++part) {
-    std::size_t corner = 0;
+    const int texcoords = part < texture.tex_coordinates.size() ? texture.tex_coordinates[part].size() : 0;
+    int next = first;
     for (std::size_t p = 0; p < texture.tex_polygons[part].size(); ++p) {
       const std::size_t count = texture.tex_polygons[part][p].vertices.size();
-      addFan(texcoords.corners(part, p, corner), count, part, faces);
-      corner += count;
+      std::vector<int> corners(texcoords > 0 ? count : 0);
+      std::iota(corners.begin(), corners.end(), next);
+      next += count;
+      if (part < texture.tex_coord_indices.size() && p < texture.tex_coord_indices[part].size()) {
+        const auto& indices = texture.tex_coord_indices[part][p].vertices;
+        corners.assign(indices.begin(), indices.end());
+      }
+      addFan(corners, count, part, faces);
     }
+    first += texcoords;
   }
-  const int last = texcoords.all().size();
-  for (const int index : faces.texcoords)
-    require(index >= -1 && index < last, "texture mesh: texture coordinate ", index, " is not there");
+  for (const int index : faces.corners)
+    require(index >= -1 && index < Index(faces.texcoords.size()), "texture mesh: texture coordinate ", index,
+            " is not there");
   return faces;
 }
 
@@ -152,15 +133,14 @@ TexturedMesh toTexturedMesh(const pcl::TextureMesh& texture, const std::string& 
   polygons.cloud = texture.cloud;
   for (const auto& part : texture.tex_polygons)
     polygons.polygons.insert(polygons.polygons.end(), part.begin(), part.end());
-  const CornerTexcoords texcoords(texture);
-  const TexturedFaces faces = collectFaces(texture, texcoords);
+  const TexturedFaces faces = collectFaces(texture);
   TexturedMesh model;
   model.mesh = toTriangleMesh(polygons);
-  model.texcoord_faces = Eigen::Map<const Eigen::Matrix3Xi>(faces.texcoords.data(), 3, model.mesh.faceCount());
+  model.texcoord_faces = Eigen::Map<const Eigen::Matrix3Xi>(faces.corners.data(), 3, model.mesh.faceCount());
   model.face_atlas = Eigen::Map<const Eigen::VectorXi>(faces.atlases.data(), model.mesh.faceCount());
-  model.texcoords.resize(2, texcoords.all().size());
+  model.texcoords.resize(2, faces.texcoords.size());
   for (Index i = 0; i < model.texcoords.cols(); ++i)
-    model.texcoords.col(i) = texcoords.all()[i];
+    model.texcoords.col(i) = faces.texcoords[i];
   model.atlases = atlases.empty() ? readAtlases(texture, folder) : std::move(atlases);
   while (!model.atlases.empty() && model.atlases.back().empty() &&
          (model.face_atlas.array() < static_cast<int>(model.atlases.size()) - 1).all())

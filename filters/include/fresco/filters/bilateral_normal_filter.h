@@ -42,10 +42,8 @@ public:
   int getNumberOfThreads() const { return options_.threads; }
   void setThreads(int threads) { setNumberOfThreads(threads); } ///< as pcl::Poisson has it
   int getThreads() const { return getNumberOfThreads(); }
-  void setProgress(const Progress& progress)
-  {
-    progress_ = progress;
-  } ///< filter() throws Cancelled where it returns false
+  /// filter() throws Cancelled where it returns false.
+  void setProgress(const Progress& progress) { progress_ = progress; }
 
 protected:
   void applyFilter(PointCloud& output) override;

@@ -32,10 +32,8 @@ public:
   int getNumberOfThreads() const { return options_.threads; }
   void setThreads(int threads) { setNumberOfThreads(threads); } ///< as pcl::Poisson has it
   int getThreads() const { return getNumberOfThreads(); }
-  void setProgress(const Progress& progress)
-  {
-    progress_ = progress;
-  } ///< compute() throws Cancelled where it returns false
+  /// compute() throws Cancelled where it returns false.
+  void setProgress(const Progress& progress) { progress_ = progress; }
   void setKeepEdges(bool keep) { options_.edges = keep; }
   bool getKeepEdges() const { return options_.edges; }
   void setViewPoint(float x, float y, float z) { viewpoint_ = Eigen::Vector3f(x, y, z), unknown_ = false; }

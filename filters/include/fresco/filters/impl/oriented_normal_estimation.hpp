@@ -103,7 +103,7 @@ void OrientedNormalEstimation<PointInT, PointOutT>::computeFeature(PointCloudOut
 {
   NormalOptions options = options_;
   if (this->search_radius_ != 0)
-    options.radius = static_cast<float>(this->search_radius_);
+    options.radius = this->search_radius_;
   else if (this->k_ != 0)
     options.k = this->k_, options.radius = 0;
   if (this->surface_->isOrganized())
@@ -115,7 +115,7 @@ void OrientedNormalEstimation<PointInT, PointOutT>::computeFeature(PointCloudOut
                                 : estimateNormals(surface, options, progress_);
   output.sensor_origin_ = this->input_->sensor_origin_;
   output.sensor_orientation_ = this->input_->sensor_orientation_;
-  confidences_.setZero(static_cast<Index>(places.size()));
+  confidences_.setZero(places.size());
   for (std::size_t i = 0; i < places.size(); ++i) {
     PointOutT& point = output[i];
     pcl::copyPoint((*this->input_)[(*this->indices_)[i]], point);
@@ -123,7 +123,7 @@ void OrientedNormalEstimation<PointInT, PointOutT>::computeFeature(PointCloudOut
     point.getNormalVector3fMap() =
         found ? Eigen::Vector3f(field.normals.col(places[i])) : Eigen::Vector3f::Constant(NAN);
     point.curvature = found ? field.curvatures[places[i]] : NAN;
-    confidences_[static_cast<Index>(i)] = found ? field.confidences[places[i]] : 0.f;
+    confidences_[i] = found ? field.confidences[places[i]] : 0.f;
     output.is_dense = output.is_dense && pcl::isNormalFinite(point);
   }
 }

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include <cstdint>
+#include <cstring>
+#ifdef __AVX2__
+#include <immintrin.h>
+#endif
+/// Numbers side by side in the compiler's vector types, for inner loops that are written once and compiled twice: for any
+/// processor, and with -mavx2 for those that have it. Operators work lane by lane, comparisons give 0 or -1 in each lane,
+/// `mask ? a : b` chooses by lane; results have the same bits either way. All is local to the file that includes this, so
+/// that the linker cannot keep AVX2 code for the whole program.
+namespace fresco::simd {
+namespace {
+#pragma GCC diagnostic ignored "-Wpsabi" // vectors never pass from file to file
+using Float4 = float __attribute__((vector_size(16)));
+using Float8 = float __attribute__((vector_size(32)));
+using Int8 = std::int32_t __attribute__((vector_size(32)));
+using Double4 = double __attribute__((vector_size(32)));
+
+inline constexpr Int8 lane_numbers = {0, 1, 2, 3, 4, 5, 6, 7};
+inline constexpr Float8 infinities = Float8{} + __builtin_inff();
+
+/// @param from of any alignment
+template <typename Vector, typename T>
+inline Vector load(const T* from)
+{
+  Vector vector;
+  std::memcpy(&vector, from, sizeof vector);
+  return vector;
+}
+
+template <typename Vector, typename T>
+inline void store(const Vector& vector, T* to)
+{
+  std::memcpy(to, &vector, sizeof vector);
+}
+
+/// The lanes of a mask that are set, as bits.
+inline unsigned lanesOf(const Int8& mask)
+{
+#ifdef __AVX2__
+  return _mm256_movemask_ps(reinterpret_cast<__m256>(mask));
+#else
+  unsigned lanes = 0;
+  for (int lane = 0; lane < 8; ++lane)
+    lanes |= (mask[lane] & 1u) << lane;
+  return lanes;
+#endif
+}
+
+/// Four floats in double precision.
+inline Double4 widened(const float* from) { return __builtin_convertvector(load<Float4>(from), Double4); }
+
+inline void store(const Double4& v, float* to) { store(__builtin_convertvector(v, Float4), to); }
+
+inline Double4 squareRoot(const Double4& v)
+{
+#ifdef __AVX2__
+  return _mm256_sqrt_pd(v);
+#else
+  return Double4{__builtin_sqrt(v[0]), __builtin_sqrt(v[1]), __builtin_sqrt(v[2]), __builtin_sqrt(v[3])};
+#endif
+}
+
+template <typename Vector>
+inline Vector smaller(const Vector& a, const Vector& b)
+{
+  return a < b ? a : b;
+}
+
+template <typename Vector>
+inline Vector larger(const Vector& a, const Vector& b)
+{
+  return a > b ? a : b;
+}
+
+/// All lanes joined to one number, in the same order everywhere.
+template <typename Join>
+inline float joined(const Float8& v, const Join& join)
+{
+  Float4 half[2];
+  std::memcpy(half, &v, sizeof half);
+  const Float4 four = join(half[0], half[1]);
+  return join(join(four[0], four[2]), join(four[1], four[3]));
+}
+
+inline float total(const Float8& v)
+{
+  return joined(v, [](const auto& a, const auto& b) { return a + b; });
+}
+} // namespace
+} // namespace fresco::simd
