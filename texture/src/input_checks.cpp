@@ -3,6 +3,7 @@
 #include "views/exif.h"
 #include <cmath>
 #include <fresco/core/parallel.h>
+#include <fresco/core/poses.h>
 #include <fresco/core/require.h>
 namespace fresco::texture {
 namespace {
@@ -12,11 +13,14 @@ void validateView(const TextureView& view, std::size_t index)
   const CameraModel& c = view.camera;
   require(c.width >= 3 && c.height >= 3 && c.width <= 65535 && c.height <= 65535, "texture: ", name, ": camera of ",
           c.width, "x", c.height, " pixels");
-  require(c.fx > 0 && c.fy > 0 && std::isfinite(c.fx + c.fy + c.cx + c.cy + c.k1 + c.k2 + c.p1 + c.p2),
-          "texture: ", name, ": intrinsics are not finite or a focal length is not positive");
+  try {
+    validateCamera(c);
+  } catch (const std::invalid_argument& error) {
+    throw std::invalid_argument(concat("texture: ", name, ": ", error.what()));
+  }
   const Eigen::Matrix3d R = view.T_camera_world.linear();
-  require(view.T_camera_world.matrix().allFinite() && (R * R.transpose() - Eigen::Matrix3d::Identity()).norm() < 1e-3 &&
-              R.determinant() > 0,
+  require(view.T_camera_world.matrix().allFinite() && isInReach(view.T_camera_world.translation()) &&
+              (R * R.transpose() - Eigen::Matrix3d::Identity()).norm() < 1e-3 && R.determinant() > 0,
           "texture: ", name, ": the pose is not finite or no rigid motion");
   require(!view.image.empty() || !view.path.empty(), "texture: ", name, ": neither an image nor a path");
 }

@@ -2,6 +2,7 @@
 #include "views/exif.h"
 #include <algorithm>
 #include <cstdint>
+#include <filesystem>
 #include <fstream>
 #include <vector>
 namespace fresco::texture {
@@ -39,6 +40,8 @@ int orientationIn(const Tiff& tiff)
 
 int exifOrientation(const std::string& path)
 {
+  if (!std::filesystem::is_regular_file(path)) // reading the photograph says what is wrong
+    return 1;
   std::ifstream file(path, std::ios::binary);
   const auto next = [&] { return static_cast<unsigned>(file.get()) & 255U; };
   if (next() != 0xFF || next() != 0xD8)

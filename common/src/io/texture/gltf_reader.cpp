@@ -3,8 +3,10 @@
 #include "io/texture/texture_io_image.h"
 #include <Eigen/Geometry>
 #include <cmath>
+#include <filesystem>
 #include <fresco/core/point_table.h>
 #include <fresco/core/require.h>
+#include <fresco/io/file.h>
 #include <limits>
 #include <tiny_gltf.h>
 #include <unordered_map>
@@ -41,14 +43,14 @@ Scalar componentType(int type)
 }
 
 /// Bytes `offset` .. `offset + length` of a buffer view.
-const unsigned char* viewBytes(const tinygltf::Model& gltf, int index, std::size_t offset, std::size_t length)
+std::string_view viewBytes(const tinygltf::Model& gltf, int index, std::size_t offset, std::size_t length)
 {
   const tinygltf::BufferView& view = at(gltf.bufferViews, index, "buffer view");
   const std::vector<unsigned char>& data = at(gltf.buffers, view.buffer, "buffer").data;
   if (view.byteOffset > data.size() || view.byteLength > data.size() - view.byteOffset || offset > view.byteLength ||
       length > view.byteLength - offset)
     fail(concat("truncated: buffer view ", index, " does not fit into its buffer"));
-  return data.data() + view.byteOffset + offset;
+  return {reinterpret_cast<const char*>(data.data()) + view.byteOffset + offset, length};
 }
 
 /// Values of an accessor, `components` x count; integers that stand for fractions as 0..1.
@@ -64,8 +66,8 @@ Eigen::MatrixXd readAccessor(const tinygltf::Model& gltf, int index, int compone
   const std::size_t stride = view.byteStride == 0 ? element : view.byteStride;
   if (accessor.count == 0 || stride < element || accessor.count > view.byteLength / stride + 1)
     fail(concat("truncated: accessor ", index, " of ", accessor.count, " elements does not fit"));
-  const unsigned char* bytes =
-      viewBytes(gltf, accessor.bufferView, accessor.byteOffset, (accessor.count - 1) * stride + element);
+  const char* bytes =
+      viewBytes(gltf, accessor.bufferView, accessor.byteOffset, (accessor.count - 1) * stride + element).data();
   Eigen::MatrixXd values(components, accessor.count);
   visitScalar(type, [&](auto zero) {
     using T = decltype(zero);
@@ -88,9 +90,9 @@ std::uint8_t displayByte(double linear)
 Image readImageOf(const tinygltf::Model& gltf, const tinygltf::Image& source)
 {
   if (source.bufferView < 0)
-    return decodeImage(source.image.data(), source.image.size());
+    return decodeImage({reinterpret_cast<const char*>(source.image.data()), source.image.size()});
   const std::size_t length = at(gltf.bufferViews, source.bufferView, "buffer view").byteLength;
-  return decodeImage(viewBytes(gltf, source.bufferView, 0, length), length);
+  return decodeImage(viewBytes(gltf, source.bufferView, 0, length));
 }
 
 /// The bytes of an image outside of the buffers; those inside are decoded later.
@@ -115,7 +117,11 @@ struct PositionHash {
 /// Joins the primitives of a scene.
 class ModelBuilder {
 public:
-  explicit ModelBuilder(const tinygltf::Model& gltf) : gltf_(gltf), atlas_of_image_(gltf.images.size(), -1) {}
+  /// @param file_bytes what bounds the elements that may be read
+  ModelBuilder(const tinygltf::Model& gltf, std::size_t file_bytes)
+      : gltf_(gltf), atlas_of_image_(gltf.images.size(), -1),
+        elements_left_(least_elements + elements_per_byte * file_bytes)
+  {}
 
   void setOrigin(const Eigen::Vector3d& origin) { model_.mesh.origin = origin; }
 
@@ -159,10 +165,20 @@ public:
 private:
   using Color = Eigen::Matrix<std::uint8_t, 3, 1>;
 
-  Eigen::MatrixXd attribute(const tinygltf::Primitive& primitive, const char* name, int components) const
+  Eigen::MatrixXd attribute(const tinygltf::Primitive& primitive, const char* name, int components)
   {
     const auto found = primitive.attributes.find(name);
-    return found == primitive.attributes.end() ? Eigen::MatrixXd() : readAccessor(gltf_, found->second, components);
+    return found == primitive.attributes.end() ? Eigen::MatrixXd() : read(found->second, components);
+  }
+
+  /// Many primitives may share an accessor: a small file could ask for any amount of memory.
+  Eigen::MatrixXd read(int accessor, int components)
+  {
+    const std::size_t count = at(gltf_.accessors, accessor, "accessor").count;
+    if (count > elements_left_)
+      fail("its meshes repeat the same data more often than there is room for");
+    elements_left_ -= count;
+    return readAccessor(gltf_, accessor, components);
   }
 
   /// @return vertex of the model for each position of the primitive
@@ -194,14 +210,14 @@ private:
     return vertices;
   }
 
-  std::vector<std::size_t> cornerIndices(const tinygltf::Primitive& primitive, Index positions) const
+  std::vector<std::size_t> cornerIndices(const tinygltf::Primitive& primitive, Index positions)
   {
     std::vector<std::size_t> corners;
     if (primitive.indices < 0) {
       for (Index i = 0; i < positions; ++i)
         corners.push_back(i);
     } else {
-      const Eigen::MatrixXd indices = readAccessor(gltf_, primitive.indices, 1);
+      const Eigen::MatrixXd indices = read(primitive.indices, 1);
       for (Index i = 0; i < indices.cols(); ++i) {
         if (!(indices(0, i) >= 0 && indices(0, i) < positions))
           fail(concat("a triangle names vertex ", indices(0, i), ", there are ", positions));
@@ -245,8 +261,12 @@ private:
     return atlas;
   }
 
+  // Enough for any file whose meshes stand in several places, and read within seconds.
+  static constexpr std::size_t least_elements = 2000000, elements_per_byte = 16;
+
   const tinygltf::Model& gltf_;
   std::vector<int> atlas_of_image_;
+  std::size_t elements_left_;
   TexturedMesh model_;
   std::unordered_map<std::array<float, 3>, std::size_t, PositionHash> known_;
   std::vector<Eigen::Vector3f> positions_, normals_;
@@ -285,7 +305,7 @@ std::vector<PlacedMesh> collectMeshes(const tinygltf::Model& gltf, const tinyglt
   for (auto node = scene.nodes.rbegin(); node != scene.nodes.rend(); ++node)
     open.emplace_back(*node, Eigen::Affine3d::Identity());
   for (std::size_t visited = 0; !open.empty(); ++visited) {
-    if (visited > gltf.nodes.size())
+    if (visited + open.size() > gltf.nodes.size() + 1)
       fail("the nodes of the scene are no tree");
     const auto [index, T_scene_parent] = open.back();
     open.pop_back();
@@ -299,10 +319,66 @@ std::vector<PlacedMesh> collectMeshes(const tinygltf::Model& gltf, const tinyglt
   return meshes;
 }
 
-tinygltf::Model loadModel(std::string_view content)
+/// Refuses what the library's parser is not made for: it calls itself for nested values and keeps half a kilobyte for
+/// each object.
+void checkJson(std::string_view json)
 {
+  constexpr int deepest = 100;
+  constexpr int most_objects = 100000;
+  int depth = 0, objects = 0;
+  bool quoted = false;
+  for (std::size_t i = 0; i < json.size(); ++i) {
+    const char c = json[i];
+    if (quoted && c == '\\')
+      ++i;
+    else if (c == '"')
+      quoted = !quoted;
+    if (quoted)
+      continue;
+    depth += c == '{' || c == '[' ? 1 : c == '}' || c == ']' ? -1 : 0;
+    objects += c == '{' ? 1 : 0;
+    if (depth > deepest || objects > most_objects)
+      fail(depth > deepest ? concat("nested more than ", deepest, " deep")
+                           : concat("more than ", most_objects, " objects"));
+  }
+}
+
+/// Files that a model names: in its folder or below, and not more than a glTF buffer holds in all, since many buffers
+/// may name the same file.
+struct ExternalFiles {
+  std::string folder;
+  std::uintmax_t bytes_left = std::numeric_limits<std::uint32_t>::max();
+};
+
+bool readExternalFile(std::vector<unsigned char>* bytes, std::string* error, const std::string& name, void* files)
+try {
+  auto& [folder, bytes_left] = *static_cast<ExternalFiles*>(files);
+  const std::string path = fileBelow(folder, name);
+  std::error_code missing;
+  if (const std::uintmax_t size = std::filesystem::file_size(path, missing); !missing && size > bytes_left)
+    throw std::runtime_error(path + ": too large");
+  const std::string content = readFile(path);
+  bytes_left -= std::min<std::uintmax_t>(bytes_left, content.size());
+  bytes->assign(content.begin(), content.end());
+  return true;
+} catch (const std::runtime_error& reason) {
+  *error = reason.what();
+  return false;
+}
+
+tinygltf::Model loadModel(std::string_view content, const std::string& folder)
+{
+  constexpr std::size_t header = 20; // the header of the file and that of its first chunk, the JSON
+  if (content.size() < header)
+    fail("not binary glTF");
+  checkJson(content.substr(header, loadScalar<std::uint32_t>(content.data() + 12)));
   tinygltf::TinyGLTF loader;
   loader.SetImageLoader(keepImageBytes, nullptr);
+  ExternalFiles files{folder};
+  loader.SetFsCallbacks(
+      {[](const std::string&, void*) { return true; }, [](const std::string& path, void*) { return path; },
+       readExternalFile,
+       [](std::string*, const std::string&, const std::vector<unsigned char>&, void*) { return false; }, &files});
   tinygltf::Model gltf;
   std::string error, warning;
   if (content.size() > std::numeric_limits<std::uint32_t>::max())
@@ -314,11 +390,11 @@ tinygltf::Model loadModel(std::string_view content)
 }
 } // namespace
 
-TexturedMesh parseGlb(std::string_view content)
+TexturedMesh parseGlb(std::string_view content, const std::string& folder)
 {
-  const tinygltf::Model gltf = loadModel(content);
+  const tinygltf::Model gltf = loadModel(content, folder);
   const std::vector<PlacedMesh> meshes = collectMeshes(gltf, at(gltf.scenes, std::max(gltf.defaultScene, 0), "scene"));
-  ModelBuilder builder(gltf);
+  ModelBuilder builder(gltf, content.size());
   const Eigen::Vector3d origin = meshes.empty() ? Eigen::Vector3d::Zero() : meshes[0].T_scene_mesh.translation().eval();
   builder.setOrigin(origin);
   for (const PlacedMesh& placed : meshes)

@@ -3,6 +3,7 @@
 #include "io/format_table.h"
 #include "io/points/parse_file.h"
 #include <algorithm>
+#include <filesystem>
 #include <fresco/core/require.h>
 #include <fresco/io/mesh_io.h>
 namespace fresco {
@@ -15,7 +16,12 @@ struct TextureFormat {
   void (*write)(const std::string& path, const TexturedMesh& model, int jpeg_quality);
 };
 
-TexturedMesh readGlb(const std::string& path) { return parseFile(path, parseGlb); }
+TexturedMesh readGlb(const std::string& path)
+{
+  return parseFile(path, [&](std::string_view content) {
+    return parseGlb(content, std::filesystem::path(path).parent_path().string());
+  });
+}
 void writeObjModel(const std::string& path, const TexturedMesh& model, int) { writeTexturedObj(path, model); }
 
 const TextureFormat& textureFormatOf(const Format& row)

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "io/texture/texture_io_image.h"
 #include "io/texture/image_codecs.h"
-#include <cstdint>
-#include <cstring>
+#include "io/texture/jpeg_reader.h"
+#include <algorithm>
+#include <iterator>
 #include <limits>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
@@ -10,49 +11,97 @@
 #include <zlib.h>
 namespace fresco::io {
 namespace {
-std::uint32_t bigEndian(const unsigned char* at)
+using namespace std::string_view_literals;
+
+bool startsWith(std::string_view bytes, std::string_view mark) { return bytes.substr(0, mark.size()) == mark; }
+
+std::uint32_t bigEndian(std::string_view bytes, std::size_t at)
 {
-  return std::uint32_t{at[0]} << 24 | std::uint32_t{at[1]} << 16 | std::uint32_t{at[2]} << 8 | at[3];
+  std::uint32_t value = 0;
+  for (const unsigned char byte : bytes.substr(at, 4))
+    value = value << 8 | byte;
+  return value;
 }
 
-std::string_view view(const unsigned char* bytes, std::size_t size)
+/// Whether all chunks are there and their check sums hold; libpng prints on stderr where they do not.
+bool hasIntactChunks(std::string_view png)
 {
-  return {reinterpret_cast<const char*>(bytes), size};
-}
-} // namespace
-
-bool isIntactPng(const unsigned char* bytes, std::size_t size)
-{
-  if (!startsWith(view(bytes, size), "\x89PNG\r\n\x1a\n"))
-    return false;
   // Chunk: length of the data, type, data, check sum of type and data.
-  for (std::size_t at = 8; at + 12 <= size;) {
-    const std::size_t length = bigEndian(bytes + at);
-    if (length > size - at - 12 || crc32_z(0, bytes + at + 4, length + 4) != bigEndian(bytes + at + 8 + length))
+  for (std::size_t at = 8; at + 12 <= png.size();) {
+    const std::size_t length = bigEndian(png, at);
+    if (length > png.size() - at - 12)
       return false;
-    if (std::memcmp(bytes + at + 4, "IEND", 4) == 0)
+    const auto* type = reinterpret_cast<const unsigned char*>(png.data()) + at + 4;
+    if (crc32_z(0, type, length + 4) != bigEndian(png, at + 8 + length))
+      return false;
+    if (png.substr(at + 4, 4) == "IEND")
       return true;
     at += 12 + length;
   }
   return false;
 }
 
-Image decodeImage(const unsigned char* bytes, std::size_t size)
+/// Whether so many pixels can be in so few bytes: checked before room is made for them.
+bool hasPossibleSize(std::string_view png)
 {
-  cv::Mat bgr;
-  const bool is_jpeg = startsWith(view(bytes, size), "\xff\xd8");
-  if (size <= static_cast<std::size_t>(std::numeric_limits<int>::max()) && (is_jpeg || isIntactPng(bytes, size)))
-    try {
-      prepareImageCodecs();
-      const cv::Mat raw(1, static_cast<int>(size), CV_8U, const_cast<unsigned char*>(bytes));
-      bgr = cv::imdecode(raw, cv::IMREAD_COLOR | cv::IMREAD_IGNORE_ORIENTATION);
-    } catch (const cv::Exception&) { // reported below
-    }
-  if (bgr.empty())
-    throw std::runtime_error("an image is damaged or neither PNG nor JPEG");
+  constexpr std::uint64_t best_ratio = 1032; // of zlib
+  constexpr std::size_t header_end = 33;     // signature and chunk IHDR: width, height, bits and kind of the samples
+  if (png.size() < header_end || png.substr(12, 4) != "IHDR")
+    return false;
+  const std::uint64_t row = (std::uint64_t{bigEndian(png, 16)} * static_cast<unsigned char>(png[24]) + 7) / 8;
+  return bigEndian(png, 20) <= best_ratio * png.size() / std::max<std::uint64_t>(row, 1);
+}
+
+/// OpenCV also passes on to libraries that end the program over a damaged file (DICOM, GDAL's formats).
+bool isCommonFormat(std::string_view bytes)
+{
+  const bool is_webp = startsWith(bytes, "RIFF") && bytes.size() > 12 && bytes.substr(8, 4) == "WEBP";
+  const std::string_view marks[] = {"\x89PNG", "\xff\xd8", "II*\0"sv, "MM\0*"sv, "BM"};
+  return is_webp || std::any_of(std::begin(marks), std::end(marks),
+                                [&](std::string_view mark) { return startsWith(bytes, mark); });
+}
+
+cv::Mat decode(std::string_view bytes, int flags)
+{
+  if (!isCommonFormat(bytes))
+    throw std::runtime_error("no PNG, JPEG, TIFF, BMP or WebP image");
+  const bool is_png = startsWith(bytes, "\x89PNG");
+  if ((is_png && !(hasIntactChunks(bytes) && hasPossibleSize(bytes))) ||
+      bytes.size() > static_cast<std::size_t>(std::numeric_limits<int>::max()))
+    throw std::runtime_error("the image is truncated or damaged");
+  const cv::Mat raw(1, static_cast<int>(bytes.size()), CV_8U, const_cast<char*>(bytes.data()));
+  prepareImageCodecs();
+  cv::Mat image;
+  try {
+    image = cv::imdecode(raw, flags);
+  } catch (const cv::Exception&) { // its text has several lines
+  }
+  if (image.empty())
+    throw std::runtime_error("no image that can be read");
+  return image;
+}
+} // namespace
+
+Image decodeImage(std::string_view bytes)
+{
+  if (startsWith(bytes, "\xff\xd8"))
+    return decodeJpeg(bytes);
+  const cv::Mat bgr = decode(bytes, cv::IMREAD_COLOR | cv::IMREAD_IGNORE_ORIENTATION);
   Image image(bgr.cols, bgr.rows, 3);
   cv::Mat rgb(bgr.rows, bgr.cols, CV_8UC3, image.data.data());
   cv::cvtColor(bgr, rgb, cv::COLOR_BGR2RGB);
+  return image;
+}
+
+Image16 decodeImage16(std::string_view bytes)
+{
+  const cv::Mat depth = decode(bytes, cv::IMREAD_UNCHANGED);
+  if (depth.type() != CV_16UC1)
+    throw std::runtime_error("not a 16-bit image with one channel");
+  Image16 image{depth.cols, depth.rows, {}};
+  image.data.reserve(depth.total());
+  for (int y = 0; y < depth.rows; ++y)
+    image.data.insert(image.data.end(), depth.ptr<std::uint16_t>(y), depth.ptr<std::uint16_t>(y) + depth.cols);
   return image;
 }
 } // namespace fresco::io

@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include <cstddef>
 #include <fresco/core/image.h>
 #include <string_view>
 namespace fresco::io {
-inline bool startsWith(std::string_view bytes, std::string_view mark) { return bytes.substr(0, mark.size()) == mark; }
+/// RGB image from the bytes of a PNG, JPEG, TIFF, BMP or WebP file.
+/// @throws std::runtime_error if it is damaged, truncated, smaller than its size asks for or none of these
+Image decodeImage(std::string_view bytes);
 
-/// Whether all chunks of a PNG are there and their check sums hold; libpng prints on stderr where they do not.
-bool isIntactPng(const unsigned char* bytes, std::size_t size);
-
-/// RGB image from the bytes of a PNG or JPEG file. @throws std::runtime_error if it is damaged or none of the two
-Image decodeImage(const unsigned char* bytes, std::size_t size);
+/// @throws std::runtime_error as decodeImage, and if the image is not 16 bit with one channel
+Image16 decodeImage16(std::string_view bytes);
 } // namespace fresco::io

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <filesystem>
 #include <fresco/core/pcl_conversions.h>
+#include <fresco/core/polygon_fans.h>
 #include <fresco/core/require.h>
 #include <fresco/io/image_io.h>
 #include <fresco/io/texture_mesh_conversions.h>
@@ -75,18 +76,18 @@ private:
 };
 
 struct TexturedFaces {
-  std::vector<int> texcoords, atlases; ///< 3 and 1 per triangle of the fans, in the order of toTriangleMesh()
+  std::vector<int> texcoords, atlases; ///< 3 and 1 per triangle, in the order of toTriangleMesh()
 };
 
-void addFan(const std::vector<int>& corners, std::size_t count, int atlas, TexturedFaces& faces)
+void addPolygon(const std::vector<int>& corners, std::size_t count, int atlas, TexturedFaces& faces)
 {
   require(corners.empty() || corners.size() == count, "texture mesh: a polygon with ", count, " corners has ",
           corners.size(), " texture coordinates");
-  for (std::size_t i = 2; i < count; ++i) {
+  core::triangulate(count, [&](std::size_t a, std::size_t b, std::size_t c) {
     faces.atlases.push_back(corners.empty() ? -1 : atlas);
-    for (const std::size_t k : {std::size_t{0}, i - 1, i})
+    for (const std::size_t k : {a, b, c})
       faces.texcoords.push_back(corners.empty() ? -1 : corners[k]);
-  }
+  });
 }
 
 TexturedFaces collectFaces(const pcl::TextureMesh& texture, const CornerTexcoords& texcoords)
@@ -96,7 +97,7 @@ TexturedFaces collectFaces(const pcl::TextureMesh& texture, const CornerTexcoord
     std::size_t corner = 0;
     for (std::size_t p = 0; p < texture.tex_polygons[part].size(); ++p) {
       const std::size_t count = texture.tex_polygons[part][p].vertices.size();
-      addFan(texcoords.corners(part, p, corner), count, part, faces);
+      addPolygon(texcoords.corners(part, p, corner), count, part, faces);
       corner += count;
     }
   }
