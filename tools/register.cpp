@@ -6,6 +6,7 @@
 #include <fresco/core/require.h>
 #include <fresco/io/file.h>
 #include <fresco/io/formats.h>
+#include <fresco/io/json_text.h>
 #include <fresco/io/point_io.h>
 #include <fresco/io/pose_file.h>
 #include <fresco/registration/core/scan_registration.h>
@@ -63,7 +64,8 @@ Request parse(int argc, char** argv)
   args.option("voxel", request.options.voxel, "finest thinning, unit of the points; 0 = from the data");
   args.option("max_distance", request.options.max_distance,
               "how far start poses may be off, unit of the points; 0 = 20 voxels");
-  args.option("min_overlap", request.options.min_overlap, "share of a scan from which a pair of scans is used, 0..1");
+  args.option("min_overlap", request.options.min_overlap,
+              "share of a scan from which a pair of scans is used, above 0 and at most 1");
   args.option("max_violation", request.options.max_violation,
               "share of a scan in space that the other saw through from which a pair is wrong, 0..1");
   args.flag("upright", request.options.upright, "all scanners stood upright to 10 degrees, z upwards");
@@ -74,6 +76,11 @@ Request parse(int argc, char** argv)
   if (request.folder.empty())
     throw fresco::UsageError("-o OUT_DIR is missing");
   request.files = scanFiles(words);
+  std::vector<std::string> inputs = request.files;
+  inputs.push_back(request.start_file);
+  fresco::requireDistinct(
+      {request.folder + "/registered.pcd", request.folder + "/poses.txt", request.folder + "/registration.json"},
+      inputs);
   request.options.threads = request.common.threads;
   request.options.names = request.files;
   return request;
@@ -128,7 +135,7 @@ std::string reportText(const Request& request, const fresco::ScanRegistrationRes
   json["voxel"] = result.voxel;
   json["iterations"] = result.iterations;
   json["converged"] = result.converged;
-  return json.dump(1) + "\n";
+  return fresco::jsonText(json, 1);
 }
 
 std::vector<fresco::Pose> startPoses(const Request& request)
@@ -155,6 +162,7 @@ void run(int argc, char** argv)
   const Request request = parse(argc, argv);
   const std::vector<fresco::Pose> start = startPoses(request);
   fresco::makeFolder(request.folder);
+  const fresco::FolderLock lock(request.folder, "fresco_register");
   const fresco::Progress progress = fresco::printProgress(request.common.quiet);
   const fresco::ScanSource scans(request.files.size(),
                                  [&](fresco::Index i) { return fresco::readPoints(request.files[i]); });

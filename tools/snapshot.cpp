@@ -109,7 +109,7 @@ void declareLook(Args& args, Request& request)
   args.option("crease", picture.crease_angle, "edges that bend by more look sharp with gouraud, 0..180 degrees");
   args.flag("no_colors", picture.no_colors, "leave out the colours of vertices and points: the shape alone");
   args.flag("plain", picture.no_colors, "old name of -no_colors, for one version");
-  args.option("point_size", picture.point_size, "size of points, pixels; 0 = by their number");
+  args.option("point_size", picture.point_size, "size of points, pixels, 0..1000; 0 = by their number");
   args.option("oversampling", picture.oversampling, "pixels drawn per pixel along each side, 1..4: finer, slower");
 }
 
@@ -259,6 +259,10 @@ std::string outputName(const Request& request, Shading shading)
 void run(int argc, char** argv)
 {
   const Request request = parse(argc, argv);
+  std::vector<std::string> outputs;
+  for (const Shading shading : request.shadings)
+    outputs.push_back(outputName(request, shading));
+  requireDistinct(outputs, {request.model, request.reference, request.room});
   const Progress progress = printProgress(request.common.quiet);
   report(progress, "read", 0.0);
   const Model model = readModel(request);
@@ -279,7 +283,7 @@ void run(int argc, char** argv)
   report(progress, "write", 0.9);
   writeOutputs([&] {
     for (std::size_t i = 0; i < pictures.size(); ++i)
-      writeImage(outputName(request, request.shadings[i]), pictures[i]);
+      writeImage(outputs[i], pictures[i]);
   });
   report(progress, "done", 1.0);
 }

@@ -40,7 +40,7 @@ void declare(Args& args, TextureOptions& options, ToolOptions& tool)
   args.flag("no_examples", tool.no_examples, "colour unseen parts smoothly, without structure");
   args.option("blend_width", options.blend_width,
               "pixels over which one photograph passes into the next at a seam, 0..100");
-  args.option("strip", options.blend_width, "old name of -blend_width");
+  args.option("strip", options.blend_width, "old name of -blend_width, 0..100");
   args.option("rounds", options.rounds,
               "how often texels are corrected by all photographs, where these agree within half a pixel, 0..100");
   args.option(
@@ -56,7 +56,7 @@ void declare(Args& args, TextureOptions& options, ToolOptions& tool)
   args.option("margin", options.margin, "pixels kept away from the outline of what stands in front, 0..100");
   args.option("depth_tolerance", options.depth_tolerance,
               "share of the typical distance by which occlusion is forgiven, 0..0.5");
-  args.option("memory", options.memory, "MB of photographs kept at a time, decoded or as grey copies");
+  args.option("memory", options.memory, "MB of photographs kept at a time, decoded or as grey copies, at least 1");
 }
 
 /// One camera per view: they may differ after refinement.
@@ -133,6 +133,7 @@ void run(int argc, char** argv)
   options.level = !tool.no_level;
   options.exposure = !tool.no_exposure;
   options.examples = !tool.no_examples;
+  requireDistinct({out}, {files[0]}); // what else it is made of is known when it has been read
   const TriangleMesh mesh = readMesh(files[0]);
   if (mesh.faceCount() == 0 || !(surfaceArea(mesh) > 0))
     throw std::runtime_error(files[0] + ": has no face of positive area");
