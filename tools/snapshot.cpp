@@ -87,7 +87,11 @@ void declareView(Args& args, Request& request)
   point("look", request.look, "point in the middle of the picture, with -eye (default: middle of the model)");
   point("up", request.up, "upright direction (default: 0 0 1; with -view inside and above: found from the model)");
   args.values("angle", "DEG", "vertical opening angle, 1..170 degrees (default: 30; with -view inside: 62)",
-              [&](const auto& words) { request.angle = Args::number("angle", words[0]); });
+              [&](const auto& words) {
+                request.angle = Args::number("angle", words[0]);
+                if (!(*request.angle >= 1 && *request.angle <= 170))
+                  throw UsageError("option -angle: " + words[0] + " is out of range: 1..170");
+              });
   args.flag("cull", request.picture.cull_back_faces,
             "leave out faces, and points with normals, seen from behind (always with -view above)");
 }

@@ -78,6 +78,18 @@ std::string maskPath(const std::string& model, std::size_t index, std::size_t co
   return stem + (count > 1 ? concat("_mask_", index, ".png") : "_mask.png");
 }
 
+/// The pictures beside the model must not replace photographs.
+void requireOtherFiles(const std::string& out, const std::vector<TextureView>& views)
+{
+  const std::string stem = out.substr(0, out.size() - extension(out).size());
+  std::vector<std::string> outputs{stem + ".mtl", stem + ".png", maskPath(out, 0, 1)}, photographs;
+  for (std::size_t i = 0; i < 10; ++i) // there are rarely more than two
+    outputs.insert(outputs.end(), {concat(stem, '_', i, ".png"), maskPath(out, i, 2)});
+  for (const TextureView& view : views)
+    photographs.push_back(view.path);
+  requireDistinct(outputs, photographs);
+}
+
 void printResult(const TextureResult& result, std::size_t views, bool quiet)
 {
   for (const std::string& warning : result.warnings)
@@ -139,6 +151,7 @@ void run(int argc, char** argv)
     throw std::runtime_error(files[0] + ": has no face of positive area");
   const CameraSet set = readColmap(files[1]);
   std::vector<TextureView> views = viewsOf(set, files[2]);
+  requireOtherFiles(out, views);
   for (std::size_t v = 0; v < views.size() && tool.keep_out > 0; ++v)
     views[v].paint = (v + 1) % static_cast<std::size_t>(tool.keep_out) != 0;
   const TextureResult result = reconstructTexture(mesh, views, options, printProgress(common.quiet));
