@@ -29,6 +29,12 @@ if(FRESCO_SANITIZE)
   add_compile_definitions(EIGEN_MALLOC_ALREADY_ALIGNED=1) # PCL's own allocations are taken for foreign ones otherwise
 endif()
 
+# Release builds: an overrun stack or buffer of known size ends the program, and addresses of functions of libraries are
+# looked up at the start and cannot be changed after it.
+add_compile_options($<$<CONFIG:Release>:-fstack-protector-strong> $<$<CONFIG:Release>:-U_FORTIFY_SOURCE>
+                    $<$<CONFIG:Release>:-D_FORTIFY_SOURCE=2>)
+add_link_options($<$<CONFIG:Release>:LINKER:-z,relro,-z,now>)
+
 option(FRESCO_COVERAGE "Count which lines run (gcov)" OFF)
 if(FRESCO_COVERAGE)
   add_compile_options(--coverage -fprofile-update=atomic)

@@ -3,6 +3,7 @@
 #include <fresco/core/require.h>
 #include <fresco/io/file.h>
 #include <fresco/io/formats.h>
+#include <fresco/io/json_text.h>
 #include <fresco/io/mesh_io.h>
 #include <fresco/surface/core/error_colors.h>
 #include <fresco/surface/core/mesh_distance.h>
@@ -49,6 +50,7 @@ Options parse(int argc, char** argv)
   const std::vector<std::string> files = args.parse(argc, argv, 2);
   options.mesh = files[0];
   options.reference = files[1];
+  requireDistinct({options.json, options.colored}, {options.mesh, options.reference});
   options.distance.threads = options.common.threads;
   if (options.seed < 0 || options.largest < 0.f || options.common.threads < 0)
     throw UsageError("-seed, -largest and -threads want a value of 0 or more");
@@ -204,7 +206,7 @@ void run(const Options& options)
                               measureMeshDistance(mesh, reference, options.distance, subProgress(progress, 0.3, 1.0))};
   writeOutputs([&] {
     if (!options.json.empty())
-      writeFile(options.json, comparisonJson(comparison).dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
+      writeFile(options.json, jsonText(comparisonJson(comparison), 1));
     if (!options.colored.empty())
       writeColored(options, mesh, comparison.result);
   });

@@ -47,7 +47,7 @@ void FilterOptions::declare(Args& args)
                 for (int axis = 0; axis < 3; ++axis)
                   viewpoint[axis] = Args::number("viewpoint", words[axis]);
               });
-  args.option("voxel", cell, "keep one point per cube of this side, metres: the one nearest to the centroid");
+  args.option("voxel", cell, "keep one point per cube of this side, metres, > 0: the one nearest to the centroid");
   args.flag("centroid", centroid, "for -voxel: move the point kept to the centroid");
   args.flag("keep_organized", keep_organized, "removed points become NaN in their place");
   args.flag("removed", removed, "write the points that would be removed instead");
@@ -59,8 +59,8 @@ void FilterOptions::declare(Args& args)
 
 void validate(const Args& args, const FilterOptions& options)
 {
-  if (args.given("outliers") && options.outliers.k < 1)
-    throw UsageError("-outliers: K " + std::to_string(options.outliers.k) + " is below 1");
+  if (args.given("outliers") && !(options.outliers.k >= 1 && options.outliers.sigma >= 0))
+    throw UsageError("-outliers: K is below 1 or SIGMA negative");
   if (!(options.mixed_pixels.angle > 0 && options.mixed_pixels.angle < 90))
     throw UsageError("-veil: " + std::to_string(options.mixed_pixels.angle) + " is not above 0 and below 90 degrees");
   if (!(options.mixed_pixels.noise >= 0))
@@ -200,6 +200,7 @@ int main(int argc, char** argv)
     common.declare(args);
     const auto files = args.parse(argc, argv, 2);
     validate(args, options);
+    requireDistinct({files[1]}, {files[0]});
     options.outliers.threads = options.mixed_pixels.threads = common.threads;
     CloudFile file = readCloud(files[0]);
     filterCloud(file, files[0], args, options, common.quiet);

@@ -27,13 +27,17 @@ int main(int argc, char** argv)
     args.option("trim_levels", options.trim_levels,
                 "octree levels that the data may sustain less than they do elsewhere, else surface is cut off; 0 = "
                 "keep it closed");
-    args.option("trim", options.trim_levels, "old name of -trim_levels, for one version");
+    args.option("trim", options.trim_levels, "old name of -trim_levels, for one version; 0 = keep it closed");
     args.flag("no_optimize", options.optimize, "leave the vertices where the reconstruction puts them: rounded edges",
               false);
     args.option("texel", options.texel, "side of a texel, metres; 0 = as fine as the photographs");
     args.size("size", options.width, options.height, "size of the pictures, pixels");
     common.declare(args);
     const auto words = args.parse(argc, argv, 2);
+    if (options.width < 160 || options.height < 120)
+      throw fresco::UsageError("option -size: pictures of less than 160x120 pixels are too small");
+    for (const char* part : {"", "/scans", "/images", "/cameras"})
+      fresco::requireDistinct({words[1]}, {words[0] + part});
     options.threads = common.threads;
     const fresco::ModelReport report =
         fresco::buildModel(words[0], words[1], options, fresco::printProgress(common.quiet));

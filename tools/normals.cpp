@@ -26,8 +26,8 @@ struct ToolOptions {
 
 void ToolOptions::declare(Args& args)
 {
-  args.option("k", normals.k, "neighbours of the plane fit, the point included, at least 3");
-  args.option("radius", normals.radius, "instead of -k: neighbours within this distance, metres, but at least 6");
+  args.option("k", normals.k, "neighbours of the plane fit, the point included, 3..1000");
+  args.option("radius", normals.radius, "instead of -k: neighbours within this distance, metres, > 0, but six of them");
   args.values(
       "viewpoint", "X Y Z",
       "where the scanner stood; default: fields vp_x vp_y vp_z, else the header of the file, else normals are made "
@@ -41,8 +41,9 @@ void ToolOptions::declare(Args& args)
   args.option("bilateral", smoothing.rounds, "rounds of bilateral smoothing of the normals; 0 = none");
   args.option("sigma_d", smoothing.sigma_d,
               "for -bilateral: deviation of the distance, metres; 0 = from the local sampling");
-  args.option("sigma_n", smoothing.sigma_n, "for -bilateral: deviation of the angle between normals, degrees, 0..180");
-  args.option("move", smoothing.move_rounds, "then move points along their normals, this many rounds");
+  args.option("sigma_n", smoothing.sigma_n,
+              "for -bilateral: deviation of the angle between normals, degrees, above 0 and at most 180");
+  args.option("move", smoothing.move_rounds, "then move points along their normals, this many rounds, >= 0");
   args.flag("plain", plain,
             "plain plane fits: do not keep to one side of an edge, nor look for another one in -bilateral");
   args.flag("no_grid", no_grid, "organised clouds: search neighbours in space, not around the pixel");
@@ -266,6 +267,7 @@ int main(int argc, char** argv)
     options.declare(args);
     common.declare(args);
     const auto files = args.parse(argc, argv, 2);
+    requireDistinct({files[1]}, {files[0]});
     validate(args, options);
     const Progress progress = printProgress(common.quiet);
     CloudFile file = readCloud(files[0]);

@@ -3,6 +3,7 @@
 #include <fresco/core/require.h>
 #include <fresco/io/file.h>
 #include <fresco/io/formats.h>
+#include <fresco/io/json_text.h>
 #include <fresco/io/mesh_io.h>
 #include <fresco/io/point_io.h>
 #include <fresco/surface/core/normal_filtering.h>
@@ -78,6 +79,7 @@ Request parse(int argc, char** argv)
   request.mesh = files[0];
   request.cloud = files[1];
   request.output = files[2];
+  requireDistinct({request.output, request.report}, {request.mesh, request.cloud});
   if (request.mode == "best")
     request.mode = "normal_filtering";
   if (request.mode == "faithful")
@@ -132,7 +134,7 @@ void write(const Request& request, const Result& r)
   writeOutputs([&] {
     writeMesh(request.output, r.mesh);
     if (!request.report.empty())
-      writeFile(request.report, toJson(r).dump(1) + "\n");
+      writeFile(request.report, jsonText(toJson(r), 1));
   });
   std::string line =
       concat(r.iterations, " iterations", r.converged ? ", converged" : "", "; mean edge ", r.edge_length, "; ",

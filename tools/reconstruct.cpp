@@ -55,6 +55,7 @@ Request parse(int argc, char** argv)
   const std::vector<std::string> files = args.parse(argc, argv, 2);
   request.input = files[0];
   request.output = files[1];
+  fresco::requireDistinct({request.output}, {request.input});
   o.threads = request.common.threads;
   try {
     validateVolumetricOptions(o);

@@ -6,6 +6,7 @@
 #include <fresco/core/require.h>
 #include <fresco/io/file.h>
 #include <fresco/io/formats.h>
+#include <fresco/io/json_text.h>
 #include <fresco/io/point_io.h>
 #include <fresco/io/pose_file.h>
 #include <fresco/registration/core/scan_registration.h>
@@ -65,7 +66,8 @@ Request parse(int argc, char** argv)
   args.option("voxel", request.options.voxel, "finest thinning, unit of the points; 0 = from the data");
   args.option("max_distance", request.options.max_distance,
               "how far start poses may be off, unit of the points; 0 = 20 voxels");
-  args.option("min_overlap", request.options.min_overlap, "share of a scan from which a pair of scans is used, 0..1");
+  args.option("min_overlap", request.options.min_overlap,
+              "share of a scan from which a pair of scans is used, above 0 and at most 1");
   args.option("max_violation", request.options.max_violation,
               "share of a scan in space that the other saw through from which a pair is wrong, 0..1");
   args.flag("upright", request.options.upright, "all scanners stood upright to 10 degrees, z upwards");
@@ -76,6 +78,11 @@ Request parse(int argc, char** argv)
   if (request.folder.empty())
     throw UsageError("-o OUT_DIR is missing");
   request.files = scanFiles(words);
+  std::vector<std::string> inputs = request.files;
+  inputs.push_back(request.start_file);
+  fresco::requireDistinct(
+      {request.folder + "/registered.pcd", request.folder + "/poses.txt", request.folder + "/registration.json"},
+      inputs);
   request.options.threads = request.common.threads;
   request.options.names = request.files;
   return request;
@@ -130,7 +137,7 @@ std::string reportText(const Request& request, const ScanRegistrationResult& res
   json["voxel"] = result.voxel;
   json["iterations"] = result.iterations;
   json["converged"] = result.converged;
-  return json.dump(1) + "\n";
+  return fresco::jsonText(json, 1);
 }
 
 std::vector<Pose> startPoses(const Request& request)
@@ -156,6 +163,7 @@ void run(int argc, char** argv)
   const Request request = parse(argc, argv);
   const std::vector<Pose> start = startPoses(request);
   makeFolder(request.folder);
+  const FolderLock lock(request.folder, "fresco_register");
   const Progress progress = printProgress(request.common.quiet);
   const ScanSource scans(request.files.size(), [&](Index i) { return readPoints(request.files[i]); });
   report(progress, "read", 0.0);

@@ -9,20 +9,21 @@ namespace {
 void declare(Args& args, DatasetOptions& options, int& seed)
 {
   args.option("stations", options.stations, "laser stations, 1..1000");
-  args.option("points", options.laser.points, "laser points per station, about");
-  args.option("noise", options.laser.noise, "deviation of the range at 4 m, metres; it grows with range and incidence");
+  args.option("points", options.laser.points, "laser points per station, about, 100..100000000");
+  args.option("noise", options.laser.noise,
+              "deviation of the range at 4 m, metres, 0..1; it grows with range and incidence");
   args.flag("no_veil", options.laser.veil, "thin laser beams: no mixed pixels (veil points) at depth jumps", false);
   args.option("max_range", options.laser.max_range, "of the laser, metres; 0 = 30 in rooms, without limit for meshes");
   args.option("seed", seed, "of all random numbers; same seed, same bytes; >= 0");
   args.size("images", options.width, options.height, "size of the photographs, pixels, 16..20000 each");
-  args.option("views", options.views, "photographs");
+  args.option("views", options.views, "photographs, 0..100000");
   args.flag("labels", options.labels,
             "scans get a field label: 0 = of one surface, 1 = of several but within the noise of one, 2 = mixed pixel "
             "(veil point)");
   args.values("no_images", "", "no photographs", [](const auto&) {});
   args.option("exposure", options.exposure_spread,
               "spread of the photographs' brightness, 0..0.9; white balance a quarter of it");
-  args.option("sensor_noise", options.sensor_noise, "of the photographs, grey levels of 255");
+  args.option("sensor_noise", options.sensor_noise, "of the photographs, grey levels of 255, 0..100");
   args.option("quality", options.jpeg_quality, "of the JPEG files, 1..100");
   args.flag("truth_images", options.truth_images, "also photographs without exposure differences and noise (PNG)");
   args.option("edge", options.max_edge, "longest side of a face of the rooms' truth, metres, 0.02..10");
@@ -45,6 +46,7 @@ int main(int argc, char** argv)
     declare(args, options, seed);
     common.declare(args);
     const auto files = args.parse(argc, argv, 2);
+    requireDistinct({files[1] + "/truth.ply"}, {files[0]});
     if (seed < 0)
       throw UsageError("-seed: " + std::to_string(seed) + " is negative");
     options.seed = seed;

@@ -86,7 +86,11 @@ void declareView(Args& args, Request& request)
   point("look", request.look, "point in the middle of the picture, with -eye (default: middle of the model)");
   point("up", request.up, "upright direction (default: 0 0 1; with -view inside and above: found from the model)");
   args.values("angle", "DEG", "vertical opening angle, 1..170 degrees (default: 30; with -view inside: 62)",
-              [&](const auto& words) { request.angle = Args::number("angle", words[0]); });
+              [&](const auto& words) {
+                request.angle = Args::number("angle", words[0]);
+                if (!(*request.angle >= 1 && *request.angle <= 170))
+                  throw UsageError("option -angle: " + words[0] + " is out of range: 1..170");
+              });
   args.flag("cull", request.picture.cull_back_faces,
             "leave out faces, and points with normals, seen from behind (always with -view above)");
 }
@@ -108,7 +112,7 @@ void declareLook(Args& args, Request& request)
   args.option("crease", picture.crease_angle, "edges that bend by more look sharp with gouraud, 0..180 degrees");
   args.flag("no_colors", picture.no_colors, "leave out the colours of vertices and points: the shape alone");
   args.flag("plain", picture.no_colors, "old name of -no_colors, for one version");
-  args.option("point_size", picture.point_size, "size of points, pixels; 0 = by their number");
+  args.option("point_size", picture.point_size, "size of points, pixels, 0..1000; 0 = by their number");
   args.option("oversampling", picture.oversampling, "pixels drawn per pixel along each side, 1..4: finer, slower");
 }
 
@@ -257,6 +261,10 @@ std::string outputName(const Request& request, Shading shading)
 void run(int argc, char** argv)
 {
   const Request request = parse(argc, argv);
+  std::vector<std::string> outputs;
+  for (const Shading shading : request.shadings)
+    outputs.push_back(outputName(request, shading));
+  requireDistinct(outputs, {request.model, request.reference, request.room});
   const Progress progress = printProgress(request.common.quiet);
   report(progress, "read", 0.0);
   const Model model = readModel(request);
@@ -277,7 +285,7 @@ void run(int argc, char** argv)
   report(progress, "write", 0.9);
   writeOutputs([&] {
     for (std::size_t i = 0; i < pictures.size(); ++i)
-      writeImage(outputName(request, request.shadings[i]), pictures[i]);
+      writeImage(outputs[i], pictures[i]);
   });
   report(progress, "done", 1.0);
 }

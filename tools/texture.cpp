@@ -37,7 +37,7 @@ void declare(Args& args, TextureOptions& options, ToolOptions& tool)
   args.flag("no_examples", options.examples, "colour unseen parts smoothly, without structure", false);
   args.option("blend_width", options.blend_width,
               "pixels over which one photograph passes into the next at a seam, 0..100");
-  args.option("strip", options.blend_width, "old name of -blend_width");
+  args.option("strip", options.blend_width, "old name of -blend_width, 0..100");
   args.option("rounds", options.rounds,
               "how often texels are corrected by all photographs, where these agree within half a pixel, 0..100");
   args.option(
@@ -53,7 +53,7 @@ void declare(Args& args, TextureOptions& options, ToolOptions& tool)
   args.option("margin", options.margin, "pixels kept away from the outline of what stands in front, 0..100");
   args.option("depth_tolerance", options.depth_tolerance,
               "share of the typical distance by which occlusion is forgiven, 0..0.5");
-  args.option("memory", options.memory, "MB of photographs kept at a time, decoded or as grey copies");
+  args.option("memory", options.memory, "MB of photographs kept at a time, decoded or as grey copies, at least 1");
 }
 
 /// One camera per view: they may differ after refinement.
@@ -73,6 +73,18 @@ std::string maskPath(const std::string& model, std::size_t index, std::size_t co
 {
   const std::string stem = model.substr(0, model.size() - extension(model).size());
   return stem + (count > 1 ? concat("_mask_", index, ".png") : "_mask.png");
+}
+
+/// The pictures beside the model must not replace photographs.
+void requireOtherFiles(const std::string& out, const std::vector<TextureView>& views)
+{
+  const std::string stem = out.substr(0, out.size() - extension(out).size());
+  std::vector<std::string> outputs{stem + ".mtl", stem + ".png", maskPath(out, 0, 1)}, photographs;
+  for (std::size_t i = 0; i < 10; ++i) // there are rarely more than two
+    outputs.insert(outputs.end(), {concat(stem, '_', i, ".png"), maskPath(out, i, 2)});
+  for (const TextureView& view : views)
+    photographs.push_back(view.path);
+  requireDistinct(outputs, photographs);
 }
 
 void printResult(const TextureResult& result, std::size_t views, bool quiet)
@@ -115,11 +127,13 @@ void run(int argc, char** argv)
   if (tool.keep_out < 0)
     throw UsageError("-keep_out must not be negative");
   options.threads = common.threads;
+  requireDistinct({out}, {files[0]}); // what else it is made of is known when it has been read
   const TriangleMesh mesh = readMesh(files[0]);
   if (mesh.faceCount() == 0 || !(surfaceArea(mesh) > 0))
     throw std::runtime_error(files[0] + ": has no face of positive area");
   const CameraSet set = readColmap(files[1]);
   std::vector<TextureView> views = viewsOf(set, files[2]);
+  requireOtherFiles(out, views);
   for (std::size_t v = 0; v < views.size() && tool.keep_out > 0; ++v)
     views[v].paint = (v + 1) % static_cast<std::size_t>(tool.keep_out) != 0;
   const TextureResult result = reconstructTexture(mesh, views, options, printProgress(common.quiet));

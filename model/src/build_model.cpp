@@ -46,7 +46,10 @@ ModelReport buildModel(const std::string& input_folder, const std::string& outpu
   const Job job{readModelInput(input_folder), ModelFiles{output_folder}, options};
   validate(job.input, options);
   const auto start = std::chrono::steady_clock::now();
-  makeFolder(job.files.folder);
+  report(progress, "photographs", 0.0);
+  checkPhotographs(job.input, options.threads);
+  makeFolder(job.files.work);
+  const FolderLock lock(job.files.work, "fresco_model");
   makeFolder(job.files.snapshots);
   StageLog log(job.files.work, fingerprint(job.input.files()) + fingerprint(programFiles()), options.resume, progress);
   for (const Stage& stage : stagesOf(job))

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fresco/core/require.h>
 #include <fresco/io/file.h>
+#include <fresco/io/json_text.h>
 #include <fstream>
 #include <iomanip>
 #include <link.h>
@@ -108,13 +109,12 @@ void StageLog::run(const Stage& stage)
   record.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   record.cpu_seconds = cpuSeconds() - cpu_start;
   record.peak_megabytes = peakMegabytes();
-  writeFile(file, Json{{"key", key_},
-                       {"seconds", record.seconds},
-                       {"cpu_seconds", record.cpu_seconds},
-                       {"peak_megabytes", record.peak_megabytes},
-                       {"figures", record.figures}}
-                          .dump(2) +
-                      "\n");
+  writeFile(file, jsonText(Json{{"key", key_},
+                                {"seconds", record.seconds},
+                                {"cpu_seconds", record.cpu_seconds},
+                                {"peak_megabytes", record.peak_megabytes},
+                                {"figures", record.figures}},
+                           2));
   records_.push_back(std::move(record));
   report(progress_, stage.name + ": done", 1.0);
 }

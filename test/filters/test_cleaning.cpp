@@ -238,6 +238,22 @@ TEST(VoxelThinning, OnePointPerCellTheNearestToTheCentroid)
   }
 }
 
+TEST(VoxelThinning, DoesNotDependOnTheOrderOfThePoints)
+{
+  // On a lattice many points are equally far from the centroid.
+  Points points(3, 1000);
+  for (Index i = 0; i < points.cols(); ++i)
+    points.col(i) << 0.1f * float(i % 10), 0.1f * float(i / 10 % 10), 0.1f * float(i / 100);
+  const Points reversed = points.rowwise().reverse();
+  const VoxelThinning a = thinByVoxel(points, 0.35f), b = thinByVoxel(reversed, 0.35f);
+  ASSERT_EQ(a.kept.size(), b.kept.size());
+  for (std::size_t i = 0; i < a.kept.size(); ++i) {
+    const std::size_t k = a.kept.size() - 1 - i;
+    EXPECT_EQ(a.kept[i], points.cols() - 1 - b.kept[k]);
+    EXPECT_EQ(a.centroids.col(Index(i)), b.centroids.col(Index(k)));
+  }
+}
+
 TEST(VoxelThinning, OddInput)
 {
   EXPECT_TRUE(thinByVoxel(Points(3, 0), 1).kept.empty());

@@ -200,6 +200,8 @@ void parseArgs(Bytes bytes, const std::string&)
     expect(!files.empty() && files.size() <= 3, "too many or too few files");
     expect(std::isfinite(f) && std::isfinite(d), "a number that is not finite");
     expect(width > 0 && height > 0, "a picture without pixels");
+    requireDistinct({files.back(), text}, {files.begin(), files.end() - 1});
+    expect(files.size() < 2 || files[0].empty() || files[0] != files.back(), "an output that is an input");
   } catch (const UsageError&) {
   } catch (const HelpShown&) {
   }

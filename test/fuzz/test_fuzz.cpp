@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What the fuzzer starts from and what it once found, read again.
+#include "generator.h"
 #include "seeds.h"
 #include "targets.h"
 #include "test_data.h"
 #include <algorithm>
 #include <chrono>
+#include <fresco/core/parallel.h>
 #include <fresco/io/file.h>
+#include <fresco/io/mesh_io.h>
+#include <fresco/io/point_io.h>
 namespace {
 using namespace fresco;
 namespace fs = std::filesystem;
@@ -53,6 +57,48 @@ TEST(Fuzz, FindingsStayFixed)
     if (fs::is_directory(known)) {
       EXPECT_NO_THROW(fuzz::findTarget(fs::path(known).filename().string()));
     }
+}
+
+/// Files of the generator are read; with one thing broken they are read or refused.
+TEST(Fuzz, GeneratedFilesAreReadOrRefused)
+{
+  const std::string folder = test::scratchFolder();
+  setDefaultThreads(1);
+  for (const fuzz::Target& target : fuzz::targets()) {
+    fs::create_directories(folder + "/seeds/" + target.name);
+    for (std::uint32_t seed = 0; seed < 100; ++seed) {
+      SCOPED_TRACE(target.name + " " + std::to_string(seed));
+      const fuzz::GeneratedFile file = fuzz::generated(target.name, seed);
+      if (file.parts.empty())
+        break;
+      const std::string bytes = file.packed();
+      EXPECT_NO_THROW(target.run(bytes, folder));
+      EXPECT_NO_THROW(target.run(fuzz::broken(file, seed), folder));
+      EXPECT_NO_THROW(target.run(fuzz::broken(bytes, seed), folder));
+    }
+  }
+  setDefaultThreads(0);
+}
+
+TEST(Fuzz, GeneratedFilesAreValid)
+{
+  const std::string folder = test::scratchFolder();
+  for (const std::string format : {"ply", "vtk", "stl", "obj"})
+    for (std::uint32_t seed = 0; seed < 50; ++seed) {
+      const std::string path = folder + "/a." + format;
+      writeFile(path, fuzz::generated(format, seed).packed());
+      EXPECT_NO_THROW(readMesh(path)) << format << ' ' << seed;
+    }
+  for (const std::string format : {"pcd", "xyz"})
+    for (std::uint32_t seed = 0; seed < 50; ++seed) {
+      const std::string path = folder + "/a." + format;
+      writeFile(path, fuzz::generated(format, seed).packed());
+      EXPECT_NO_THROW(readPoints(path)) << format << ' ' << seed;
+    }
+  for (std::uint32_t seed = 0; seed < 50; ++seed) {
+    writeFile(folder + "/a.glb", fuzz::generated("glb", seed).packed());
+    EXPECT_NO_THROW(readTexturedMesh(folder + "/a.glb")) << seed;
+  }
 }
 
 TEST(Fuzz, EmptyInputIsNoProblem)

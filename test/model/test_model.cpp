@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "input/model_input.h"
 #include "input/rgbd.h"
 #include "report/report.h"
 #include "stages/fusion.h"
 #include "test_data.h"
+#include "viewer/viewer.h"
 #include <fresco/core/require.h>
 #include <fresco/io/file.h>
 #include <fresco/io/image_io.h>
@@ -165,5 +167,35 @@ TEST(RgbdFolder, RealRoomIsRead)
   const double footprint = pixelFootprint(room); // a room is seen from 1 to 3 m
   EXPECT_GT(footprint, 1.0 / 585);
   EXPECT_LT(footprint, 3.0 / 585);
+}
+
+TEST(StageLog, NamesOfAnyBytes)
+{
+  const std::string folder = test::scratchFolder(), name = "scan\xff\xfe.pcd";
+  StageLog log(folder, name, false, {});
+  log.run({"stage", name, {}, [&](const Progress&) { return Json{{"warnings", {name + ": dark"}}}; }});
+  EXPECT_TRUE(Json::parse(readFile(folder + "/stage.json"), nullptr, false).contains("figures"));
+  const std::string html = escapedHtml(name + "<&\"");
+  EXPECT_EQ(html, "scan\xef\xbf\xbd\xef\xbf\xbd.pcd&lt;&amp;&quot;");
+}
+
+TEST(ModelInput, PhotographsAreLookedAtBeforeTheWork)
+{
+  const std::string folder = test::scratchFolder();
+  fs::create_directory(folder + "/images");
+  ModelInput input;
+  input.images = folder + "/images";
+  input.cameras.cameras = {{64, 48, 60, 60, 32, 24, 0, 0, 0, 0}};
+  for (const char* name : {"a.png", "b.png"}) {
+    writeImage(input.images + "/" + name, Image(64, 48));
+    View view;
+    view.image = name;
+    input.cameras.views.push_back(view);
+  }
+  EXPECT_NO_THROW(checkPhotographs(input, 2));
+  writeImage(input.images + "/b.png", Image(48, 64));
+  EXPECT_THROW(checkPhotographs(input, 2), std::runtime_error);
+  std::ofstream(input.images + "/b.png") << "damaged";
+  EXPECT_THROW(checkPhotographs(input, 2), std::runtime_error);
 }
 } // namespace

@@ -74,6 +74,7 @@ find_program(readelf readelf REQUIRED)
 file(GLOB binaries "${BINARY_DIR}/bin/*" "${BINARY_DIR}/lib/*.so" "${BINARY_DIR}/lib/*/*.so" "${prefix}/bin/*"
      "${prefix}/lib/*.so" "${prefix}/lib/*/*.so")
 list(FILTER binaries EXCLUDE REGEX "\\.(py|sh|txt)$")
+file(STRINGS "${BINARY_DIR}/CMakeCache.txt" is_release REGEX "^CMAKE_BUILD_TYPE:.*=Release$")
 foreach(binary IN LISTS binaries)
   execute_process(COMMAND "${readelf}" -d "${binary}" OUTPUT_VARIABLE dynamic ERROR_QUIET)
   if(dynamic MATCHES "R(UN)?PATH\\)[^[]*\\[([^]]*)\\]")
@@ -81,6 +82,10 @@ foreach(binary IN LISTS binaries)
     if(":${search_path}:" MATCHES "::")
       message(FATAL_ERROR "${binary} searches the current folder: ${search_path}")
     endif()
+  endif()
+  # What a release build is hardened by (cmake/FrescoSettings.cmake).
+  if(is_release AND NOT dynamic MATCHES "BIND_NOW|FLAGS_1\\)[^\n]*NOW")
+    message(FATAL_ERROR "${binary} is not bound at its start")
   endif()
 endforeach()
 

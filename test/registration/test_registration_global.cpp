@@ -241,5 +241,22 @@ TEST(MergeScans, LargeCoordinatesStayExact)
     EXPECT_LT((world - far * scene.scans[0].points.col(i).cast<double>()).norm(), 1e-4);
   }
 }
+
+TEST(MergeScans, ScansInLargeCoordinatesStayExact)
+{
+  // The scans themselves are far away, as in UTM coordinates, and hardly moved.
+  ScannedScene scene = test::scanTwoRooms(2000);
+  PointSet& scan = scene.scans[0];
+  scan.origin = {500000.0, 5000000.0, 100.0};
+  scan.viewpoints = Points::Zero(3, 1);
+  Eigen::Isometry3d small = Eigen::Isometry3d::Identity();
+  small.translation() << 0.5, -0.25, 0.125;
+  const PointSet merged = mergeScans({scan}, {small.matrix()});
+  ASSERT_EQ(merged.size(), scan.size());
+  for (Index i = 0; i < merged.size(); i += 50) {
+    const Eigen::Vector3d world = merged.origin + merged.points.col(i).cast<double>();
+    EXPECT_LT((world - small * (scan.origin + scan.points.col(i).cast<double>())).norm(), 1e-4);
+  }
+}
 } // namespace
 } // namespace fresco

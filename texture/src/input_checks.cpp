@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <fresco/core/parallel.h>
+#include <fresco/core/poses.h>
 #include <fresco/core/require.h>
+#include <filesystem>
 #include <fstream>
 namespace fresco::texture {
 namespace {
@@ -13,11 +15,14 @@ void validateView(const TextureView& view, std::size_t index)
   const CameraModel& c = view.camera;
   require(c.width >= 3 && c.height >= 3 && c.width <= 65535 && c.height <= 65535, "texture: ", name, ": camera of ",
           c.width, "x", c.height, " pixels");
-  require(c.fx > 0 && c.fy > 0 && std::isfinite(c.fx + c.fy + c.cx + c.cy + c.k1 + c.k2 + c.p1 + c.p2),
-          "texture: ", name, ": intrinsics are not finite or a focal length is not positive");
+  try {
+    validateCamera(c);
+  } catch (const std::invalid_argument& error) {
+    throw std::invalid_argument(concat("texture: ", name, ": ", error.what()));
+  }
   const Eigen::Matrix3d R = view.T_camera_world.linear();
-  require(view.T_camera_world.matrix().allFinite() && (R * R.transpose() - Eigen::Matrix3d::Identity()).norm() < 1e-3 &&
-              R.determinant() > 0,
+  require(view.T_camera_world.matrix().allFinite() && isInReach(view.T_camera_world.translation()) &&
+              (R * R.transpose() - Eigen::Matrix3d::Identity()).norm() < 1e-3 && R.determinant() > 0,
           "texture: ", name, ": the pose is not finite or no rigid motion");
   require(!view.image.empty() || !view.path.empty(), "texture: ", name, ": neither an image nor a path");
 }
@@ -91,6 +96,8 @@ void validate(const TriangleMesh& mesh, const std::vector<TextureView>& views, c
 
 int exifOrientation(const std::string& path)
 {
+  if (!std::filesystem::is_regular_file(path)) // reading the photograph says what is wrong
+    return 1;
   std::ifstream file(path, std::ios::binary);
   const auto next = [&] { return file.get() & 255U; };
   if (next() != 0xFF || next() != 0xD8)

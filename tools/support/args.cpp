@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "support/args.h"
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <filesystem>
+#include <fresco/core/require.h>
 #include <iomanip>
 #include <iostream>
 #include <limits>
+#include <regex>
 #include <sstream>
 namespace fresco {
 namespace {
@@ -26,6 +30,74 @@ std::string shown(const T& value)
   return text.str();
 }
 
+/// Numbers that any option may hold, besides 0: their squares and ratios are far from the ends of floating point.
+constexpr double least_magnitude = 1e-12, most_magnitude = 1e12;
+
+struct Range {
+  double least = -most_magnitude, most = most_magnitude;
+  bool above_least = false, below_most = false; ///< without the end itself
+  bool or_zero = false;
+  std::string text; ///< as the help puts it
+
+  bool holds(double value) const
+  {
+    return (or_zero && value == 0) ||
+           (value >= least && value <= most && !(above_least && value == least) && !(below_most && value == most));
+  }
+};
+
+/// The range that the help of an option gives is the range that holds: "2..16", "> 0", ">= 0", "at least 1", "above 0
+/// and below 90", "above 0 and at most 1"; "0 = ..." allows 0 besides, and nothing below it.
+Range rangeOf(const std::string& help)
+{
+  static const std::string number = R"((-?\d+(?:\.\d+)?(?:e-?\d+)?))";
+  static const std::regex interval(number + R"(\.\.)" + number), least("(?:>=|at least) " + number),
+      above("(?:>|above) " + number), below("below " + number), at_most("at most " + number),
+      zero(R"((?:^|[ ;,(])0 = )");
+  Range range;
+  std::smatch found;
+  range.or_zero = std::regex_search(help, zero);
+  if (std::regex_search(help, found, interval)) {
+    range.least = std::stod(found[1]);
+    range.most = std::stod(found[2]);
+    range.text = found[0];
+    return range;
+  }
+  if (std::regex_search(help, found, least) || std::regex_search(help, found, above)) {
+    range.least = std::stod(found[1]);
+    range.above_least = found[0].str().rfind(">=", 0) != 0 && found[0].str().rfind("at", 0) != 0;
+    range.text = found[0];
+  }
+  if (range.or_zero && range.text.empty()) {
+    range.least = 0;
+    range.text = ">= 0";
+  }
+  if (std::regex_search(help, found, below) || std::regex_search(help, found, at_most)) {
+    range.most = std::stod(found[1]);
+    range.below_most = found[0].str()[0] == 'b';
+    range.text += (range.text.empty() ? "" : " and ") + found[0].str();
+  }
+  return range;
+}
+
+void requireInRange(const std::string& name, double value, const std::string& word, const std::string& help)
+{
+  if (const Range range = rangeOf(help); !range.holds(value))
+    throw UsageError(concat("option -", name, ": ", word, " is out of range: ", range.text));
+}
+
+bool isSameFile(const std::string& a, const std::string& b)
+{
+  std::error_code error;
+  if (std::filesystem::equivalent(a, b, error))
+    return true;
+  const auto place = [&](const std::string& path) {
+    const std::filesystem::path canonical = std::filesystem::weakly_canonical(path, error);
+    return error ? std::filesystem::path(path) : canonical;
+  };
+  return place(a) == place(b);
+}
+
 bool looksLikeOption(const std::string& word)
 {
   return word.size() > 1 && word[0] == '-' && !std::isdigit(static_cast<unsigned char>(word[1])) && word[1] != '.';
@@ -42,6 +114,9 @@ double Args::number(const std::string& name, const std::string& text)
   const double value = std::strtod(text.c_str(), &end);
   if (text.empty() || *end != '\0' || !std::isfinite(value))
     throw UsageError("option -" + name + " wants a number, not '" + text + "'");
+  if (value != 0 && !(std::abs(value) >= least_magnitude && std::abs(value) <= most_magnitude))
+    throw UsageError(concat("option -", name, ": ", text, " is out of range: 0, or of magnitude ", least_magnitude,
+                            "..", most_magnitude));
   return value;
 }
 
@@ -63,10 +138,11 @@ void Args::values(const std::string& name, const std::string& placeholders, cons
 
 void Args::option(const std::string& name, int& value, const std::string& help)
 {
-  values(name, "N", help, [name, &value](const auto& words) {
+  values(name, "N", help, [name, help, &value](const auto& words) {
     const long long number = integer(name, words[0]);
     if (number < std::numeric_limits<int>::min() || number > std::numeric_limits<int>::max())
       throw UsageError("option -" + name + ": " + words[0] + " is too large");
+    requireInRange(name, number, words[0], help);
     value = number;
   });
   options_.back().shown_default = shown(value);
@@ -74,18 +150,19 @@ void Args::option(const std::string& name, int& value, const std::string& help)
 
 void Args::option(const std::string& name, float& value, const std::string& help)
 {
-  values(name, "X", help, [name, &value](const auto& words) {
-    const double given = number(name, words[0]);
-    if (std::abs(given) > std::numeric_limits<float>::max())
-      throw UsageError("option -" + name + ": " + words[0] + " is too large");
-    value = given;
+  values(name, "X", help, [name, help, &value](const auto& words) {
+    value = number(name, words[0]);
+    requireInRange(name, value, words[0], help);
   });
   options_.back().shown_default = shown(value);
 }
 
 void Args::option(const std::string& name, double& value, const std::string& help)
 {
-  values(name, "X", help, [name, &value](const auto& words) { value = number(name, words[0]); });
+  values(name, "X", help, [name, help, &value](const auto& words) {
+    value = number(name, words[0]);
+    requireInRange(name, value, words[0], help);
+  });
   options_.back().shown_default = shown(value);
 }
 
@@ -97,7 +174,7 @@ void Args::option(const std::string& name, std::string& value, const std::string
 
 void Args::size(const std::string& name, int& width, int& height, const std::string& help)
 {
-  values(name, "WxH", help, [name, &width, &height](const auto& words) {
+  values(name, "WxH", help, [name, help, &width, &height](const auto& words) {
     constexpr int most = 65536;
     const std::size_t cross = words[0].find('x');
     if (cross == std::string::npos)
@@ -105,6 +182,8 @@ void Args::size(const std::string& name, int& width, int& height, const std::str
     const long long w = integer(name, words[0].substr(0, cross)), h = integer(name, words[0].substr(cross + 1));
     if (w < 1 || h < 1 || w > most || h > most)
       throw UsageError("option -" + name + ": " + words[0] + " is not within 1x1 and 65536x65536");
+    for (const long long pixels : {w, h})
+      requireInRange(name, pixels, words[0], help);
     width = w;
     height = h;
   });
@@ -147,13 +226,18 @@ std::size_t Args::readOption(const std::vector<std::string>& words, std::size_t 
 std::vector<std::string> Args::parse(int argc, char** argv, std::size_t least, std::size_t most)
 {
   const std::vector<std::string> words(argv + 1, argv + argc);
-  for (const std::string& word : words)
-    if (word == "-h" || word == "-help" || word == "--help") {
+  const auto end_of_options = std::find(words.begin(), words.end(), "--");
+  for (auto word = words.begin(); word != end_of_options; ++word)
+    if (*word == "-h" || *word == "-help" || *word == "--help") {
       std::cout << usage();
       throw HelpShown();
     }
   std::vector<std::string> files;
   for (std::size_t i = 0; i < words.size();) {
+    if (words[i] == "--") { // all that follow are files, whatever they begin with
+      files.insert(files.end(), words.begin() + i + 1, words.end());
+      break;
+    }
     if (looksLikeOption(words[i]))
       i = readOption(words, i);
     else
@@ -162,6 +246,19 @@ std::vector<std::string> Args::parse(int argc, char** argv, std::size_t least, s
   if (files.size() < least || files.size() > most)
     throw UsageError("got " + std::to_string(files.size()) + " file arguments; usage: " + synopsis_);
   return files;
+}
+
+void requireDistinct(std::vector<std::string> outputs, const std::vector<std::string>& inputs)
+{
+  outputs.erase(std::remove(outputs.begin(), outputs.end(), ""), outputs.end());
+  for (std::size_t i = 0; i < outputs.size(); ++i) {
+    for (std::size_t k = 0; k < i; ++k)
+      if (isSameFile(outputs[k], outputs[i]))
+        throw UsageError(outputs[i] + ": two outputs go to this file");
+    for (const std::string& input : inputs)
+      if (!input.empty() && isSameFile(input, outputs[i]))
+        throw UsageError(outputs[i] + ": the output is an input, too");
+  }
 }
 
 std::string Args::usage() const

@@ -14,7 +14,8 @@ struct UsageError : std::runtime_error {
 struct HelpShown {};
 
 /// Command line in the style of PCL's tools: `fresco_x INPUT OUTPUT -option value`, parsed strictly: an unknown option,
-/// a missing or malformed value or a wrong number of files is a UsageError. Negative numbers are values, not options.
+/// a missing or malformed value or a wrong number of files is a UsageError. Negative numbers are values, not options. All
+/// that follows `--` are files.
 class Args {
 public:
   /// @param synopsis    "fresco_filter IN OUT [options]"
@@ -22,7 +23,9 @@ public:
   Args(std::string synopsis, std::string description);
 
   /// Declares `-name value...`; the values given replace what the variables hold, which the help shows as the default.
-  /// @param help text with unit and range
+  /// @param help text with unit and range: "2..16", "> 0", ">= 0", "at least 1", "above 0 and below 90", "above 0 and at most 1", and where 0 has
+  ///        a meaning of its own "0 = ..."; a value outside of it is a UsageError. Beyond 1e12 and within 1e-12 of 0 none
+  ///        is allowed
   void option(const std::string& name, int& value, const std::string& help);
   void option(const std::string& name, float& value, const std::string& help);
   void option(const std::string& name, double& value, const std::string& help);
@@ -46,7 +49,8 @@ public:
   bool given(const std::string& name) const; ///< whether the option stood on the command line
   std::string usage() const;
 
-  static double number(const std::string& name, const std::string& text);     ///< @throws UsageError unless finite
+  static double number(const std::string& name,
+                       const std::string& text); ///< @throws UsageError unless 0 or of magnitude 1e-12..1e12
   static long long integer(const std::string& name, const std::string& text); ///< @throws UsageError
 
 private:
@@ -60,4 +64,8 @@ private:
   std::string synopsis_, description_, notes_;
   std::vector<Option> options_;
 };
+
+/// Refuses outputs that are the same file as another or as an input, by whatever names; empty names are none.
+/// @throws UsageError naming the output
+void requireDistinct(std::vector<std::string> outputs, const std::vector<std::string>& inputs);
 } // namespace fresco

@@ -8,10 +8,12 @@
 #include <condition_variable>
 #include <csignal>
 #include <exception>
+#include <fcntl.h>
 #include <fresco/core/parallel.h>
 #include <fresco/core/require.h>
 #include <fresco/io/file.h>
 #include <fresco/io/unfinished_files.h>
+#include <iostream>
 #include <memory>
 #include <mutex>
 #include <new>
@@ -19,8 +21,27 @@
 #include <system_error>
 #include <thread>
 #include <unistd.h>
+extern "C" void __sanitizer_set_report_fd(void* descriptor) __attribute__((weak));
+
 namespace fresco {
 namespace {
+std::atomic<int> own_stderr{STDERR_FILENO}; ///< where fresco prints; libraries know the other one only
+
+/// What libraries print goes nowhere from now on.
+void muteLibraries()
+{
+  const int kept = ::fcntl(STDERR_FILENO, F_DUPFD_CLOEXEC, STDERR_FILENO + 1);
+  const int nowhere = ::open("/dev/null", O_WRONLY | O_CLOEXEC);
+  if (own_stderr == STDERR_FILENO && kept >= 0 && nowhere >= 0) {
+    own_stderr = kept;
+    if (__sanitizer_set_report_fd)
+      __sanitizer_set_report_fd(reinterpret_cast<void*>(std::intptr_t{kept}));
+    ::dup2(nowhere, STDERR_FILENO);
+  }
+  if (nowhere >= 0)
+    ::close(nowhere);
+}
+
 std::atomic<int> stops_asked{0};
 std::mutex ending;                      ///< held by whom decides whether the process ends half-way or with its outputs
 std::atomic<bool> outputs_whole{false}; ///< only set while `ending` is held
@@ -34,11 +55,16 @@ void askToStop(int signal)
     std::signal(signal, SIG_DFL);
 }
 
+/// Names and messages may come from files: a terminal obeys control characters (C0, DEL, and C1 as UTF-8 has them).
 std::string oneLine(std::string text)
 {
-  for (char& c : text)
-    if (c == '\n' || c == '\r')
-      c = ' ';
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const auto byte = [&](std::size_t at) { return at < text.size() ? static_cast<unsigned char>(text[at]) : 0U; };
+    if (byte(i) < 0x20 || byte(i) == 0x7f)
+      text[i] = text[i] == '\n' || text[i] == '\r' || text[i] == '\t' ? ' ' : '?';
+    else if (byte(i) == 0xc2 && byte(i + 1) >= 0x80 && byte(i + 1) < 0xa0)
+      text.replace(i, 2, "?");
+  }
   return text;
 }
 
@@ -49,7 +75,7 @@ void printLine(const std::string& text)
 {
   const std::string line = (bar_stands.exchange(false) ? "\n" : "") + oneLine(text) + "\n";
   for (std::size_t at = 0; at < line.size();) {
-    const ssize_t written = ::write(STDERR_FILENO, line.data() + at, line.size() - at);
+    const ssize_t written = ::write(own_stderr, line.data() + at, line.size() - at);
     if (written < 0 && errno != EINTR)
       return;
     at += std::max<ssize_t>(written, 0);
@@ -140,13 +166,13 @@ std::string shownTime(double seconds)
 std::size_t terminalWidth()
 {
   winsize size{};
-  return ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
+  return ioctl(own_stderr, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
 }
 
 /// A bar per job; a job begins where the fraction falls.
 class Printer {
 public:
-  explicit Printer(bool quiet) : quiet_(quiet), terminal_(isatty(STDERR_FILENO) != 0) {}
+  explicit Printer(bool quiet) : quiet_(quiet), terminal_(isatty(own_stderr) != 0) {}
 
   bool operator()(std::string_view step, double fraction)
   {
@@ -187,7 +213,7 @@ private:
       line.resize(most);
     line = "\r\033[K" + line + (fraction_ >= 1 ? "\n" : "");
     bar_stands = fraction_ < 1;
-    [[maybe_unused]] const ssize_t written = ::write(STDERR_FILENO, line.data(), line.size());
+    [[maybe_unused]] const ssize_t written = ::write(own_stderr, line.data(), line.size());
   }
 
   /// Time left if the rest goes on as fast as what is done; nothing while that would be a guess.
@@ -217,7 +243,10 @@ void CommonOptions::declare(Args& args)
                 threads = given;
                 setDefaultThreads(threads); // for what has no option of its own, such as readers
               });
-  args.flag("quiet", quiet, "print nothing but errors");
+  args.values("quiet", "", "print nothing but errors", [this](const auto&) {
+    quiet = true;
+    muteLibraries();
+  });
 }
 
 Progress printProgress(bool quiet)
@@ -236,10 +265,22 @@ void writeOutputs(const std::function<void()>& write)
 {
   OutputGroup outputs;
   write();
+  outputs.requireNoInputs();
   const std::lock_guard<std::mutex> lock(ending);
   outputs.commit();
   outputs_whole = true;
 }
+
+namespace {
+/// What was printed on stdout is there, or that is an error. @return exit status
+int finish(const std::string& name)
+{
+  if (std::cout.flush())
+    return 0;
+  printLine(name + ": standard output cannot be written");
+  return 1;
+}
+} // namespace
 
 int runTool(const std::string& name, const std::function<void()>& body)
 try {
@@ -252,14 +293,15 @@ try {
   std::signal(SIGXFSZ, SIG_IGN); // a file that grows beyond its limit is an error like a full disk
   const Guard guard(name);
   body();
-  return 0;
+  return finish(name);
 } catch (const HelpShown&) {
-  return 0;
+  return finish(name);
 } catch (const UsageError& error) {
   printLine(name + ": " + error.what() + " (see " + name + " -h)");
   return 2;
 } catch (...) {
   printLine(name + ": " + reasonOfException("unknown error"));
+  removeEmptyFolders();
   return 1;
 }
 } // namespace fresco

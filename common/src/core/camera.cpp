@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <cmath>
 #include <fresco/core/camera.h>
+#include <fresco/core/require.h>
 namespace fresco {
 namespace {
 /// OPENCV model: radial k1 k2, tangential p1 p2, on the plane z = 1 (Brown 1966).
@@ -23,6 +26,21 @@ Eigen::Matrix2d distortionJacobian(const CameraModel& camera, const Eigen::Vecto
   return J;
 }
 } // namespace
+
+void validateCamera(const CameraModel& camera)
+{
+  constexpr int most_pixels = 1000000;
+  constexpr double least_focal = 1e-3, most = 1e6; // in sides of the image
+  const auto& [width, height, fx, fy, cx, cy, k1, k2, p1, p2] = camera;
+  require(width >= 1 && height >= 1 && width <= most_pixels && height <= most_pixels, "camera: an image of ", width,
+          "x", height, " pixels");
+  const double side = std::max(width, height);
+  for (const double focal : {fx, fy})
+    require(focal >= least_focal * side && focal <= most * side, "camera: a focal length of ", focal, " pixels for ",
+            width, "x", height);
+  for (const double value : {cx / side, cy / side, k1, k2, p1, p2})
+    require(std::abs(value) <= most, "camera: its centre or distortion is not finite or out of range");
+}
 
 Eigen::Vector2d project(const CameraModel& camera, const Eigen::Vector3d& point)
 {

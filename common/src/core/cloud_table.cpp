@@ -4,6 +4,7 @@
 #include <cstring>
 #include <fresco/core/cloud_table.h>
 #include <fresco/core/require.h>
+#include <limits>
 #include <pcl/PCLPointCloud2.h>
 namespace fresco::core {
 namespace {
@@ -86,6 +87,10 @@ PointTable tableOfCloud(const pcl::PCLPointCloud2& cloud)
 pcl::PCLPointCloud2 cloudOfTable(PointTable table)
 {
   pcl::PCLPointCloud2 cloud;
+  constexpr std::size_t most = std::numeric_limits<pcl::uindex_t>::max(); // of every number in a PCL cloud
+  const std::size_t columns = table.height > 1 ? table.width : 1;
+  require(static_cast<std::size_t>(table.rows) <= most && table.stride <= most / std::max<std::size_t>(columns, 1),
+          "cloud: ", table.rows, " points of ", table.stride, " bytes are too many for a PCL cloud");
   for (const Column& column : table.columns) {
     Field field;
     field.name = column.name;

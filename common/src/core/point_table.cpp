@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fresco/core/point_table.h>
+#include <fresco/core/require.h>
 #include <limits>
 namespace fresco::core {
 namespace {
@@ -60,7 +61,13 @@ const Column* PointTable::find(std::string_view name) const
 
 void PointTable::addColumn(const std::string& name, Scalar type, std::size_t count)
 {
-  columns.push_back({name, type, count, stride});
+  constexpr std::size_t most_columns = 10000; // far more than any file has, and few enough to look through all of them
+  if (columns.size() == most_columns)
+    throw std::runtime_error(concat("more than ", most_columns, " columns"));
+  const std::string unique = find(name) ? concat(name, '_', columns.size() + 1) : name;
+  if (find(unique))
+    throw std::runtime_error(concat("two columns '", unique.substr(0, 40), "'"));
+  columns.push_back({unique, type, count, stride});
   stride += columns.back().bytes();
 }
 

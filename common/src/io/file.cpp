@@ -1,182 +1,51 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "io/inputs.h"
 #include <algorithm>
 #include <cctype>
 #include <cerrno>
 #include <cstring>
-#include <fcntl.h>
 #include <filesystem>
-#include <fresco/core/require.h>
 #include <fresco/io/file.h>
-#include <fresco/io/unfinished_files.h>
 #include <fstream>
-#include <map>
 #include <mutex>
+#include <optional>
 #include <set>
 #include <sys/stat.h>
-#include <unistd.h>
 namespace fresco {
 namespace {
+/// Bytes per call of the operating system: a process cannot end before the call under way has.
+constexpr std::size_t piece_size = std::size_t{8} << 20;
+
 [[noreturn]] void fail(const std::string& path, const std::string& reason)
 {
   throw std::runtime_error(path + ": " + reason);
 }
-
-std::string besides(const std::string& path)
-{
-  const std::filesystem::path whole(path);
-  // The extension stays last, since libraries choose a format by it.
-  return (whole.parent_path() / ("." + whole.stem().string() + ".part" + whole.extension().string())).string();
-}
-
-constexpr std::size_t buffer_size = std::size_t{1} << 20;
-
-/// Bytes per call of the operating system. A process cannot end, nor its file be removed, before the call under way
-/// has: no call may have gigabytes to read or write, nor fsync() find gigabytes that wait for the disk.
-constexpr std::size_t piece_size = std::size_t{8} << 20;
-
-/// Temporary files that are neither renamed nor removed yet. Never destroyed: files may outlive main().
-struct Unfinished {
+/// Files that were read, by device and number.
+struct Inputs {
   std::mutex mutex;
-  std::set<std::string> paths;
-  bool grouped = false;                      ///< an OutputGroup exists
-  std::map<std::string, std::string> stored; ///< of that group: temporary files and their names to be
+  std::set<std::pair<dev_t, ino_t>> known;
 };
 
-Unfinished& unfinished()
+Inputs& inputs()
 {
-  static auto* const all = new Unfinished;
+  static auto* const all = new Inputs;
   return *all;
 }
 
-[[noreturn]] void failToWrite(const std::string& path)
+std::optional<std::pair<dev_t, ino_t>> identityOf(const std::string& path)
 {
-  fail(path, std::string("cannot be written (") + std::strerror(errno) + ")");
-}
-
-/// To be called with the mutex locked.
-void giveName(const std::string& temporary, const std::string& path)
-{
-  if (::rename(temporary.c_str(), path.c_str()) != 0)
-    failToWrite(path);
-  unfinished().paths.erase(temporary);
+  struct stat found = {};
+  if (::stat(path.c_str(), &found) != 0)
+    return {};
+  return std::pair(found.st_dev, found.st_ino);
 }
 } // namespace
 
-void abandonUnfinishedFiles() noexcept
+bool io::wasRead(const std::string& path)
 {
-  unfinished().mutex.lock(); // and never unlocked
-  for (const std::string& path : unfinished().paths)
-    ::unlink(path.c_str());
-}
-
-OutputFile::OutputFile(std::string path) : path_(std::move(path)), temporary_(besides(path_))
-{
-  if (std::filesystem::path(path_).filename().empty() || std::filesystem::is_directory(path_))
-    fail(path_, "is a folder, not a file to write to");
-  const std::lock_guard<std::mutex> lock(unfinished().mutex);
-  descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-  if (descriptor_ < 0)
-    failToWrite(path_);
-  unfinished().paths.insert(temporary_);
-}
-
-OutputFile::~OutputFile()
-{
-  if (descriptor_ < 0)
-    return;
-  ::close(descriptor_);
-  const std::lock_guard<std::mutex> lock(unfinished().mutex);
-  ::unlink(temporary_.c_str());
-  unfinished().paths.erase(temporary_);
-}
-
-void OutputFile::write(const void* data, std::size_t bytes)
-{
-  const char* from = static_cast<const char*>(data);
-  if (buffer_.size() + bytes > buffer_size)
-    flush();
-  if (bytes < buffer_size)
-    buffer_.append(from, bytes);
-  else
-    store(from, bytes);
-}
-
-void OutputFile::flush()
-{
-  store(buffer_.data(), buffer_.size());
-  buffer_.clear();
-}
-
-void OutputFile::store(const char* from, std::size_t bytes)
-{
-  while (bytes > 0) {
-    const ssize_t done = ::write(descriptor_, from, std::min(bytes, piece_size));
-    if (done < 0 && errno == EINTR)
-      continue;
-    if (done < 0)
-      failToWrite(path_);
-    from += done;
-    bytes -= static_cast<std::size_t>(done);
-    written_ += static_cast<std::size_t>(done);
-    if (written_ - sent_ >= piece_size)
-      send();
-  }
-}
-
-void OutputFile::send()
-{
-#ifdef __linux__
-  const auto bytes = [](std::size_t at) { return static_cast<off64_t>(at); };
-  int failed = ::sync_file_range(descriptor_, bytes(sent_), bytes(written_ - sent_), SYNC_FILE_RANGE_WRITE);
-  if (failed == 0 && sent_ > awaited_) // a length of 0 would stand for the rest of the file
-    failed = ::sync_file_range(descriptor_, bytes(awaited_), bytes(sent_ - awaited_), SYNC_FILE_RANGE_WAIT_BEFORE);
-  if (failed != 0 && errno != ESPIPE && errno != EINVAL && errno != ENOSYS) // what cannot be synchronised so
-    failToWrite(path_);
-#endif
-  awaited_ = sent_;
-  sent_ = written_;
-}
-
-void OutputFile::commit()
-{
-  flush();
-  // A library may have replaced the file behind the descriptor, so the name is what counts.
-  const bool stored = ::fsync(descriptor_) == 0 || errno == EINVAL;
-  if (!stored)
-    failToWrite(path_);
-  const std::lock_guard<std::mutex> lock(unfinished().mutex);
-  if (unfinished().grouped)
-    unfinished().stored[temporary_] = path_;
-  else
-    giveName(temporary_, path_);
-  ::close(descriptor_);
-  descriptor_ = -1;
-}
-
-OutputGroup::OutputGroup()
-{
-  const std::lock_guard<std::mutex> lock(unfinished().mutex);
-  require(!unfinished().grouped, "a group of outputs within another");
-  unfinished().grouped = true;
-}
-
-OutputGroup::~OutputGroup()
-{
-  const std::lock_guard<std::mutex> lock(unfinished().mutex);
-  for (const auto& [temporary, path] : unfinished().stored) {
-    ::unlink(temporary.c_str());
-    unfinished().paths.erase(temporary);
-  }
-  unfinished().stored.clear();
-  unfinished().grouped = false;
-}
-
-void OutputGroup::commit()
-{
-  const std::lock_guard<std::mutex> lock(unfinished().mutex);
-  auto& stored = unfinished().stored;
-  for (auto file = stored.begin(); file != stored.end(); file = stored.erase(file))
-    giveName(file->first, file->second);
+  const auto identity = identityOf(path);
+  const std::lock_guard<std::mutex> lock(inputs().mutex);
+  return identity && inputs().known.count(*identity) > 0;
 }
 
 std::string readFile(const std::string& path)
@@ -186,6 +55,8 @@ std::string readFile(const std::string& path)
     fail(path, "no such file");
   if (std::filesystem::is_directory(path, error))
     fail(path, "is a folder, not a file");
+  if (!std::filesystem::is_regular_file(path, error)) // a pipe would block for as long as nobody writes into it
+    fail(path, "is a device or a pipe, not a file");
   std::ifstream file(path, std::ios::binary);
   if (!file)
     fail(path, std::string("cannot be read (") + std::strerror(errno) + ")");
@@ -200,14 +71,11 @@ std::string readFile(const std::string& path)
   content.resize(done);
   if (content.empty())
     fail(path, "the file is empty");
+  if (const auto identity = identityOf(path)) {
+    const std::lock_guard<std::mutex> lock(inputs().mutex);
+    inputs().known.insert(*identity);
+  }
   return content;
-}
-
-void writeFile(const std::string& path, std::string_view content)
-{
-  OutputFile file(path);
-  file.write(content);
-  file.commit();
 }
 
 std::string extension(const std::string& path)
@@ -218,13 +86,15 @@ std::string extension(const std::string& path)
   return text;
 }
 
-void makeFolder(const std::string& path)
+std::string fileBelow(const std::string& folder, const std::string& name)
 {
-  std::error_code error;
-  std::filesystem::create_directories(path, error);
-  if (error || !std::filesystem::is_directory(path))
-    fail(path, "the folder cannot be made (" + (error ? error.message() : "a file of that name is there") + ")");
-  if (::access(path.c_str(), W_OK | X_OK) != 0)
-    fail(path, std::string("the folder cannot be written to (") + std::strerror(errno) + ")");
+  const std::filesystem::path path = std::filesystem::path(name).lexically_normal();
+  if (path.empty() || path.is_absolute() || *path.begin() == "..") {
+    std::string shown = name.substr(0, 100);
+    std::replace_if(
+        shown.begin(), shown.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; }, '?');
+    fail(folder.empty() ? "." : folder, "names the file '" + shown + "', which is not below its folder");
+  }
+  return (std::filesystem::path(folder) / path).string();
 }
 } // namespace fresco

@@ -10,8 +10,9 @@ namespace {
 bool isRigid(const Eigen::Matrix4d& T)
 {
   const Eigen::Matrix3d R = T.topLeftCorner<3, 3>();
-  return T.allFinite() && (R.transpose() * R - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() < 1e-3 &&
-         R.determinant() > 0 && T.row(3).isApprox(Eigen::RowVector4d(0, 0, 0, 1), 1e-6);
+  return T.allFinite() && isInReach(T.topRightCorner<3, 1>()) &&
+         (R.transpose() * R - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() < 1e-3 && R.determinant() > 0 &&
+         T.row(3).isApprox(Eigen::RowVector4d(0, 0, 0, 1), 1e-6);
 }
 
 Pose parsePose(const std::string& line, const std::string& where)

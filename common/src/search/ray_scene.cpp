@@ -15,6 +15,13 @@ RTCIntersectContext newContext(RTCIntersectContextFlags flags)
   return context;
 }
 
+/// Embree ends the program over other rays; they hit nothing.
+bool isTraceable(const Ray& ray)
+{
+  constexpr float most = 1e18f; // Embree's own limit is 1.84e18
+  return (ray.origin.array().abs() <= most).all() && (ray.direction.array().abs() <= most).all() && ray.near <= ray.far;
+}
+
 /// Lane i of Embree's rays, which keep each number of all rays together.
 template <typename Lanes>
 void setRay(Lanes& lanes, std::size_t i, const Ray& ray)
@@ -49,6 +56,8 @@ RayScene::RayScene(RayScene&&) noexcept = default;
 
 RayHit RayScene::intersect(const Ray& ray) const
 {
+  if (!isTraceable(ray))
+    return {};
   RTCIntersectContext context = newContext(RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT);
   RTCRayHit query{};
   query.ray.org_x = ray.origin.x(), query.ray.org_y = ray.origin.y(), query.ray.org_z = ray.origin.z();
@@ -71,7 +80,7 @@ HitPacket<n> RayScene::intersect(const RayPacket<n>& rays, RayOrder order) const
   alignas(64) int valid[n];
   typename Embrees<n>::RayHits query;
   for (std::size_t i = 0; i < n; ++i) {
-    valid[i] = -1;
+    valid[i] = isTraceable(rays[i]) ? -1 : 0;
     setRay(query.ray, i, rays[i]);
     query.hit.geomID[i] = query.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
   }
@@ -97,13 +106,13 @@ unsigned RayScene::occluded(const RayPacket<16>& rays, int count) const
   alignas(64) int valid[16];
   RTCRay16 query;
   for (int i = 0; i < 16; ++i) {
-    valid[i] = i < count ? -1 : 0;
+    valid[i] = i < count && isTraceable(rays[i]) ? -1 : 0;
     setRay(query, i, rays[i < count ? i : 0]);
   }
   rtcOccluded16(valid, embree_->scene(), &context, &query);
   unsigned blocked = 0;
   for (int i = 0; i < count; ++i)
-    if (query.tfar[i] < 0.f)
+    if (valid[i] != 0 && query.tfar[i] < 0.f)
       blocked |= 1u << i;
   return blocked;
 }

@@ -7,6 +7,7 @@
 #include <fresco/core/require.h>
 #include <fresco/filters/core/voxel_thinning.h>
 #include <limits>
+#include <tuple>
 namespace fresco {
 namespace {
 constexpr int axis_bits = 21;
@@ -30,7 +31,7 @@ struct Entry {
   Index point;
 };
 
-/// Finite points with their cells, sorted by cell, then point.
+/// Finite points with their cells, sorted by cell, then coordinates: what follows does not depend on their order.
 std::vector<Entry> sortedByCell(const Points& points, const Eigen::AlignedBox3f& box, float cell, int threads)
 {
   constexpr std::uint64_t no_cell = std::numeric_limits<std::uint64_t>::max();
@@ -47,8 +48,10 @@ std::vector<Entry> sortedByCell(const Points& points, const Eigen::AlignedBox3f&
   });
   entries.erase(std::remove_if(entries.begin(), entries.end(), [](const Entry& e) { return e.cell == no_cell; }),
                 entries.end());
-  std::sort(entries.begin(), entries.end(),
-            [](const Entry& a, const Entry& b) { return a.cell != b.cell ? a.cell < b.cell : a.point < b.point; });
+  const auto place = [&](Index i) { return std::tuple(points(0, i), points(1, i), points(2, i), i); };
+  std::sort(entries.begin(), entries.end(), [&](const Entry& a, const Entry& b) {
+    return a.cell != b.cell ? a.cell < b.cell : place(a.point) < place(b.point);
+  });
   return entries;
 }
 } // namespace

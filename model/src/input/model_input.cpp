@@ -2,10 +2,12 @@
 #include "input/model_input.h"
 #include <algorithm>
 #include <filesystem>
+#include <fresco/core/parallel.h>
 #include <fresco/core/require.h>
 #include <fresco/io/colmap.h>
 #include <fresco/io/file.h>
 #include <fresco/io/formats.h>
+#include <fresco/io/image_io.h>
 #include <fresco/io/pose_file.h>
 namespace fresco::model {
 namespace {
@@ -76,5 +78,35 @@ ModelInput readModelInput(const std::string& folder)
   }
   readPhotographs(input);
   return input;
+}
+
+void checkPhotographs(const ModelInput& input, int threads)
+{
+  struct Photograph {
+    std::string file;
+    const CameraModel* camera; ///< nullptr: any size
+  };
+  std::vector<Photograph> photographs;
+  for (const View& view : input.cameras.views)
+    photographs.push_back({input.images + "/" + view.image, &input.cameras.cameras[view.camera]});
+  if (input.rgbd)
+    for (const RgbdFrame& frame : input.rgbd->frames)
+      photographs.push_back({frame.color, nullptr});
+  std::vector<std::string> problems(photographs.size());
+  const auto look = [&](Index i) {
+    const auto& [file, camera] = photographs[i];
+    try {
+      const Image image = readImage(file);
+      if (camera && (image.width != camera->width || image.height != camera->height))
+        problems[i] = concat(file, ": is ", image.width, "x", image.height, " pixels, its camera has ", camera->width,
+                             "x", camera->height);
+    } catch (const std::runtime_error& error) {
+      problems[i] = error.what();
+    }
+  };
+  parallelFor(photographs.size(), threads, look, 1);
+  for (const std::string& problem : problems)
+    if (!problem.empty())
+      throw std::runtime_error(problem);
 }
 } // namespace fresco::model

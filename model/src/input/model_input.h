@@ -24,4 +24,8 @@ struct ModelInput {
 /// @throws std::runtime_error naming what is missing or does not fit together: neither kind, no scan, more or fewer
 ///         poses than scans, a photograph that is missing
 ModelInput readModelInput(const std::string& folder);
+
+/// Decodes every photograph once, so that a damaged one is found before hours of work, not after.
+/// @throws std::runtime_error naming the first that is damaged or has another size than its camera
+void checkPhotographs(const ModelInput& input, int threads);
 } // namespace fresco::model

@@ -2,6 +2,7 @@
 #include "input/rgbd.h"
 #include <algorithm>
 #include <filesystem>
+#include <fresco/core/poses.h>
 #include <fresco/core/require.h>
 #include <fresco/core/statistics.h>
 #include <fresco/io/file.h>
@@ -34,8 +35,11 @@ CameraModel depthCamera(const std::string& path, const std::string& depth)
   const Eigen::MatrixXd K = readMatrix(path, 3, 3);
   const Image16 first = readImage16(depth);
   CameraModel camera{first.width, first.height, K(0, 0), K(1, 1), K(0, 2) + 0.5, K(1, 2) + 0.5, 0, 0, 0, 0};
-  if (!(camera.fx > 0 && camera.fy > 0 && K.allFinite()))
-    throw std::runtime_error(path + ": no camera matrix");
+  try {
+    validateCamera(camera);
+  } catch (const std::invalid_argument& error) {
+    throw std::runtime_error(path + ": " + error.what());
+  }
   return camera;
 }
 } // namespace
@@ -65,7 +69,8 @@ RgbdFolder readRgbdFolder(const std::string& folder)
     if (!T.allFinite())
       continue;
     const Eigen::Matrix3d R = T.topLeftCorner<3, 3>();
-    if ((R * R.transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() > 0.02 || !(R.determinant() > 0))
+    if ((R * R.transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() > 0.02 || !(R.determinant() > 0) ||
+        !isInReach(T.topRightCorner<3, 1>()))
       throw std::runtime_error(stem + ".pose.txt: not a rigid transform");
     frame.T_world_camera.linear() = Eigen::Quaterniond(R).normalized().toRotationMatrix();
     frame.T_world_camera.translation() = T.topRightCorner<3, 1>();

@@ -3,6 +3,7 @@
 #include "viewer/viewer.h"
 #include <fresco/core/require.h>
 #include <fresco/io/file.h>
+#include <fresco/io/json_text.h>
 #include <iomanip>
 #include <sstream>
 namespace fresco::model {
@@ -23,7 +24,7 @@ std::string shown(const Json& value)
     text << std::setprecision(4) << value.get<double>();
     return text.str();
   }
-  return value.is_string() ? value.get<std::string>() : value.dump();
+  return value.is_string() ? value.get<std::string>() : jsonText(value, -1);
 }
 
 /// What describes the pictures is left out.
@@ -134,7 +135,7 @@ void writeReport(const Report& report, const ModelFiles& files)
 {
   OutputGroup outputs;
   writeFile(files.report_html, toHtml(report, files));
-  writeFile(files.report_json, toJson(report).dump(2) + "\n");
+  writeFile(files.report_json, jsonText(toJson(report), 2));
   outputs.commit();
 }
 } // namespace fresco::model

@@ -3,6 +3,7 @@
 #include "viewer/viewer_sources.h"
 #include <cstdint>
 #include <fresco/core/require.h>
+#include <fresco/io/json_text.h>
 #include <nlohmann/json.hpp>
 #include <regex>
 namespace fresco::model {
@@ -37,8 +38,9 @@ std::string optionsText(const ViewerOptions& options)
 
 std::string escapedHtml(const std::string& text)
 {
+  const nlohmann::json json = text;
   std::string out;
-  for (const char c : text)
+  for (const char c : nlohmann::json::parse(jsonText(json, -1)).get<std::string>()) // what is no UTF-8 is replaced
     out += c == '&' ? "&amp;" : c == '<' ? "&lt;" : c == '>' ? "&gt;" : c == '"' ? "&quot;" : std::string(1, c);
   return out;
 }

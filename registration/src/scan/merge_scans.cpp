@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <Eigen/Geometry>
 #include <fresco/core/require.h>
 #include <fresco/filters/core/normal_orientation.h>
 #include <fresco/filters/core/oriented_normals.h>
@@ -27,6 +28,20 @@ Points orientedNormals(const PointSet& scan, int threads)
   return normals;
 }
 
+// Centre of the finite points' bounds in the world, in whole units, where it is far from the world's origin; else zero.
+Eigen::Vector3d originFor(const PointSet& scan, const Eigen::Matrix4d& T_world_scan)
+{
+  constexpr double large_coordinate = 1000.0; // beyond, a float resolves less than a tenth of a millimetre in metres
+  Eigen::AlignedBox3d bounds;
+  for (const Index i : finiteColumns(scan))
+    bounds.extend(scan.points.col(i).cast<double>());
+  if (bounds.isEmpty())
+    return Eigen::Vector3d::Zero();
+  const Eigen::Vector3d center =
+      T_world_scan.topLeftCorner<3, 3>() * (scan.origin + bounds.center()) + T_world_scan.topRightCorner<3, 1>();
+  return center.norm() > large_coordinate ? Eigen::Vector3d(center.array().round()) : Eigen::Vector3d::Zero();
+}
+
 // One scan in the world less `origin`, with normals and a viewpoint per point.
 PointSet placedScan(const PointSet& scan, const Eigen::Matrix4d& T_world_scan, const Eigen::Vector3d& origin,
                     int threads)
@@ -52,7 +67,6 @@ PointSet mergeScans(const std::vector<PointSet>& scans, const std::vector<Pose>&
 
 PointSet mergeScans(const ScanSource& scans, const std::vector<Pose>& poses, int threads)
 {
-  constexpr double large_coordinate = 1000.0; // beyond, a float resolves less than a tenth of a millimetre in metres
   const Index count = poses.size();
   require(scans.count == count, "merge: ", scans.count, " scans, ", poses.size(), " poses");
   PointSet merged;
@@ -63,11 +77,8 @@ PointSet mergeScans(const ScanSource& scans, const std::vector<Pose>& poses, int
     validatePointSet(scan);
     if (scan.size() == 0)
       continue;
-    if (merged.size() == 0) {
-      const Eigen::Vector3d place = poses[i]->topRightCorner<3, 1>();
-      merged.origin =
-          place.norm() > large_coordinate ? Eigen::Vector3d(place.array().round()) : Eigen::Vector3d::Zero();
-    }
+    if (merged.size() == 0)
+      merged.origin = originFor(scan, *poses[i]);
     appendPoints(merged, placedScan(scan, *poses[i], merged.origin, threads));
   }
   return merged;

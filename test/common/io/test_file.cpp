@@ -8,6 +8,7 @@
 #include <fresco/io/pose_file.h>
 #include <fresco/io/unfinished_files.h>
 #include <fstream>
+#include <sys/stat.h>
 namespace {
 using namespace fresco;
 namespace fs = std::filesystem;
@@ -120,6 +121,94 @@ TEST(OutputFile, NamesWhatCannotBeWritten)
     }
 }
 
+TEST(OutputFile, ReplacesFilesOnly)
+{
+  const std::string folder = test::scratchFolder(), target = folder + "/target.txt";
+  std::ofstream(target) << "other";
+  fs::create_symlink(target, folder + "/link.txt");
+  fs::create_symlink(folder + "/nowhere", folder + "/dangling.txt");
+  ASSERT_EQ(mkfifo((folder + "/pipe.txt").c_str(), 0600), 0);
+  for (const char* name : {"/link.txt", "/dangling.txt", "/pipe.txt"})
+    EXPECT_THROW(put(folder + name, "new"), std::runtime_error) << name;
+  for (const char* device : {"/dev/null", "/dev/full"})
+    EXPECT_THROW(OutputFile file(device), std::runtime_error) << device;
+  EXPECT_EQ(readFile(target), "other");
+  EXPECT_TRUE(fs::is_fifo(folder + "/pipe.txt") && fs::is_symlink(folder + "/link.txt"));
+}
+
+TEST(OutputFile, TemporaryNamesAreItsOwn)
+{
+  const std::string folder = test::scratchFolder(), path = folder + "/out.txt", target = folder + "/target";
+  std::ofstream(target) << "other";
+  OutputFile first(path), second(path);
+  EXPECT_NE(first.temporaryPath(), second.temporaryPath());
+  first.write("first");
+  second.write("second");
+  second.commit();
+  first.commit();
+  EXPECT_EQ(readFile(path), "first");
+  // What a killed run left is removed, a link of that name is not followed, other names are left alone.
+  put(folder + "/.out.0123456789abcdef.part.txt", "left");
+  put(folder + "/.out.0123456789abcdeg.part.txt", "not ours");
+  fs::create_symlink(target, folder + "/.out.00000000deadbeef.part.txt");
+  OutputFile third(path);
+  EXPECT_FALSE(fs::exists(folder + "/.out.0123456789abcdef.part.txt"));
+  EXPECT_TRUE(fs::exists(folder + "/.out.0123456789abcdeg.part.txt"));
+  OutputFile fourth(path);
+  EXPECT_TRUE(fs::exists(third.temporaryPath()));
+  EXPECT_EQ(readFile(target), "other");
+}
+
+TEST(OutputFile, KeepsTheModeOfWhatItReplaces)
+{
+  const std::string path = test::scratchFolder() + "/out.txt";
+  put(path, "old");
+  fs::permissions(path, fs::perms(0640));
+  put(path, "new");
+  EXPECT_EQ(fs::status(path).permissions(), fs::perms(0640));
+}
+
+TEST(OutputFile, LongNames)
+{
+  const std::string path = test::scratchFolder() + "/" + std::string(250, 'n') + ".txt";
+  put(path, "x");
+  EXPECT_EQ(readFile(path), "x");
+}
+
+TEST(OutputGroup, DoesNotReplaceInputs)
+{
+  const std::string folder = test::scratchFolder(), path = folder + "/in.txt";
+  put(path, "input");
+  fs::create_hard_link(path, folder + "/other_name.txt");
+  EXPECT_EQ(readFile(path), "input");
+  OutputGroup group;
+  put(folder + "/out.txt", "new");
+  EXPECT_NO_THROW(group.requireNoInputs());
+  put(folder + "/other_name.txt", "new");
+  EXPECT_THROW(group.requireNoInputs(), std::runtime_error);
+}
+
+TEST(Folder, OneProcessAtATime)
+{
+  const std::string folder = test::scratchFolder();
+  {
+    const FolderLock lock(folder, "tool");
+    EXPECT_THROW(FolderLock(folder, "tool"), std::runtime_error);
+  }
+  EXPECT_NO_THROW(FolderLock(folder, "tool"));
+}
+
+TEST(Folder, EmptyOnesGoAfterAnError)
+{
+  const std::string folder = test::scratchFolder();
+  makeFolder(folder + "/a/b");
+  makeFolder(folder + "/c");
+  put(folder + "/c/file", "x");
+  removeEmptyFolders();
+  EXPECT_FALSE(fs::exists(folder + "/a"));
+  EXPECT_TRUE(fs::exists(folder + "/c/file"));
+}
+
 TEST(ReadFile, NamesWhatCannotBeRead)
 {
   const std::string folder = test::scratchFolder();
@@ -127,6 +216,9 @@ TEST(ReadFile, NamesWhatCannotBeRead)
   EXPECT_THROW(readFile(folder + "/missing"), std::runtime_error);
   EXPECT_THROW(readFile(folder), std::runtime_error);
   EXPECT_THROW(readFile(folder + "/empty"), std::runtime_error);
+  ASSERT_EQ(mkfifo((folder + "/pipe").c_str(), 0600), 0);
+  EXPECT_THROW(readFile(folder + "/pipe"), std::runtime_error);
+  EXPECT_THROW(readFile("/dev/zero"), std::runtime_error);
   EXPECT_EQ(extension("a.b/C.PlY"), ".ply");
   EXPECT_EQ(extension("a.b/c"), "");
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <Eigen/Geometry>
 #include <cmath>
+#include <fresco/search/ray_scene.h>
 #include <fresco/search/triangle_tree.h>
 #include <gtest/gtest.h>
 #include <random>
@@ -214,6 +215,33 @@ TEST(TriangleTree, Errors)
   bad = mesh;
   bad.faces(0, 0) = 100;
   EXPECT_THROW(TriangleTree{bad}, std::invalid_argument);
+}
+
+TEST(RayScene, RaysOutOfRangeHitNothing)
+{
+  TriangleMesh mesh;
+  mesh.vertices = Points(3, 3);
+  mesh.vertices << 0, 1, 0, 0, 0, 1, 0, 0, 0;
+  mesh.faces = Faces(3, 1);
+  mesh.faces << 0, 1, 2;
+  const RayScene scene(mesh);
+  const float infinity = std::numeric_limits<float>::infinity();
+  const Ray sound{{0.2f, 0.2f, 1.f}, {0.f, 0.f, -1.f}};
+  RayPacket<16> packet;
+  packet.fill(sound);
+  std::size_t next = 1;
+  for (const float wrong : {1e30f, -infinity, std::nanf("")})
+    for (int axis = 0; axis < 3; ++axis) {
+      Ray origin = sound, direction = sound;
+      origin.origin[axis] = direction.direction[axis] = wrong;
+      EXPECT_EQ(scene.intersect(origin).face, -1);
+      EXPECT_EQ(scene.intersect(direction).face, -1);
+      packet[next++] = axis % 2 ? origin : direction;
+    }
+  const HitPacket<16> hits = scene.intersect(packet, RayOrder::incoherent);
+  for (std::size_t i = 0; i < 16; ++i)
+    EXPECT_EQ(hits[i].face, i == 0 || i >= next ? 0 : -1) << i;
+  EXPECT_EQ(scene.occluded(packet), 1U | (0xFFFFU << next & 0xFFFFU));
 }
 } // namespace
 } // namespace fresco

@@ -119,6 +119,14 @@ void writePhotographs(const Run& run, const CameraSet& set, const Progress& prog
   gains.commit();
 }
 
+/// Whether `name` is PREFIX, a number and an extension: a file that an earlier run may have written.
+bool isNumbered(const std::filesystem::path& name, const std::string& prefix)
+{
+  const std::string stem = name.stem().string();
+  return stem.size() > prefix.size() && stem.rfind(prefix, 0) == 0 &&
+         stem.find_first_not_of("0123456789", prefix.size()) == std::string::npos;
+}
+
 /// Takes away what an earlier run wrote, so that no scan or photograph of it is left among the new ones.
 void removeOld(const std::string& folder)
 {
@@ -132,7 +140,7 @@ void removeOld(const std::string& folder)
     std::vector<fs::path> old;
     if (fs::is_directory(folder + "/" + sub))
       for (const auto& entry : fs::directory_iterator(folder + "/" + sub))
-        if (entry.is_regular_file() && entry.path().filename().string().rfind(prefix, 0) == 0)
+        if (entry.is_regular_file() && isNumbered(entry.path().filename(), prefix))
           old.push_back(entry.path());
     for (const fs::path& path : old)
       fs::remove(path);
@@ -168,6 +176,7 @@ void writeDataset(const std::string& name, const std::string& folder, const Data
   report(progress, "scene", 0.0);
   const Scene scene = loadScene(name, options.max_edge);
   makeFolder(folder);
+  const FolderLock lock(folder, "fresco_scan");
   removeOld(folder);
   const RayScene rays(scene.mesh);
   LightingOptions lighting;

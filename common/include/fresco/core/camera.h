@@ -31,6 +31,11 @@ struct CameraSet {
   std::vector<View> views;
 };
 
+/// @throws std::invalid_argument unless the image has 1..1,000,000 pixels a side, the focal lengths are 1e-3..1e6 times as
+///         long, the centre is within 1e6 of that, and distortion within 1e6: what no camera exceeds, and what can be
+///         computed with
+FRESCO_EXPORT void validateCamera(const CameraModel& camera);
+
 /// Pixel of a point given in the camera's frame; z must be positive.
 FRESCO_EXPORT Eigen::Vector2d project(const CameraModel& camera, const Eigen::Vector3d& point);
 

@@ -93,7 +93,8 @@ struct FRESCO_EXPORT PointTable {
   {
     return data.data() + static_cast<std::size_t>(row) * stride + column.offset;
   }
-  /// Appends a column to the layout; before data is allocated.
+  /// Appends a column to the layout; before data is allocated. A name that is taken gets the number of its column.
+  /// @throws std::runtime_error beyond 10,000 columns, or if that name is taken, too
   void addColumn(const std::string& name, Scalar type, std::size_t count = 1);
   void allocate(Index row_count); ///< zeros
   void own();                     ///< copies what `view` shows into `data`

@@ -9,14 +9,38 @@
 #include <limits>
 #include <vector>
 namespace fresco::core {
+/// add(i, k, l) for the triangles of a polygon of corners begin..end: halves of halves.
+template <typename Add>
+void addHalves(std::size_t begin, std::size_t end, const Add& add)
+{
+  if (end - begin < 2)
+    return;
+  const std::size_t middle = begin + (end - begin) / 2;
+  add(begin, middle, end);
+  addHalves(begin, middle, add);
+  addHalves(middle, end, add);
+}
+
+/// add(i, k, l) for the triangles of a polygon of `count` corners: a fan, or halves of halves where a corner of a fan
+/// would have so many triangles around it that whatever looks at neighbours takes quadratic time.
+template <typename Add>
+void triangulate(std::size_t count, const Add& add)
+{
+  constexpr std::size_t largest_fan = 32;
+  if (count > largest_fan)
+    addHalves(0, count - 1, add);
+  else
+    for (std::size_t i = 2; i < count; ++i)
+      add(std::size_t{0}, i - 1, i);
+}
+
 /// Triangles from the polygons and strips of a file.
 class FRESCO_EXPORT FaceCollector {
 public:
-  /// As a fan; fewer than three corners give nothing.
+  /// See triangulate(); fewer than three corners give nothing.
   void addPolygon(const std::int64_t* corners, std::size_t count)
   {
-    for (std::size_t i = 2; i < count; ++i)
-      add(corners[0], corners[i - 1], corners[i]);
+    triangulate(count, [&](std::size_t i, std::size_t k, std::size_t l) { add(corners[i], corners[k], corners[l]); });
   }
 
   void addTriangle(const std::array<int, 3>& corners)

@@ -5,11 +5,14 @@
 #include <string>
 #include <string_view>
 namespace fresco {
-/// An output that is whole or absent: written beside its name (`.STEM.part.EXTENSION` in the same folder), flushed,
-/// then renamed. Destroyed without commit(): nothing remains and an older file of that name is untouched.
+/// An output that is whole or absent: written beside its name (`.STEM.RANDOM.part.EXTENSION` in the same folder),
+/// flushed, then renamed. Destroyed without commit(): nothing remains and an older file of that name is untouched. Of
+/// several processes with one output the last one to commit wins. The new file has the mode bits of the one that it
+/// replaces. What a process that was killed left beside the name is removed.
 class FRESCO_EXPORT OutputFile {
 public:
-  /// @throws std::runtime_error naming the file and the reason if the folder is missing or not writable
+  /// @throws std::runtime_error naming the file and the reason if the folder is missing or not writable, or if `path` is
+  ///         a folder, a link, a device or a pipe
   explicit OutputFile(std::string path);
   ~OutputFile();
   OutputFile(const OutputFile&) = delete;
@@ -44,11 +47,14 @@ public:
   OutputGroup(const OutputGroup&) = delete;
   OutputGroup& operator=(const OutputGroup&) = delete;
 
+  /// @throws std::runtime_error naming the file if one of them would replace a file that readFile() has read
+  void requireNoInputs() const;
+
   /// @throws std::runtime_error naming the file and the reason; those that have their name by then keep it
   void commit();
 };
 
-/// Whole content. @throws std::runtime_error naming the file if it is missing, a folder, empty or unreadable
+/// Whole content. @throws std::runtime_error naming the file if it is missing, no regular file, empty or unreadable
 FRESCO_EXPORT std::string readFile(const std::string& path);
 
 /// The whole content at once; see OutputFile. @throws std::runtime_error as OutputFile
@@ -57,6 +63,23 @@ FRESCO_EXPORT void writeFile(const std::string& path, std::string_view content);
 /// Extension in lower case with its dot, "" if none.
 FRESCO_EXPORT std::string extension(const std::string& path);
 
+/// Path of the file `name` that a file in `folder` names. @throws std::runtime_error if it lies elsewhere: files from
+/// strangers must not make a program read what is not theirs
+FRESCO_EXPORT std::string fileBelow(const std::string& folder, const std::string& name);
+
 /// Creates a folder and its parents. @throws std::runtime_error naming it if that fails or it cannot be written to
 FRESCO_EXPORT void makeFolder(const std::string& path);
+
+/// Keeps a folder for one process until it is destroyed or the process ends, by flock().
+class FRESCO_EXPORT FolderLock {
+public:
+  /// @param program for the message. @throws std::runtime_error "FOLDER: another PROGRAM works in this folder"
+  FolderLock(const std::string& folder, const std::string& program);
+  ~FolderLock();
+  FolderLock(const FolderLock&) = delete;
+  FolderLock& operator=(const FolderLock&) = delete;
+
+private:
+  int descriptor_;
+};
 } // namespace fresco

@@ -2,7 +2,10 @@
 #pragma once
 #include <fresco/core/export.h>
 namespace fresco {
-/// Removes what every OutputFile of this process has written and not committed: for a program that ends at once, without
+/// Removes what every OutputFile of this process has written and not committed, and folders that are empty then: for a program that ends at once, without
 /// unwinding. No OutputFile can be made or committed afterwards (the caller blocks for ever).
 FRESCO_EXPORT void abandonUnfinishedFiles() noexcept;
+
+/// Removes the folders that makeFolder() has made in this process and that are empty: for a program that has failed.
+FRESCO_EXPORT void removeEmptyFolders() noexcept;
 } // namespace fresco

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <fresco/core/poses.h>
 #include <fresco/core/require.h>
 #include <fresco/io/file.h>
 #include <map>
@@ -90,8 +91,11 @@ CameraModel makeCamera(const std::string& model, std::uint64_t width, std::uint6
   double* const distortion[] = {&camera.k1, &camera.k2, &camera.p1, &camera.p2};
   for (std::size_t i = center + 2; i < p.size(); ++i)
     *distortion[i - center - 2] = p[i];
-  if (!(camera.fx > 0 && camera.fy > 0))
-    fail(where, "a focal length is not positive");
+  try {
+    validateCamera(camera);
+  } catch (const std::invalid_argument& error) {
+    fail(where, error.what());
+  }
   return camera;
 }
 
@@ -99,8 +103,9 @@ Eigen::Isometry3d makePose(const double (&q)[4], const double (&t)[3], const std
 {
   const Eigen::Quaterniond rotation(q[0], q[1], q[2], q[3]);
   const Eigen::Vector3d translation(t[0], t[1], t[2]);
-  if (!(rotation.coeffs().allFinite() && rotation.norm() > 1e-6 && translation.allFinite()))
-    fail(where, "the pose is not finite or has no rotation");
+  if (!(rotation.coeffs().allFinite() && rotation.norm() > 1e-6 && rotation.coeffs().cwiseAbs().maxCoeff() < 1e6 &&
+        isInReach(translation)))
+    fail(where, "the pose is not finite, too far away or has no rotation");
   Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
   T.linear() = rotation.normalized().toRotationMatrix();
   T.translation() = translation;
@@ -124,6 +129,7 @@ CameraSet joinEntries(const std::string& path, const std::vector<CameraEntry>& c
       fail(path, concat("image ", image.id, " names camera ", image.camera, ", which is not there"));
     if (image.name.empty())
       fail(path, concat("image ", image.id, " has no name"));
+    fileBelow(path, image.name); // photographs lie in the folder that they are looked for in
     set.views.push_back({image.name, camera->second, image.T_camera_world});
   }
   return set;

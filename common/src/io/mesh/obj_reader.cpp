@@ -2,8 +2,10 @@
 #include "io/mesh/obj.h"
 #include "io/points/text_numbers.h"
 #include <algorithm>
+#include <fresco/core/polygon_fans.h>
 #include <fresco/core/require.h>
 #include <limits>
+#include <unordered_map>
 namespace fresco::io {
 namespace {
 /// Next word of a statement; a backslash at the end of a line continues it.
@@ -110,22 +112,21 @@ private:
       corners_.push_back(parseCorner(word));
     if (corners_.size() < 3)
       throw std::runtime_error("a face has fewer than 3 corners");
-    for (std::size_t i = 2; i < corners_.size(); ++i) {
-      const Corner &a = corners_[0], &b = corners_[i - 1], &c = corners_[i];
+    triangulate(corners_.size(), [&](std::size_t i, std::size_t k, std::size_t l) {
+      const Corner &a = corners_[i], &b = corners_[k], &c = corners_[l];
       content_.triangles.push_back({{a.vertex, b.vertex, c.vertex},
                                     {a.texcoord, b.texcoord, c.texcoord},
                                     {a.normal, b.normal, c.normal},
                                     material_});
-    }
+    });
   }
 
   void useMaterial(const std::string& name)
   {
-    auto& names = content_.materials;
-    const auto found = std::find(names.begin(), names.end(), name);
-    material_ = found - names.begin();
-    if (found == names.end())
-      names.push_back(name);
+    const auto [known, is_new] = materials_.emplace(name, content_.materials.size());
+    material_ = known->second;
+    if (is_new)
+      content_.materials.push_back(name);
   }
 
   void parseLibraries()
@@ -181,6 +182,7 @@ private:
   ObjContent content_;
   std::vector<double> colors_;
   std::vector<Corner> corners_;
+  std::unordered_map<std::string, int> materials_; ///< their numbers
   int material_ = -1;
 };
 

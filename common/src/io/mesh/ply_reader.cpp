@@ -189,7 +189,7 @@ void readFaces(Source& source, const PlyElement& element, FaceCollector& collect
   const bool strips = element.name == "tristrips";
   const bool plain = !strips && element.properties.size() == 1 && isPlainIndexList(element.properties[0]);
   std::vector<std::int64_t> corners;
-  for (std::uint64_t row = 0; row < element.count; ++row) {
+  for (std::uint64_t row = 0; row < element.count && !element.properties.empty(); ++row) {
     if (plain)
       row += source.copyTriangles(element.count - row, collector);
     if (row == element.count)
@@ -250,6 +250,8 @@ PlyContent readElements(Source source, const PlyHeader& header)
   PointTable camera;
   for (const PlyElement& element : header.elements) {
     checkSize(source, element);
+    if (element.name == "vertex" && content.vertices.rows > 0)
+      throw std::runtime_error("two elements 'vertex'");
     if (element.name == "vertex")
       content.vertices = readVertices(source, element);
     else if (element.name == "face" || element.name == "tristrips")

@@ -52,6 +52,9 @@ PointTable tableOfArrays(const VtkArray& points, const std::vector<VtkArray>& ar
   place(points, {std::begin(xyz_names), std::end(xyz_names)});
   for (const VtkArray& array : arrays)
     place(array, columnNames(array));
+  for (const auto& [array, column] : sources)
+    if (array->bytes.size() != points.tuples() * array->components * scalarSize(array->type))
+      throw std::runtime_error("VTK: '" + array->name.substr(0, 40) + "' has another number of tuples than the points");
   table.allocate(points.tuples());
   for (const auto& [array, column] : sources) {
     const std::size_t bytes = array->components * scalarSize(array->type);

@@ -100,6 +100,8 @@ private:
   void parseSection(const std::string& keyword)
   {
     if (keyword == "points") {
+      if (!points_.bytes.empty())
+        throw std::runtime_error("VTK: two sections POINTS");
       const std::size_t count = nextCount();
       const Scalar type = parseType(scanner_.wordAcrossLines());
       points_ = readArray("points", type, 3, count);
@@ -112,7 +114,7 @@ private:
     } else if (keyword == "point_data" || keyword == "cell_data") {
       tuples_ = nextCount();
       is_point_data_ = keyword == "point_data";
-      if (is_point_data_ && tuples_ * 3 * scalarSize(points_.type) != points_.bytes.size())
+      if (is_point_data_ && tuples_ != points_.tuples())
         throw std::runtime_error(concat("VTK: POINT_DATA has ", tuples_, " tuples, which is not the number of points"));
     } else if (keyword == "metadata") {
       scanner_.nextLine();
@@ -245,15 +247,14 @@ private:
 
   void keep(VtkArray array)
   {
-    const std::size_t tuples = array.bytes.size() / (array.components * scalarSize(array.type));
-    if (is_point_data_ && tuples * 3 * scalarSize(points_.type) == points_.bytes.size())
+    if (is_point_data_ && array.tuples() == points_.tuples())
       arrays_.push_back(std::move(array));
   }
 
   TextScanner scanner_;
   bool binary_ = false, is_point_data_ = false;
   std::size_t tuples_ = 0;
-  VtkArray points_;
+  VtkArray points_{"points", Scalar::float32, 3, {}};
   std::vector<VtkArray> arrays_;
   FaceCollector collector_;
 };

@@ -142,7 +142,7 @@ std::vector<StoredField> storedFields(const PcdHeader& header, PointTable& table
   std::vector<StoredField> fields;
   for (std::size_t i = 0; i < header.names.size(); ++i) {
     const std::size_t count = std::max<std::size_t>(header.counts[i], 1);
-    if (count > 1U << 20 || header.sizes[i] > 8)
+    if (count > 1U << 20 || header.sizes[i] < 1 || header.sizes[i] > 8)
       throw std::runtime_error("PCD header: SIZE or COUNT is out of range");
     if (header.names[i] == "_") {
       fields.push_back({count * header.sizes[i], std::nullopt});
@@ -165,7 +165,7 @@ std::size_t rowBytes(const std::vector<StoredField>& fields)
 
 void checkRows(std::uint64_t points, std::size_t row_bytes, std::size_t available)
 {
-  if (row_bytes > 0 && points > available / row_bytes)
+  if (points > available / row_bytes)
     throw std::runtime_error(
         concat("truncated: ", points, " points of ", row_bytes, " bytes do not fit into ", available, " bytes"));
 }
@@ -197,8 +197,10 @@ void readCompressed(const PcdHeader& header, const std::vector<StoredField>& fie
   const auto expanded = loadScalar<std::uint32_t>(header.data.data() + 4);
   if (compressed > header.data.size() - 8)
     throw std::runtime_error(concat("truncated: ", compressed, " compressed bytes do not fit"));
-  // 3 bytes of LZF stand for 264 bytes at most.
-  if (expanded / 264 > compressed || expanded != header.points * rowBytes(fields))
+  const std::size_t row_bytes = rowBytes(fields);
+  // 3 bytes of LZF stand for 264 bytes at most. The sizes are divided, since their product may not fit into 64 bits.
+  if (expanded == 0 || expanded / 264 > compressed || expanded % row_bytes != 0 ||
+      expanded / row_bytes != header.points)
     throw std::runtime_error("compressed data do not have the size that the header gives");
   std::vector<char> bytes(expanded);
   if (lzf_decompress(header.data.data() + 8, compressed, bytes.data(), expanded) != expanded)
@@ -242,6 +244,8 @@ PointTable parsePcd(std::string_view content)
   const PcdHeader header = parseHeader(content);
   PointTable table;
   const std::vector<StoredField> fields = storedFields(header, table);
+  if (table.columns.empty())
+    throw std::runtime_error("PCD header: no field but padding");
   if (header.storage == "ascii")
     readAscii(header, fields, table);
   else if (header.storage == "binary")

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "io/texture/gltf_loader.h"
 #include "io/texture/texture_io.h"
 #include <Eigen/Geometry>
 #include <cmath>
 #include <fresco/core/point_table.h>
 #include <fresco/core/require.h>
 #include <limits>
-#include <map>
-#include <tiny_gltf.h>
 #include <unordered_map>
 namespace fresco::io {
 namespace {
@@ -33,14 +32,14 @@ Scalar componentType(int type)
 }
 
 /// Bytes `offset` .. `offset + length` of a buffer view.
-const unsigned char* viewBytes(const tinygltf::Model& gltf, int index, std::size_t offset, std::size_t length)
+std::string_view viewBytes(const tinygltf::Model& gltf, int index, std::size_t offset, std::size_t length)
 {
   const tinygltf::BufferView& view = at(gltf.bufferViews, index, "buffer view");
   const std::vector<unsigned char>& data = at(gltf.buffers, view.buffer, "buffer").data;
   if (view.byteOffset > data.size() || view.byteLength > data.size() - view.byteOffset || offset > view.byteLength ||
       length > view.byteLength - offset)
     fail(concat("truncated: buffer view ", index, " does not fit into its buffer"));
-  return data.data() + view.byteOffset + offset;
+  return {reinterpret_cast<const char*>(data.data()) + view.byteOffset + offset, length};
 }
 
 /// Values of an accessor, `components` x count; integers that stand for fractions as 0..1.
@@ -56,8 +55,8 @@ Eigen::MatrixXd readAccessor(const tinygltf::Model& gltf, int index, int compone
   const std::size_t stride = view.byteStride == 0 ? element : view.byteStride;
   if (accessor.count == 0 || stride < element || accessor.count > view.byteLength / stride + 1)
     fail(concat("truncated: accessor ", index, " of ", accessor.count, " elements does not fit"));
-  const unsigned char* bytes =
-      viewBytes(gltf, accessor.bufferView, accessor.byteOffset, (accessor.count - 1) * stride + element);
+  const char* bytes =
+      viewBytes(gltf, accessor.bufferView, accessor.byteOffset, (accessor.count - 1) * stride + element).data();
   Eigen::MatrixXd values(components, accessor.count);
   visitScalar(type, [&](auto zero) {
     using T = decltype(zero);
@@ -78,22 +77,10 @@ std::uint8_t displayByte(double linear)
 
 Image readImageOf(const tinygltf::Model& gltf, const tinygltf::Image& source)
 {
-  const unsigned char* bytes = source.image.data();
-  std::size_t length = source.image.size();
-  if (source.bufferView >= 0) {
-    length = at(gltf.bufferViews, source.bufferView, "buffer view").byteLength;
-    bytes = viewBytes(gltf, source.bufferView, 0, length);
-  }
-  return decodeImage({reinterpret_cast<const char*>(bytes), length});
-}
-
-/// The bytes of an image outside of the buffers; those inside are decoded later.
-bool keepImageBytes(tinygltf::Image* image, int, std::string*, std::string*, int, int, const unsigned char* bytes,
-                    int size, void*)
-{
-  if (image->bufferView < 0 && size > 0)
-    image->image.assign(bytes, bytes + size);
-  return true;
+  if (source.bufferView < 0)
+    return decodeImage({reinterpret_cast<const char*>(source.image.data()), source.image.size()});
+  const std::size_t length = at(gltf.bufferViews, source.bufferView, "buffer view").byteLength;
+  return decodeImage(viewBytes(gltf, source.bufferView, 0, length));
 }
 
 struct PositionHash {
@@ -109,7 +96,11 @@ struct PositionHash {
 /// Joins the primitives of a scene.
 class ModelBuilder {
 public:
-  explicit ModelBuilder(const tinygltf::Model& gltf) : gltf_(gltf), atlas_of_image_(gltf.images.size(), -1) {}
+  /// @param file_bytes what bounds the elements that may be read
+  ModelBuilder(const tinygltf::Model& gltf, std::size_t file_bytes)
+      : gltf_(gltf), atlas_of_image_(gltf.images.size(), -1),
+        elements_left_(least_elements + elements_per_byte * file_bytes)
+  {}
 
   void setOrigin(const Eigen::Vector3d& origin) { model_.mesh.origin = origin; }
 
@@ -153,10 +144,20 @@ public:
 private:
   using Color = Eigen::Matrix<std::uint8_t, 3, 1>;
 
-  Eigen::MatrixXd attribute(const tinygltf::Primitive& primitive, const char* name, int components) const
+  Eigen::MatrixXd attribute(const tinygltf::Primitive& primitive, const char* name, int components)
   {
     const auto found = primitive.attributes.find(name);
-    return found == primitive.attributes.end() ? Eigen::MatrixXd() : readAccessor(gltf_, found->second, components);
+    return found == primitive.attributes.end() ? Eigen::MatrixXd() : read(found->second, components);
+  }
+
+  /// Many primitives may share an accessor: a small file could ask for any amount of memory.
+  Eigen::MatrixXd read(int accessor, int components)
+  {
+    const std::size_t count = at(gltf_.accessors, accessor, "accessor").count;
+    if (count > elements_left_)
+      fail("its meshes repeat the same data more often than there is room for");
+    elements_left_ -= count;
+    return readAccessor(gltf_, accessor, components);
   }
 
   /// @return vertex of the model for each position of the primitive
@@ -188,14 +189,14 @@ private:
     return vertices;
   }
 
-  std::vector<std::size_t> cornerIndices(const tinygltf::Primitive& primitive, Index positions) const
+  std::vector<std::size_t> cornerIndices(const tinygltf::Primitive& primitive, Index positions)
   {
     std::vector<std::size_t> corners;
     if (primitive.indices < 0) {
       for (Index i = 0; i < positions; ++i)
         corners.push_back(i);
     } else {
-      const Eigen::MatrixXd indices = readAccessor(gltf_, primitive.indices, 1);
+      const Eigen::MatrixXd indices = read(primitive.indices, 1);
       for (Index i = 0; i < indices.cols(); ++i) {
         if (!(indices(0, i) >= 0 && indices(0, i) < positions))
           fail(concat("a triangle names vertex ", indices(0, i), ", there are ", positions));
@@ -239,8 +240,12 @@ private:
     return atlas;
   }
 
+  // Enough for any file whose meshes stand in several places, and read within seconds.
+  static constexpr std::size_t least_elements = 2000000, elements_per_byte = 16;
+
   const tinygltf::Model& gltf_;
   std::vector<int> atlas_of_image_;
+  std::size_t elements_left_;
   TexturedMesh model_;
   std::unordered_map<std::array<float, 3>, std::size_t, PositionHash> known_;
   std::vector<Eigen::Vector3f> positions_, normals_;
@@ -279,7 +284,7 @@ std::vector<PlacedMesh> collectMeshes(const tinygltf::Model& gltf, const tinyglt
   for (auto node = scene.nodes.rbegin(); node != scene.nodes.rend(); ++node)
     open.emplace_back(*node, Eigen::Affine3d::Identity());
   for (std::size_t visited = 0; !open.empty(); ++visited) {
-    if (visited > gltf.nodes.size())
+    if (visited + open.size() > gltf.nodes.size() + 1)
       fail("the nodes of the scene are no tree");
     const auto [index, T_scene_parent] = open.back();
     open.pop_back();
@@ -292,27 +297,13 @@ std::vector<PlacedMesh> collectMeshes(const tinygltf::Model& gltf, const tinyglt
   }
   return meshes;
 }
-
-tinygltf::Model loadModel(std::string_view content)
-{
-  tinygltf::TinyGLTF loader;
-  loader.SetImageLoader(keepImageBytes, nullptr);
-  tinygltf::Model gltf;
-  std::string error, warning;
-  if (content.size() > std::numeric_limits<std::uint32_t>::max())
-    fail("larger than the 4 GiB that binary glTF can hold");
-  const auto* bytes = reinterpret_cast<const unsigned char*>(content.data());
-  if (!loader.LoadBinaryFromMemory(&gltf, &error, &warning, bytes, content.size()))
-    fail(error.empty() ? "not binary glTF" : error.substr(0, error.find('\n')));
-  return gltf;
-}
 } // namespace
 
-TexturedMesh parseGlb(std::string_view content)
+TexturedMesh parseGlb(std::string_view content, const std::string& folder)
 {
-  const tinygltf::Model gltf = loadModel(content);
+  const tinygltf::Model gltf = loadGltf(content, folder);
   const std::vector<PlacedMesh> meshes = collectMeshes(gltf, at(gltf.scenes, std::max(gltf.defaultScene, 0), "scene"));
-  ModelBuilder builder(gltf);
+  ModelBuilder builder(gltf, content.size());
   const Eigen::Vector3d origin = meshes.empty() ? Eigen::Vector3d::Zero() : meshes[0].T_scene_mesh.translation().eval();
   builder.setOrigin(origin);
   for (const PlacedMesh& placed : meshes)

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "io/points/parse_file.h"
+#include "io/texture/jpeg_reader.h"
 #include "io/texture/texture_io.h"
 #include <algorithm>
-#include <cstring>
 #include <fresco/core/require.h>
+#include <fresco/io/file.h>
 #include <fresco/io/image_io.h>
 #include <iterator>
 #include <limits>
@@ -13,46 +14,51 @@
 #include <zlib.h>
 namespace fresco {
 namespace {
+using namespace std::string_view_literals;
+
 bool startsWith(std::string_view bytes, std::string_view mark) { return bytes.substr(0, mark.size()) == mark; }
 
-std::uint32_t bigEndian(const unsigned char* at)
+std::uint32_t bigEndian(std::string_view bytes, std::size_t at)
 {
-  return std::uint32_t{at[0]} << 24 | std::uint32_t{at[1]} << 16 | std::uint32_t{at[2]} << 8 | at[3];
+  std::uint32_t value = 0;
+  for (const unsigned char byte : bytes.substr(at, 4))
+    value = value << 8 | byte;
+  return value;
 }
 
-/// Whether all chunks of a PNG are there and their check sums hold; libpng prints on stderr where they do not.
-bool isIntactPng(std::string_view file)
+/// Whether all chunks are there and their check sums hold; libpng prints on stderr where they do not.
+bool hasIntactChunks(std::string_view png)
 {
-  if (!startsWith(file, "\x89PNG\r\n\x1a\n"))
-    return false;
-  const auto* bytes = reinterpret_cast<const unsigned char*>(file.data());
   // Chunk: length of the data, type, data, check sum of type and data.
-  for (std::size_t at = 8; at + 12 <= file.size();) {
-    const std::size_t length = bigEndian(bytes + at);
-    if (length > file.size() - at - 12 || crc32_z(0, bytes + at + 4, length + 4) != bigEndian(bytes + at + 8 + length))
+  for (std::size_t at = 8; at + 12 <= png.size();) {
+    const std::size_t length = bigEndian(png, at);
+    if (length > png.size() - at - 12)
       return false;
-    if (std::memcmp(bytes + at + 4, "IEND", 4) == 0)
+    const auto* type = reinterpret_cast<const unsigned char*>(png.data()) + at + 4;
+    if (crc32_z(0, type, length + 4) != bigEndian(png, at + 8 + length))
+      return false;
+    if (png.substr(at + 4, 4) == "IEND")
       return true;
     at += 12 + length;
   }
   return false;
 }
 
-/// Decoders fill in what a cut file lacks; its end tells whether it is whole.
-bool isWhole(std::string_view bytes)
+/// Whether so many pixels can be in so few bytes: checked before room is made for them.
+bool hasPossibleSize(std::string_view png)
 {
-  if (startsWith(bytes, "\x89PNG"))
-    return isIntactPng(bytes);
-  if (startsWith(bytes, "\xff\xd8"))
-    return bytes.rfind("\xff\xd9") != std::string::npos && bytes.rfind("\xff\xd9") > bytes.size() / 2;
-  return true;
+  constexpr std::uint64_t best_ratio = 1032; // of zlib
+  constexpr std::size_t header_end = 33;     // signature and chunk IHDR: width, height, bits and kind of the samples
+  if (png.size() < header_end || png.substr(12, 4) != "IHDR")
+    return false;
+  const std::uint64_t row = (std::uint64_t{bigEndian(png, 16)} * static_cast<unsigned char>(png[24]) + 7) / 8;
+  return bigEndian(png, 20) <= best_ratio * png.size() / std::max<std::uint64_t>(row, 1);
 }
 
 /// OpenCV also passes on to libraries that end the program over a damaged file (DICOM, GDAL's formats).
 bool isCommonFormat(std::string_view bytes)
 {
-  using namespace std::string_view_literals;
-  const bool is_webp = startsWith(bytes, "RIFF") && bytes.size() > 12 && bytes.compare(8, 4, "WEBP") == 0;
+  const bool is_webp = startsWith(bytes, "RIFF") && bytes.size() > 12 && bytes.substr(8, 4) == "WEBP";
   const std::string_view marks[] = {"\x89PNG", "\xff\xd8", "II*\0"sv, "MM\0*"sv, "BM"};
   return is_webp || std::any_of(std::begin(marks), std::end(marks),
                                 [&](std::string_view mark) { return startsWith(bytes, mark); });
@@ -75,20 +81,21 @@ cv::Mat decode(std::string_view bytes, int flags)
 {
   if (!isCommonFormat(bytes))
     throw std::runtime_error("no PNG, JPEG, TIFF, BMP or WebP image");
-  if (!isWhole(bytes))
+  const bool is_png = startsWith(bytes, "\x89PNG");
+  if ((is_png && !(hasIntactChunks(bytes) && hasPossibleSize(bytes))) ||
+      bytes.size() > static_cast<std::size_t>(std::numeric_limits<int>::max()))
     throw std::runtime_error("the image is truncated or damaged");
+  const cv::Mat raw(1, static_cast<int>(bytes.size()), CV_8U, const_cast<char*>(bytes.data()));
   prepareImageCodecs();
   cv::Mat image;
-  if (bytes.size() <= std::numeric_limits<int>::max())
-    try {
-      image = cv::imdecode(cv::Mat(1, int(bytes.size()), CV_8U, const_cast<char*>(bytes.data())), flags);
-    } catch (const cv::Exception&) { // reported below: its text says nothing to a user
-    }
+  try {
+    image = cv::imdecode(raw, flags);
+  } catch (const cv::Exception&) { // its text has several lines
+  }
   if (image.empty())
     throw std::runtime_error("no image that can be read");
   return image;
 }
-
 void validate(const Image& image)
 {
   require(image.width > 0 && image.height > 0 && (image.channels == 1 || image.channels == 3 || image.channels == 4) &&
@@ -110,6 +117,8 @@ cv::Mat toOpenCv(const Image& image)
 
 Image io::decodeImage(std::string_view bytes)
 {
+  if (startsWith(bytes, "\xff\xd8"))
+    return decodeJpeg(bytes);
   const cv::Mat bgr = decode(bytes, cv::IMREAD_COLOR | cv::IMREAD_IGNORE_ORIENTATION);
   Image image(bgr.cols, bgr.rows, 3);
   cv::Mat rgb(bgr.rows, bgr.cols, CV_8UC3, image.data.data());

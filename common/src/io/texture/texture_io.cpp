@@ -2,6 +2,7 @@
 #include "io/texture/texture_io.h"
 #include "io/format_table.h"
 #include "io/points/parse_file.h"
+#include <filesystem>
 #include <fresco/core/require.h>
 #include <fresco/io/mesh_io.h>
 namespace fresco {
@@ -46,7 +47,9 @@ void writeTexturedMesh(const std::string& path, const TexturedMesh& model, int j
 TexturedMesh readTexturedMesh(const std::string& path)
 {
   if (isGlb(io::formatToRead(path, FileKind::textured_mesh)))
-    return io::parseFile(path, io::parseGlb);
+    return io::parseFile(path, [&](std::string_view content) {
+      return io::parseGlb(content, std::filesystem::path(path).parent_path().string());
+    });
   return io::readTexturedObj(path);
 }
 } // namespace fresco

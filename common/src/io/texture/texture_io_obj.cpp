@@ -86,11 +86,16 @@ auto readFor(const std::string& path, const Read& read)
 std::map<std::string, std::string> readLibraries(const std::string& path, const ObjContent& obj)
 {
   std::map<std::string, std::string> images;
-  for (const std::string& library : obj.libraries) {
-    const fs::path file = fs::path(path).parent_path() / library;
-    for (const auto& [name, entry] : readFor(path, [&] { return parseMtl(readFile(file.string())); }))
-      images[name] = entry.empty() ? "" : (file.parent_path() / imageName(entry)).string();
-  }
+  const std::string folder = fs::path(path).parent_path().string();
+  for (const std::string& library : obj.libraries)
+    readFor(path, [&] {
+      const std::string file = fileBelow(folder, library);
+      // Images lie beside the library, but not outside of the model's folder.
+      const fs::path place = fs::path(library).parent_path();
+      for (const auto& [name, entry] : parseMtl(readFile(file)))
+        images[name] = entry.empty() ? "" : fileBelow(folder, (place / imageName(entry)).string());
+      return true;
+    });
   return images;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <filesystem>
 #include <fresco/core/pcl_conversions.h>
+#include <fresco/core/polygon_fans.h>
 #include <fresco/core/require.h>
 #include <fresco/io/image_io.h>
 #include <fresco/io/texture_mesh_conversions.h>
@@ -44,19 +45,19 @@ void addSubMesh(const TexturedMesh& model, int atlas, int& coordinates, pcl::Tex
 
 struct TexturedFaces {
   std::vector<Eigen::Vector2f> texcoords; ///< of all sub-meshes
-  std::vector<int> corners, atlases;      ///< 3 and 1 per triangle of the fans, in the order of toTriangleMesh()
+  std::vector<int> corners, atlases;      ///< 3 and 1 per triangle, in the order of toTriangleMesh()
 };
 
 /// @param corners of a polygon, indices into all texture coordinates; empty where it has no texture
-void addFan(const std::vector<int>& corners, std::size_t count, int atlas, TexturedFaces& faces)
+void addPolygon(const std::vector<int>& corners, std::size_t count, int atlas, TexturedFaces& faces)
 {
   require(corners.empty() || corners.size() == count, "texture mesh: a polygon with ", count, " corners has ",
           corners.size(), " texture coordinates");
-  for (std::size_t i = 2; i < count; ++i) {
+  core::triangulate(count, [&](std::size_t a, std::size_t b, std::size_t c) {
     faces.atlases.push_back(corners.empty() ? -1 : atlas);
-    for (const std::size_t k : {std::size_t{0}, i - 1, i})
+    for (const std::size_t k : {a, b, c})
       faces.corners.push_back(corners.empty() ? -1 : corners[k]);
-  }
+  });
 }
 
 TexturedFaces collectFaces(const pcl::TextureMesh& texture)
@@ -77,7 +78,7 @@ TexturedFaces collectFaces(const pcl::TextureMesh& texture)
         const auto& indices = texture.tex_coord_indices[part][p].vertices;
         corners.assign(indices.begin(), indices.end());
       }
-      addFan(corners, count, part, faces);
+      addPolygon(corners, count, part, faces);
     }
     first += texcoords;
   }

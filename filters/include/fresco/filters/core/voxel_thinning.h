@@ -6,7 +6,8 @@
 namespace fresco {
 /// One point for each occupied cell of a grid through the lowest corner of the bounding box.
 struct VoxelThinning {
-  std::vector<Index> kept; ///< per cell the point nearest to its centroid, ascending; of equal ones the first
+  std::vector<Index> kept; ///< per cell the point nearest to its centroid, ascending; of equal ones that with the
+                           ///< least coordinates, so that the order of the points does not matter
   Points centroids;        ///< 3xM mean of the points of the cell of each kept point
 };
 

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "io/texture/gltf_loader.h"
+#include <algorithm>
+#include <filesystem>
+#include <fresco/core/point_table.h>
+#include <fresco/core/require.h>
+#include <fresco/io/file.h>
+#include <limits>
+namespace fresco::io {
+namespace {
+[[noreturn]] void fail(const std::string& reason) { throw std::runtime_error("glTF: " + reason); }
+
+/// The bytes of an image outside of the buffers; those inside are decoded later.
+bool keepImageBytes(tinygltf::Image* image, int, std::string*, std::string*, int, int, const unsigned char* bytes,
+                    int size, void*)
+{
+  if (image->bufferView < 0 && size > 0)
+    image->image.assign(bytes, bytes + size);
+  return true;
+}
+
+/// Refuses what the library's parser is not made for: it calls itself for nested values and keeps half a kilobyte for
+/// each object.
+void checkJson(std::string_view json)
+{
+  constexpr int deepest = 100;
+  constexpr int most_objects = 100000;
+  int depth = 0, objects = 0;
+  bool quoted = false;
+  for (std::size_t i = 0; i < json.size(); ++i) {
+    const char c = json[i];
+    if (quoted && c == '\\')
+      ++i;
+    else if (c == '"')
+      quoted = !quoted;
+    if (quoted)
+      continue;
+    depth += c == '{' || c == '[' ? 1 : c == '}' || c == ']' ? -1 : 0;
+    objects += c == '{' ? 1 : 0;
+    if (depth > deepest || objects > most_objects)
+      fail(depth > deepest ? concat("nested more than ", deepest, " deep")
+                           : concat("more than ", most_objects, " objects"));
+  }
+}
+
+/// Files that a model names: in its folder or below, and not more than a glTF buffer holds in all, since many buffers
+/// may name the same file.
+struct ExternalFiles {
+  std::string folder;
+  std::uintmax_t bytes_left = std::numeric_limits<std::uint32_t>::max();
+};
+
+bool readExternalFile(std::vector<unsigned char>* bytes, std::string* error, const std::string& name, void* files)
+try {
+  auto& [folder, bytes_left] = *static_cast<ExternalFiles*>(files);
+  const std::string path = fileBelow(folder, name);
+  std::error_code missing;
+  if (const std::uintmax_t size = std::filesystem::file_size(path, missing); !missing && size > bytes_left)
+    throw std::runtime_error(path + ": too large");
+  const std::string content = readFile(path);
+  bytes_left -= std::min<std::uintmax_t>(bytes_left, content.size());
+  bytes->assign(content.begin(), content.end());
+  return true;
+} catch (const std::runtime_error& reason) {
+  *error = reason.what();
+  return false;
+}
+
+} // namespace
+
+tinygltf::Model loadGltf(std::string_view content, const std::string& folder)
+{
+  constexpr std::size_t header = 20; // the header of the file and that of its first chunk, the JSON
+  if (content.size() < header)
+    fail("not binary glTF");
+  checkJson(content.substr(header, loadScalar<std::uint32_t>(content.data() + 12)));
+  tinygltf::TinyGLTF loader;
+  loader.SetImageLoader(keepImageBytes, nullptr);
+  ExternalFiles files{folder};
+  loader.SetFsCallbacks(
+      {[](const std::string&, void*) { return true; }, [](const std::string& path, void*) { return path; },
+       readExternalFile,
+       [](std::string*, const std::string&, const std::vector<unsigned char>&, void*) { return false; }, &files});
+  tinygltf::Model gltf;
+  std::string error, warning;
+  if (content.size() > std::numeric_limits<std::uint32_t>::max())
+    fail("larger than the 4 GiB that binary glTF can hold");
+  const auto* bytes = reinterpret_cast<const unsigned char*>(content.data());
+  if (!loader.LoadBinaryFromMemory(&gltf, &error, &warning, bytes, content.size()))
+    fail(error.empty() ? "not binary glTF" : error.substr(0, error.find('\n')));
+  return gltf;
+}
+} // namespace fresco::io

@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What every tool promises about its command line and its outputs: ranges, collisions, devices and pipes, names of any
+// bytes, two processes at once.
+#include "tools/tool_runs.h"
+#include <chrono>
+#include <csignal>
+#include <fresco/io/file.h>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <sys/stat.h>
+#include <thread>
+#include <unistd.h>
+namespace {
+using namespace fresco;
+using namespace fresco::test;
+
+/// Exit status of a command, with what it says at hand.
+void expectStatus(const std::string& folder, const std::string& command, int status)
+{
+  const Outcome outcome = run(folder, command);
+  EXPECT_EQ(outcome.status, status) << command << "\n" << outcome.err;
+}
+
+/// Names of the options of a tool that take one number, from its help.
+std::vector<std::string> numberOptions(const std::string& help)
+{
+  std::vector<std::string> names;
+  std::istringstream lines(help);
+  for (std::string line; std::getline(lines, line);) {
+    std::istringstream words(line);
+    std::string name, kind;
+    if (words >> name >> kind && name[0] == '-' && line.rfind("  -", 0) == 0 && (kind == "N" || kind == "X"))
+      names.push_back(name);
+  }
+  return names;
+}
+
+TEST(Usage, NumbersOutOfRangeAreWrongBeforeAnythingIsRead)
+{
+  const std::string folder = soundFolder();
+  for (const std::string& tool : tools()) {
+    const std::vector<std::string> options = numberOptions(run(folder, tool + " -h").out);
+    EXPECT_FALSE(options.empty()) << tool;
+    const std::string files = tool == "texture"    ? " missing missing missing out.obj"
+                              : tool == "optimize" ? " missing missing out.ply"
+                              : tool == "register" ? " missing.pcd -o out"
+                              : tool == "snapshot" ? " missing.ply out.png"
+                                                   : " missing.ply out.ply";
+    for (const std::string& option : options)
+      expectStatus(folder, tool + files + " " + option + " -1000000000", 2);
+  }
+  expectStatus(folder, "filter missing.pcd out.pcd -voxel 0", 2);
+  expectStatus(folder, "normals missing.pcd out.pcd -sigma_n 0", 2);
+  expectStatus(folder, "register missing.pcd -o out -min_overlap 0", 2);
+  expectStatus(folder, "model missing out -size 100x100", 2);
+  expectStatus(folder, "scan missing.ply out -images 10x1000", 2);
+}
+
+TEST(Usage, OutputsCollideNeitherWithEachOtherNorWithInputs)
+{
+  const std::string folder = soundFolder();
+  fs::create_directories(folder + "/in/scans");
+  fs::create_symlink(folder, folder + "/same");
+  const auto before = listing(folder);
+  for (const char* command :
+       {"filter cloud.pcd cloud.pcd", "filter cloud.pcd ./images/../cloud.pcd", "filter cloud.pcd same/cloud.pcd",
+        "normals cloud.pcd cloud.pcd", "reconstruct mesh.ply mesh.ply",
+        "optimize mesh.ply cloud.pcd out.ply -report out.ply", "optimize mesh.ply cloud.pcd out.ply -report cloud.pcd",
+        "compare mesh.ply mesh.ply -json mesh.ply", "compare mesh.ply mesh.ply -colored a.ply -json a.ply",
+        "snapshot mesh.ply out.png -shading flat,flat", "register cloud.pcd -o . -poses poses.txt",
+        "texture mesh.ply cameras images images/a.obj", "model in in", "model in in/scans"})
+    expectStatus(folder, command, 2);
+  EXPECT_EQ(listing(folder), before);
+  // The picture would replace the texture of the model that it shows.
+  put(folder + "/model.obj",
+      "mtllib model.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nusemtl m\nf 1/1 2/2 3/3\n");
+  put(folder + "/model.mtl", "newmtl m\nmap_Kd model.png\n");
+  writeImage(folder + "/model.png", Image(4, 4, 3, 200));
+  const std::string texture = get(folder + "/model.png");
+  expectStatus(folder, "snapshot model.obj model.png -shading texture -size 64x48", 1);
+  EXPECT_EQ(get(folder + "/model.png"), texture);
+}
+
+TEST(Usage, WhatFollowsTwoDashesAreFiles)
+{
+  const std::string folder = soundFolder();
+  fs::copy(folder + "/cloud.pcd", folder + "/-h.pcd");
+  expectStatus(folder, "filter -quiet -- -h.pcd -out.pcd", 0);
+  EXPECT_TRUE(fs::exists(folder + "/-out.pcd"));
+}
+
+TEST(Usage, StandardOutputThatIsFull)
+{
+  const std::string folder = soundFolder(), bin = std::string(FRESCO_BINARY_DIR) + "/bin/fresco_";
+  for (const std::string command :
+       {"filter -h", "model -h", "compare mesh.ply mesh.ply -quiet", "reconstruct cloud.pcd out.ply -estimate"}) {
+    const int status = std::system(("cd '" + folder + "' && '" + bin + command.substr(0, command.find(' ')) + "'" +
+                                    command.substr(command.find(' ')) + " >/dev/full 2>.log.err")
+                                       .c_str());
+    EXPECT_EQ(WEXITSTATUS(status), 1) << command;
+    EXPECT_NE(get(folder + "/.log.err").find("standard output"), std::string::npos) << command;
+  }
+}
+
+TEST(Usage, OnlyFilesAreReplaced)
+{
+  const std::string folder = soundFolder();
+  ASSERT_EQ(mkfifo((folder + "/pipe.ply").c_str(), 0600), 0);
+  fs::create_symlink("/dev/null", folder + "/null.ply"); // never the device itself: a test may run as root
+  fs::create_symlink(folder + "/mesh.ply", folder + "/link.ply");
+  const std::string mesh = get(folder + "/mesh.ply");
+  for (const std::string name : {"pipe.ply", "null.ply", "link.ply"}) {
+    expectRefused(folder, "reconstruct cloud.pcd " + name + " -depth 4", name);
+  }
+  EXPECT_TRUE(fs::is_fifo(folder + "/pipe.ply") && fs::is_symlink(folder + "/null.ply"));
+  EXPECT_EQ(get(folder + "/mesh.ply"), mesh);
+  EXPECT_TRUE(fs::is_character_file("/dev/null"));
+}
+
+TEST(Usage, PipesAsInputAreRefusedAtOnce)
+{
+  const std::string folder = soundFolder();
+  for (const char* name : {"pipe.ply", "pipe.pcd", "pipe.stl", "pipe.xyz"})
+    ASSERT_EQ(mkfifo((folder + "/" + name).c_str(), 0600), 0);
+  const auto start = std::chrono::steady_clock::now();
+  for (const char* command : {"filter pipe.pcd out.pcd", "compare pipe.stl mesh.ply", "register pipe.xyz -o out"})
+    expectRefused(folder, command, "pipe");
+  fs::remove(folder + "/images/a.png");
+  ASSERT_EQ(mkfifo((folder + "/images/a.png").c_str(), 0600), 0);
+  expectRefused(folder, "texture mesh.ply cameras images out.obj", "a.png");
+  EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), 10.0);
+}
+
+TEST(Usage, NoEmptyFolderAfterAnError)
+{
+  const std::string folder = soundFolder();
+  expectRefused(folder, "register missing.pcd -o new/out", "missing.pcd");
+  expectRefused(folder, "scan noise.ply new/out", "noise.ply");
+  EXPECT_FALSE(fs::exists(folder + "/new"));
+}
+
+TEST(Usage, NamesOfAnyBytes)
+{
+  const std::string folder = soundFolder(), name = "scan\xff\xfe\x1b[31m.pcd";
+  fs::copy(folder + "/cloud.pcd", folder + "/" + name);
+  expectStatus(folder, "register '" + name + "' -o out -quiet", 0);
+  EXPECT_FALSE(get(folder + "/out/poses.txt").empty());
+  const std::string json = get(folder + "/out/registration.json");
+  EXPECT_TRUE(nlohmann::json::parse(json, nullptr, false).contains("scans"));
+  put(folder + "/" + name, "damaged");
+  const Outcome outcome = run(folder, "filter '" + name + "' out.pcd");
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_EQ(outcome.err.find('\x1b'), std::string::npos);
+  EXPECT_NE(outcome.err.find("scan\xff\xfe?[31m.pcd"), std::string::npos) << outcome.err;
+}
+
+TEST(Usage, DamagedPhotographsAreNamedInOneLine)
+{
+  const std::string folder = soundFolder();
+  writeImage(folder + "/images/a.jpg", Image(64, 48, 3, 90));
+  put(folder + "/cameras/images.txt", "1 1 0 0 0 0 0 4 1 a.jpg\n\n");
+  std::string bytes = get(folder + "/images/a.jpg");
+  bytes.replace(bytes.size() - 20, 10, std::string(10, '\x55'));
+  put(folder + "/images/a.jpg", bytes);
+  expectRefused(folder, "texture mesh.ply cameras images out.obj", "a.jpg");
+  fs::create_directories(folder + "/in/scans");
+  fs::copy(folder + "/cloud.pcd", folder + "/in/scans");
+  for (const char* part : {"cameras", "images", "poses.txt"})
+    fs::copy(folder + "/" + part, folder + "/in/" + part);
+  expectRefused(folder, "model in out", "a.jpg"); // before the first stage: no output is there
+  EXPECT_FALSE(fs::exists(folder + "/out"));
+}
+
+TEST(Usage, TwoProcessesWithOneOutput)
+{
+  const std::string folder = soundFolder();
+  PointSet few = readPoints(folder + "/cloud.pcd");
+  few.points *= 2.f;
+  writePoints(folder + "/other.pcd", few);
+  expectStatus(folder, "filter cloud.pcd one.ply -quiet", 0);
+  expectStatus(folder, "filter other.pcd two.ply -quiet", 0);
+  const std::string one = get(folder + "/one.ply"), two = get(folder + "/two.ply");
+  for (int i = 0; i < 5; ++i) {
+    std::thread other([&] { expectStatus(folder + "/images", "filter ../other.pcd ../out.ply -quiet", 0); });
+    expectStatus(folder, "filter cloud.pcd out.ply -quiet", 0);
+    other.join();
+    const std::string out = get(folder + "/out.ply");
+    EXPECT_TRUE(out == one || out == two);
+  }
+  const FolderLock lock(folder + "/images", "test"); // as another process would hold it
+  expectRefused(folder, "register cloud.pcd -o images", "another fresco_register works in this folder");
+}
+} // namespace
