@@ -3,8 +3,10 @@
 #include "surface/optimization/optimization_shapes.h"
 #include "test_data.h"
 #include <Eigen/Geometry>
+#include <fresco/core/constants.h>
 #include <fresco/io/mesh_io.h>
 #include <fresco/surface/core/mesh_distance.h>
+#include <fresco/surface/core/volumetric_reconstruction.h>
 #include <gtest/gtest.h>
 #include <limits>
 #include <random>
@@ -114,6 +116,39 @@ TEST_P(BothModes, NoDamageOnASphere)
                                    3;
     EXPECT_GT(normals.col(f).dot(middle.normalized()), std::cos(0.1)) << "a staircase";
   }
+}
+
+/// Root mean square distance from the unit sphere, and mean angle in degrees between its faces and the sphere.
+std::pair<double, double> sphereErrors(const TriangleMesh& mesh)
+{
+  const Points normals = faceNormals(mesh);
+  double angles = 0;
+  for (Index f = 0; f < mesh.faceCount(); ++f) {
+    Eigen::Vector3f middle = Eigen::Vector3f::Zero();
+    for (int k = 0; k < 3; ++k)
+      middle += mesh.vertices.col(mesh.faces(k, f));
+    angles += std::acos(std::min(1.f, normals.col(f).dot(middle.normalized())));
+  }
+  const double squares = (mesh.vertices.colwise().norm().array() - 1.f).square().mean();
+  return {std::sqrt(squares), angles / mesh.faceCount() * degrees_per_radian};
+}
+
+TEST(Optimization, NoisySphereGetsNoFacets)
+{
+  PointSet points;
+  points.points = test::sphere(1.f, 6).vertices;
+  points.normals = points.points;
+  std::mt19937 random(11);
+  std::normal_distribution<float> noise(0.f, 0.005f);
+  for (Index i = 0; i < points.size(); ++i)
+    points.points.col(i) *= 1.f + noise(random);
+  VolumetricOptions options;
+  options.depth = 6;
+  const TriangleMesh before = reconstructVolumetric(points, options).mesh;
+  const auto [rms_before, angle_before] = sphereErrors(before);
+  const auto [rms_after, angle_after] = sphereErrors(filterSurface(before, points).mesh);
+  EXPECT_LE(rms_after, rms_before);
+  EXPECT_LE(angle_after, angle_before);
 }
 
 TEST(Optimization, ContradictingDataDrawNoSplinters)
