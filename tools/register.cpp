@@ -8,13 +8,14 @@
 #include <fresco/io/formats.h>
 #include <fresco/io/point_io.h>
 #include <fresco/io/pose_file.h>
+#include <fresco/io/scan_file.h>
 #include <fresco/registration/core/scan_registration.h>
 #include <nlohmann/json.hpp>
 namespace {
 using Json = nlohmann::ordered_json;
 
 struct Request {
-  std::vector<std::string> files;
+  std::vector<fresco::ScanPath> scans;
   std::string folder, start_file;
   fresco::ScanRegistrationOptions options;
   fresco::CommonOptions common;
@@ -55,11 +56,14 @@ Request parse(int argc, char** argv)
       "fresco_register SCAN... -o OUT_DIR [-poses START.txt] [options]",
       "Brings scans into one frame.\nSCAN: " + fresco::readableExtensions(fresco::FileKind::points) +
           ", each in its own frame, or a folder of them.\n"
+          "Each scan of a file of several (.e57, .ptx) is one. "
           "Writes poses.txt (world from scan, `none` for a scan without a place), registered.pcd (all placed scans,\n"
           "normals towards each point's own viewpoint) and registration.json (overlap graph, residuals, unplaced "
           "scans).");
   args.option("o", request.folder, "folder of the output, created; required");
-  args.option("poses", request.start_file, "start poses, one a line as in poses.txt; `none` = unknown");
+  args.option(
+      "poses", request.start_file,
+      "start poses, one a line as in poses.txt; `none` = unknown; or a file of scans, whose own poses are taken");
   args.option("voxel", request.options.voxel, "finest thinning, unit of the points; 0 = from the data");
   args.option("max_distance", request.options.max_distance,
               "how far start poses may be off, unit of the points; 0 = 20 voxels");
@@ -73,9 +77,10 @@ Request parse(int argc, char** argv)
   const std::vector<std::string> words = args.parse(argc, argv, 1, 100000);
   if (request.folder.empty())
     throw fresco::UsageError("-o OUT_DIR is missing");
-  request.files = scanFiles(words);
+  request.scans = fresco::scansOf(scanFiles(words));
   request.options.threads = request.common.threads;
-  request.options.names = request.files;
+  for (const fresco::ScanPath& scan : request.scans)
+    request.options.names.push_back(scan.name());
   return request;
 }
 
@@ -109,10 +114,11 @@ std::string reportText(const Request& request, const fresco::ScanRegistrationRes
   Json json;
   json["scans"] = Json::array();
   json["unplaced"] = Json::array();
-  for (std::size_t i = 0; i < request.files.size(); ++i) {
-    json["scans"].push_back(scanJson(request.files[i], result.scans[i], result.poses[i]));
+  const std::vector<std::string>& names = request.options.names;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    json["scans"].push_back(scanJson(names[i], result.scans[i], result.poses[i]));
     if (!result.scans[i].placed)
-      json["unplaced"].push_back(request.files[i]);
+      json["unplaced"].push_back(names[i]);
   }
   json["pairs"] = Json::array();
   for (const fresco::PairResult& pair : result.pairs)
@@ -135,10 +141,12 @@ std::vector<fresco::Pose> startPoses(const Request& request)
 {
   if (request.start_file.empty())
     return {};
-  std::vector<fresco::Pose> poses = fresco::readPoses(request.start_file);
-  if (poses.size() != request.files.size())
+  std::vector<fresco::Pose> poses = fresco::holdsScans(request.start_file)
+                                        ? fresco::posesOf(fresco::scansOf({request.start_file}))
+                                        : fresco::readPoses(request.start_file);
+  if (poses.size() != request.scans.size())
     throw std::runtime_error(
-        fresco::concat(request.start_file, ": ", poses.size(), " poses for ", request.files.size(), " scans"));
+        fresco::concat(request.start_file, ": ", poses.size(), " poses for ", request.scans.size(), " scans"));
   return poses;
 }
 
@@ -156,19 +164,19 @@ void run(int argc, char** argv)
   const std::vector<fresco::Pose> start = startPoses(request);
   fresco::makeFolder(request.folder);
   const fresco::Progress progress = fresco::printProgress(request.common.quiet);
-  const fresco::ScanSource scans(request.files.size(),
-                                 [&](fresco::Index i) { return fresco::readPoints(request.files[i]); });
+  const fresco::ScanSource scans(request.scans.size(),
+                                 [&](fresco::Index i) { return fresco::readPoints(request.scans[i]); });
   fresco::report(progress, "read", 0.0);
   const auto result = fresco::registerScans(scans, start, request.options, fresco::subProgress(progress, 0.0, 0.9));
   const auto placed = std::count_if(result.scans.begin(), result.scans.end(), [](const auto& s) { return s.placed; });
   if (placed == 0)
-    throw std::runtime_error(request.files[0] + ": " + result.scans[0].problem + "; no scan could be placed");
+    throw std::runtime_error(request.options.names[0] + ": " + result.scans[0].problem + "; no scan could be placed");
   fresco::report(progress, "write", 0.9);
   fresco::writeOutputs([&] { write(request, scans, result); });
   fresco::report(progress, "done", 1.0);
   for (std::size_t i = 0; i < result.scans.size(); ++i)
     if (!result.scans[i].problem.empty())
-      fresco::inform(request.common.quiet, request.files[i] + ": " + result.scans[i].problem);
+      fresco::inform(request.common.quiet, request.options.names[i] + ": " + result.scans[i].problem);
   fresco::inform(request.common.quiet, fresco::concat(placed, " of ", scans.count, " scans placed, rms ", result.rms));
 }
 } // namespace

@@ -54,9 +54,9 @@ struct PreparedScan {
 };
 
 /// One scan in its own frame, cleaned, with normals that point to the scanner.
-PreparedScan preparedScan(const std::string& file, const ModelOptions& options, const Progress& progress)
+PreparedScan preparedScan(const ScanPath& path, const ModelOptions& options, const Progress& progress)
 {
-  PointSet read = readPoints(file);
+  PointSet read = readPoints(path);
   if (read.viewpoints.cols() == 0)
     read.viewpoints = (-read.origin).cast<float>(); // the scanner stands at the origin of its scan's frame
   PointSet scan = cleaned(read, options.threads);
@@ -80,7 +80,8 @@ std::vector<Pose> placeScans(const ModelInput& input, const ModelOptions& option
   }
   ScanRegistrationOptions registration;
   registration.threads = options.threads;
-  registration.names = input.scans;
+  for (const ScanPath& scan : input.scans)
+    registration.names.push_back(scan.name());
   const Index count = input.scans.size();
   const ScanSource scans{count, [&](Index i) { return readPoints(input.scans[i]); }};
   const ScanRegistrationResult result = registerScans(scans, {}, registration, progress);
