@@ -3,7 +3,7 @@
 fresco_packages=(
   g++ cmake ninja-build ccache pkg-config ca-certificates
   libpcl-dev libvtk9-dev libopencv-dev libeigen3-dev libflann-dev libboost-dev libembree-dev
-  libtinygltf-dev libjpeg-dev zlib1g-dev liblzf-dev nlohmann-json3-dev libgtest-dev libbenchmark-dev clang-format clang-tidy git python3
+  libtinygltf-dev libjpeg-dev zlib1g-dev liblzf-dev libpugixml-dev nlohmann-json3-dev libgtest-dev libbenchmark-dev clang-format clang-tidy git python3
   libegl-dev libglew-dev libegl-mesa0 libgl1-mesa-dri python3-numpy
 )
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "support/scan_option.h"
 #include "support/tool.h"
 #include <algorithm>
 #include <cstring>
@@ -196,13 +197,15 @@ int main(int argc, char** argv)
     Args args("fresco_filter IN OUT [-outliers K SIGMA] [-veil DEG] [-voxel M] [options]",
               "Removes isolated points and mixed pixels of a scan, and thins it by voxel.\nIN: " +
                   readableExtensions(FileKind::points) + "; OUT: " + writableExtensions(FileKind::points) + ".");
+    ScanOption scan;
     options.declare(args);
+    scan.declare(args);
     common.declare(args);
     const auto files = args.parse(argc, argv, 2);
     validate(args, options);
     requireDistinct({files[1]}, {files[0]});
     options.outliers.threads = options.mixed_pixels.threads = common.threads;
-    CloudFile file = readCloud(files[0]);
+    CloudFile file = readCloud(scan.of(files[0]));
     filterCloud(file, files[0], args, options, common.quiet);
     writeOutputs([&] { writeCloud(files[1], file); });
   });

@@ -12,7 +12,8 @@ int main(int argc, char** argv)
         "Makes a textured model of a room: points and normals, poses, surface, texture, pictures, report.\n"
         "INPUT is a folder of scans and photographs (scans/*.pcd, cameras/ as COLMAP model, images/, and\n"
         "poses.txt, of which only the first pose is used unless -use_poses is given: it ties the scans to the\n"
-        "photographs) or an RGB-D folder (camera-intrinsics.txt, frame-*.{color.jpg,depth.png,pose.txt}).\n"
+        "photographs), an RGB-D folder (camera-intrinsics.txt, frame-*.{color.jpg,depth.png,pose.txt}), or a file\n"
+        "of scans (.e57, .ptx).\n"
         "Writes model.obj/.mtl/.png, model.glb, mesh.ply, poses.txt, snapshots/*.png, report.html and\n"
         "report.json to OUT_DIR; OUT_DIR/work holds what -resume needs.");
     args.flag("use_poses", options.use_poses,

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "support/scan_option.h"
 #include "support/tool.h"
 #include <algorithm>
 #include <array>
@@ -264,13 +265,15 @@ int main(int argc, char** argv)
         "[options]",
         "Normals that point to where each point was seen from, then bilateral smoothing of the normal field.\nIN: " +
             readableExtensions(FileKind::points) + "; OUT: " + writableExtensions(FileKind::points) + ".");
+    ScanOption scan;
     options.declare(args);
+    scan.declare(args);
     common.declare(args);
     const auto files = args.parse(argc, argv, 2);
     requireDistinct({files[1]}, {files[0]});
     validate(args, options);
     const Progress progress = printProgress(common.quiet);
-    CloudFile file = readCloud(files[0]);
+    CloudFile file = readCloud(scan.of(files[0]));
     PointSet set = withoutAttributes(loadPoints(file, files[0], args, options));
     BareCloud bare(file.cloud, set);
     options.normals.threads = options.smoothing.threads = common.threads;

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "support/scan_option.h"
 #include "support/tool.h"
 #include <fresco/core/require.h>
 #include <fresco/io/file.h>
@@ -21,6 +22,7 @@ struct Request {
   NormalFilteringOptions filtering;
   EnergyOptions energy;
   CommonOptions common;
+  ScanOption scan;
 };
 
 // An option of both modes, >= 0; the help shows the default of each.
@@ -61,6 +63,7 @@ void declare(Args& args, Request& request)
   args.flag("flip", f.flip, "flip edges so that they follow the creases (mode normal_filtering)");
   args.option("report", request.report, "file for the terms of each iteration and a summary, JSON");
   args.note("fresco_reconstruct scan.ply mesh.ply -depth 8\nfresco_optimize mesh.ply scan.ply sharp.ply");
+  request.scan.declare(args);
   request.common.declare(args);
 }
 
@@ -158,7 +161,7 @@ void run(const Request& request)
   const TriangleMesh mesh = readMesh(request.mesh);
   if (mesh.faceCount() == 0)
     throw std::runtime_error(request.mesh + ": no faces");
-  const PointSet points = readPoints(request.cloud);
+  const PointSet points = readPoints(request.scan.of(request.cloud));
   const Progress progress = printProgress(request.common.quiet);
   if (request.mode == "energy")
     write(request, minimizeSurfaceEnergy(mesh, points, request.energy, progress));

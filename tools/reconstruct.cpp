@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "support/scan_option.h"
 #include "support/tool.h"
 #include <cmath>
 #include <fresco/core/require.h>
@@ -11,7 +12,8 @@ namespace {
 using namespace fresco;
 
 struct Request {
-  std::string input, output;
+  ScanPath input;
+  std::string output;
   VolumetricOptions options;
   CommonOptions common;
   bool estimate = false;
@@ -51,11 +53,13 @@ Request parse(int argc, char** argv)
   args.note("fresco_reconstruct scan.ply mesh.ply -depth 9\n"
             "fresco_reconstruct room.pcd room.ply -cell 0.02 -trim_levels 2   (an open room: cells of 2 cm, no "
             "invented surface)");
+  fresco::ScanOption scan;
+  scan.declare(args);
   request.common.declare(args);
   const std::vector<std::string> files = args.parse(argc, argv, 2);
-  request.input = files[0];
+  request.input = scan.of(files[0]);
   request.output = files[1];
-  fresco::requireDistinct({request.output}, {request.input});
+  requireDistinct({request.output}, {files[0]});
   o.threads = request.common.threads;
   try {
     validateVolumetricOptions(o);
@@ -92,7 +96,7 @@ int main(int argc, char** argv)
     try {
       run(request);
     } catch (const std::invalid_argument& error) {
-      throw std::runtime_error(request.input + ": " + error.what());
+      throw std::runtime_error(request.input.file + ": " + error.what());
     }
   });
 }

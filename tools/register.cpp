@@ -9,6 +9,7 @@
 #include <fresco/io/json_text.h>
 #include <fresco/io/point_io.h>
 #include <fresco/io/pose_file.h>
+#include <fresco/io/scan_file.h>
 #include <fresco/registration/core/scan_registration.h>
 #include <nlohmann/json.hpp>
 namespace {
@@ -17,7 +18,7 @@ using namespace fresco;
 using Json = nlohmann::ordered_json;
 
 struct Request {
-  std::vector<std::string> files;
+  std::vector<fresco::ScanPath> scans;
   std::string folder, start_file;
   ScanRegistrationOptions options;
   CommonOptions common;
@@ -58,11 +59,14 @@ Request parse(int argc, char** argv)
       "fresco_register SCAN... -o OUT_DIR [-poses START.txt] [options]",
       "Brings scans into one frame.\nSCAN: " + readableExtensions(FileKind::points) +
           ", each in its own frame, or a folder of them.\n"
+          "Each scan of a file of several (.e57, .ptx) is one. "
           "Writes poses.txt (world from scan, `none` for a scan without a place), registered.pcd (all placed scans,\n"
           "normals towards each point's own viewpoint) and registration.json (overlap graph, residuals, unplaced "
           "scans).");
   args.option("o", request.folder, "folder of the output, created; required");
-  args.option("poses", request.start_file, "start poses, one a line as in poses.txt; `none` = unknown");
+  args.option(
+      "poses", request.start_file,
+      "start poses, one a line as in poses.txt; `none` = unknown; or a file of scans, whose own poses are taken");
   args.option("voxel", request.options.voxel, "finest thinning, unit of the points; 0 = from the data");
   args.option("max_distance", request.options.max_distance,
               "how far start poses may be off, unit of the points; 0 = 20 voxels");
@@ -77,14 +81,15 @@ Request parse(int argc, char** argv)
   const std::vector<std::string> words = args.parse(argc, argv, 1, 100000);
   if (request.folder.empty())
     throw UsageError("-o OUT_DIR is missing");
-  request.files = scanFiles(words);
-  std::vector<std::string> inputs = request.files;
+  std::vector<std::string> inputs = scanFiles(words);
+  request.scans = scansOf(inputs);
   inputs.push_back(request.start_file);
-  fresco::requireDistinct(
+  requireDistinct(
       {request.folder + "/registered.pcd", request.folder + "/poses.txt", request.folder + "/registration.json"},
       inputs);
   request.options.threads = request.common.threads;
-  request.options.names = request.files;
+  for (const fresco::ScanPath& scan : request.scans)
+    request.options.names.push_back(scan.name());
   return request;
 }
 
@@ -118,10 +123,11 @@ std::string reportText(const Request& request, const ScanRegistrationResult& res
   Json json;
   json["scans"] = Json::array();
   json["unplaced"] = Json::array();
-  for (std::size_t i = 0; i < request.files.size(); ++i) {
-    json["scans"].push_back(scanJson(request.files[i], result.scans[i], result.poses[i]));
+  const std::vector<std::string>& names = request.options.names;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    json["scans"].push_back(scanJson(names[i], result.scans[i], result.poses[i]));
     if (!result.scans[i].placed)
-      json["unplaced"].push_back(request.files[i]);
+      json["unplaced"].push_back(names[i]);
   }
   json["pairs"] = Json::array();
   for (const PairResult& pair : result.pairs)
@@ -144,10 +150,11 @@ std::vector<Pose> startPoses(const Request& request)
 {
   if (request.start_file.empty())
     return {};
-  std::vector<Pose> poses = readPoses(request.start_file);
-  if (poses.size() != request.files.size())
+  std::vector<Pose> poses =
+      holdsScans(request.start_file) ? posesOf(scansOf({request.start_file})) : readPoses(request.start_file);
+  if (poses.size() != request.scans.size())
     throw std::runtime_error(
-        concat(request.start_file, ": ", poses.size(), " poses for ", request.files.size(), " scans"));
+        concat(request.start_file, ": ", poses.size(), " poses for ", request.scans.size(), " scans"));
   return poses;
 }
 
@@ -165,18 +172,18 @@ void run(int argc, char** argv)
   makeFolder(request.folder);
   const FolderLock lock(request.folder, "fresco_register");
   const Progress progress = printProgress(request.common.quiet);
-  const ScanSource scans(request.files.size(), [&](Index i) { return readPoints(request.files[i]); });
+  const ScanSource scans(request.scans.size(), [&](Index i) { return readPoints(request.scans[i]); });
   report(progress, "read", 0.0);
   const auto result = registerScans(scans, start, request.options, subProgress(progress, 0.0, 0.9));
   const auto placed = std::count_if(result.scans.begin(), result.scans.end(), [](const auto& s) { return s.placed; });
   if (placed == 0)
-    throw std::runtime_error(request.files[0] + ": " + result.scans[0].problem + "; no scan could be placed");
+    throw std::runtime_error(request.options.names[0] + ": " + result.scans[0].problem + "; no scan could be placed");
   report(progress, "write", 0.9);
   writeOutputs([&] { write(request, scans, result); });
   report(progress, "done", 1.0);
   for (std::size_t i = 0; i < result.scans.size(); ++i)
     if (!result.scans[i].problem.empty())
-      inform(request.common.quiet, request.files[i] + ": " + result.scans[i].problem);
+      inform(request.common.quiet, request.options.names[i] + ": " + result.scans[i].problem);
   inform(request.common.quiet, concat(placed, " of ", scans.count, " scans placed, rms ", result.rms));
 }
 } // namespace

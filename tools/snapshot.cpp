@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "rendering/indoor_view.h"
 #include "rendering/picture.h"
+#include "support/scan_option.h"
 #include "support/tool.h"
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -27,6 +28,7 @@ struct Request {
   std::optional<double> angle;
   PictureOptions picture;
   CommonOptions common;
+  ScanPath scan; ///< MODEL as a file of points
 };
 
 using Model = std::variant<TriangleMesh, TexturedMesh, PointSet>;
@@ -147,12 +149,15 @@ Request parse(int argc, char** argv)
                 readableExtensions(FileKind::points) + "). Needs no display.");
   declareLook(args, request);
   declareView(args, request);
+  ScanOption scan;
+  scan.declare(args);
   request.common.declare(args);
   args.note("Examples:");
   args.note("  fresco_snapshot model.obj room.png -shading texture -view inside -size 1920x1080");
   args.note("  fresco_snapshot result.ply out.png -shading normals,gouraud,error -reference truth.obj -unit mm");
   const std::vector<std::string> files = args.parse(argc, argv, 2);
   request.model = files[0];
+  request.scan = scan.of(files[0]);
   request.output = files[1];
   request.picture.threads = request.common.threads;
   checkRequest(request, args);
@@ -163,8 +168,8 @@ Model readModel(const Request& request)
 {
   const std::string end = extension(request.model);
   const bool textured = std::count(request.shadings.begin(), request.shadings.end(), Shading::Texture) > 0;
-  if (end == ".pcd" || end == ".xyz" || end == ".txt" || end == ".asc")
-    return readPoints(request.model);
+  if (!isReadable(request.model, FileKind::mesh) && isReadable(request.model, FileKind::points))
+    return readPoints(request.scan);
   if (end == ".glb" || (textured && end == ".obj"))
     return readTexturedMesh(request.model);
   TriangleMesh mesh = readMesh(request.model);

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "seeds.h"
+#include "common/io/e57_writer.h"
+#include "common/io/las_writer.h"
 #include "stage_log.h"
 #include "targets.h"
 #include <filesystem>
@@ -57,6 +59,54 @@ const char* const ascii_vtk =
 const char* const quads_obj =
     "mtllib input.mtl\nv 0 0 0 1 0.5 0\nv 1 0 0\nv 1 1 0\nv 0 1 1e-3\nvt 0 0\nvt 1 0 0\nvn 0 0 1\n"
     "usemtl a\nf 1/1/1 2/2/1 3/1/1 -1/-1/-1\nf 1//1 2//1 3//1\nl 1 2\nf 1 2 \\\n3\n";
+
+const char* const two_stations_ptx = "2\n2\n1 2 3\n1 0 0\n0 1 0\n0 0 1\n1 0 0 0\n0 1 0 0\n0 0 1 0\n1 2 3 1\n"
+                                     "1 2 3 0.5\n0 0 0 0.5\n-1e-3 2 3 1\n4 5 6 0\n"
+                                     "1\n1\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n0 1 0 0\n-1 0 0 0\n0 0 1 0\n5 6 7 1\n"
+                                     "1 2 3 .5 1 2 255\n";
+
+/// Without checksums, as the target wants it.
+std::string someE57()
+{
+  using test::e57::Field;
+  Field x{"cartesianX"}, range{"sphericalRange"};
+  x.reals = {1, 2, 3};
+  Field y = x, z{"cartesianZ", "ScaledInteger", false, -5, 500, 0.5, 2, {-5, 7, 500}};
+  y.name = "cartesianY";
+  y.single = true;
+  const Field state{"cartesianInvalidState", "Integer", false, 0, 2, 1, 0, {0, 1, 2}};
+  const Field row{"rowIndex", "Integer", false, 0, 9, 1, 0, {0, 1, 2}}, column{"columnIndex", "Integer"};
+  Field red{"colorRed", "Integer", false, 0, 65535, 1, 0, {0, 1, 65535}}, green = red, blue = red;
+  green.name = "colorGreen";
+  blue.name = "colorBlue";
+  Field label{"label", "String"};
+  label.texts = {"a", "", "bc"};
+  range.reals = {1, 2, 3};
+  Field azimuth = range, elevation = range;
+  azimuth.name = "sphericalAzimuth";
+  elevation.name = "sphericalElevation";
+  const test::e57::Image picture{"<sphericalRepresentation type=\"Structure\"><jpegImage type=\"Blob\" PICTURE/>"
+                                 "</sphericalRepresentation>",
+                                 "jpeg", ""};
+  const std::string file = test::e57::fileOf(
+      {{"a", {x, y, z, state, row, column, red, green, blue, label}, 3, test::e57::poseXml(1, 0, 1, 2, 3)},
+       {"b", {range, azimuth, elevation}, 3}},
+      {picture});
+  std::string logical;
+  for (std::size_t at = 0; at < file.size(); at += 1024)
+    logical += file.substr(at, 1020);
+  return logical;
+}
+
+std::string someLas(int minor, int format)
+{
+  test::las::File file;
+  file.minor = minor;
+  file.format = format;
+  file.points.resize(3);
+  file.points[1].stored = {100, -200, 300};
+  return test::las::fileOf(file);
+}
 
 std::string parts(const std::string& a, const std::string& b) { return a + std::string(separator) + b; }
 
@@ -142,6 +192,11 @@ void writeSeeds(const std::string& folder)
   put("stl", "binary", written("a.stl", mesh));
   put("xyz", "points", written("a.xyz", points));
   put("xyz", "colors", "# x y z r g b\n0 0 0 255 0 0\n1,2,3,0,0,255\n-1e3 nan 5 1 2 3\n");
+  put("ptx", "stations", two_stations_ptx);
+  put("pts", "blocks", "2\n1 2 3 -7 10 20 30\n4 5 6 100 1 2 3\n1\n431000.123 5410000.456 7 8 9 10 11\n");
+  put("las", "old", someLas(2, 3));
+  put("las", "new", someLas(4, 8));
+  put("e57", "scans", someE57());
   put("obj", "quads", parts(quads_obj, "newmtl a\nKd 1 0 0\nmap_Kd -s 1 1 1 missing.png\n"));
   put("obj", "mesh", written("a.obj", mesh));
   const std::string obj = written("input.obj", model);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "targets.h"
+#include "common/io/e57_writer.h"
 #include "input/rgbd.h"
 #include "stage_log.h"
 #include "support/args.h"
@@ -12,6 +13,8 @@
 #include <fresco/io/mesh_io.h>
 #include <fresco/io/point_io.h>
 #include <fresco/io/pose_file.h>
+#include <fresco/io/scan_file.h>
+#include <fresco/io/scan_images.h>
 #include <fstream>
 using namespace fresco::model;
 namespace fresco::fuzz {
@@ -82,6 +85,40 @@ void readPointsAndCloud(const std::string& path)
   expect(toPointSet(readCloud(path)).size() == set.size(), "a cloud and its points differ in size");
 }
 
+/// Every scan of a file of several, whole and in windows.
+void readScans(const std::string& path)
+{
+  for (const ScanPath& scan : scansOf({path})) {
+    const PointSet set = readPoints(scan);
+    validatePointSet(set);
+    Index streamed = 0;
+    streamPoints(scan, 100, [&](const PointSet& window) {
+      expect(window.size() > 0 && window.size() <= 100, "a window of a wrong size");
+      streamed += window.size();
+      return true;
+    });
+    expect(streamed <= set.size(), "windows have more points than the scan"); // an organised one has empty places
+  }
+}
+
+/// The bytes without checksums, which get theirs here: otherwise hardly any input would come past them.
+void readE57(Bytes bytes, const std::string& folder)
+{
+  const std::string path = folder + "/input.e57";
+  std::string logical(bytes);
+  logical.resize((logical.size() + 1019) / 1020 * 1020);
+  if (logical.size() >= 24)
+    logical.replace(16, 8, test::e57::raw(std::uint64_t{logical.size() / 1020 * 1024}));
+  store(path, test::e57::File::withChecksums(logical));
+  readChecked(folder, [&] { readPointsAndCloud(path); });
+  readChecked(folder, [&] { readScans(path); });
+  readChecked(folder, [&] {
+    const std::size_t images = readScanImages(path).size();
+    for (std::size_t i = 0; i < images; ++i)
+      expect(!readScanImageBytes(path, static_cast<Index>(i)).empty(), "an empty picture");
+  });
+}
+
 /// One file of the given type.
 Target fileTarget(const std::string& name, std::vector<std::function<void(const std::string&)>> readers)
 {
@@ -94,6 +131,7 @@ Target fileTarget(const std::string& name, std::vector<std::function<void(const 
 }
 
 const auto as_points = [](const std::string& path) { readPointsAndCloud(path); };
+const auto as_scans = [](const std::string& path) { readScans(path); };
 const auto as_mesh = [](const std::string& path) { checkMesh(readMesh(path)); };
 const auto as_model = [](const std::string& path) { checkModel(readTexturedMesh(path)); };
 
@@ -216,6 +254,10 @@ const std::vector<Target>& targets()
       fileTarget("vtk", {as_points, as_mesh}),
       fileTarget("stl", {as_points, as_mesh}),
       fileTarget("xyz", {as_points}),
+      fileTarget("ptx", {as_points, as_scans}),
+      fileTarget("pts", {as_points, as_scans}),
+      fileTarget("las", {as_points, as_scans}),
+      {"e57", readE57},
       fileTarget("glb", {as_model}),
       {"obj", readObj},
       {"colmap_text", [](Bytes bytes, const std::string& folder) { readColmapModel(bytes, folder, ".txt"); }},

@@ -2,28 +2,89 @@
 #include <algorithm>
 #include <cmath>
 #include <fresco/core/camera.h>
+#include <fresco/core/constants.h>
 #include <fresco/core/require.h>
 namespace fresco {
 namespace {
-/// OPENCV model: radial k1 k2, tangential p1 p2, on the plane z = 1 (Brown 1966).
-Eigen::Vector2d distorted(const CameraModel& camera, const Eigen::Vector2d& p)
+/// The factor of a point by its r^2, and its derivative by r^2.
+struct Radial {
+  double factor, slope;
+};
+
+/// Polynomial of r^2 (Brown 1966; Kannala & Brandt 2006 for fisheye), or a quotient of two (OpenCV's rational model).
+Radial radialOf(const CameraModel& c, double r2)
 {
-  const double x = p.x(), y = p.y(), r2 = p.squaredNorm();
-  const double radial = 1.0 + r2 * (camera.k1 + r2 * camera.k2);
-  return {x * radial + 2 * camera.p1 * x * y + camera.p2 * (r2 + 2 * x * x),
-          y * radial + 2 * camera.p2 * x * y + camera.p1 * (r2 + 2 * y * y)};
+  const bool fisheye = c.projection == CameraProjection::fisheye;
+  const double k8 = fisheye ? c.k4 : 0;
+  const double above = 1 + r2 * (c.k1 + r2 * (c.k2 + r2 * (c.k3 + r2 * k8)));
+  const double above_slope = c.k1 + r2 * (2 * c.k2 + r2 * (3 * c.k3 + r2 * 4 * k8));
+  if (fisheye)
+    return {above, above_slope};
+  const double below = 1 + r2 * (c.k4 + r2 * (c.k5 + r2 * c.k6));
+  const double below_slope = c.k4 + r2 * (2 * c.k5 + r2 * 3 * c.k6);
+  return {above / below, (above_slope * below - above * below_slope) / (below * below)};
 }
 
-Eigen::Matrix2d distortionJacobian(const CameraModel& camera, const Eigen::Vector2d& p)
+Eigen::Vector2d distorted(const CameraModel& c, const Eigen::Vector2d& p)
 {
   const double x = p.x(), y = p.y(), r2 = p.squaredNorm();
-  const double radial = 1.0 + r2 * (camera.k1 + r2 * camera.k2);
-  const double slope = 2 * (camera.k1 + 2 * r2 * camera.k2); // d radial / dx = slope * x
+  const double radial = radialOf(c, r2).factor;
+  return {x * radial + 2 * c.p1 * x * y + c.p2 * (r2 + 2 * x * x) + c.sx1 * r2,
+          y * radial + 2 * c.p2 * x * y + c.p1 * (r2 + 2 * y * y) + c.sy1 * r2};
+}
+
+Eigen::Matrix2d distortionJacobian(const CameraModel& c, const Eigen::Vector2d& p)
+{
+  const double x = p.x(), y = p.y();
+  const auto [radial, slope] = radialOf(c, p.squaredNorm());
   Eigen::Matrix2d J;
-  J << radial + slope * x * x + 2 * camera.p1 * y + 6 * camera.p2 * x,
-      slope * x * y + 2 * camera.p1 * x + 2 * camera.p2 * y, slope * x * y + 2 * camera.p2 * y + 2 * camera.p1 * x,
-      radial + slope * y * y + 2 * camera.p2 * x + 6 * camera.p1 * y;
+  J << radial + 2 * slope * x * x + 2 * c.p1 * y + 6 * c.p2 * x + 2 * c.sx1 * x,
+      2 * slope * x * y + 2 * c.p1 * x + 2 * c.p2 * y + 2 * c.sx1 * y,
+      2 * slope * x * y + 2 * c.p2 * y + 2 * c.p1 * x + 2 * c.sy1 * x,
+      radial + 2 * slope * y * y + 2 * c.p2 * x + 6 * c.p1 * y + 2 * c.sy1 * y;
   return J;
+}
+
+/// What distorted() makes `target` of, by Newton's method: 3 to 5 steps on real lenses.
+Eigen::Vector2d undistorted(const CameraModel& camera, const Eigen::Vector2d& target)
+{
+  Eigen::Vector2d p = target;
+  for (int step = 0; step < 20; ++step) {
+    const Eigen::Matrix2d J = distortionJacobian(camera, p);
+    const double det = J.determinant();
+    if (!(det > 1e-6)) // the model folds over here: no such direction
+      break;
+    const Eigen::Vector2d change = J.inverse() * (distorted(camera, p) - target);
+    p -= change;
+    if (change.squaredNorm() < 1e-24)
+      break;
+  }
+  return p;
+}
+
+/// Place of a point before distortion.
+Eigen::Vector2d idealPlace(CameraProjection projection, const Eigen::Vector3d& q)
+{
+  if (projection == CameraProjection::perspective)
+    return q.head<2>() / q.z();
+  if (projection == CameraProjection::spherical)
+    return {std::atan2(q.x(), q.z()), std::atan2(q.y(), std::hypot(q.x(), q.z()))};
+  const double r = q.head<2>().norm();
+  return r > 0 ? Eigen::Vector2d(std::atan2(r, q.z()) / r * q.head<2>()) : Eigen::Vector2d::Zero();
+}
+
+Eigen::Vector2d placeOf(const CameraModel& camera, const Eigen::Vector2d& pixel)
+{
+  const Eigen::Vector2d p((pixel.x() - camera.cx) / camera.fx, (pixel.y() - camera.cy) / camera.fy);
+  const bool bent = camera.hasDistortion() && camera.projection != CameraProjection::spherical;
+  return bent ? undistorted(camera, p) : p;
+}
+
+/// Direction at `angle` from the axis, towards `p` in the picture.
+Eigen::Vector3d atAngle(double angle, const Eigen::Vector2d& p)
+{
+  const Eigen::Vector2d side = p.norm() > 0 ? Eigen::Vector2d(p.normalized() * std::sin(angle)) : p;
+  return {side.x(), side.y(), std::cos(angle)};
 }
 } // namespace
 
@@ -31,39 +92,56 @@ void validateCamera(const CameraModel& camera)
 {
   constexpr int most_pixels = 1000000;
   constexpr double least_focal = 1e-3, most = 1e6; // in sides of the image
-  const auto& [width, height, fx, fy, cx, cy, k1, k2, p1, p2] = camera;
-  require(width >= 1 && height >= 1 && width <= most_pixels && height <= most_pixels, "camera: an image of ", width,
-          "x", height, " pixels");
-  const double side = std::max(width, height);
-  for (const double focal : {fx, fy})
+  const CameraModel& c = camera;
+  require(c.width >= 1 && c.height >= 1 && c.width <= most_pixels && c.height <= most_pixels, "camera: an image of ",
+          c.width, "x", c.height, " pixels");
+  const double side = std::max(c.width, c.height);
+  for (const double focal : {c.fx, c.fy})
     require(focal >= least_focal * side && focal <= most * side, "camera: a focal length of ", focal, " pixels for ",
-            width, "x", height);
-  for (const double value : {cx / side, cy / side, k1, k2, p1, p2})
+            c.width, "x", c.height);
+  for (const double value : {c.cx / side, c.cy / side, c.k1, c.k2, c.k3, c.k4, c.k5, c.k6, c.p1, c.p2, c.sx1, c.sy1})
     require(std::abs(value) <= most, "camera: its centre or distortion is not finite or out of range");
+}
+
+CameraModel sphericalCamera(int width, int height)
+{
+  require(height > 0 && width == 2 * height, "panorama: ", width, "x", height, " pixels, not twice as wide as high");
+  CameraModel camera;
+  camera.projection = CameraProjection::spherical;
+  camera.width = width;
+  camera.height = height;
+  camera.fx = camera.fy = height / pi;
+  camera.cx = 0.5 * width;
+  camera.cy = 0.5 * height;
+  return camera;
 }
 
 Eigen::Vector2d project(const CameraModel& camera, const Eigen::Vector3d& point)
 {
-  const Eigen::Vector2d p = camera.hasDistortion() ? distorted(camera, point.head<2>() / point.z())
-                                                   : Eigen::Vector2d(point.head<2>() / point.z());
+  Eigen::Vector2d p = idealPlace(camera.projection, point);
+  if (camera.hasDistortion() && camera.projection != CameraProjection::spherical)
+    p = distorted(camera, p);
   return {camera.fx * p.x() + camera.cx, camera.fy * p.y() + camera.cy};
+}
+
+Eigen::Vector3d direction(const CameraModel& camera, const Eigen::Vector2d& pixel)
+{
+  const Eigen::Vector2d p = placeOf(camera, pixel);
+  if (camera.projection == CameraProjection::perspective)
+    return p.homogeneous().normalized();
+  if (camera.projection == CameraProjection::fisheye)
+    return atAngle(p.norm(), p);
+  return {std::cos(p.y()) * std::sin(p.x()), std::sin(p.y()), std::cos(p.y()) * std::cos(p.x())};
 }
 
 Eigen::Vector3d unproject(const CameraModel& camera, const Eigen::Vector2d& pixel)
 {
-  const Eigen::Vector2d target((pixel.x() - camera.cx) / camera.fx, (pixel.y() - camera.cy) / camera.fy);
-  Eigen::Vector2d p = target;
-  if (camera.hasDistortion())
-    for (int step = 0; step < 20; ++step) { // Newton's method converges in 3 to 5 steps on real lenses
-      const Eigen::Matrix2d J = distortionJacobian(camera, p);
-      const double det = J.determinant();
-      if (!(det > 1e-6)) // the model folds over here: no such direction
-        break;
-      const Eigen::Vector2d change = J.inverse() * (distorted(camera, p) - target);
-      p -= change;
-      if (change.squaredNorm() < 1e-24)
-        break;
-    }
-  return {p.x(), p.y(), 1.0};
+  require(camera.projection != CameraProjection::spherical, "camera: a panorama has no plane z = 1");
+  const Eigen::Vector2d p = placeOf(camera, pixel);
+  if (camera.projection == CameraProjection::perspective)
+    return p.homogeneous();
+  constexpr double widest = 89 * pi / 180; // the plane z = 1 is 57 wide there, and without end a degree on
+  const Eigen::Vector3d ray = atAngle(std::min(p.norm(), widest), p);
+  return ray / ray.z();
 }
 } // namespace fresco

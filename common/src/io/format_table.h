@@ -4,9 +4,12 @@
 #include <fresco/core/point_table.h>
 #include <fresco/core/textured_mesh.h>
 #include <fresco/io/formats.h>
+#include <memory>
 #include <string>
 #include <vector>
 namespace fresco::io {
+class ScanReader;
+
 /// A format of files: what it is called, how its names end, and who reads and writes it (nullptr: nobody).
 struct Format {
   const char* name;
@@ -16,6 +19,9 @@ struct Format {
   TriangleMesh (*read_mesh)(const std::string& path) = nullptr;
   void (*write_mesh)(const std::string& path, const TriangleMesh& mesh) = nullptr;
   bool textured = false; ///< also read and written with texture, by texture_io.cpp, which links the image libraries
+
+  /// For formats of several scans, or larger than memory; read_points then reads all scans as one cloud.
+  std::unique_ptr<ScanReader> (*open_scans)(const std::string& path) = nullptr;
 
   bool reads(FileKind kind) const;
   bool writes(FileKind kind) const;

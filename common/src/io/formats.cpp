@@ -4,8 +4,11 @@
 #include "io/mesh/obj.h"
 #include "io/mesh/ply.h"
 #include "io/mesh/vtk_polydata.h"
+#include "io/points/e57/e57.h"
+#include "io/points/las.h"
 #include "io/points/parse_file.h"
 #include "io/points/pcd.h"
+#include "io/points/text_scans.h"
 #include "io/points/xyz.h"
 #include <algorithm>
 #include <fresco/io/mesh_io.h>
@@ -77,6 +80,21 @@ TriangleMesh readObjMesh(const std::string& path)
 
 PointTable readXyz(const std::string& path) { return parseFile(path, parseXyz); }
 void writeXyzPoints(const std::string& path, const PointTable& points, bool) { writeXyz(path, points); }
+
+template <auto open>
+PointTable readScans(const std::string& path)
+{
+  return namingFile(path, [&] { return readMergedTable(*open(path)); });
+}
+
+/// A format of several scans, which is only read.
+template <auto open>
+Format scansFormat(const char* name, const char* extension)
+{
+  Format format{name, {extension}, readScans<open>};
+  format.open_scans = open;
+  return format;
+}
 } // namespace
 
 const std::vector<Format>& formats()
@@ -90,6 +108,10 @@ const std::vector<Format>& formats()
       {"STL", {".stl"}, readStlPoints, nullptr, readStlMesh, writeStlMesh},
       {"OBJ", {".obj"}, readObjPoints, nullptr, readObjMesh, writeObj, true},
       {"XYZ", {".xyz", ".txt", ".asc"}, readXyz, writeXyzPoints},
+      scansFormat<openE57>("E57", ".e57"),
+      scansFormat<openPtx>("PTX", ".ptx"),
+      scansFormat<openPts>("PTS", ".pts"),
+      scansFormat<openLas>("LAS", ".las"),
       {"binary glTF", {".glb"}, nullptr, nullptr, nullptr, nullptr, true},
   };
   return all;
@@ -140,6 +162,8 @@ const Format& formatToRead(const std::string& path, FileKind kind)
 {
   if (const Format* const format = find(path, kind, &Format::reads))
     return *format;
+  if (extension(path) == ".laz")
+    throw std::runtime_error(path + ": " + laz_hint);
   throw std::runtime_error(path + ": not a " + nameOf(kind) + ": expected " + readableExtensions(kind));
 }
 

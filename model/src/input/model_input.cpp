@@ -28,6 +28,15 @@ std::vector<std::string> scanFiles(const std::string& folder)
   return files;
 }
 
+/// The scans in `files`, with the poses that the files themselves have.
+void takeScans(ModelInput& input, const std::vector<std::string>& files)
+{
+  input.scans = scansOf(files);
+  input.poses = posesOf(input.scans);
+  if (std::none_of(input.poses.begin(), input.poses.end(), [](const Pose& pose) { return pose.has_value(); }))
+    input.poses.clear();
+}
+
 void readPhotographs(ModelInput& input)
 {
   const std::string cameras = input.folder + "/cameras";
@@ -43,7 +52,10 @@ void readPhotographs(ModelInput& input)
 
 std::vector<std::string> ModelInput::files() const
 {
-  std::vector<std::string> all = scans;
+  std::vector<std::string> all;
+  for (const ScanPath& scan : scans)
+    if (all.empty() || all.back() != scan.file)
+      all.push_back(scan.file);
   for (const View& view : cameras.views)
     all.push_back(images + "/" + view.image);
   for (const char* name : {"poses.txt", "cameras/cameras.txt", "cameras/images.txt", "camera-intrinsics.txt"})
@@ -57,10 +69,14 @@ std::vector<std::string> ModelInput::files() const
 
 ModelInput readModelInput(const std::string& folder)
 {
-  if (!fs::is_directory(folder))
-    throw std::runtime_error(folder + ": no such folder");
   ModelInput input;
   input.folder = folder;
+  if (fs::is_regular_file(folder) && holdsScans(folder)) {
+    takeScans(input, {folder});
+    return input;
+  }
+  if (!fs::is_directory(folder))
+    throw std::runtime_error(folder + ": no such folder");
   if (isRgbdFolder(folder)) {
     input.rgbd = readRgbdFolder(folder);
     for (const RgbdFrame& frame : input.rgbd->frames)
@@ -69,7 +85,7 @@ ModelInput readModelInput(const std::string& folder)
   }
   if (!fs::is_directory(folder + "/scans"))
     throw std::runtime_error(folder + ": neither a folder scans nor RGB-D frames (camera-intrinsics.txt) in it");
-  input.scans = scanFiles(folder + "/scans");
+  takeScans(input, scanFiles(folder + "/scans"));
   if (fs::exists(folder + "/poses.txt")) {
     input.poses = readPoses(folder + "/poses.txt");
     if (input.poses.size() != input.scans.size())

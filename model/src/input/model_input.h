@@ -3,6 +3,7 @@
 #include "input/rgbd.h"
 #include <fresco/core/camera.h>
 #include <fresco/io/pose_file.h>
+#include <fresco/io/scan_file.h>
 #include <optional>
 #include <string>
 #include <vector>
@@ -10,17 +11,18 @@ namespace fresco::model {
 /// What a model is made from: a folder of scans and photographs, or a folder of RGB-D frames.
 struct ModelInput {
   std::string folder;
-  std::vector<std::string> scans; ///< files, in the order of their names; empty for RGB-D
-  std::vector<Pose> poses;        ///< world from scan; empty where the folder has none
-  CameraSet cameras;              ///< photographs; no view where the folder has none
-  std::string images;             ///< folder of the photographs
+  std::vector<ScanPath> scans; ///< in the order of the names of their files; empty for RGB-D
+  std::vector<Pose> poses;     ///< world from scan; empty where neither folder nor scans have any
+  CameraSet cameras;           ///< photographs; no view where the folder has none
+  std::string images;          ///< folder of the photographs
   std::optional<RgbdFolder> rgbd;
 
   std::vector<std::string> files() const; ///< everything that the model depends on
 };
 
-/// Looks at a folder and reads everything small (poses, cameras). Folder of scans: `scans/*.pcd` (or .ply, .xyz, .vtk,
-/// .obj), `poses.txt`, `cameras/`, `images/`. RGB-D: see readRgbdFolder().
+/// Looks at a folder and reads everything small (poses, cameras). Folder of scans: `scans/*.pcd` (or another format; each
+/// scan of a file of several is one), `poses.txt` (else the poses that the scans themselves have), `cameras/`, `images/`.
+/// RGB-D: see readRgbdFolder(). In place of a folder: a file of scans (.e57, .ptx).
 /// @throws std::runtime_error naming what is missing or does not fit together: neither kind, no scan, more or fewer
 ///         poses than scans, a photograph that is missing
 ModelInput readModelInput(const std::string& folder);

@@ -74,7 +74,8 @@ std::vector<Pose> placeScans(const ModelInput& input, const ModelOptions& option
   }
   ScanRegistrationOptions registration;
   registration.threads = options.threads;
-  registration.names = input.scans;
+  for (const ScanPath& scan : input.scans)
+    registration.names.push_back(scan.name());
   const Index count = input.scans.size();
   const ScanSource scans{count, [&](Index i) { return readPoints(input.scans[i]); }};
   const ScanRegistrationResult result = registerScans(scans, {}, registration, progress);

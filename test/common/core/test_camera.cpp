@@ -134,6 +134,11 @@ TEST(Colmap, EveryModelHasItsParameters)
   EXPECT_EQ(camera("1 SIMPLE_RADIAL 64 48 50 32 24 0.1").k1, 0.1);
   EXPECT_EQ(camera("1 RADIAL 64 48 50 32 24 0.1 0.2").k2, 0.2);
   EXPECT_EQ(camera("1 OPENCV 64 48 50 51 32 24 .1 .2 .3 .4").p2, 0.4);
+  EXPECT_EQ(camera("1 OPENCV_FISHEYE 64 48 50 51 32 24 .1 .2 .3 .4").k4, 0.4);
+  EXPECT_EQ(camera("1 FULL_OPENCV 64 48 50 51 32 24 .1 .2 .3 .4 .5 .6 .7 .8").k6, 0.8);
+  EXPECT_EQ(camera("1 SIMPLE_RADIAL_FISHEYE 64 48 50 32 24 .1").projection, CameraProjection::fisheye);
+  EXPECT_EQ(camera("1 RADIAL_FISHEYE 64 48 50 32 24 .1 .2").fy, 50);
+  EXPECT_EQ(camera("1 THIN_PRISM_FISHEYE 64 48 50 51 32 24 .1 .2 .3 .4 .5 .6 .7 .8").sy1, 0.8);
   for (const char* bad :
        {"1 FISHEYE 64 48 50 32 24", "1 PINHOLE 64 48 50 32 24", "1 PINHOLE 0 48 50 51 32 24",
         "1 PINHOLE 64 48 -50 51 32 24", "1 PINHOLE 64 48 nan 51 32 24", "x", "2 PINHOLE 64 48 50 51 32 24"})

@@ -6,16 +6,37 @@
 #include <string>
 #include <vector>
 namespace fresco {
-/// Perspective camera with radial and tangential distortion (the OPENCV model of COLMAP; simpler models have zeros).
-/// Axes: x right, y down, z forward. Pixels: (0,0) is the upper left corner of the upper left pixel, whose centre
-/// lies at (0.5, 0.5).
+/// How directions become places in the picture, before distortion.
+enum class CameraProjection {
+  perspective, ///< the plane z = 1
+  fisheye,     ///< equidistant: the distance from the middle is the angle from the axis, radians
+  spherical    ///< equirectangular: longitude to the right, latitude downwards, radians; the middle looks along z
+};
+
+/// Camera with radial, tangential and thin prism distortion. Perspective: the models OPENCV and FULL_OPENCV of COLMAP;
+/// fisheye: OPENCV_FISHEYE and THIN_PRISM_FISHEYE; simpler models have zeros. Axes: x right, y down, z forward. Pixels:
+/// (0,0) is the upper left corner of the upper left pixel, whose centre lies at (0.5, 0.5).
 struct CameraModel {
   int width = 0, height = 0;             ///< pixels
-  double fx = 0, fy = 0, cx = 0, cy = 0; ///< pixels
-  double k1 = 0, k2 = 0, p1 = 0, p2 = 0; ///< distortion, dimensionless
+  double fx = 0, fy = 0, cx = 0, cy = 0; ///< pixels; spherical: pixels per radian
+  double k1 = 0, k2 = 0, p1 = 0, p2 = 0; ///< distortion, dimensionless; none of a spherical camera
+  double k3 = 0;                         ///< of r^6
+  double k4 = 0, k5 = 0, k6 = 0;         ///< perspective: of r^2, r^4, r^6 in the denominator; fisheye: k4 of r^8
+  double sx1 = 0, sy1 = 0;               ///< thin prism
+  CameraProjection projection = CameraProjection::perspective;
 
-  bool hasDistortion() const { return k1 != 0 || k2 != 0 || p1 != 0 || p2 != 0; }
+  /// Whether it is anything but a pinhole camera.
+  bool hasDistortion() const
+  {
+    bool bent = projection != CameraProjection::perspective; // without jumps: it is asked for every texel
+    for (const double value : {k1, k2, p1, p2, k3, k4, k5, k6, sx1, sy1})
+      bent |= value != 0;
+    return bent;
+  }
 };
+
+/// The spherical camera of a panorama of all directions, `width` twice as many pixels as `height`.
+FRESCO_EXPORT CameraModel sphericalCamera(int width, int height);
 
 /// One photograph.
 struct View {
@@ -36,9 +57,14 @@ struct CameraSet {
 ///         computed with
 FRESCO_EXPORT void validateCamera(const CameraModel& camera);
 
-/// Pixel of a point given in the camera's frame; z must be positive.
+/// Pixel of a point given in the camera's frame; z must be positive in perspective. Elsewhere the point is not at the
+/// origin.
 FRESCO_EXPORT Eigen::Vector2d project(const CameraModel& camera, const Eigen::Vector3d& point);
 
-/// Direction (z = 1) in the camera's frame that `pixel` looks along; distortion is inverted iteratively.
+/// Direction of length 1 in the camera's frame that `pixel` looks along; distortion is inverted iteratively.
+FRESCO_EXPORT Eigen::Vector3d direction(const CameraModel& camera, const Eigen::Vector2d& pixel);
+
+/// The same with z = 1. Directions of a fisheye camera more than 89 degrees from its axis are taken to 89 degrees.
+/// @throws std::invalid_argument for a spherical camera
 FRESCO_EXPORT Eigen::Vector3d unproject(const CameraModel& camera, const Eigen::Vector2d& pixel);
 } // namespace fresco

@@ -146,7 +146,7 @@ FRESCO_EXPORT void packColors(PointTable& table);
 FRESCO_EXPORT void unpackColors(PointTable& table);
 
 /// Bounds of finite coordinates and what rounding them to float loses.
-struct CoordinateBounds {
+struct FRESCO_EXPORT CoordinateBounds {
   Eigen::Array3d low, high, loss;
 
   double extent() const;     ///< longest side, >= 0

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "io/colmap/colmap_model.h"
+#include "io/colmap/lens_models.h"
 #include <filesystem>
 #include <fresco/core/require.h>
 #include <fresco/io/colmap.h>
@@ -93,10 +94,10 @@ void writeColmap(const std::string& folder, const CameraSet& set)
           << "#   CAMERA_ID, MODEL, WIDTH, HEIGHT, PARAMS[]\n# Number of cameras: " << set.cameras.size() << "\n";
   for (std::size_t c = 0; c < set.cameras.size(); ++c) {
     const CameraModel& m = set.cameras[c];
-    cameras << c + 1 << (m.hasDistortion() ? " OPENCV " : " PINHOLE ") << m.width << " " << m.height << " " << m.fx
-            << " " << m.fy << " " << m.cx << " " << m.cy;
-    if (m.hasDistortion())
-      cameras << " " << m.k1 << " " << m.k2 << " " << m.p1 << " " << m.p2;
+    const io::LensModel& lens = io::lensModelOf(m);
+    cameras << c + 1 << " " << lens.name << " " << m.width << " " << m.height;
+    for (double CameraModel::*parameter : lens.parameters)
+      cameras << " " << m.*parameter;
     cameras << "\n";
   }
   images << std::setprecision(17) << "# Image list with two lines of data per image:\n"

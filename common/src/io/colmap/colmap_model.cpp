@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "io/colmap/colmap_model.h"
+#include "io/colmap/lens_models.h"
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -51,20 +52,25 @@ private:
   std::string path_, data_;
   std::size_t at_ = 0;
 };
+
+template <typename Test>
+const LensModel* findModel(const Test& test)
+{
+  const auto found = std::find_if(lensModels().begin(), lensModels().end(), test);
+  return found == lensModels().end() ? nullptr : &*found;
+}
 } // namespace
 
 int parameterCount(const std::string& model)
 {
-  static const std::map<std::string, int> counts = {
-      {"SIMPLE_PINHOLE", 3}, {"PINHOLE", 4}, {"SIMPLE_RADIAL", 4}, {"RADIAL", 5}, {"OPENCV", 8}};
-  const auto found = counts.find(model);
-  return found == counts.end() ? -1 : found->second;
+  const LensModel* const lens = findModel([&](const LensModel& m) { return m.name == model; });
+  return lens ? static_cast<int>(lens->parameters.size()) : -1;
 }
 
 std::string modelName(int id)
 {
-  static const char* const names[] = {"SIMPLE_PINHOLE", "PINHOLE", "SIMPLE_RADIAL", "RADIAL", "OPENCV"};
-  return id >= 0 && id < 5 ? names[id] : "";
+  const LensModel* const lens = findModel([&](const LensModel& m) { return m.number == id; });
+  return lens ? lens->name : "";
 }
 
 CameraModel makeCamera(const std::string& model, std::uint64_t width, std::uint64_t height,
@@ -72,25 +78,22 @@ CameraModel makeCamera(const std::string& model, std::uint64_t width, std::uint6
 {
   const int wanted = parameterCount(model);
   if (wanted < 0)
-    fail(where, "camera model " + model + " is none of SIMPLE_PINHOLE, PINHOLE, SIMPLE_RADIAL, RADIAL, OPENCV");
+    fail(where, "camera model " + model + " is none of " + lensModelNames());
   if (static_cast<int>(p.size()) != wanted)
     fail(where, concat("camera model ", model, " has ", wanted, " parameters, not ", p.size()));
   if (!std::all_of(p.begin(), p.end(), [](double value) { return std::isfinite(value); }))
     fail(where, "a camera parameter is not finite");
   if (width < 1 || height < 1 || width > 1000000 || height > 1000000)
     fail(where, concat("an image of ", width, "x", height, " pixels"));
-  const bool two_focal_lengths = model == "PINHOLE" || model == "OPENCV";
-  const std::size_t center = two_focal_lengths ? 2 : 1;
+  const LensModel& lens = *findModel([&](const LensModel& m) { return m.name == model; });
   CameraModel camera;
+  camera.projection = lens.projection;
   camera.width = static_cast<int>(width);
   camera.height = static_cast<int>(height);
-  camera.fx = p[0];
-  camera.fy = two_focal_lengths ? p[1] : p[0];
-  camera.cx = p[center];
-  camera.cy = p[center + 1];
-  double* const distortion[] = {&camera.k1, &camera.k2, &camera.p1, &camera.p2};
-  for (std::size_t i = center + 2; i < p.size(); ++i)
-    *distortion[i - center - 2] = p[i];
+  for (std::size_t i = 0; i < p.size(); ++i)
+    camera.*lens.parameters[i] = p[i];
+  if (lens.parameters[1] != &CameraModel::fy)
+    camera.fy = camera.fx;
   try {
     validateCamera(camera);
   } catch (const std::invalid_argument& error) {
@@ -145,8 +148,7 @@ std::vector<CameraEntry> readCamerasBinary(const std::string& path)
     const auto width = bytes.next<std::uint64_t>(), height = bytes.next<std::uint64_t>();
     const std::string name = modelName(model);
     if (name.empty())
-      fail(path,
-           concat("camera model number ", model, " is none of SIMPLE_PINHOLE, PINHOLE, SIMPLE_RADIAL, RADIAL, OPENCV"));
+      fail(path, concat("camera model number ", model, " is none of ", lensModelNames()));
     std::vector<double> parameters(parameterCount(name));
     for (double& value : parameters)
       value = bytes.next<double>();

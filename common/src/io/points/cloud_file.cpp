@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "io/points/parse_file.h"
+#include "io/points/scan_reader.h"
 #include <algorithm>
 #include <cmath>
 #include <fresco/core/cloud_table.h>
 #include <fresco/core/require.h>
 #include <fresco/io/cloud_file.h>
+#include <fresco/io/scan_file.h>
 namespace fresco {
 namespace {
 bool knowsPose(const CloudFile& file)
@@ -34,9 +36,13 @@ CloudFile fileOf(io::PointTable table)
 }
 } // namespace
 
-CloudFile readCloud(const std::string& path)
+CloudFile readCloud(const std::string& path) { return readCloud(ScanPath{path}); }
+
+CloudFile readCloud(const ScanPath& path)
 {
   io::PointTable table = io::readTable(path);
+  if (table.rows == 0)
+    throw std::runtime_error(path.name() + ": no points");
   io::packColors(table);
   return fileOf(std::move(table));
 }

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "io/colmap/lens_models.h"
+#include <algorithm>
+#include <stdexcept>
+namespace fresco::io {
+const std::vector<LensModel>& lensModels()
+{
+  using M = CameraModel;
+  constexpr CameraProjection plane = CameraProjection::perspective, fisheye = CameraProjection::fisheye;
+  static const std::vector<LensModel> all = {
+      {"SIMPLE_PINHOLE", 0, plane, {&M::fx, &M::cx, &M::cy}},
+      {"PINHOLE", 1, plane, {&M::fx, &M::fy, &M::cx, &M::cy}},
+      {"SIMPLE_RADIAL", 2, plane, {&M::fx, &M::cx, &M::cy, &M::k1}},
+      {"RADIAL", 3, plane, {&M::fx, &M::cx, &M::cy, &M::k1, &M::k2}},
+      {"OPENCV", 4, plane, {&M::fx, &M::fy, &M::cx, &M::cy, &M::k1, &M::k2, &M::p1, &M::p2}},
+      {"OPENCV_FISHEYE", 5, fisheye, {&M::fx, &M::fy, &M::cx, &M::cy, &M::k1, &M::k2, &M::k3, &M::k4}},
+      {"FULL_OPENCV",
+       6,
+       plane,
+       {&M::fx, &M::fy, &M::cx, &M::cy, &M::k1, &M::k2, &M::p1, &M::p2, &M::k3, &M::k4, &M::k5, &M::k6}},
+      {"SIMPLE_RADIAL_FISHEYE", 8, fisheye, {&M::fx, &M::cx, &M::cy, &M::k1}},
+      {"RADIAL_FISHEYE", 9, fisheye, {&M::fx, &M::cx, &M::cy, &M::k1, &M::k2}},
+      {"THIN_PRISM_FISHEYE",
+       10,
+       fisheye,
+       {&M::fx, &M::fy, &M::cx, &M::cy, &M::k1, &M::k2, &M::p1, &M::p2, &M::k3, &M::k4, &M::sx1, &M::sy1}}};
+  return all;
+}
+
+const LensModel& lensModelOf(const CameraModel& camera)
+{
+  const auto has_all = [&](const LensModel& model) {
+    CameraModel rest = camera; // what is left without the parameters of the model
+    for (double CameraModel::*parameter : model.parameters)
+      rest.*parameter = 0;
+    rest.projection = CameraProjection::perspective;
+    return model.projection == camera.projection && model.parameters[1] == &CameraModel::fy && !rest.hasDistortion();
+  };
+  const auto found = std::find_if(lensModels().begin(), lensModels().end(), has_all);
+  if (found == lensModels().end())
+    throw std::invalid_argument("camera: COLMAP has no model for it");
+  return *found;
+}
+
+std::string lensModelNames()
+{
+  std::string names;
+  for (const LensModel& model : lensModels())
+    names += (names.empty() ? "" : ", ") + std::string(model.name);
+  return names;
+}
+} // namespace fresco::io

@@ -1,0 +1,259 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "io/points/e57/content.h"
+#include "io/points/e57/bit_packing.h"
+#include "io/points/e57/xml_values.h"
+#include <algorithm>
+#include <cmath>
+#include <fresco/core/require.h>
+#include <limits>
+#include <stdexcept>
+namespace fresco::io::e57 {
+int Field::bits() const
+{
+  switch (type) {
+  case Type::single_float:
+    return 32;
+  case Type::double_float:
+    return 64;
+  case Type::string:
+    return 0;
+  default:
+    return bitWidth(minimum, maximum);
+  }
+}
+
+std::optional<std::size_t> CompressedVector::find(std::string_view name) const
+{
+  const auto found = std::find_if(fields.begin(), fields.end(), [&](const Field& field) { return field.name == name; });
+  return found == fields.end() ? std::nullopt : std::optional<std::size_t>(found - fields.begin());
+}
+
+namespace {
+/// A prototype is flat in every file seen; the standard allows structures within.
+constexpr int deepest_structure = 8;
+
+Field fieldOf(pugi::xml_node node)
+{
+  Field field;
+  field.name = std::string(localName(node));
+  const std::string_view type = typeOf(node);
+  if (type == "Float") {
+    const std::string_view precision = node.attribute("precision").as_string("double");
+    field.type = precision == "single" ? Field::Type::single_float : Field::Type::double_float;
+  } else if (type == "Integer" || type == "ScaledInteger") {
+    field.type = type == "Integer" ? Field::Type::integer : Field::Type::scaled_integer;
+    field.minimum = integerAttribute(node, "minimum", std::numeric_limits<std::int64_t>::min());
+    field.maximum = integerAttribute(node, "maximum", std::numeric_limits<std::int64_t>::max());
+    field.scale = realAttribute(node, "scale", 1);
+    field.offset = realAttribute(node, "offset", 0);
+    if (field.maximum < field.minimum)
+      throw std::runtime_error(
+          concat("field ", field.name, ": maximum ", field.maximum, " is below minimum ", field.minimum));
+    if (!std::isfinite(field.scale) || !std::isfinite(field.offset))
+      throw std::runtime_error(concat("field ", field.name, ": scale or offset is not finite"));
+  } else if (type == "String")
+    field.type = Field::Type::string;
+  else
+    throw std::runtime_error(concat("field ", field.name, ": type '", type.substr(0, 40), "' is not known"));
+  return field;
+}
+
+void addFields(pugi::xml_node structure, int depth, std::vector<Field>& fields)
+{
+  constexpr std::size_t most_fields = 1000; // a packet has room for some 32,000 streams; writers use up to 20
+  if (depth > deepest_structure)
+    throw std::runtime_error("XML: structures within structures within the prototype");
+  for (const pugi::xml_node node : structure.children()) {
+    if (node.type() != pugi::node_element)
+      continue;
+    if (typeOf(node) == "Structure")
+      addFields(node, depth + 1, fields);
+    else
+      fields.push_back(fieldOf(node));
+    if (fields.size() > most_fields)
+      throw std::runtime_error(concat("XML: more than ", most_fields, " fields"));
+  }
+}
+
+CompressedVector vectorOf(pugi::xml_node points)
+{
+  if (typeOf(points) != "CompressedVector")
+    throw std::runtime_error("XML: points are no CompressedVector");
+  CompressedVector records;
+  records.physical_offset = sizeAttribute(points, "fileOffset");
+  records.count = sizeAttribute(points, "recordCount");
+  addFields(childNamed(points, "prototype"), 0, records.fields);
+  for (const pugi::xml_node codec : childNamed(points, "codecs").children())
+    if (codec.type() == pugi::node_element && !childNamed(codec, "bitPackCodec"))
+      throw std::runtime_error("points are packed by another codec than bitPackCodec");
+  constexpr std::uint64_t most_points = std::uint64_t{1} << 48; // far above any file; keeps sums from overflowing
+  if (records.count > most_points)
+    throw std::runtime_error(concat("XML: ", records.count, " points"));
+  return records;
+}
+
+Eigen::Isometry3d poseOf(pugi::xml_node pose)
+{
+  const auto rotation = childNamed(pose, "rotation"), translation = childNamed(pose, "translation");
+  const auto value = [](pugi::xml_node node, const char* name, double otherwise) {
+    return realIn(node, name).value_or(otherwise);
+  };
+  const Eigen::Quaterniond q(value(rotation, "w", rotation ? 0 : 1), value(rotation, "x", 0), value(rotation, "y", 0),
+                             value(rotation, "z", 0));
+  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
+  T.translation() = Eigen::Vector3d(value(translation, "x", 0), value(translation, "y", 0), value(translation, "z", 0));
+  if (!(q.norm() > 1e-6 && q.norm() < 1e6) || !T.translation().allFinite())
+    throw std::runtime_error("its pose is no rotation and translation");
+  T.linear() = q.normalized().toRotationMatrix();
+  return T;
+}
+
+std::optional<Limits> limitsIn(pugi::xml_node limits, const std::string& name)
+{
+  const auto low = realIn(limits, name + "Minimum"), high = realIn(limits, name + "Maximum");
+  if (!low || !high || !(*high > *low) || !std::isfinite(*high - *low))
+    return std::nullopt;
+  return Limits{*low, *high};
+}
+
+/// One line without control characters: names go into messages.
+std::string singleLine(std::string text)
+{
+  std::replace_if(
+      text.begin(), text.end(), [](unsigned char c) { return c < ' ' || c == 0x7f; }, ' ');
+  return text.substr(0, 200);
+}
+
+Scan scanOf(pugi::xml_node node)
+{
+  Scan scan;
+  scan.guid = textIn(node, "guid");
+  scan.info.name = singleLine(textIn(node, "name"));
+  const pugi::xml_node points = childNamed(node, "points");
+  if (!points)
+    throw std::runtime_error("XML: it has no points");
+  scan.records = vectorOf(points);
+  scan.info.points = scan.records.count;
+  const bool spherical = !scan.records.find("cartesianX");
+  if (const pugi::xml_node pose = childNamed(node, "pose")) {
+    scan.info.T_file_scan = poseOf(pose);
+    scan.info.has_pose = true;
+  }
+  if (scan.info.has_pose || spherical) // a cloud without a pose may lie anywhere
+    scan.info.sensor = Eigen::Vector3d::Zero();
+  if (const auto limits = limitsIn(childNamed(node, "intensityLimits"), "intensity"))
+    scan.info.intensity_limits = Eigen::Array2d(limits->minimum, limits->maximum);
+  const pugi::xml_node colors = childNamed(node, "colorLimits");
+  scan.color = {limitsIn(colors, "colorRed"), limitsIn(colors, "colorGreen"), limitsIn(colors, "colorBlue")};
+  return scan;
+}
+
+std::optional<Blob> blobIn(pugi::xml_node node, std::string_view name)
+{
+  const pugi::xml_node blob = childNamed(node, name);
+  return blob ? std::optional(Blob{sizeAttribute(blob, "fileOffset"), sizeAttribute(blob, "length")}) : std::nullopt;
+}
+
+int pixels(pugi::xml_node node, const char* name)
+{
+  const pugi::xml_node child = childNamed(node, name);
+  const std::int64_t count = child ? integerOf(child) : 0;
+  if (count < 0 || count > 1 << 20)
+    throw std::runtime_error(concat("XML: ", name, ' ', count, " is out of range"));
+  return count;
+}
+
+/// The representation that says most of where the picture was taken.
+pugi::xml_node representationOf(pugi::xml_node node, ScanImage::Projection& projection)
+{
+  using Projection = ScanImage::Projection;
+  constexpr std::pair<const char*, Projection> all[] = {{"pinholeRepresentation", Projection::pinhole},
+                                                        {"sphericalRepresentation", Projection::spherical},
+                                                        {"cylindricalRepresentation", Projection::cylindrical},
+                                                        {"visualReferenceRepresentation", Projection::none}};
+  for (const auto& [name, kind] : all)
+    if (const pugi::xml_node found = childNamed(node, name)) {
+      projection = kind;
+      return found;
+    }
+  throw std::runtime_error("XML: it has no representation");
+}
+
+Image imageOf(pugi::xml_node node, const std::vector<Scan>& scans)
+{
+  Image image;
+  ScanImage& said = image.description;
+  said.name = singleLine(textIn(node, "name"));
+  const std::string guid = textIn(node, "associatedData3DGuid");
+  const auto scan =
+      std::find_if(scans.begin(), scans.end(), [&](const Scan& s) { return !guid.empty() && s.guid == guid; });
+  said.scan = scan == scans.end() ? -1 : std::distance(scans.begin(), scan);
+  const pugi::xml_node shown = representationOf(node, said.projection);
+  const auto jpeg = blobIn(shown, "jpegImage"), png = blobIn(shown, "pngImage");
+  if (!jpeg && !png)
+    throw std::runtime_error("XML: it has neither jpegImage nor pngImage");
+  image.picture = jpeg ? *jpeg : *png;
+  image.mask = blobIn(shown, "imageMask");
+  said.encoding = jpeg ? ScanImage::Encoding::jpeg : ScanImage::Encoding::png;
+  said.has_mask = image.mask.has_value();
+  said.width = pixels(shown, "imageWidth");
+  said.height = pixels(shown, "imageHeight");
+  if (const pugi::xml_node pose = childNamed(node, "pose"))
+    said.T_file_image = poseOf(pose);
+  const auto value = [&](const char* name) { return realIn(shown, name).value_or(0); };
+  said.focal_length = value("focalLength");
+  said.pixel_width = value("pixelWidth");
+  said.pixel_height = value("pixelHeight");
+  said.principal_x = value("principalPointX");
+  said.principal_y = value("principalPointY");
+  said.radius = value("radius");
+  return image;
+}
+
+std::string readXml(PagedFile& file)
+{
+  const Header& header = file.header();
+  const std::uint64_t begin = file.logical(header.xml_offset);
+  if (header.xml_length == 0 || header.xml_length > file.size() - begin)
+    throw std::runtime_error(concat("truncated: the XML section has ", header.xml_length, " bytes, ",
+                                    file.size() - begin, " are left in the file"));
+  std::string text(header.xml_length, '\0');
+  file.read(begin, text.data(), text.size());
+  return text;
+}
+
+/// add(child, number) for each child of a vector; errors name what it is and its number.
+template <typename Add>
+void forEachChild(pugi::xml_node vector, const char* what, const Add& add)
+{
+  int number = 0;
+  for (const pugi::xml_node child : vector.children()) {
+    if (child.type() != pugi::node_element)
+      continue;
+    ++number;
+    try {
+      add(child);
+    } catch (const std::runtime_error& error) {
+      throw std::runtime_error(concat(what, ' ', number, ": ", error.what()));
+    }
+  }
+}
+} // namespace
+
+Content parseContent(PagedFile& file)
+{
+  std::string text = readXml(file);
+  pugi::xml_document document;
+  const pugi::xml_parse_result parsed = document.load_buffer_inplace(text.data(), text.size());
+  if (!parsed)
+    throw std::runtime_error(concat("XML: ", parsed.description(), " at byte ", parsed.offset));
+  const pugi::xml_node root = document.document_element();
+  if (localName(root) != "e57Root")
+    throw std::runtime_error("XML: no e57Root");
+  Content content;
+  forEachChild(childNamed(root, "data3D"), "scan", [&](pugi::xml_node node) { content.scans.push_back(scanOf(node)); });
+  forEachChild(childNamed(root, "images2D"), "picture",
+               [&](pugi::xml_node node) { content.images.push_back(imageOf(node, content.scans)); });
+  return content;
+}
+} // namespace fresco::io::e57

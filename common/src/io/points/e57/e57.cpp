@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "io/points/e57/e57.h"
+#include "io/points/e57/columns.h"
+#include <algorithm>
+#include <fresco/core/require.h>
+namespace fresco::io {
+namespace e57 {
+namespace {
+class Reader : public ScanReader {
+public:
+  explicit Reader(const std::string& path) : file_(path), content_(parseContent(file_))
+  {
+    for (const Scan& scan : content_.scans)
+      scans_.push_back(scan.info);
+  }
+
+  PointTable open(Index scan) override
+  {
+    const Scan& chosen = content_.scans[scan];
+    columns_.emplace(chosen);
+    records_.emplace(file_, chosen.records);
+    return columns_->layout();
+  }
+
+  Index read(PointTable& table, Index begin, Index end) override
+  {
+    const std::size_t count = records_->next(std::min(end - begin, rows_per_window));
+    columns_->store(*records_, count, table, begin);
+    return count;
+  }
+
+private:
+  PagedFile file_;
+  const Content content_;
+  std::optional<Columns> columns_;
+  std::optional<VectorReader> records_;
+};
+} // namespace
+} // namespace e57
+
+std::unique_ptr<ScanReader> openE57(const std::string& path) { return std::make_unique<e57::Reader>(path); }
+} // namespace fresco::io

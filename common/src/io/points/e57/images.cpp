@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "io/points/e57/content.h"
+#include "io/points/scan_reader.h"
+#include <cstring>
+#include <fresco/core/require.h>
+#include <fresco/io/file.h>
+#include <fresco/io/scan_images.h>
+#include <stdexcept>
+namespace fresco {
+namespace io::e57 {
+namespace {
+/// A section begins with its kind, its length and 0 for a blob.
+std::string readBlob(PagedFile& file, const Blob& blob)
+{
+  constexpr std::size_t header_bytes = 16;
+  const std::uint64_t begin = file.logical(blob.physical_offset);
+  char header[header_bytes];
+  file.read(begin, header, header_bytes);
+  if (header[0] != 0)
+    throw std::runtime_error(concat("damaged: no picture at offset ", blob.physical_offset));
+  const std::uint64_t left = file.size() - begin - header_bytes;
+  if (blob.length == 0 || blob.length > left)
+    throw std::runtime_error(
+        concat("truncated: a picture of ", blob.length, " bytes, ", left, " are left in the file"));
+  std::string bytes(blob.length, '\0');
+  file.read(begin + header_bytes, bytes.data(), bytes.size());
+  return bytes;
+}
+
+/// use(file, content); errors name the file.
+template <typename Use>
+auto withContent(const std::string& path, const Use& use)
+{
+  return namingFile(path, [&] {
+    PagedFile file(path);
+    const Content content = parseContent(file);
+    return use(file, content);
+  });
+}
+
+const Image& imageAt(const Content& content, Index image)
+{
+  if (image < 0 || image >= Index(content.images.size()))
+    throw std::runtime_error(concat("no picture ", image, ", the file has ", content.images.size()));
+  return content.images[image];
+}
+
+std::string pictureBytes(const std::string& path, Index image)
+{
+  return withContent(
+      path, [&](PagedFile& file, const Content& content) { return readBlob(file, imageAt(content, image).picture); });
+}
+
+std::string maskBytes(const std::string& path, Index image)
+{
+  return withContent(path, [&](PagedFile& file, const Content& content) {
+    const Image& asked = imageAt(content, image);
+    if (!asked.mask)
+      throw std::runtime_error(concat("picture ", image, " has no mask"));
+    return readBlob(file, *asked.mask);
+  });
+}
+} // namespace
+} // namespace io::e57
+
+std::vector<ScanImage> readScanImages(const std::string& path)
+{
+  std::vector<ScanImage> images;
+  if (extension(path) == ".e57")
+    io::e57::withContent(path, [&](auto&, const io::e57::Content& content) {
+      for (const io::e57::Image& image : content.images)
+        images.push_back(image.description);
+    });
+  return images;
+}
+
+std::string readScanImageBytes(const std::string& path, Index image) { return io::e57::pictureBytes(path, image); }
+std::string readScanImageMask(const std::string& path, Index image) { return io::e57::maskBytes(path, image); }
+
+ScanCamera cameraOf(const ScanImage& image)
+{
+  require(image.projection == ScanImage::Projection::pinhole && image.T_file_image, "picture '", image.name,
+          "': not pinhole, or without a pose");
+  require(image.width > 0 && image.height > 0 && image.focal_length > 0 && image.pixel_width > 0 &&
+              image.pixel_height > 0,
+          "picture '", image.name, "': no size or no focal length");
+  ScanCamera result;
+  CameraModel& camera = result.camera;
+  camera.width = image.width;
+  camera.height = image.height;
+  camera.fx = image.focal_length / image.pixel_width;
+  camera.fy = image.focal_length / image.pixel_height;
+  camera.cx = image.principal_x;
+  camera.cy = image.principal_y;
+  Eigen::Isometry3d T_camera_image = Eigen::Isometry3d::Identity(); // y up and z backwards to y down and z forwards
+  T_camera_image.linear().diagonal() << 1, -1, -1;
+  result.T_camera_file = T_camera_image * image.T_file_image->inverse();
+  return result;
+}
+} // namespace fresco

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "io/points/e57/xml_values.h"
+#include "io/points/text_numbers.h"
+#include <fresco/core/require.h>
+#include <stdexcept>
+namespace fresco::io::e57 {
+namespace {
+std::string_view withoutBlanks(std::string_view text)
+{
+  constexpr std::string_view blanks = " \t\r\n";
+  const std::size_t begin = text.find_first_not_of(blanks);
+  return begin == std::string_view::npos ? std::string_view()
+                                         : text.substr(begin, text.find_last_not_of(blanks) - begin + 1);
+}
+
+/// Without control characters and at most 60 of them: for messages of one line.
+std::string shown(const char* text)
+{
+  std::string word = std::string(text).substr(0, 60);
+  for (char& c : word)
+    if (std::uint8_t(c) < ' ')
+      c = '?';
+  return word;
+}
+
+template <typename T>
+T numberOf(const char* text, const std::string& where)
+try {
+  const std::string_view word = withoutBlanks(text);
+  return word.empty() ? T(0) : parseNumber<T>(word);
+} catch (const std::runtime_error&) {
+  throw std::runtime_error(concat("XML: ", where, ": '", shown(text), "' is no ",
+                                  std::is_floating_point_v<T> ? "number" : "whole number of 64 bits"));
+}
+
+template <typename T>
+T attributeOf(pugi::xml_node node, const char* name)
+{
+  return numberOf<T>(node.attribute(name).value(), concat(shown(node.name()), ' ', name));
+}
+} // namespace
+
+std::string_view localName(pugi::xml_node node)
+{
+  const std::string_view name = node.name();
+  const std::size_t colon = name.rfind(':');
+  return colon == std::string_view::npos ? name : name.substr(colon + 1);
+}
+
+pugi::xml_node childNamed(pugi::xml_node node, std::string_view name)
+{
+  for (const pugi::xml_node child : node.children())
+    if (localName(child) == name)
+      return child;
+  return {};
+}
+
+std::string_view typeOf(pugi::xml_node node)
+{
+  const pugi::xml_attribute type = node.attribute("type");
+  if (!type)
+    throw std::runtime_error(concat("XML: ", shown(node.name()), " has no type"));
+  return type.value();
+}
+
+std::int64_t integerOf(pugi::xml_node node) { return numberOf<std::int64_t>(node.child_value(), shown(node.name())); }
+
+double realOf(pugi::xml_node node)
+{
+  if (typeOf(node) == "ScaledInteger")
+    return double(integerOf(node)) * realAttribute(node, "scale", 1) + realAttribute(node, "offset", 0);
+  return numberOf<double>(node.child_value(), shown(node.name()));
+}
+
+double realAttribute(pugi::xml_node node, const char* name, double otherwise)
+{
+  return node.attribute(name) ? attributeOf<double>(node, name) : otherwise;
+}
+
+std::int64_t integerAttribute(pugi::xml_node node, const char* name, std::int64_t otherwise)
+{
+  return node.attribute(name) ? attributeOf<std::int64_t>(node, name) : otherwise;
+}
+
+std::uint64_t sizeAttribute(pugi::xml_node node, const char* name)
+{
+  if (!node.attribute(name))
+    throw std::runtime_error(concat("XML: ", shown(node.name()), " has no ", name));
+  return attributeOf<std::uint64_t>(node, name);
+}
+
+std::optional<double> realIn(pugi::xml_node node, std::string_view name)
+{
+  const pugi::xml_node child = childNamed(node, name);
+  return child ? std::optional(realOf(child)) : std::nullopt;
+}
+
+std::string textIn(pugi::xml_node node, std::string_view name) { return childNamed(node, name).child_value(); }
+} // namespace fresco::io::e57

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <pugixml.hpp>
+#include <string>
+#include <string_view>
+namespace fresco::io::e57 {
+/// Values in the XML section of an E57 file (ASTM E2807-11, 7): the type stands in an attribute, no text is 0 or "".
+
+std::string_view localName(pugi::xml_node node); ///< without the prefix of an extension
+
+/// The child of that name, in whatever extension; empty if there is none.
+pugi::xml_node childNamed(pugi::xml_node node, std::string_view name);
+
+/// @throws std::runtime_error naming the element
+std::string_view typeOf(pugi::xml_node node);
+double realOf(pugi::xml_node node); ///< of a Float, Integer or ScaledInteger
+std::int64_t integerOf(pugi::xml_node node);
+
+/// @param otherwise where the attribute is missing
+/// @throws std::runtime_error naming the element and the attribute
+double realAttribute(pugi::xml_node node, const char* name, double otherwise);
+std::int64_t integerAttribute(pugi::xml_node node, const char* name, std::int64_t otherwise);
+std::uint64_t sizeAttribute(pugi::xml_node node, const char* name); ///< must be there
+
+/// Of the child of that name; nothing if it is missing.
+std::optional<double> realIn(pugi::xml_node node, std::string_view name);
+std::string textIn(pugi::xml_node node, std::string_view name);
+} // namespace fresco::io::e57

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "io/points/file_window.h"
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <fcntl.h>
+#include <fresco/core/require.h>
+#include <stdexcept>
+#include <sys/stat.h>
+#include <unistd.h>
+namespace fresco::io {
+namespace {
+constexpr std::size_t window_size = std::size_t{1} << 20; // a line of a scan has some 100 bytes
+
+std::string_view trimmed(std::string_view text)
+{
+  const auto blank = [](char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\0'; };
+  while (!text.empty() && blank(text.front()))
+    text.remove_prefix(1);
+  while (!text.empty() && blank(text.back()))
+    text.remove_suffix(1);
+  return text;
+}
+} // namespace
+
+RandomAccessFile::RandomAccessFile(const std::string& path) : descriptor_(::open(path.c_str(), O_RDONLY | O_CLOEXEC))
+{
+  struct stat status = {};
+  if (descriptor_ < 0)
+    throw std::runtime_error(errno == ENOENT ? "no such file" : concat("cannot be read (", std::strerror(errno), ")"));
+  if (::fstat(descriptor_, &status) != 0 || !S_ISREG(status.st_mode)) {
+    ::close(descriptor_);
+    throw std::runtime_error(S_ISDIR(status.st_mode) ? "is a folder, not a file" : "is not a file");
+  }
+  size_ = status.st_size;
+  if (size_ == 0) {
+    ::close(descriptor_);
+    throw std::runtime_error("the file is empty");
+  }
+}
+
+RandomAccessFile::~RandomAccessFile() { ::close(descriptor_); }
+
+void RandomAccessFile::read(std::uint64_t offset, void* to, std::size_t bytes) const
+{
+  if (offset > size_ || bytes > size_ - offset)
+    throw std::runtime_error(
+        concat("truncated: ", bytes, " bytes expected at ", offset, ", the file has ", size_, " bytes"));
+  auto* at = static_cast<char*>(to);
+  while (bytes > 0) {
+    const ssize_t done = ::pread(descriptor_, at, bytes, offset);
+    if (done < 0 && errno == EINTR)
+      continue;
+    if (done <= 0)
+      throw std::runtime_error(done == 0 ? "became shorter while it was read"
+                                         : concat("cannot be read (", std::strerror(errno), ")"));
+    at += done;
+    offset += done;
+    bytes -= done;
+  }
+}
+
+bool LineReader::fill()
+{
+  offset_ += at_;
+  window_.erase(0, at_);
+  at_ = 0;
+  const std::uint64_t end = offset_ + window_.size();
+  if (end == file_.size())
+    return false;
+  const std::size_t held = window_.size();
+  const std::size_t more = std::min<std::uint64_t>(window_size, file_.size() - end);
+  window_.resize(held + more);
+  file_.read(end, &window_[held], more);
+  return true;
+}
+
+bool LineReader::next(std::string_view& text)
+{
+  std::size_t end = window_.find('\n', at_);
+  while (end == std::string::npos) {
+    const std::size_t searched = window_.size() - at_;
+    if (searched > window_size)
+      throw std::runtime_error(concat("line ", line_, ": longer than ", window_size, " bytes: not a text file"));
+    if (!fill())
+      break;
+    end = window_.find('\n', searched);
+  }
+  if (at_ == window_.size())
+    return false;
+  const std::size_t last = std::min(end, window_.size());
+  text = trimmed(std::string_view(window_).substr(at_, last - at_));
+  last_ = at_;
+  at_ = std::min(last + 1, window_.size());
+  ++line_;
+  return true;
+}
+
+void LineReader::unread()
+{
+  at_ = last_;
+  --line_;
+}
+} // namespace fresco::io

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include <fresco/core/point_table.h>
+#include <fresco/io/scan_file.h>
+#include <memory>
+#include <new>
+#include <stdexcept>
+#include <string>
+#include <vector>
+namespace fresco::io {
+/// The scans of a file, read in windows of rows. Errors come without the path.
+class ScanReader {
+public:
+  ScanReader() = default;
+  virtual ~ScanReader() = default;
+  ScanReader(const ScanReader&) = delete;
+  ScanReader& operator=(const ScanReader&) = delete;
+
+  const std::vector<ScanInfo>& scans() const { return scans_; }
+
+  /// Goes to the begin of a scan. @return its columns, without rows. Coordinates are in the frame of the scan, float64
+  /// unless the file itself has float32.
+  /// @throws std::runtime_error if the file cannot hold what it announces
+  virtual PointTable open(Index scan) = 0;
+
+  /// Fills rows `begin` .. `end` - 1 at most of a table with these columns. @return rows filled; 0 = the end
+  virtual Index read(PointTable& table, Index begin, Index end) = 0;
+
+protected:
+  std::vector<ScanInfo> scans_;
+};
+
+/// use(); every error is a std::runtime_error "PATH: reason".
+template <typename Use>
+auto namingFile(const std::string& path, const Use& use) -> decltype(use())
+try {
+  return use();
+} catch (const std::bad_alloc&) {
+  throw std::runtime_error(path + ": not enough memory");
+} catch (const std::exception& error) {
+  throw std::runtime_error(path + ": " + error.what());
+}
+
+/// One scan in its own frame, or the whole file. @throws std::runtime_error "PATH: reason"
+PointTable readTable(const ScanPath& path);
+
+/// Columns that say where in an organised scan a point belongs; an organised table does not have them.
+inline constexpr const char* row_column = "row";
+inline constexpr const char* column_column = "column";
+
+/// How many rows readers of large files handle in one go: some megabytes.
+inline constexpr Index rows_per_window = Index{1} << 16;
+
+/// One scan in its own frame; organised where the file says so.
+PointTable readScanTable(ScanReader& reader, Index scan);
+
+/// All scans in the frame of the file, with the columns that all of them have; vp_x vp_y vp_z where there are several
+/// and each knows its sensor.
+PointTable readMergedTable(ScanReader& reader);
+
+/// Puts the values of columns "row" and "column" to use: the table becomes organised and what is missing NaN, unless
+/// two rows have the same place or most places are empty.
+void organise(PointTable& table);
+
+/// x y z and vp_x vp_y vp_z become float32 where that loses no more than 1e-6 of the extent.
+void narrowCoordinates(PointTable& table);
+} // namespace fresco::io

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include "io/points/scan_reader.h"
+namespace fresco::io {
+/// Leica's PTX: stations one after the other, each with its columns and rows, the scanner's place and axes, a matrix to
+/// the frame of the file, and a line "x y z intensity [r g b]" per beam. A beam without a point is "0 0 0 ..." and
+/// becomes NaN.
+/// @throws std::runtime_error, also where a station has another number of lines than it announces
+std::unique_ptr<ScanReader> openPtx(const std::string& path);
+
+/// Leica's PTS: a line with the number of points, then "x y z [intensity] [r g b]" a line; several such blocks are
+/// several scans in the same frame. The first block may lack its number.
+/// @throws std::runtime_error, also where a block has another number of lines than it announces
+std::unique_ptr<ScanReader> openPts(const std::string& path);
+} // namespace fresco::io
