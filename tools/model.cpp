@@ -29,8 +29,8 @@ int main(int argc, char** argv)
                 "octree levels that the data may sustain less than they do elsewhere, else surface is cut off; 0 = "
                 "keep it closed");
     args.option("trim", options.trim_levels, "old name of -trim_levels, for one version; 0 = keep it closed");
-    args.flag("no_optimize", options.optimize, "leave the vertices where the reconstruction puts them: rounded edges",
-              false);
+    args.flag("no_optimize", options.optimize,
+              "leave the vertices where the reconstruction puts them: rounded edges; always so for RGB-D", false);
     args.option("texel", options.texel, "side of a texel, metres; 0 = as fine as the photographs");
     args.size("size", options.width, options.height, "size of the pictures, pixels");
     common.declare(args);

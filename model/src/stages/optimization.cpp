@@ -10,7 +10,9 @@ Figures makeOptimizedSurface(const Job& job, const Progress& progress)
   const auto& [input, files, options] = job;
   report(progress, "read", 0.0);
   const TriangleMesh surface = readMesh(files.surface);
-  if (!options.optimize) {
+  // Of fused depth images no edge is sharper than the sensor saw it, and round things would get facets:
+  // docs/measurements/depth_fusion.md.
+  if (!options.optimize || input.rgbd) {
     writeMesh(files.mesh, surface);
     return {{"optimized", false}};
   }

@@ -14,7 +14,7 @@ struct ModelOptions {
                                   ///< at the median depth for RGB-D
   double fuse = 0;                ///< RGB-D: cell in which the frames are fused, >= 0; 0 = as `cell`
   int bilateral = 2;              ///< rounds of bilateral smoothing of the normals, >= 0
-  bool optimize = true;           ///< move the vertices so that edges become sharp
+  bool optimize = true;           ///< move the vertices so that edges become sharp; scans only
   double trim_levels = 2.0;       ///< see VolumetricOptions::trim_levels, >= 0; 0 = keep the surface closed; RGB-D:
                                   ///< at most 0.75
   double texel = 0.0;             ///< side of a texel, >= 0; 0 = as fine as the photographs
