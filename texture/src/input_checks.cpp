@@ -2,10 +2,10 @@
 #include "input_checks.h"
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <fresco/core/parallel.h>
 #include <fresco/core/poses.h>
 #include <fresco/core/require.h>
-#include <filesystem>
 #include <fstream>
 namespace fresco::texture {
 namespace {

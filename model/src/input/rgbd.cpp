@@ -42,6 +42,19 @@ CameraModel depthCamera(const std::string& path, const std::string& depth)
   }
   return camera;
 }
+
+DepthImage depthOf(const Image16& image, const RgbdFolder& folder, const std::string& path)
+{
+  if (image.width != folder.camera.width || image.height != folder.camera.height)
+    throw std::runtime_error(concat(path, ": ", image.width, "x", image.height, " pixels, but the first frame has ",
+                                    folder.camera.width, "x", folder.camera.height));
+  DepthImage depth(image.height, image.width);
+  for (Index i = 0; i < depth.size(); ++i) {
+    const float z = 1e-3f * image.data[i];
+    depth.data()[i] = image.data[i] != 65535 && z >= nearest_depth && z <= farthest_depth ? z : 0.f;
+  }
+  return depth;
+}
 } // namespace
 
 bool isRgbdFolder(const std::string& folder) { return fs::exists(folder + "/camera-intrinsics.txt"); }
@@ -84,14 +97,24 @@ RgbdFolder readRgbdFolder(const std::string& folder)
 DepthImage readDepth(const RgbdFolder& folder, Index frame)
 {
   const std::string& path = folder.frames.at(frame).depth;
-  const Image16 image = readImage16(path);
-  if (image.width != folder.camera.width || image.height != folder.camera.height)
-    throw std::runtime_error(concat(path, ": ", image.width, "x", image.height, " pixels, but the first frame has ",
-                                    folder.camera.width, "x", folder.camera.height));
-  DepthImage depth(image.height, image.width);
-  for (Index i = 0; i < depth.size(); ++i) {
-    const float z = 1e-3f * image.data[i];
-    depth.data()[i] = image.data[i] != 65535 && z >= nearest_depth && z <= farthest_depth ? z : 0.f;
+  return depthOf(readImage16(path), folder, path);
+}
+
+DepthReader::DepthReader(const RgbdFolder& folder) : folder_(folder), kept_(folder.frames.size()) {}
+
+DepthImage DepthReader::operator()(Index frame)
+{
+  constexpr Index room = 512 << 20; // bytes of images that are kept: 870 of 640 x 480
+  const std::string& path = folder_.frames.at(frame).depth;
+  Image16& kept = kept_[frame];
+  if (!kept.data.empty())
+    return depthOf(kept, folder_, path);
+  Image16 image = readImage16(path);
+  const DepthImage depth = depthOf(image, folder_, path);
+  const Index bytes = 2 * image.data.size();
+  if (bytes_ + bytes <= room) {
+    bytes_ += bytes;
+    kept = std::move(image);
   }
   return depth;
 }

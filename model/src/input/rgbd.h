@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include <fresco/core/camera.h>
+#include <fresco/core/image.h>
 #include <fresco/surface/core/depth_fusion.h>
 #include <string>
 #include <vector>
@@ -27,6 +28,18 @@ RgbdFolder readRgbdFolder(const std::string& folder);
 /// Metres; 0 = none. Depths farther than such cameras measure well are left out.
 /// @throws std::runtime_error naming the file if it is damaged or has another size than the first frame's
 DepthImage readDepth(const RgbdFolder& folder, Index frame);
+
+/// The same for frames that are asked for several times: decoded images are kept while there is room.
+class DepthReader {
+public:
+  explicit DepthReader(const RgbdFolder& folder);
+  DepthImage operator()(Index frame);
+
+private:
+  const RgbdFolder& folder_;
+  std::vector<Image16> kept_; ///< by frame; empty where not kept
+  Index bytes_ = 0;
+};
 
 /// Side of the patch that a pixel sees at the median depth of all frames, metres.
 /// @throws std::runtime_error if no frame has any depth

@@ -140,7 +140,8 @@ Figures pointsFromFrames(const Job& job, const Progress& progress)
   frames.camera = rgbd.camera;
   for (const RgbdFrame& frame : rgbd.frames)
     frames.T_world_camera.push_back(frame.T_world_camera);
-  frames.depth = [&](Index f) { return readDepth(rgbd, f); };
+  DepthReader reader(rgbd);
+  frames.depth = [&](Index f) { return reader(f); };
   DepthFusionOptions fusion;
   fusion.cell = options.fuse > 0 ? options.fuse : finestCell(job);
   fusion.refine_poses = !options.use_poses;
