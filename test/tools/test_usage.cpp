@@ -120,10 +120,11 @@ TEST(Usage, OnlyFilesAreReplaced)
 TEST(Usage, PipesAsInputAreRefusedAtOnce)
 {
   const std::string folder = soundFolder();
-  for (const char* name : {"pipe.ply", "pipe.pcd", "pipe.stl", "pipe.xyz"})
+  for (const char* name : {"pipe.ply", "pipe.pcd", "pipe.stl", "pipe.xyz", "pipe.e57", "pipe.ptx", "pipe.las"})
     ASSERT_EQ(mkfifo((folder + "/" + name).c_str(), 0600), 0);
   const auto start = std::chrono::steady_clock::now();
-  for (const char* command : {"filter pipe.pcd out.pcd", "compare pipe.stl mesh.ply", "register pipe.xyz -o out"})
+  for (const char* command : {"filter pipe.pcd out.pcd", "filter pipe.e57 out.pcd", "filter pipe.las out.pcd",
+                              "compare pipe.stl mesh.ply", "register pipe.xyz -o out", "register pipe.ptx -o out"})
     expectRefused(folder, command, "pipe");
   fs::remove(folder + "/images/a.png");
   ASSERT_EQ(mkfifo((folder + "/images/a.png").c_str(), 0600), 0);

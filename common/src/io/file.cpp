@@ -48,15 +48,21 @@ bool io::wasRead(const std::string& path)
   return identity && inputs().known.count(*identity) > 0;
 }
 
-std::string readFile(const std::string& path)
+std::string io::reasonNotToOpen(const std::string& path)
 {
   std::error_code error;
   if (!std::filesystem::exists(path, error))
-    fail(path, "no such file");
+    return "no such file";
   if (std::filesystem::is_directory(path, error))
-    fail(path, "is a folder, not a file");
-  if (!std::filesystem::is_regular_file(path, error)) // a pipe would block for as long as nobody writes into it
-    fail(path, "is a device or a pipe, not a file");
+    return "is a folder, not a file";
+  return std::filesystem::is_regular_file(path, error) ? "" : "is a device or a pipe, not a file";
+}
+
+std::string readFile(const std::string& path)
+{
+  if (const std::string reason = io::reasonNotToOpen(path); !reason.empty())
+    fail(path, reason);
+  std::error_code error;
   std::ifstream file(path, std::ios::binary);
   if (!file)
     fail(path, std::string("cannot be read (") + std::strerror(errno) + ")");

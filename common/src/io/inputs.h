@@ -4,4 +4,8 @@
 namespace fresco::io {
 /// Whether readFile() has read the file at `path`, under this or another name.
 bool wasRead(const std::string& path);
+
+/// Why the file at `path` is not to be opened for reading; "" if it is a regular file. To be asked first: opening a pipe
+/// blocks for as long as nobody writes into it.
+std::string reasonNotToOpen(const std::string& path);
 } // namespace fresco::io

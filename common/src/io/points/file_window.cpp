@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "io/points/file_window.h"
+#include "io/inputs.h"
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
@@ -23,20 +24,20 @@ std::string_view trimmed(std::string_view text)
 }
 } // namespace
 
-RandomAccessFile::RandomAccessFile(const std::string& path) : descriptor_(::open(path.c_str(), O_RDONLY | O_CLOEXEC))
+RandomAccessFile::RandomAccessFile(const std::string& path)
 {
+  if (const std::string reason = reasonNotToOpen(path); !reason.empty())
+    throw std::runtime_error(reason);
+  descriptor_ = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
   struct stat status = {};
-  if (descriptor_ < 0)
-    throw std::runtime_error(errno == ENOENT ? "no such file" : concat("cannot be read (", std::strerror(errno), ")"));
-  if (::fstat(descriptor_, &status) != 0 || !S_ISREG(status.st_mode)) {
-    ::close(descriptor_);
-    throw std::runtime_error(S_ISDIR(status.st_mode) ? "is a folder, not a file" : "is not a file");
+  if (descriptor_ < 0 || ::fstat(descriptor_, &status) != 0 || status.st_size == 0) {
+    const std::string reason =
+        descriptor_ < 0 ? concat("cannot be read (", std::strerror(errno), ")") : "the file is empty";
+    if (descriptor_ >= 0)
+      ::close(descriptor_);
+    throw std::runtime_error(reason);
   }
   size_ = status.st_size;
-  if (size_ == 0) {
-    ::close(descriptor_);
-    throw std::runtime_error("the file is empty");
-  }
 }
 
 RandomAccessFile::~RandomAccessFile() { ::close(descriptor_); }
