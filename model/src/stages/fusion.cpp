@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "stages/fusion.h"
-#include <algorithm>
 #include <fresco/core/require.h>
-#include <fresco/core/statistics.h>
 namespace fresco::model {
 PointFusion::PointFusion(double cell) : cell_(cell) { require(cell > 0, "fusion: cell ", cell, " is not positive"); }
 
@@ -36,48 +34,25 @@ void PointFusion::add(const PointSet& set)
     sum.weight += weight;
     sum.point += weight * set.points.col(i).cast<double>();
     sum.normal += weight * set.normals.col(i).cast<double>();
-    if (set.colors.cols() > 0) {
-      sum.color += weight * set.colors.col(i).cast<double>();
-      sum.color_weight += weight;
-    }
-    if (set.viewpoints.cols() > 0) {
-      sum.viewpoint += weight * set.viewpoints.col(set.viewpoints.cols() == 1 ? 0 : i).cast<double>();
-      sum.viewpoint_weight += weight;
-    }
   }
 }
 
-PointSet PointFusion::result(double least_weight) const
+PointSet PointFusion::result() const
 {
-  std::vector<double> weights;
-  for (const Sum& sum : sums_)
-    weights.push_back(sum.weight);
-  double threshold = 0;
-  if (!weights.empty() && least_weight > 0)
-    threshold = least_weight * median(weights);
   std::vector<const Sum*> kept;
   for (const Sum& sum : sums_)
-    if (sum.weight >= threshold && sum.normal.norm() > 0)
+    if (sum.normal.norm() > 0)
       kept.push_back(&sum);
-  const auto all = [&](auto has) { return !kept.empty() && std::all_of(kept.begin(), kept.end(), has); };
-  const bool colors = all([](const Sum* sum) { return sum->color_weight > 0; });
-  const bool viewpoints = all([](const Sum* sum) { return sum->viewpoint_weight > 0; });
   const Index count = kept.size();
   PointSet set;
   set.points.resize(3, count);
   set.normals.resize(3, count);
   set.confidences.resize(count);
-  set.colors.resize(3, colors ? count : 0);
-  set.viewpoints.resize(3, viewpoints ? count : 0);
   for (Index i = 0; i < count; ++i) {
     const Sum& sum = *kept[i];
     set.points.col(i) = (sum.point / sum.weight).cast<float>();
     set.normals.col(i) = sum.normal.normalized().cast<float>();
     set.confidences[i] = sum.weight;
-    if (colors)
-      set.colors.col(i) = (sum.color / sum.color_weight).array().round().matrix().cast<std::uint8_t>();
-    if (viewpoints)
-      set.viewpoints.col(i) = (sum.viewpoint / sum.viewpoint_weight).cast<float>();
   }
   return set;
 }

@@ -13,18 +13,16 @@ public:
   /// @param cell side of a cell, in the unit of the points, > 0
   explicit PointFusion(double cell);
 
-  /// @param set in the common frame, with normals; missing confidences count as 1; viewpoints and colours are kept
+  /// @param set in the common frame, with normals; missing confidences count as 1; other attributes are left out
   void add(const PointSet& set);
 
   /// In the order in which cells were first met. The confidence is the sum of those that fell into the cell.
-  /// @param least_weight cells of less confidence than this share of the median cell are left out, >= 0
-  PointSet result(double least_weight = 0.0) const;
+  PointSet result() const;
 
 private:
   struct Sum {
-    Eigen::Vector3d point = Eigen::Vector3d::Zero(), normal = Eigen::Vector3d::Zero(), color = Eigen::Vector3d::Zero(),
-                    viewpoint = Eigen::Vector3d::Zero();
-    double weight = 0, color_weight = 0, viewpoint_weight = 0;
+    Eigen::Vector3d point = Eigen::Vector3d::Zero(), normal = Eigen::Vector3d::Zero();
+    double weight = 0;
   };
   Sum& at(const Eigen::Vector3f& point, const Eigen::Vector3f& normal);
 

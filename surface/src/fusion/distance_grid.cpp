@@ -2,6 +2,7 @@
 #include "fusion/distance_grid.h"
 #include <algorithm>
 #include <cmath>
+#include <fresco/core/morton.h>
 #include <fresco/core/parallel.h>
 #include <fresco/core/require.h>
 namespace fresco::fusion {
@@ -10,10 +11,7 @@ constexpr int half_range = 1 << 20; // of places: 21 bits each in a key
 
 std::uint64_t keyOf(const Eigen::Vector3i& place)
 {
-  std::uint64_t key = 0;
-  for (int k = 0; k < 3; ++k)
-    key = key << 21 | static_cast<std::uint64_t>(place[k] + half_range);
-  return key;
+  return mortonCode(place.x() + half_range, place.y() + half_range, place.z() + half_range);
 }
 
 /// Weight of a vote that lies `residual` from the reference: Geman & McClure 1987.
@@ -199,12 +197,12 @@ std::optional<DistanceGrid::Distance> DistanceGrid::at(const Eigen::Vector3f& po
     if (place != last)
       b = find(place);
     last = place;
-    const int i = (at.x() & 7) + brick_side * ((at.y() & 7) + brick_side * (at.z() & 7));
+    const int i = nodeIndex(at.x() & 7, at.y() & 7, at.z() & 7);
     if (b < 0 || bricks_[b].weight[i] <= 0.f)
       return std::nullopt;
     d[k] = bricks_[b].distance[i];
   }
-  const auto mix = [](float a, float b, float t) { return a + t * (b - a); };
+  const auto mix = [](float from, float to, float t) { return from + t * (to - from); };
   const float y0 = mix(d[0], d[1], f.x()), y1 = mix(d[2], d[3], f.x());
   const float y2 = mix(d[4], d[5], f.x()), y3 = mix(d[6], d[7], f.x());
   const float z0 = mix(y0, y1, f.y()), z1 = mix(y2, y3, f.y());

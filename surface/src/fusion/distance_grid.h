@@ -8,6 +8,9 @@
 namespace fresco::fusion {
 constexpr int brick_side = 8, brick_size = brick_side * brick_side * brick_side;
 
+/// Of a node within its brick.
+inline int nodeIndex(int x, int y, int z) { return x + brick_side * (y + brick_side * z); }
+
 /// Of 8^3 nodes, x fastest. 4 kB.
 struct Brick {
   std::array<float, brick_size> distance{}; ///< weighted mean, in the unit of the frames; meaningless without weight

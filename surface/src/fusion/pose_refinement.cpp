@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <cmath>
 #include <fresco/core/parallel.h>
+#include <fresco/core/rigid_motion.h>
 namespace fresco::fusion {
 namespace {
 using Vector6 = Eigen::Matrix<double, 6, 1>;
@@ -74,12 +75,10 @@ Eigen::Isometry3d alignToGrid(const DistanceGrid& grid, const DepthFrame& frame,
     moved << turn.angle() * turn.axis(), T.translation() - given.translation();
     const Matrix6 H = sums.H + prior * sums.weight * Matrix6::Identity();
     const Vector6 step = -H.ldlt().solve(sums.b + prior * sums.weight * moved);
-    const double angle = step.head<3>().norm();
-    if (angle > 0)
-      T.linear() = Eigen::AngleAxisd(angle, step.head<3>() / angle).toRotationMatrix() * T.linear();
+    T.linear() = rotation(step.head<3>()) * T.linear();
     T.translation() += step.tail<3>();
     constexpr double rest = 1e-5; // rad and metres per step: a thousandth of the noise of a depth camera
-    if (angle < rest && step.tail<3>().norm() < rest)
+    if (step.head<3>().norm() < rest && step.tail<3>().norm() < rest)
       break;
   }
   T.linear() = Eigen::Quaterniond(T.linear()).normalized().toRotationMatrix();

@@ -23,7 +23,7 @@ struct Halo {
         for (int y = 0; y < end.y(); ++y)
           for (int x = 0; x < end.x(); ++x) {
             const int to = at(x + brick_side * offset.x(), y + brick_side * offset.y(), z + brick_side * offset.z());
-            const int node = x + brick_side * (y + brick_side * z);
+            const int node = nodeIndex(x, y, z);
             distance[to] = grid.brick(from).distance[node];
             weight[to] = grid.brick(from).weight[node];
           }
