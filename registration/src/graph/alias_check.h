@@ -6,8 +6,12 @@ namespace fresco::registration {
 struct ClusterJoin {
   Index first = 0, second = 0; ///< clusters
   Eigen::Isometry3d T_first_second = Eigen::Isometry3d::Identity();
-  double overlap = 0.0; ///< of the pair
+  double overlap = 0.0;    ///< of the pair
+  bool has_joined = false; ///< only a place that free space does not rule out any more than this one speaks against it
 };
+
+/// Hypotheses that stand comparison with the best of their pair.
+VerifiedHypotheses soundHypotheses(const PairAlignment& pair);
 
 /// Largest violation of any scan of one cluster with any of the other, 0..1.
 double worstViolation(const GraphInput& input, const ScanCluster& first, const ScanCluster& second,
@@ -18,6 +22,9 @@ double worstViolation(const GraphInput& input, const ScanCluster& first, const S
 /// the other; only what the scans saw through the doors does.
 /// @param join not contradicted by free space
 bool hasAliasByChain(const GraphInput& input, const std::vector<ScanCluster>& clusters, const ClusterJoin& join);
+
+/// The same by another pair of scans of the two clusters.
+bool hasAliasByPair(const GraphInput& input, const std::vector<ScanCluster>& clusters, const ClusterJoin& join);
 
 /// The same by an alias of a scan of either cluster.
 bool hasAliasByScan(const GraphInput& input, const std::vector<ScanCluster>& clusters, const ClusterJoin& join);

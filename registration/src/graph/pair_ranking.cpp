@@ -8,7 +8,7 @@ ScanFeatures mostDistinctive(const ScanFeatures& features)
 {
   constexpr Index quick_features = 300; // a quarter of all: matching and SC2-PCR then take a sixteenth of the time
   const Index n = std::min(quick_features, features.points.cols());
-  return {features.points.leftCols(n), features.normals.leftCols(n), features.descriptors.leftCols(n)};
+  return {features.points.leftCols(n), features.normals.leftCols(n), features.descriptors.leftCols(n), {}};
 }
 } // namespace
 

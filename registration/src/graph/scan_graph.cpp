@@ -13,20 +13,16 @@ struct Candidate {
 class GraphBuilder {
 public:
   GraphBuilder(const GraphInput& input, const ScanCluster& known)
-      : input_(input), known_count_(known.scans.size()), least_color_(leastColor()), plain_violation_(plainViolation())
+      : input_(input), known_(known), least_color_(leastColor()), plain_violation_(plainViolation())
   {
-    if (known_count_ > 0)
-      graph_.clusters.push_back(known);
-    const Index n = input.scans.size();
-    for (Index i = 0; i < n; ++i)
-      if (input.scans[i].problem.empty() && std::find(known.scans.begin(), known.scans.end(), i) == known.scans.end())
-        graph_.clusters.push_back({{i}, {Eigen::Isometry3d::Identity()}});
-    places_ = placesOf(graph_.clusters, n);
+    begin();
   }
 
   ScanGraph build();
 
 private:
+  void begin();
+  bool refuseTwins();
   const Eigen::Isometry3d& pose(Index scan) const
   {
     return graph_.clusters[places_[scan].cluster].poses[places_[scan].position];
@@ -45,12 +41,54 @@ private:
   void markLookAlikes();
 
   const GraphInput& input_;
-  std::size_t known_count_;
+  const ScanCluster& known_;
   double least_color_, plain_violation_;
-  std::vector<const PairAlignment*> aliased_;
+  std::vector<const PairAlignment*> aliased_, refused_;
+  std::vector<Candidate> joins_; // that made the clusters
   ScanGraph graph_;
   std::vector<ClusterPlace> places_; // of all scans in graph_
 };
+
+// Every scan alone, but the known ones.
+void GraphBuilder::begin()
+{
+  graph_.clusters.clear();
+  aliased_ = refused_;
+  joins_.clear();
+  if (!known_.scans.empty())
+    graph_.clusters.push_back(known_);
+  const Index n = input_.scans.size();
+  for (Index i = 0; i < n; ++i)
+    if (input_.scans[i].problem.empty() && std::find(known_.scans.begin(), known_.scans.end(), i) == known_.scans.end())
+      graph_.clusters.push_back({{i}, {Eigen::Isometry3d::Identity()}});
+  places_ = placesOf(graph_.clusters, n);
+}
+
+// The best pairs are joined first, and of equal rooms those are best that lie in each other's place. Once other scans
+// hang together, a chain over them may show two rooms: such a pair joins nothing in another round.
+bool GraphBuilder::refuseTwins()
+{
+  constexpr double same_place = 0.6; // overlap of scans of one room, or of its twin
+  const std::size_t before = refused_.size();
+  for (const Candidate& join : joins_) {
+    const Index a = join.pair->a, b = join.pair->b;
+    if (join.hypothesis->check.overlap < same_place)
+      continue;
+    std::vector<ScanCluster> clusters = graph_.clusters;
+    ScanCluster& own = clusters[places_[a].cluster];
+    for (const Index scan : {a, b}) {
+      const auto at = std::find(own.scans.begin(), own.scans.end(), scan) - own.scans.begin();
+      own.scans.erase(own.scans.begin() + at);
+      own.poses.erase(own.poses.begin() + at);
+    }
+    const Index n = clusters.size();
+    clusters.push_back({{a}, {Eigen::Isometry3d::Identity()}});
+    clusters.push_back({{b}, {Eigen::Isometry3d::Identity()}});
+    if (hasAliasByChain(input_, clusters, {n, n + 1, join.hypothesis->T_a_b, same_place, true}))
+      refused_.push_back(join.pair);
+  }
+  return refused_.size() > before;
+}
 
 // Frame of the cluster of a from frame of the cluster of b.
 Eigen::Isometry3d GraphBuilder::clusterPose(const Candidate& candidate) const
@@ -58,17 +96,18 @@ Eigen::Isometry3d GraphBuilder::clusterPose(const Candidate& candidate) const
   return pose(candidate.pair->a) * candidate.hypothesis->T_a_b * pose(candidate.pair->b).inverse();
 }
 
-// Whether both scans fit to themselves at a wrong place about as well as to each other.
+// Whether both scans fit to themselves at a wrong place about as well as to each other, overlaps and violations alike.
 bool GraphBuilder::unconvincing(const Candidate& candidate) const
 {
+  const PairCheck& check = candidate.hypothesis->check;
   double likeness = 1.0;
   for (const Index scan : {candidate.pair->a, candidate.pair->b}) {
     double most = 0.0;
     for (const ScanAlias& motion : input_.scans[scan].aliases)
-      most = std::max(most, motion.likeness);
+      if (!clearlyWorse(motion.violation, check.violation))
+        most = std::max(most, motion.likeness);
     likeness = std::min(likeness, most);
   }
-  const PairCheck& check = candidate.hypothesis->check;
   return likeness > 0.0 && (check.overlap < likeness || clearlyWorse(check.violation, 0.0));
 }
 
@@ -110,7 +149,7 @@ void GraphBuilder::join(const Candidate& candidate, const Eigen::Isometry3d& T_a
 bool GraphBuilder::tryJoin(const Candidate& candidate)
 {
   const Index a = places_[candidate.pair->a].cluster, b = places_[candidate.pair->b].cluster;
-  if (a == b)
+  if (a == b || std::find(refused_.begin(), refused_.end(), candidate.pair) != refused_.end())
     return false;
   const Eigen::Isometry3d T = clusterPose(candidate);
   const bool unsure = unconvincing(candidate);
@@ -121,7 +160,8 @@ bool GraphBuilder::tryJoin(const Candidate& candidate)
       aliased_.push_back(candidate.pair);
     return false;
   }
-  if (worstViolation(input_, graph_.clusters[a], graph_.clusters[b], T) > input_.options.max_violation)
+  const double most_violation = std::min<double>(input_.options.max_violation, plain_violation_);
+  if (worstViolation(input_, graph_.clusters[a], graph_.clusters[b], T) > most_violation)
     return false;
   const ClusterJoin proposed{a, b, T, candidate.hypothesis->check.overlap};
   if (hasAliasByChain(input_, graph_.clusters, proposed) || hasAliasByScan(input_, graph_.clusters, proposed)) {
@@ -129,6 +169,7 @@ bool GraphBuilder::tryJoin(const Candidate& candidate)
     return false;
   }
   join(candidate, T);
+  joins_.push_back(candidate);
   return true;
 }
 
@@ -209,10 +250,16 @@ void GraphBuilder::markLookAlikes()
 
 ScanGraph GraphBuilder::build()
 {
-  while (joinUnambiguous() || joinAmbiguous())
-    ;
+  constexpr int most_rounds = 6; // bounds the time
+  for (int round = 0; round < most_rounds; ++round) {
+    while (joinUnambiguous() || joinAmbiguous())
+      ;
+    if (round + 1 == most_rounds || !refuseTwins())
+      break;
+    begin();
+  }
   markLookAlikes();
-  std::stable_sort(graph_.clusters.begin() + (known_count_ > 0 ? 1 : 0), graph_.clusters.end(),
+  std::stable_sort(graph_.clusters.begin() + (known_.scans.empty() ? 0 : 1), graph_.clusters.end(),
                    [](const ScanCluster& x, const ScanCluster& y) { return x.scans.size() > y.scans.size(); });
   return std::move(graph_);
 }

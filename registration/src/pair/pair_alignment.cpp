@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pair/pair_alignment.h"
+#include "pair/plane_matching.h"
 #include <algorithm>
 namespace fresco::registration {
 namespace {
@@ -63,17 +64,23 @@ private:
   const PairAlignmentOptions& options_;
 };
 
-PoseHypotheses findHypotheses(const DescribedScan& a, const DescribedScan& b, const PairGeometry& pair,
-                              const PairAlignmentOptions& options)
+// Without free space too little tells which planes are the same.
+FoundHypotheses findHypotheses(const DescribedScan& a, const DescribedScan& b, const PairGeometry& pair,
+                               const PairAlignmentOptions& options)
 {
+  constexpr std::size_t most_by_planes = 200; // the right one is among the first hundred where a tenth overlaps
   Sc2PcrOptions sc2_pcr;
   sc2_pcr.tolerance = 1.5f * a.scan.levels[1].voxel;
   sc2_pcr.size = pair.size;
-  PoseHypotheses found =
-      runSc2Pcr(a.features, b.features, matchFeatures(a.features, b.features, options.matches), sc2_pcr);
+  FoundHypotheses found;
+  found.features = runSc2Pcr(a.features, b.features, matchFeatures(a.features, b.features, options.matches), sc2_pcr);
+  if (!a.scan.free_space.empty() && !b.scan.free_space.empty())
+    found.planes = matchPlanes(a.features.planes, b.features.planes, most_by_planes);
   if (options.upright)
-    found.erase(std::remove_if(found.begin(), found.end(), [](const PoseHypothesis& h) { return !isUpright(h.T_a_b); }),
-                found.end());
+    for (PoseHypotheses* poses : {&found.features, &found.planes})
+      poses->erase(
+          std::remove_if(poses->begin(), poses->end(), [](const PoseHypothesis& h) { return !isUpright(h.T_a_b); }),
+          poses->end());
   return found;
 }
 } // namespace
@@ -82,14 +89,15 @@ PairAlignment alignPair(const DescribedScan& a, const DescribedScan& b, const Pa
 {
   constexpr double telling_overlap = 0.2; // twice the least: a pose that free space alone speaks against
   const PairGeometry pair(a.scan, b.scan);
-  const PoseHypotheses found = findHypotheses(a, b, pair, options);
+  const FoundHypotheses found = findHypotheses(a, b, pair, options);
   PairAlignment alignment;
   alignment.hypotheses = verifyHypotheses(pair, found, options.verification);
   AliasHypotheses(pair, options).addTo(alignment.hypotheses);
   for (std::size_t k = 1; k < alignment.hypotheses.size(); ++k)
     alignment.ambiguous = alignment.ambiguous || comparable(alignment.hypotheses[0], alignment.hypotheses[k]);
-  if (alignment.hypotheses.empty() && !found.empty() && found[0].votes >= many_votes) {
-    const VerifiedHypothesis popular = verifyHypothesis(pair, found[0]);
+  const PoseHypotheses& popular_first = found.features;
+  if (alignment.hypotheses.empty() && !popular_first.empty() && popular_first[0].votes >= many_votes) {
+    const VerifiedHypothesis popular = verifyHypothesis(pair, popular_first[0]);
     if (popular.check.violation > options.verification.max_violation && popular.check.overlap >= telling_overlap)
       alignment.rejected = {popular};
   }

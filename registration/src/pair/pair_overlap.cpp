@@ -75,6 +75,14 @@ std::optional<double> colorCorrelation(const ScanLevel& source, const ScanLevel&
 }
 } // namespace
 
+double pairViolation(const PreparedScan& a, const PreparedScan& b, const Eigen::Isometry3d& T_a_b, int level)
+{
+  a.levels[level].prepareSearch();
+  b.levels[level].prepareSearch();
+  return std::max(violationShare(a.free_space, b.levels[level], T_a_b.cast<float>()),
+                  violationShare(b.free_space, a.levels[level], T_a_b.inverse().cast<float>()));
+}
+
 PairCheck checkPair(const PreparedScan& a, const PreparedScan& b, const Eigen::Isometry3d& T_a_b, int level)
 {
   const ScanLevel& level_a = a.levels[level];

@@ -30,4 +30,7 @@ struct PairCheck {
 /// @param level index into PreparedScan::levels: the finer, the smaller the errors of the pose and the misplaced
 /// surfaces that count as violations
 PairCheck checkPair(const PreparedScan& a, const PreparedScan& b, const Eigen::Isometry3d& T_a_b, int level);
+
+/// PairCheck::violation alone.
+double pairViolation(const PreparedScan& a, const PreparedScan& b, const Eigen::Isometry3d& T_a_b, int level);
 } // namespace fresco::registration

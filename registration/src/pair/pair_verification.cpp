@@ -38,24 +38,33 @@ Eigen::Isometry3d refined(const PreparedScan& a, const PreparedScan& b, const Ei
   return refineJointly({&a, &b}, {Eigen::Isometry3d::Identity(), T_a_b}, options, {}).poses[1];
 }
 
-// The hypotheses worth refining, best first.
-void rankHypotheses(const PairGeometry& pair, std::size_t most, PoseHypotheses& hypotheses)
+// Keeps those that are best by their check on a level.
+void rankByCheck(const PairGeometry& pair, int level, std::size_t most, PoseHypotheses& hypotheses)
 {
   constexpr double rough_scale = 0.03; // as violation_scale, but before refinement, when right poses violate too
-  for (PoseHypothesis& hypothesis : hypotheses)
-    hypothesis.score = quickOverlap(pair.a, pair.b, hypothesis.T_a_b);
-  keepBest(hypotheses, most);
   for (PoseHypothesis& hypothesis : hypotheses) {
-    const PairCheck check = checkPair(pair.a, pair.b, hypothesis.T_a_b, 0);
+    const PairCheck check = checkPair(pair.a, pair.b, hypothesis.T_a_b, level);
     hypothesis.score = check.overlap * std::exp(-check.violation / rough_scale);
   }
   keepBest(hypotheses, most);
 }
 
-// Distinct refined hypotheses, checked at the finest level.
-VerifiedHypotheses refineHypotheses(const PairGeometry& pair, const PoseHypotheses& hypotheses, std::size_t most)
+// The hypotheses worth refining, best first.
+void rankHypotheses(const PairGeometry& pair, std::size_t most, FoundHypotheses& found)
 {
-  VerifiedHypotheses verified;
+  for (PoseHypothesis& hypothesis : found.features)
+    hypothesis.score = quickOverlap(pair.a, pair.b, hypothesis.T_a_b);
+  keepBest(found.features, most);
+  rankByCheck(pair, 0, most, found.features);
+  rankByCheck(pair, 0, most, found.planes);
+  rankByCheck(pair, 1, most, found.planes);
+}
+
+// Adds up to `most` distinct refined hypotheses, checked at the finest level.
+void refineHypotheses(const PairGeometry& pair, const PoseHypotheses& hypotheses, std::size_t most,
+                      VerifiedHypotheses& verified)
+{
+  most += verified.size();
   for (const PoseHypothesis& hypothesis : hypotheses) {
     const auto known = [&](const Eigen::Isometry3d& T, double factor) {
       return std::any_of(verified.begin(), verified.end(), [&](const VerifiedHypothesis& other) {
@@ -70,7 +79,6 @@ VerifiedHypotheses refineHypotheses(const PairGeometry& pair, const PoseHypothes
     if (!known(next.T_a_b, 1.0))
       verified.push_back(next);
   }
-  return verified;
 }
 } // namespace
 
@@ -117,12 +125,13 @@ VerifiedHypothesis verifyHypothesis(const PairGeometry& pair, const PoseHypothes
   return verified;
 }
 
-VerifiedHypotheses verifyHypotheses(const PairGeometry& pair, PoseHypotheses hypotheses,
-                                    const VerificationOptions& options)
+VerifiedHypotheses verifyHypotheses(const PairGeometry& pair, FoundHypotheses found, const VerificationOptions& options)
 {
-  rankHypotheses(pair, options.checked, hypotheses);
-  VerifiedHypotheses accepted;
-  for (const VerifiedHypothesis& verified : refineHypotheses(pair, hypotheses, options.refined))
+  rankHypotheses(pair, options.checked, found);
+  VerifiedHypotheses refined_all, accepted;
+  refineHypotheses(pair, found.features, options.refined, refined_all);
+  refineHypotheses(pair, found.planes, options.refined, refined_all);
+  for (const VerifiedHypothesis& verified : refined_all)
     if (verified.check.overlap >= options.min_overlap && verified.check.violation <= options.max_violation)
       accepted.push_back(verified);
   sortByScore(accepted);

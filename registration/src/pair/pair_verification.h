@@ -31,6 +31,12 @@ struct VerificationOptions {
   std::size_t refined = 8;  ///< hypotheses that are refined
 };
 
+/// Poses of a pair before they are refined.
+struct FoundHypotheses {
+  PoseHypotheses features; ///< by features: coarse, sorted out by overlap first
+  PoseHypotheses planes;   ///< by planes: fine, but most of them wrong
+};
+
 /// Discount of an overlap by violations.
 double alignmentScore(const PairCheck& check);
 
@@ -44,7 +50,7 @@ bool comparable(const VerifiedHypothesis& best, const VerifiedHypothesis& other)
 VerifiedHypothesis verifyHypothesis(const PairGeometry& pair, const PoseHypothesis& hypothesis);
 
 /// The hypotheses that pass the checks, refined, distinct, best first.
-VerifiedHypotheses verifyHypotheses(const PairGeometry& pair, PoseHypotheses hypotheses,
+VerifiedHypotheses verifyHypotheses(const PairGeometry& pair, FoundHypotheses found,
                                     const VerificationOptions& options);
 
 /// Best first.

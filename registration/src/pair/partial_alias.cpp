@@ -165,7 +165,7 @@ ScanAliases findPartialAliases(const PreparedScan& scan, const ScanFeatures& fea
     for (const Eigen::Isometry3d& start : {rough, bestAlongWeakest(scan, rough)}) {
       const Eigen::Isometry3d T = refined(scan, start, check_level, level_count - 1);
       if (fitsPartially(scan, T)) {
-        found.push_back({T, true, 0.0, true});
+        found.push_back({T, true, 0.0, 0.0, true});
         break;
       }
     }

@@ -22,7 +22,7 @@ VerifiedHypotheses alignToSelf(const PreparedScan& scan, const ScanFeatures& fea
   options.refined = options.checked;
   const float apart = alias_distance * scan.size;
   const std::vector<Correspondence> matches = matchToSelf(features, {allOf(features), apart, apart, matches_a_feature});
-  return verifyHypotheses(PairGeometry(scan, scan), runSc2Pcr(features, features, matches, sc2_pcr), options);
+  return verifyHypotheses(PairGeometry(scan, scan), {runSc2Pcr(features, features, matches, sc2_pcr), {}}, options);
 }
 
 ScanAlias toAlias(const VerifiedHypothesis& own)
@@ -33,6 +33,7 @@ ScanAlias toAlias(const VerifiedHypothesis& own)
   ScanAlias alias;
   alias.T = own.T_a_b;
   alias.certain = wide && own.check.violation < certain_violation && own.check.color.value_or(1.0) > alias_color;
+  alias.violation = own.check.violation;
   alias.likeness = wide && own.check.violation <= VerificationOptions().max_violation ? own.check.overlap : 0.0;
   return alias;
 }

@@ -39,6 +39,7 @@ ScanFeatures describeScan(const PreparedScan& scan, const FeatureOptions& option
   const ScanLevel& level = scan.levels[options.level];
   const Histograms histograms = computeFpfh(level, options.radius * level.voxel, options.threads);
   const std::vector<Index> kept = distinctivePoints(level, histograms, 1.2f * level.voxel, options.most);
-  return {level.points(Eigen::all, kept), level.normals(Eigen::all, kept), histograms(Eigen::all, kept)};
+  return {level.points(Eigen::all, kept), level.normals(Eigen::all, kept), histograms(Eigen::all, kept),
+          findPlanes(scan)};
 }
 } // namespace fresco::registration

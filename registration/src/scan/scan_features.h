@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include "scan/prepared_scan.h"
+#include "scan/scan_planes.h"
 namespace fresco::registration {
 /// Distinctive points of a scan with a description of what lies around them, in its working frame.
 struct ScanFeatures {
   Points points;               ///< 3xK
   Points normals;              ///< 3xK unit
   Eigen::MatrixXf descriptors; ///< 33xK, see computeFpfh()
+  ScanPlanes planes;
 };
 
 struct FeatureOptions {
