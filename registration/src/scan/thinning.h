@@ -16,8 +16,8 @@ constexpr double voxels_per_size = 100.0; ///< finest thinning: a room of 3 m ra
 /// Where a scan was seen from, as far as its file tells.
 struct WorkingCenter {
   Eigen::Vector3d place = Eigen::Vector3d::Zero(); ///< in the scan's frame
-  bool given = false;    ///< it is the first finite viewpoint
-  bool assumed = false;  ///< it is the frame's origin; neither: the middle of points that lie far from the origin
+  bool given = false;                              ///< it is the first finite viewpoint
+  bool assumed = false; ///< it is the frame's origin; neither: the middle of points that lie far from the origin
 };
 WorkingCenter workingCenter(const PointSet& scan);
 

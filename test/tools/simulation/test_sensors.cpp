@@ -85,8 +85,8 @@ TEST(VirtualLaser, SeesThroughClearPanes)
   glass.clear = true;
   const int paint = builder.add({}), clear = builder.add(glass);
   builder.beginObject("box");
-  builder.boxes({{{-2, -2, -2}, {4, 2, 2}, allSides(paint), false}, {{1, -2, -2}, {1.02f, 2, 2}, allSides(clear), true}},
-                true);
+  builder.boxes(
+      {{{-2, -2, -2}, {4, 2, 2}, allSides(paint), false}, {{1, -2, -2}, {1.02f, 2, 2}, allSides(clear), true}}, true);
   const Scene scene = builder.finish();
   const RayScene rays(scene.mesh);
   const Lightmap light = bakeLight(scene, rays, Room::coarse());

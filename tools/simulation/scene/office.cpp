@@ -87,9 +87,7 @@ std::vector<OfficeRoom> Floor::drawRow(int rooms)
     room.depth = random_.uniformFloat(3.6, 5.6);
     room.door = random_.uniformFloat(0.25, room.width - door_width - 0.25);
     const double front = random_.uniform();
-    room.front = front < open_share                ? Front::open
-                 : front < open_share + closed_share ? Front::closed
-                                                     : Front::glass;
+    room.front = front < open_share ? Front::open : front < open_share + closed_share ? Front::closed : Front::glass;
     room.seed = random_.integer(1 << 30);
     row.push_back(room);
   }
@@ -166,8 +164,7 @@ void Floor::addStorage(const OfficeRoom& room, CounterRandom& random)
     thing("sideboard", {x, room.depth - 0.016f, 0}, 180,
           {{"size", {1.2f, 0.45f, random.uniform() < 0.5 ? 1.9f : 1.2f}}});
   for (int k = 0; k < 5; ++k)
-    thing("cartons",
-          {random.uniformFloat(0.5, room.width - 0.5), random.uniformFloat(1.6, room.depth - 0.9), 0},
+    thing("cartons", {random.uniformFloat(0.5, room.width - 0.5), random.uniformFloat(1.6, room.depth - 0.9), 0},
           random.uniformFloat(0, 180), {{"seed", 90 + k}});
 }
 

@@ -122,7 +122,8 @@ private:
   RayHit middle(const Vector3d& direction) const { return lit_.rays.intersect(worldRay(direction)); }
 
   /// What a ray meets behind the clear panes that `passes()` lets it through.
-  template <class Passes> RayHit behindGlass(Ray ray, const Passes& passes) const
+  template <class Passes>
+  RayHit behindGlass(Ray ray, const Passes& passes) const
   {
     constexpr float past = 1e-3f; // metres behind a face: on its other side
     RayHit hit = lit_.rays.intersect(ray);
