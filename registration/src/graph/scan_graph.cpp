@@ -72,7 +72,7 @@ bool GraphBuilder::refuseTwins()
   const std::size_t before = refused_.size();
   for (const Candidate& join : joins_) {
     const Index a = join.pair->a, b = join.pair->b;
-    if (join.hypothesis->check.overlap < same_place)
+    if (join.hypothesis->check.overlap < same_place || !graph_.clusters[places_[a].cluster].look_alike)
       continue;
     std::vector<ScanCluster> clusters = graph_.clusters;
     ScanCluster& own = clusters[places_[a].cluster];
@@ -81,10 +81,11 @@ bool GraphBuilder::refuseTwins()
       own.scans.erase(own.scans.begin() + at);
       own.poses.erase(own.poses.begin() + at);
     }
+    const bool alone = own.scans.empty(); // nothing confirms what others contest
     const Index n = clusters.size();
     clusters.push_back({{a}, {Eigen::Isometry3d::Identity()}});
     clusters.push_back({{b}, {Eigen::Isometry3d::Identity()}});
-    if (hasAliasByChain(input_, clusters, {n, n + 1, join.hypothesis->T_a_b, same_place, true}))
+    if (alone || hasAliasByChain(input_, clusters, {n, n + 1, join.hypothesis->T_a_b, same_place, true}))
       refused_.push_back(join.pair);
   }
   return refused_.size() > before;
@@ -254,11 +255,11 @@ ScanGraph GraphBuilder::build()
   for (int round = 0; round < most_rounds; ++round) {
     while (joinUnambiguous() || joinAmbiguous())
       ;
+    markLookAlikes();
     if (round + 1 == most_rounds || !refuseTwins())
       break;
     begin();
   }
-  markLookAlikes();
   std::stable_sort(graph_.clusters.begin() + (known_.scans.empty() ? 0 : 1), graph_.clusters.end(),
                    [](const ScanCluster& x, const ScanCluster& y) { return x.scans.size() > y.scans.size(); });
   return std::move(graph_);
