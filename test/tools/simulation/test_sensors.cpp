@@ -99,7 +99,7 @@ TEST(VirtualLaser, SeesThroughClearPanes)
     behind += scan.points.points(0, i) > 1.1f ? 1 : 0;
   }
   EXPECT_GT(behind, scan.points.size() / 10);
-  EXPECT_NEAR(static_cast<double>(pane) / static_cast<double>(behind), 0.1 / 0.9, 0.06);
+  EXPECT_NEAR(static_cast<double>(pane) / static_cast<double>(behind), 0.19 / 0.81, 0.08);
 }
 
 TEST(VirtualLaser, WithoutNoiseEveryPointLiesOnTheTruth)

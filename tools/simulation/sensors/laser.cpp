@@ -95,7 +95,7 @@ public:
   Return measure(const Vector3d& direction, Index beam) const
   {
     CounterRandom random(options_.seed, 1000 + number_, beam);
-    constexpr double sent_back = 0.1; // share of the beams that return from a clear pane
+    constexpr double sent_back = 0.1; // share of the beams that return from each face of a clear pane
     const RayHit hit = behindGlass(worldRay(direction), [&] { return random.uniform() >= sent_back; });
     if (hit.face < 0 || hit.distance > max_range_)
       return {};
