@@ -24,6 +24,11 @@ void declare(Args& args, DatasetOptions& options, int& seed)
   args.option("exposure", options.exposure_spread,
               "spread of the photographs' brightness, 0..0.9; white balance a quarter of it");
   args.option("sensor_noise", options.sensor_noise, "of the photographs, grey levels of 255, 0..100");
+  args.option("vignetting", options.vignetting, "light in the photographs' corners, of that in their middle, 0.1..1");
+  args.option("blur", options.blur, "of the photographs, pixels (deviation), 0..20");
+  args.option("intruder", options.intruder, "somebody stands in every Nth photograph, >= 0; 0 = in none");
+  args.option("pose_noise", options.pose_noise, "deviation of the written cameras' positions, metres, 0..1");
+  args.option("turn_noise", options.turn_noise, "deviation of the written cameras' directions, degrees, 0..10");
   args.option("quality", options.jpeg_quality, "of the JPEG files, 1..100");
   args.flag("truth_images", options.truth_images, "also photographs without exposure differences and noise (PNG)");
   args.option("edge", options.max_edge, "longest side of a face of the rooms' truth, metres, 0.02..10");

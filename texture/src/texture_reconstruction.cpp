@@ -62,6 +62,7 @@ struct Job {
 /// Which photograph each patch is painted from.
 struct ViewChoice {
   VisibleSurface surface;
+  Photometry photometry;
   std::vector<float> penalties; ///< octaves, of each candidate: photo-consistency
   Eigen::VectorXi view;         ///< P, -1 = unseen
 };
@@ -75,13 +76,16 @@ ViewChoice chooseViews(const Job& job, const RayScene& rays, const Progress& pro
   const auto& [patches, candidates, outlines] = out.surface;
 
   steps.begin("exposure", 0.4);
-  const Index count = views.projectors.size();
-  result.gains = options.exposure ? solveGains(candidates, count) : Points(Points::Ones(3, count));
+  if (options.exposure)
+    out.photometry = solvePhotometry(candidates, views.lenses);
+  else
+    out.photometry.gains.setOnes(3, views.projectors.size());
+  describePhotometry(out.photometry, result);
 
   steps.begin("view selection", 0.4);
   out.penalties.assign(candidates.list.size(), 0.f);
   if (options.consistency)
-    out.penalties = photoConsistencyPenalties(patches, candidates, result.gains, options.threads);
+    out.penalties = photoConsistencyPenalties(patches, candidates, out.photometry, options.threads);
   const double seam_cost = options.smoothness * diagonalOf(result.model.mesh);
   out.view = selectViews(patches, {candidates, out.penalties}, seam_cost, options.threads);
   return out;
@@ -115,12 +119,12 @@ void paintModel(const Job& job, ViewChoice& choice)
   steps.begin("seams", 0.7);
   const double blend_width = options.blend_width * pixelSize(resolution);
   const Blend blend =
-      blendViews({patches, candidates, choice.view, result.gains}, {blend_width, options.level, options.threads});
+      blendViews({patches, candidates, choice.view, choice.photometry}, {blend_width, options.level, options.threads});
 
   steps.begin("painting", 0.8);
   const std::vector<TexelSlot> slots = texelSlots(charts, patches.size());
   const PaintScene scene{patches, charts, choice.view, slots, options.threads};
-  const PaintSources sources{views.projectors, views.photos,     result.gains, blend,
+  const PaintSources sources{views.projectors, views.photos,     choice.photometry, blend,
                              candidates,       choice.penalties, outlines};
   paintPhotographs(scene, sources, choice.view, result);
 
@@ -156,7 +160,7 @@ TextureResult reconstructTexture(const TriangleMesh& mesh, const std::vector<Tex
   placeCameras({mesh, *rays, views, photos}, options, subProgress(progress, 0.05, 0.25), result);
 
   const std::vector<Projector> projectors = projectorsOf(mesh, result.cameras);
-  ViewList list{projectors, photos, {}, poseUncertainty(result)};
+  ViewList list{projectors, photos, lensNumbers(views), {}, poseUncertainty(result)};
   for (const TextureView& view : views)
     list.used.push_back(view.paint);
   const Job job{options, list, steps, result};

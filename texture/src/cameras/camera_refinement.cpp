@@ -13,7 +13,8 @@ constexpr double agreement_pixels = 0.5;
 
 auto numbersOf(const CameraModel& c)
 {
-  return std::tie(c.width, c.height, c.fx, c.fy, c.cx, c.cy, c.k1, c.k2, c.p1, c.p2);
+  return std::tie(c.width, c.height, c.fx, c.fy, c.cx, c.cy, c.k1, c.k2, c.p1, c.p2, c.k3, c.k4, c.k5, c.k6, c.sx1,
+                  c.sy1, c.projection);
 }
 
 CameraState stateOf(const TriangleMesh& mesh, const std::vector<TextureView>& views)

@@ -14,7 +14,7 @@ using Triplet = Eigen::Triplet<float>;
 class Levelling {
 public:
   Levelling(const BlendInput& input, const Groups& around, const VertexViews& shares)
-      : patches_(input.patches), around_(around), shares_(shares), candidates_(input.candidates), gains_(input.gains)
+      : patches_(input.patches), around_(around), shares_(shares), candidates_(input.candidates), photometry_(input.photometry)
   {
     out_.begin.assign(1, 0);
     for (const auto& list : shares_)
@@ -81,7 +81,7 @@ private:
                           *cb = candidates_.find(around_.list[k], list[b].view);
           if (!ca || !cb)
             continue;
-          step += cb->corrected(gains_) - ca->corrected(gains_);
+          step += cb->corrected(photometry_) - ca->corrected(photometry_);
           ++count;
         }
         if (!(count > 0))
@@ -115,7 +115,7 @@ private:
   const Groups& around_;
   const VertexViews& shares_;
   const Candidates& candidates_;
-  const Points& gains_;
+  const Photometry& photometry_;
   SeamOffsets out_;
   std::vector<Triplet> entries_; ///< below the diagonal
   Eigen::VectorXf diagonal_;

@@ -28,7 +28,7 @@ struct BlendInput {
   const PatchMesh& patches;
   const Candidates& candidates;
   const Eigen::VectorXi& view; ///< P, -1 = unseen
-  const Points& gains;         ///< 3xV, factor per view and channel
+  const Photometry& photometry;
 };
 
 /// Feathers the seams: near them the colours of a patch are made of both views.

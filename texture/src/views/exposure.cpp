@@ -8,13 +8,17 @@
 #include <numeric>
 namespace fresco::texture {
 namespace {
-/// Logarithms of the first view's colours over the second's.
-using Pairs = std::map<std::pair<int, int>, std::vector<Eigen::Vector3f>>;
+/// One patch in two views.
+struct ColorRatio {
+  Eigen::Vector3f log_ratio;  ///< of the first view's colour over the second's
+  float radius[2];            ///< squared, in either photograph
+};
+using Pairs = std::map<std::pair<int, int>, std::vector<ColorRatio>>;
 
 bool isClear(const Candidate& c)
 {
   constexpr int darkest = 12, brightest = 240; // grey levels: beyond, a value says little of the light
-  return std::all_of(c.color.begin(), c.color.end(), [](int v) { return v >= darkest && v <= brightest; });
+  return !c.clipped && std::all_of(c.color.begin(), c.color.end(), [](int v) { return v >= darkest && v <= brightest; });
 }
 
 Eigen::Vector3f logColor(const Candidate& c)
@@ -35,7 +39,8 @@ void addPatch(const Candidates& candidates, Index patch, Pairs& pairs)
       if (list[j].quality() >= trusted * best && isClear(list[j])) {
         auto& ratios = pairs[{list[i].view, list[j].view}];
         if (ratios.size() < most_samples)
-          ratios.push_back(logColor(list[i]) - logColor(list[j]));
+          ratios.push_back(
+              {logColor(list[i]) - logColor(list[j]), {list[i].squaredRadius(), list[j].squaredRadius()}});
       }
   }
 }
@@ -56,11 +61,111 @@ Pairs collectPairs(const Candidates& candidates)
   return pairs;
 }
 
-float channelMedian(const std::vector<Eigen::Vector3f>& values, int channel)
+/// The lenses' transmission, with the exposure of each view as a by-product: Cauchy-weighted least squares on grey.
+class FalloffSystem {
+public:
+  FalloffSystem(const Pairs& pairs, const std::vector<int>& lens)
+      : pairs_(pairs), lens_(lens), lenses_(*std::max_element(lens.begin(), lens.end()) + 1)
+  {}
+
+  std::vector<LensFalloff> solve() const
+  {
+    constexpr int rounds = 8; // of reweighting
+    Eigen::VectorXd x = Eigen::VectorXd::Zero(terms * lenses_ + lens_.size());
+    for (int round = 0; round < rounds; ++round)
+      x = step(x, round > 0);
+    std::vector<LensFalloff> out(lenses_);
+    for (int l = 0; l < lenses_; ++l)
+      out[l].a = x.segment<terms>(terms * l).cast<float>();
+    return out;
+  }
+
+private:
+  static constexpr int terms = 3;
+
+  /// Of one ratio: log(first / second) = sum of factor * x over six coefficients of lenses and two views.
+  struct Row {
+    std::array<int, 2 * terms + 2> at;
+    Eigen::Matrix<double, 2 * terms + 2, 1> factor;
+  };
+
+  Row rowOf(const std::pair<int, int>& views, const ColorRatio& ratio) const
+  {
+    Row row;
+    const int view[2] = {views.first, views.second};
+    for (int side = 0; side < 2; ++side) {
+      const double sign = side == 0 ? 1 : -1, r2 = ratio.radius[side];
+      for (int t = 0; t < terms; ++t) {
+        row.at[terms * side + t] = terms * lens_[view[side]] + t;
+        row.factor[terms * side + t] = sign * std::pow(r2, t + 1);
+      }
+      row.at[2 * terms + side] = terms * lenses_ + view[side];
+      row.factor[2 * terms + side] = sign;
+    }
+    return row;
+  }
+
+  Eigen::VectorXd step(const Eigen::VectorXd& x, bool reweight) const
+  {
+    constexpr double outlier = 0.03;        // of a logarithm (Cauchy): patches off by more than 3 % count less
+    constexpr double usual = 0.5;           // coefficients of a strong lens: corners at 60 %
+    constexpr std::size_t most_ratios = 64; // per pair of views
+    Eigen::MatrixXd A = Eigen::MatrixXd::Zero(x.size(), x.size());
+    A.diagonal().setConstant(outlier * outlier / (usual * usual));
+    Eigen::VectorXd b = Eigen::VectorXd::Zero(x.size());
+    for (const auto& [views, ratios] : pairs_)
+      for (std::size_t k = 0; k < std::min(ratios.size(), most_ratios); ++k) {
+        const Row row = rowOf(views, ratios[k]);
+        const double value = ratios[k].log_ratio.mean();
+        double error = -value;
+        for (std::size_t i = 0; i < row.at.size(); ++i)
+          error += row.factor[i] * x[row.at[i]];
+        const double w = reweight ? 1 / (1 + error * error / (outlier * outlier)) : 1;
+        for (std::size_t i = 0; i < row.at.size(); ++i) {
+          b[row.at[i]] += w * row.factor[i] * value;
+          for (std::size_t j = 0; j < row.at.size(); ++j)
+            A(row.at[i], row.at[j]) += w * row.factor[i] * row.factor[j];
+        }
+      }
+    return A.ldlt().solve(b);
+  }
+
+  const Pairs& pairs_;
+  const std::vector<int>& lens_;
+  int lenses_;
+};
+
+/// Lenses that let through the same everywhere, to the precision of the measurement, are taken as such.
+std::vector<LensFalloff> solveFalloff(const Pairs& pairs, const std::vector<int>& lens)
+{
+  constexpr float least = 0.01f; // of a logarithm: 1 % of the light, 2.5 grey levels, do not show
+  std::vector<LensFalloff> out = FalloffSystem(pairs, lens).solve();
+  for (LensFalloff& falloff : out) {
+    float most = 0;
+    for (const float r2 : {0.25f, 0.5f, 0.75f, 1.f})
+      most = std::max(most, std::fabs(falloff.logTransmission(r2)));
+    if (most < least)
+      falloff = {};
+  }
+  return out;
+}
+
+/// Takes the lenses' part out of the ratios.
+void correctRatios(const Photometry& photometry, Pairs& pairs)
+{
+  for (auto& [views, ratios] : pairs) {
+    const LensFalloff& first = photometry.falloff[photometry.lens[views.first]];
+    const LensFalloff& second = photometry.falloff[photometry.lens[views.second]];
+    for (ColorRatio& ratio : ratios)
+      ratio.log_ratio.array() -= first.logTransmission(ratio.radius[0]) - second.logTransmission(ratio.radius[1]);
+  }
+}
+
+float channelMedian(const std::vector<ColorRatio>& values, int channel)
 {
   std::vector<float> numbers;
-  for (const Eigen::Vector3f& v : values)
-    numbers.push_back(v[channel]);
+  for (const ColorRatio& v : values)
+    numbers.push_back(v.log_ratio[channel]);
   return median(numbers);
 }
 
@@ -92,12 +197,10 @@ Eigen::VectorXd solve(const std::vector<Equation>& equations, Index views)
   }
   return x;
 }
-} // namespace
 
-Points solveGains(const Candidates& candidates, Index views)
+Points solveGains(const Pairs& pairs, Index views)
 {
   constexpr std::size_t least_samples = 12; // per pair of views, for a median to count
-  const Pairs pairs = collectPairs(candidates);
   Points gains = Points::Ones(3, views);
   for (int c = 0; c < 3 && views > 0; ++c) {
     std::vector<Equation> equations;
@@ -119,5 +222,25 @@ Points solveGains(const Candidates& candidates, Index views)
         gains(c, v) = std::exp(mean - x[v]);
   }
   return gains;
+}
+} // namespace
+
+Photometry solvePhotometry(const Candidates& candidates, const std::vector<int>& lenses)
+{
+  Pairs pairs = collectPairs(candidates);
+  Photometry out;
+  out.lens = lenses;
+  out.falloff = solveFalloff(pairs, lenses);
+  correctRatios(out, pairs);
+  out.gains = solveGains(pairs, lenses.size());
+  return out;
+}
+
+void describePhotometry(const Photometry& photometry, TextureResult& result)
+{
+  result.gains = photometry.gains;
+  result.vignetting = Points::Zero(3, result.gains.cols());
+  for (std::size_t v = 0; v < photometry.lens.size(); ++v)
+    result.vignetting.col(v) = photometry.falloff[photometry.lens[v]].a;
 }
 } // namespace fresco::texture

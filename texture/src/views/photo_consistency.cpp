@@ -6,7 +6,7 @@
 namespace fresco::texture {
 namespace {
 /// Median per channel over the views with a vote; false if they are too few.
-bool consensus(const Candidates& candidates, Index patch, const Points& gains, Eigen::Vector3f& color)
+bool consensus(const Candidates& candidates, Index patch, const Photometry& photometry, Eigen::Vector3f& color)
 {
   constexpr std::size_t least_views = 3; // for a majority
   constexpr float trusted = 0.1f;        // of the best quality: views that show much less blur the colour
@@ -15,9 +15,9 @@ bool consensus(const Candidates& candidates, Index patch, const Points& gains, E
   const float best = candidates.bestQuality(patch);
   std::vector<float> values[3];
   for (Index i = 0; i < n; ++i)
-    if (list[i].quality() >= trusted * best)
+    if (list[i].quality() >= trusted * best && !list[i].clipped)
       for (int c = 0; c < 3; ++c)
-        values[c].push_back(list[i].corrected(gains)[c]);
+        values[c].push_back(list[i].corrected(photometry)[c]);
   if (values[0].size() < least_views)
     return false;
   for (int c = 0; c < 3; ++c)
@@ -47,29 +47,27 @@ std::vector<float> smoothed(const PatchMesh& patches, const Candidates& candidat
 } // namespace
 
 std::vector<float> photoConsistencyPenalties(const PatchMesh& patches, const Candidates& candidates,
-                                             const Points& gains, int threads)
+                                             const Photometry& photometry, int threads)
 {
   constexpr int smoothing_rounds = 2; // what differs is a region; single patches differ by small errors of alignment
   constexpr float one_octave = 20;    // grey levels of difference that cost an octave: well above noise
   constexpr float most_octaves = 5;   // by difference: a view that alone shows the patch well keeps a chance
-  constexpr float overexposed_octaves = 1;
-  constexpr int overexposed = 252; // grey level: structure is lost
+  constexpr float clipped_octaves = 6; // loses to all that are not
   std::vector<float> difference(candidates.list.size(), 0.f);
   parallelFor(patches.size(), threads, [&](Index i) {
     Eigen::Vector3f usual;
-    if (!consensus(candidates, i, gains, usual))
+    if (!consensus(candidates, i, photometry, usual))
       return;
     for (Index c = candidates.begin[i]; c < candidates.begin[i + 1]; ++c)
-      difference[c] = (candidates.list[c].corrected(gains) - usual).cwiseAbs().maxCoeff();
+      difference[c] = (candidates.list[c].corrected(photometry) - usual).cwiseAbs().maxCoeff();
   });
   for (int round = 0; round < smoothing_rounds; ++round)
     difference = smoothed(patches, candidates, difference, threads);
   std::vector<float> cost(difference.size());
   parallelFor(cost.size(), threads, [&](Index c) {
-    const auto& color = candidates.list[c].color;
     const float octaves = difference[c] / one_octave;
     cost[c] = std::min(octaves * octaves, most_octaves) +
-              (*std::max_element(color.begin(), color.end()) >= overexposed ? overexposed_octaves : 0.f);
+              (candidates.list[c].clipped ? clipped_octaves : 0.f);
   });
   return cost;
 }

@@ -5,7 +5,6 @@ namespace fresco::texture {
 /// Penalty in octaves of resolution for every candidate, in the order of candidates.list. It is high where the colour
 /// differs from what most views of the patch show: something stood in the way, moved or shone there. Overexposed
 /// candidates get one octave more.
-/// @param gains 3xV, factor per view and channel
 std::vector<float> photoConsistencyPenalties(const PatchMesh& patches, const Candidates& candidates,
-                                             const Points& gains, int threads);
+                                             const Photometry& photometry, int threads);
 } // namespace fresco::texture

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simulation/sensors/dataset.h"
 #include "simulation/scene/labels.h"
+#include "simulation/sensors/random.h"
 #include "simulation/sensors/views.h"
 #include <filesystem>
 #include <fresco/core/parallel.h>
@@ -27,6 +28,11 @@ void validate(const DatasetOptions& o)
   require(o.exposure_spread >= 0.f && o.exposure_spread <= 0.9f, "exposure spread ", o.exposure_spread,
           " is not in 0..0.9");
   require(o.sensor_noise >= 0.f && o.sensor_noise <= 100.f, "sensor noise ", o.sensor_noise, " is not in 0..100");
+  require(o.vignetting >= 0.1f && o.vignetting <= 1.f, "vignetting ", o.vignetting, " is not in 0.1..1");
+  require(o.blur >= 0.f && o.blur <= 20.f, "blur ", o.blur, " is not in 0..20");
+  require(o.intruder >= 0, "intruder ", o.intruder, " is negative");
+  require(o.pose_noise >= 0 && o.pose_noise <= 1, "pose noise ", o.pose_noise, " is not in 0..1");
+  require(o.turn_noise >= 0 && o.turn_noise <= 10, "turn noise ", o.turn_noise, " is not in 0..10");
   require(o.jpeg_quality >= 1 && o.jpeg_quality <= 100, "JPEG quality ", o.jpeg_quality, " is not in 1..100");
 }
 
@@ -109,14 +115,36 @@ void writePhotographs(const Run& run, const CameraSet& set, const Progress& prog
     const View& view = set.views[k];
     Exposure exposure = randomExposure(o.seed, k, o.exposure_spread);
     exposure.noise = o.sensor_noise;
-    writeImage(run.folder + "/images/" + view.image,
-               takePhotograph(run.lit, {set.cameras[0], view, exposure}, o.threads), o.jpeg_quality);
+    exposure.corner = o.vignetting;
+    exposure.blur = o.blur;
+    Shot shot{set.cameras[0], view, exposure};
+    if (o.intruder > 0 && (k + 1) % o.intruder == 0)
+      shot.intruder = intruderBefore(run.lit, view);
+    writeImage(run.folder + "/images/" + view.image, takePhotograph(run.lit, shot, o.threads), o.jpeg_quality);
     if (o.truth_images)
       writeImage(run.folder + "/truth_images/" + std::filesystem::path(view.image).replace_extension(".png").string(),
                  takePhotograph(run.lit, {set.cameras[0], view, {}}, o.threads));
     gains.write(concat(view.image, ' ', exposure.gain[0], ' ', exposure.gain[1], ' ', exposure.gain[2], '\n'));
   }
   gains.commit();
+}
+
+/// Cameras as somebody measured them who was a little wrong.
+CameraSet misplaced(CameraSet set, const DatasetOptions& o)
+{
+  for (std::size_t k = 0; k < set.views.size(); ++k) {
+    CounterRandom random(o.seed, 67, k);
+    const auto vector = [&](double deviation) {
+      const double x = random.gaussian(), y = random.gaussian(), z = random.gaussian();
+      return Eigen::Vector3d(deviation * Eigen::Vector3d(x, y, z));
+    };
+    const Eigen::Vector3d shift = vector(o.pose_noise), turn = vector(o.turn_noise * pi / 180);
+    Eigen::Isometry3d& T = set.views[k].T_camera_world;
+    T = T * Eigen::Translation3d(shift);
+    if (turn.norm() > 0)
+      T = Eigen::AngleAxisd(turn.norm(), turn.normalized()) * T;
+  }
+  return set;
 }
 
 /// Whether `name` is PREFIX, a number and an extension: a file that an earlier run may have written.
@@ -196,7 +224,7 @@ void writeDataset(const std::string& name, const std::string& folder, const Data
     report(progress, "views", 0.45);
     const CameraSet set = chooseViews(planning, pinhole(options), options.views);
     writePhotographs(run, set, subProgress(progress, 0.5, 1.0));
-    writeColmap(folder + "/cameras", set);
+    writeColmap(folder + "/cameras", misplaced(set, options));
   }
   writePoses(folder + "/poses.txt", poses);
 }

@@ -15,6 +15,11 @@ struct DatasetOptions {
   double focal = 0.9;             ///< focal length / width, > 0.1
   float exposure_spread = 0.2f;   ///< brightness of photographs is 1 +- this, 0..0.9
   float sensor_noise = 0.6f;      ///< deviation, grey levels of 0..255, >= 0
+  float vignetting = 1.f;         ///< light in the photographs' corners / in their middle, 0.1..1
+  float blur = 0.f;               ///< deviation of the photographs' blur, pixels, 0..20
+  int intruder = 0;               ///< somebody stands in every Nth photograph, >= 0; 0 = in none
+  double pose_noise = 0;          ///< deviation of the written cameras' positions, metres, 0..1
+  double turn_noise = 0;          ///< deviation of their directions, degrees, 0..10
   int jpeg_quality = 95;          ///< 1..100
   bool truth_images = false;      ///< also the photographs without exposure differences and noise, as PNG
   float max_edge = 0.1f;          ///< metres, longest side of the faces of rooms, 0.02..10
