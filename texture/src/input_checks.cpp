@@ -7,6 +7,7 @@
 #include <fresco/core/poses.h>
 #include <fresco/core/require.h>
 #include <fstream>
+#include <iomanip>
 namespace fresco::texture {
 namespace {
 void validateView(const TextureView& view, std::size_t index)
@@ -92,6 +93,47 @@ void validate(const TriangleMesh& mesh, const std::vector<TextureView>& views, c
   require(options.memory >= 1, "texture: memory ", options.memory, " MB is below 1");
   for (std::size_t v = 0; v < views.size(); ++v)
     validateView(views[v], v);
+}
+
+void weld(TextureResult& result)
+{
+  TriangleMesh& mesh = result.model.mesh;
+  const Faces faces = weldedFaces(mesh);
+  const auto vertices = [](const Faces& f) {
+    std::vector<int> list(f.data(), f.data() + f.size());
+    std::sort(list.begin(), list.end());
+    return std::unique(list.begin(), list.end()) - list.begin();
+  };
+  constexpr double hardly = 0.5; // vertices left: an unwelded closed mesh has a sixth, one cut along creases nearly all
+  const auto before = vertices(mesh.faces), after = vertices(faces);
+  if (after < hardly * before)
+    result.warnings.push_back(concat("faces do not share their corners: ", before, " vertices stand at ", after,
+                                     " places; they are taken as joined there"));
+  mesh.faces = faces;
+}
+
+void warnOfLittleSeen(double seen, const std::vector<TextureView>& views, TextureResult& result)
+{
+  constexpr double little = 0.3;      // a room that is photographed from its middle is seen by half
+  constexpr double other_scale = 100; // of cameras and mesh: units rather than a far or a narrow view
+  if (seen >= little || views.empty())
+    return;
+  Eigen::AlignedBox3d cameras, surface;
+  for (const TextureView& view : views)
+    cameras.extend(Eigen::Vector3d(view.T_camera_world.inverse().translation()));
+  const TriangleMesh& mesh = result.model.mesh;
+  for (Index i = 0; i < mesh.faces.size(); ++i)
+    surface.extend(mesh.origin + mesh.vertices.col(mesh.faces.data()[i]).cast<double>());
+  const double scale = surface.diagonal().norm() / std::max(cameras.diagonal().norm(), 1e-12);
+  const char* cause = "do the cameras' poses belong to this mesh?";
+  if (scale > other_scale && views.size() > 1)
+    cause = "is the mesh in millimetres and are the cameras in metres?";
+  else if (scale < 1 / other_scale)
+    cause = "is the mesh in metres and are the cameras in millimetres?";
+  else if (surface.exteriorDistance(cameras.center()) == 0)
+    cause = "are the mesh's faces turned to the cameras?";
+  result.warnings.push_back(
+      concat("only ", std::fixed, std::setprecision(1), 100 * seen, " % of the surface is seen: ", cause));
 }
 
 int exifOrientation(const std::string& path)

@@ -63,9 +63,17 @@ struct Job {
 struct ViewChoice {
   VisibleSurface surface;
   Photometry photometry;
-  std::vector<float> penalties; ///< octaves, of each candidate: photo-consistency
-  Eigen::VectorXi view;         ///< P, -1 = unseen
+  PhotoConsistency consistency;
+  Eigen::VectorXi view; ///< P, -1 = unseen
 };
+
+/// Patches that are painted from what does not belong to the surface become unseen.
+void hideForeign(const Candidates& candidates, const std::vector<char>& foreign, Eigen::VectorXi& view)
+{
+  for (Index i = 0; i < view.size(); ++i)
+    if (view[i] >= 0 && foreign[candidates.find(i, view[i]) - candidates.list.data()])
+      view[i] = -1;
+}
 
 ViewChoice chooseViews(const Job& job, const RayScene& rays, const Progress& progress)
 {
@@ -83,11 +91,13 @@ ViewChoice chooseViews(const Job& job, const RayScene& rays, const Progress& pro
   describePhotometry(out.photometry, result);
 
   steps.begin("view selection", 0.4);
-  out.penalties.assign(candidates.list.size(), 0.f);
   if (options.consistency)
-    out.penalties = photoConsistencyPenalties(patches, candidates, out.photometry, options.threads);
+    out.consistency = photoConsistency(patches, candidates, out.photometry, {rays, views, options});
+  else
+    out.consistency = {std::vector<float>(candidates.list.size(), 0.f), std::vector<char>(candidates.list.size(), 0)};
   const double seam_cost = options.smoothness * diagonalOf(result.model.mesh);
-  out.view = selectViews(patches, {candidates, out.penalties}, seam_cost, options.threads);
+  out.view = selectViews(patches, {candidates, out.consistency.penalties}, seam_cost, options.threads);
+  hideForeign(candidates, out.consistency.foreign, out.view);
   return out;
 }
 
@@ -118,14 +128,14 @@ void paintModel(const Job& job, ViewChoice& choice)
 
   steps.begin("seams", 0.7);
   const double blend_width = options.blend_width * pixelSize(resolution);
-  const Blend blend =
-      blendViews({patches, candidates, choice.view, choice.photometry}, {blend_width, options.level, options.threads});
+  const Blend blend = blendViews({patches, candidates, choice.view, choice.photometry, choice.consistency.penalties},
+                                 {blend_width, options.level, options.threads});
 
   steps.begin("painting", 0.8);
   const std::vector<TexelSlot> slots = texelSlots(charts, patches.size());
   const PaintScene scene{patches, charts, choice.view, slots, options.threads};
-  const PaintSources sources{views.projectors, views.photos,     choice.photometry, blend,
-                             candidates,       choice.penalties, outlines};
+  const PaintSources sources{
+      views.projectors, views.photos, choice.photometry, blend, candidates, choice.consistency.penalties, outlines};
   paintPhotographs(scene, sources, choice.view, result);
 
   steps.begin("back-projection", 0.85);
@@ -150,23 +160,26 @@ TextureResult reconstructTexture(const TriangleMesh& mesh, const std::vector<Tex
   validate(mesh, views, options);
   TextureResult result;
   result.model.mesh = mesh;
+  weld(result);
   Steps steps(progress, result);
   steps.begin("photographs", 0.0);
   PhotoStore photos(views, std::size_t(options.memory) << 20);
   checkPhotos(photos, views, options.threads, result);
 
   steps.begin("camera refinement", 0.05);
-  auto rays = std::make_unique<RayScene>(mesh);
+  auto rays = std::make_unique<RayScene>(result.model.mesh);
   placeCameras({mesh, *rays, views, photos}, options, subProgress(progress, 0.05, 0.25), result);
 
   const std::vector<Projector> projectors = projectorsOf(mesh, result.cameras);
-  ViewList list{projectors, photos, lensNumbers(views), {}, poseUncertainty(result)};
+  ViewList list{projectors, photos, {}, poseUncertainty(result), lensNumbers(views)};
   for (const TextureView& view : views)
     list.used.push_back(view.paint);
   const Job job{options, list, steps, result};
   ViewChoice choice = chooseViews(job, *rays, progress);
   rays.reset(); // painting needs the memory
   paintModel(job, choice);
+  warnOfLittleSeen(result.coverage, views, result);
+  result.model.mesh.faces = mesh.faces;
   steps.begin("done", 1.0);
   return result;
 }

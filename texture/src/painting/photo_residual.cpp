@@ -105,9 +105,10 @@ PhotoResidual residualOf(const Prediction& prediction, const Image& photo, const
     Eigen::Vector4f& pixel = out.pixels[i];
     const float trust = std::max({p[0], p[1], p[2]}) < overexposed ? coverageWeight(pixel.w()) : 0.f;
     if (trust > 0)
-      pixel.head<3>() = trust * (gain({i % photo.width + 0.5f, i / photo.width + 0.5f})
-                                     .cwiseProduct(Eigen::Vector3f(p[0], p[1], p[2])) -
-                                 pixel.head<3>() / pixel.w());
+      pixel.head<3>() =
+          trust *
+          (gain({i % photo.width + 0.5f, i / photo.width + 0.5f}).cwiseProduct(Eigen::Vector3f(p[0], p[1], p[2])) -
+           pixel.head<3>() / pixel.w());
     else
       pixel.setZero();
     pixel.w() = 0;

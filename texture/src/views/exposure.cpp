@@ -10,15 +10,16 @@ namespace fresco::texture {
 namespace {
 /// One patch in two views.
 struct ColorRatio {
-  Eigen::Vector3f log_ratio;  ///< of the first view's colour over the second's
-  float radius[2];            ///< squared, in either photograph
+  Eigen::Vector3f log_ratio; ///< of the first view's colour over the second's
+  float radius[2];           ///< squared, in either photograph
 };
 using Pairs = std::map<std::pair<int, int>, std::vector<ColorRatio>>;
 
 bool isClear(const Candidate& c)
 {
   constexpr int darkest = 12, brightest = 240; // grey levels: beyond, a value says little of the light
-  return !c.clipped && std::all_of(c.color.begin(), c.color.end(), [](int v) { return v >= darkest && v <= brightest; });
+  return !c.clipped &&
+         std::all_of(c.color.begin(), c.color.end(), [](int v) { return v >= darkest && v <= brightest; });
 }
 
 Eigen::Vector3f logColor(const Candidate& c)
@@ -39,8 +40,7 @@ void addPatch(const Candidates& candidates, Index patch, Pairs& pairs)
       if (list[j].quality() >= trusted * best && isClear(list[j])) {
         auto& ratios = pairs[{list[i].view, list[j].view}];
         if (ratios.size() < most_samples)
-          ratios.push_back(
-              {logColor(list[i]) - logColor(list[j]), {list[i].squaredRadius(), list[j].squaredRadius()}});
+          ratios.push_back({logColor(list[i]) - logColor(list[j]), {list[i].squaredRadius(), list[j].squaredRadius()}});
       }
   }
 }
@@ -227,8 +227,11 @@ Points solveGains(const Pairs& pairs, Index views)
 
 Photometry solvePhotometry(const Candidates& candidates, const std::vector<int>& lenses)
 {
-  Pairs pairs = collectPairs(candidates);
   Photometry out;
+  out.gains.setOnes(3, lenses.size());
+  if (lenses.empty())
+    return out;
+  Pairs pairs = collectPairs(candidates);
   out.lens = lenses;
   out.falloff = solveFalloff(pairs, lenses);
   correctRatios(out, pairs);

@@ -32,9 +32,9 @@ struct LensFalloff {
 
 /// How photographs answer to light: value = light * T(r) / gain.
 struct Photometry {
-  Eigen::Matrix3Xf gains;            ///< 3xV
-  std::vector<int> lens;             ///< V, into `falloff`; or none: all lenses are alike everywhere
-  std::vector<LensFalloff> falloff;  ///< of each lens
+  Eigen::Matrix3Xf gains;           ///< 3xV
+  std::vector<int> lens;            ///< V, into `falloff`; or none: all lenses are alike everywhere
+  std::vector<LensFalloff> falloff; ///< of each lens
 
   /// Factors on RGB at a place of a photograph.
   Eigen::Vector3f factor(int view, float squared_radius) const

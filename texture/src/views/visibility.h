@@ -13,8 +13,8 @@ namespace fresco::texture {
 /// A view that shows a patch.
 struct Candidate {
   std::int32_t view : 23;
-  std::uint32_t clipped : 1; ///< a part of the patch is overexposed
-  std::uint32_t radius : 8;  ///< of the patch's middle in the photograph, see storedRadius()
+  std::uint32_t clipped : 1;         ///< a part of the patch is overexposed
+  std::uint32_t radius : 8;          ///< of the patch's middle in the photograph, see storedRadius()
   std::array<std::uint8_t, 3> color; ///< mean over the patch in the photograph
   std::uint8_t penalty; ///< octaves / 16 by which the view is to be trusted less: outlines, the image's border
   float resolution;     ///< pixels per mesh unit in the direction seen most obliquely
@@ -60,10 +60,10 @@ private:
 struct ViewList {
   const std::vector<Projector>& projectors;
   PhotoStore& photos;
-  std::vector<int> lenses; ///< of each view, see lensNumbers()
   std::vector<char> used; ///< views that may become candidates
   double pose_uncertainty =
       1; ///< how far outlines are to be distrusted: 1 = by some pixels and centimetres, 0 = all is exact
+  std::vector<int> lenses; ///< of each view, see lensNumbers()
 };
 
 /// What visibility is judged by.

@@ -109,13 +109,14 @@ std::optional<std::pair<float, Vector3f>> Intruder::hit(const Ray& ray) const
     return {};
   const Vector3f at = from + distance * along; // on the unit sphere
   constexpr float stripes = 7;                 // over the height
-  const Vector3f color = std::fmod(stripes * (at.z() + 1), 2.f) < 1 ? Vector3f(0.75f, 0.2f, 0.15f) : Vector3f(0.15f, 0.25f, 0.6f);
+  const Vector3f color =
+      std::fmod(stripes * (at.z() + 1), 2.f) < 1 ? Vector3f(0.75f, 0.2f, 0.15f) : Vector3f(0.15f, 0.25f, 0.6f);
   return std::pair{distance, Vector3f((0.6f + 0.4f * at.z()) * color)};
 }
 
 std::optional<Intruder> intruderBefore(const LitScene& lit, const View& view)
 {
-  const Vector3f radii(0.28f, 0.28f, 0.85f); // of a person, metres
+  const Vector3f radii(0.28f, 0.28f, 0.85f);  // of a person, metres
   constexpr float least = 0.9f, share = 0.6f; // metres from the camera; of the way to what stands there
   const Vector3f eye = (view.center() - lit.scene.mesh.origin).cast<float>();
   const Vector3f ahead = view.T_camera_world.linear().transpose().col(2).cast<float>();
