@@ -22,7 +22,7 @@ Eigen::Vector3f logColor(const Candidate& c)
   return Eigen::Vector3f(c.color[0], c.color[1], c.color[2]).array().log();
 }
 
-void addPatch(const Candidates& candidates, Index patch, Pairs& pairs)
+void addPatch(const Candidates& candidates, const std::vector<int>& owner, Index patch, Pairs& pairs)
 {
   constexpr float trusted = 0.2f;            // of the best quality: views that show much less blur the colour
   constexpr std::size_t most_samples = 1000; // per pair of views: more hardly change a median
@@ -32,8 +32,9 @@ void addPatch(const Candidates& candidates, Index patch, Pairs& pairs)
     if (list[i].quality() < trusted * best || !isClear(list[i]))
       continue;
     for (Index j = i + 1; j < candidates.count(patch); ++j)
-      if (list[j].quality() >= trusted * best && isClear(list[j])) {
-        auto& ratios = pairs[{list[i].view, list[j].view}];
+      if (const int a = owner[list[i].view], b = owner[list[j].view];
+          a != b && list[j].quality() >= trusted * best && isClear(list[j])) {
+        auto& ratios = pairs[{a, b}];
         if (ratios.size() < most_samples)
           ratios.push_back(logColor(list[i]) - logColor(list[j]));
       }
@@ -41,7 +42,7 @@ void addPatch(const Candidates& candidates, Index patch, Pairs& pairs)
 }
 
 /// From patches spread over the whole mesh.
-Pairs collectPairs(const Candidates& candidates)
+Pairs collectPairs(const Candidates& candidates, const std::vector<int>& owner)
 {
   constexpr Index most_patches = 40000; // far more than the unknowns ask for
   const Index patches = candidates.begin.size() - 1;
@@ -52,7 +53,7 @@ Pairs collectPairs(const Candidates& candidates)
   while (taken > 1 && std::gcd(step, taken) != 1)
     step += 2;
   for (Index k = 0, at = 0; k < taken; ++k, at = (at + step) % taken)
-    addPatch(candidates, at * patches / taken, pairs);
+    addPatch(candidates, owner, at * patches / taken, pairs);
   return pairs;
 }
 
@@ -94,10 +95,11 @@ Eigen::VectorXd solve(const std::vector<Equation>& equations, Index views)
 }
 } // namespace
 
-Points solveGains(const Candidates& candidates, Index views)
+Points solveGains(const Candidates& candidates, const std::vector<int>& owner)
 {
+  const Index views = owner.empty() ? 0 : 1 + *std::max_element(owner.begin(), owner.end());
   constexpr std::size_t least_samples = 12; // per pair of views, for a median to count
-  const Pairs pairs = collectPairs(candidates);
+  const Pairs pairs = collectPairs(candidates, owner);
   Points gains = Points::Ones(3, views);
   for (int c = 0; c < 3 && views > 0; ++c) {
     std::vector<Equation> equations;
@@ -118,6 +120,6 @@ Points solveGains(const Candidates& candidates, Index views)
       if (known[v])
         gains(c, v) = std::exp(mean - x[v]);
   }
-  return gains;
+  return gains(Eigen::all, owner);
 }
 } // namespace fresco::texture
