@@ -15,6 +15,7 @@ using namespace fresco;
 struct ToolOptions {
   int keep_out = 0;
   std::string cameras_out, points;
+  PointTextureOptions from_points;
 };
 
 std::vector<TextureView> viewsOf(const CameraSet& set, const std::string& folder)
@@ -35,6 +36,10 @@ void declare(Args& args, TextureOptions& options, ToolOptions& tool)
   args.option("points", tool.points,
               "cloud whose colours, else intensities, the texture is made of; of the options below it takes "
               "-no_exposure, -no_examples, -texel, -atlas and -border");
+  args.option("point_width", tool.from_points.width,
+              "with -points: deviation of the Gaussian in distances from one point to the next, 0.3..10");
+  args.option("point_rounds", tool.from_points.rounds,
+              "with -points: corrections by what the points differ from the texture, 0..20");
   args.flag("no_refine", options.refine, "take the cameras as they are given", false);
   args.flag("no_exposure", options.exposure, "leave exposure and white balance of the photographs as they are", false);
   args.flag("no_consistency", options.consistency, "do not avoid photographs that differ from what most show", false);
@@ -124,7 +129,7 @@ void printAtlas(const Result& result, bool quiet)
 void textureFromPoints(const std::vector<std::string>& files, const ToolOptions& tool, const TextureOptions& shared,
                        bool quiet)
 {
-  PointTextureOptions options;
+  PointTextureOptions options = tool.from_points;
   options.texel = shared.texel;
   options.atlas = shared.atlas;
   options.border = shared.border;

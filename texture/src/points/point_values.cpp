@@ -6,6 +6,7 @@
 #include <cmath>
 #include <fresco/core/parallel.h>
 #include <fresco/core/statistics.h>
+#include <fresco/search/batch_knn.h>
 #include <numeric>
 namespace fresco::texture {
 namespace {
@@ -167,6 +168,30 @@ Points greyValues(const PointSet& set, const SurfaceSamples& samples, const Poin
   return grey.replicate<3, 1>();
 }
 
+/// Samples that none of their neighbours resembles get the mean of these: a beam that met two surfaces may have the
+/// range of one and the colour of the other.
+void replaceStrays(const SurfaceSamples& samples, int threads, Points& values)
+{
+  constexpr int neighbors = 9, least_others = 4; // those around a sample of a grid, and itself
+  constexpr float alike = 25;                    // grey levels: noise and the grain of a material stay below
+  const Points given = values;
+  forNearest(*samples.tree, neighbors, threads, [&](Index at, const int* found, Index count) {
+    const std::vector<int>& columns = samples.tree->columns();
+    const int i = columns[at];
+    Eigen::Vector4f sum = Eigen::Vector4f::Zero();
+    for (Index k = 0; k < count; ++k) {
+      const int other = columns[found[k]];
+      if (other == i || !(samples.normals.col(i).dot(samples.normals.col(other)) > SurfaceGaussian::same_side))
+        continue;
+      if ((given.col(i) - given.col(other)).cwiseAbs().maxCoeff() < alike)
+        return;
+      sum += given.col(other).homogeneous();
+    }
+    if (sum.w() >= least_others)
+      values.col(i) = sum.head<3>() / sum.w();
+  });
+}
+
 template <typename Values>
 bool areEqual(const Values& values)
 {
@@ -181,13 +206,16 @@ Points sampleValues(const PointSet& set, const SurfaceSamples& samples, const Po
                     PointTextureResult& result)
 {
   result.gains = Points::Ones(3, samples.stations.cols());
-  if (result.look == PointLook::intensities)
-    return greyValues(set, samples, options, result);
   Points values(3, samples.size());
-  for (Index i = 0; i < samples.size(); ++i)
-    values.col(i) = set.colors.col(samples.points[i]).cast<float>();
-  if (options.exposure)
-    bringTogether(samples, options.threads, values, result);
+  if (result.look == PointLook::intensities) {
+    values = greyValues(set, samples, options, result);
+  } else {
+    for (Index i = 0; i < samples.size(); ++i)
+      values.col(i) = set.colors.col(samples.points[i]).cast<float>();
+    if (options.exposure)
+      bringTogether(samples, options.threads, values, result);
+  }
+  replaceStrays(samples, options.threads, values);
   return values;
 }
 } // namespace fresco::texture

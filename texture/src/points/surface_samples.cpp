@@ -11,8 +11,6 @@
 #include <tuple>
 namespace fresco::texture {
 namespace {
-constexpr float same_side = 0.5f; // cosine: normals of one surface scatter by less than 60 degrees
-
 /// Points with the nearest face of each.
 struct Feet {
   std::vector<Index> points;
@@ -92,7 +90,8 @@ void measureSpacing(int threads, SurfaceSamples& samples)
     float farthest = 0;
     int agreeing = 0;
     for (Index k = 0; k < count; ++k)
-      if (const int other = columns[found[k]]; samples.normals.col(i).dot(samples.normals.col(other)) > same_side) {
+      if (const int other = columns[found[k]];
+          samples.normals.col(i).dot(samples.normals.col(other)) > SurfaceGaussian::same_side) {
         farthest = std::max(farthest, (samples.places.col(i) - samples.places.col(other)).norm());
         ++agreeing;
       }

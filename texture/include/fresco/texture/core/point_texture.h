@@ -16,7 +16,7 @@ struct PointTextureOptions {
   double texel = 0;     ///< side of a texel in mesh units, >= 0; 0 = 1.4 texels from one point to the next
   int atlas = 0;        ///< side of each square atlas, 128..16384 pixels; 0 = one as small as possible, up to 8192 each
   int border = 2;       ///< texels around each chart that continue its surface against bleeding, 1..16
-  double width = 0.6;   ///< deviation of the Gaussian in distances from one point to the next, 0.3..10
+  double width = 0.45;  ///< deviation of the Gaussian in distances from one point to the next, 0.3..10
   int rounds = 2;       ///< corrections by what the points differ from the texture, 0..20: more are sharper and noisier
   bool exposure = true; ///< bring the brightness of scans together; intensities: also range and angle of incidence
   bool examples = true; ///< give larger unseen parts the fine structure of the seen surface beside them
