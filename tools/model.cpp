@@ -49,7 +49,10 @@ int main(int argc, char** argv)
     fresco::inform(common.quiet, "input: " + fresco::describeInput(words[0]));
     const fresco::ModelReport report =
         fresco::buildModel(words[0], words[1], options, fresco::printProgress(common.quiet));
-    for (const fresco::ModelStage& stage : report.stages)
+    for (const fresco::ModelStage& stage : report.stages) {
       fresco::inform(common.quiet, fresco::stageSummary(stage));
+      for (const std::string& warning : stage.warnings)
+        fresco::inform(common.quiet, "warning: " + warning);
+    }
   });
 }

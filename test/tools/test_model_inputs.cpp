@@ -21,6 +21,7 @@ nlohmann::json modelOf(const std::string& folder)
   const Outcome outcome = run(folder, "model room out -use_poses -cell 0.1 -size 160x120");
   EXPECT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_EQ(outcome.err.rfind("input: 2 scans, ", 0), 0u) << outcome.err;
+  put(folder + "/said", outcome.err);
   return nlohmann::json::parse(get(folder + "/out/report.json"));
 }
 
@@ -64,7 +65,9 @@ TEST(ModelInputs, ScansWithoutALookGiveAModelWithoutTexture)
     writePoints(folder + scan, set);
   }
   const nlohmann::json report = modelOf(folder);
-  EXPECT_NE(textureFigures(report)["warnings"].dump().find("all black"), std::string::npos);
+  EXPECT_EQ(textureFigures(report)["made_of"], "nothing: no colours, no intensities");
+  EXPECT_NE(get(folder + "/said").find("\nwarning: the points' colours are all black and not used\n"),
+            std::string::npos);
   EXPECT_TRUE(readTexturedMesh(folder + "/out/model.obj").atlases.empty());
   EXPECT_GT(readTexturedMesh(folder + "/out/model.glb").mesh.faceCount(), 100);
   EXPECT_TRUE(fs::exists(folder + "/out/snapshots/inside_texture.png"));

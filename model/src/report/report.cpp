@@ -30,7 +30,9 @@ std::string shown(const Json& value)
 /// What describes the pictures is left out.
 ModelStage publicStage(const StageRecord& record)
 {
-  ModelStage stage{record.name, record.seconds, record.cpu_seconds, record.peak_megabytes, record.resumed, {}};
+  ModelStage stage{record.name, record.seconds, record.cpu_seconds, record.peak_megabytes, record.resumed, {}, {}};
+  if (record.figures.is_object())
+    stage.warnings = record.figures.value("warnings", stage.warnings);
   for (const auto& [name, value] : record.figures.items())
     if (name != "pictures" && name != "up")
       stage.figures.emplace_back(name, shown(value));

@@ -59,7 +59,7 @@ std::shared_ptr<const Image> PhotoStore::get(Index view)
 std::shared_ptr<const Image> PhotoStore::load(Index view)
 {
   return views_[view].ofPanorama() ? std::make_shared<const Image>(cutPanorama(*panoramaOf(view), views_[view]))
-                                   : loadGiven(*views_[view].given, view);
+                                   : loadGiven(*views_[view].given, views_[view].view);
 }
 
 std::shared_ptr<const Image> PhotoStore::panoramaOf(Index view)
@@ -70,7 +70,7 @@ std::shared_ptr<const Image> PhotoStore::panoramaOf(Index view)
     if (panorama_view_ == number)
       return panorama_;
   }
-  auto image = std::make_shared<const Image>(wrapPanorama(*loadGiven(*views_[view].given, view)));
+  auto image = std::make_shared<const Image>(wrapPanorama(*loadGiven(*views_[view].given, views_[view].view)));
   const std::lock_guard lock(mutex_);
   panorama_ = image;
   panorama_view_ = number;

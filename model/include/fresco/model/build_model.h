@@ -33,6 +33,7 @@ struct ModelStage {
   bool resumed = false;      ///< taken over from an earlier run
   /// Name and value, numbers with four digits, lists as JSON; report.json has them in full.
   std::vector<std::pair<std::string, std::string>> figures;
+  std::vector<std::string> warnings; ///< what was left out or ignored, a sentence each
 };
 
 struct ModelReport {
