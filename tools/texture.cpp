@@ -169,8 +169,7 @@ void run(int argc, char** argv)
   TextureOptions options;
   ToolOptions tool;
   CommonOptions common;
-  Args args("fresco_texture MESH CAMERAS_DIR IMAGES_DIR OUT [options]\n       fresco_texture MESH -points CLOUD OUT "
-            "[options]",
+  Args args("fresco_texture MESH CAMERAS_DIR IMAGES_DIR OUT [options], or MESH -points CLOUD OUT [options]",
             "Textures a mesh from calibrated photographs, or from the points it was made of. MESH: " +
                 readableExtensions(FileKind::mesh) +
                 ".\nCAMERAS_DIR: a COLMAP model, text or binary.\n"

@@ -16,9 +16,9 @@ std::string scansAlone()
   return folder;
 }
 
-nlohmann::json modelOf(const std::string& folder)
+nlohmann::json modelOf(const std::string& folder, const std::string& options = "")
 {
-  const Outcome outcome = run(folder, "model room out -use_poses -cell 0.1 -size 160x120");
+  const Outcome outcome = run(folder, "model room out -use_poses -cell 0.1 -size 160x120 " + options);
   EXPECT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_EQ(outcome.err.rfind("input: 2 scans, ", 0), 0u) << outcome.err;
   put(folder + "/said", outcome.err);
@@ -80,19 +80,19 @@ TEST(ModelInputs, PanoramasTextureTheModel)
   fs::create_directory(folder + "/room/panoramas");
   const std::vector<Pose> poses = readPoses(folder + "/room/poses.txt");
   const CameraModel camera = sphericalCamera(512, 256);
-  Eigen::Matrix3d R_camera_scan; // the middle looks along x, z is up
-  R_camera_scan << 0, -1, 0, 0, 0, -1, 1, 0, 0;
+  Eigen::Matrix3d R_camera_scan; // the middle looks along y, z is up
+  R_camera_scan << 1, 0, 0, 0, 0, -1, 0, 1, 0;
   for (int k = 0; k < 2; ++k) {
     Image image(512, 256);
     for (int y = 0; y < 256; ++y)
       for (int x = 0; x < 512; ++x) {
         const Eigen::Vector3d beam = R_camera_scan.transpose() * direction(camera, {x + 0.5, y + 0.5});
         const auto color = wallColor(wallPoint(poses[k]->topRightCorner<3, 1>(), beam));
-        std::copy(color.data(), color.data() + 3, image.pixel(x, y));
+        std::copy(color.data(), color.data() + 3, image.pixel(511 - x, y)); // mirrored
       }
     writeImage(folder + "/room/panoramas/scan_0" + std::to_string(k) + ".png", image);
   }
-  const nlohmann::json report = modelOf(folder);
+  const nlohmann::json report = modelOf(folder, "-panorama_direction 90 -panorama_mirrored");
   EXPECT_EQ(report["kind"], "2 scans, 2 panoramas");
   EXPECT_EQ(textureFigures(report)["made_of"], "panoramas");
   EXPECT_EQ(textureFigures(report)["photographs_used"], 2);
