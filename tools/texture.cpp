@@ -143,8 +143,10 @@ void textureFromPoints(const std::vector<std::string>& files, const ToolOptions&
     throw std::runtime_error(tool.points + ": " +
                              (reasons.empty() ? "has neither colours nor intensities" : reasons[0]));
   const PointTextureResult result = reconstructPointTexture(mesh, points, options, printProgress(quiet));
+  if (!(result.coverage > 0))
+    throw std::runtime_error(tool.points + ": no part of " + files[0] + " is covered with points");
   writeOutputs([&] { writeModel(files[1], result); });
-  inform(quiet, format("%s of %td points, %td scans: %.1f %% of the surface",
+  inform(quiet, format("%s of %td points, scans: %td, seen %.1f %% of the surface",
                        result.look == PointLook::colors ? "colours" : "intensities", points.size(), result.gains.cols(),
                        100 * result.coverage));
   printAtlas(result, quiet);

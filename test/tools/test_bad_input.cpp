@@ -159,6 +159,8 @@ TEST(Tools, PointsWithoutALookGiveNoTexture)
   expectRefused(folder, "texture mesh.ply -points equal.xyz out.obj", "all equal");
   put(folder + "/behind.xyz", "nan 0 1 7 7 7\n1 nan 0 1 2 3\n");
   expectRefused(folder, "texture mesh.ply -points behind.xyz out.obj", "no point lies");
+  put(folder + "/far.xyz", "100 0 1 7 7 7\n100 0 2 1 2 3\n");
+  expectRefused(folder, "texture mesh.ply -points far.xyz out.obj", "far.xyz: no part of mesh.ply is covered");
   expectRefused(folder, "texture mesh.ply -points cut.pcd out.obj", "cut.pcd");
 }
 

@@ -150,7 +150,8 @@ void equalizeIntensities(const PointSet& set, const SurfaceSamples& samples, Eig
                  std::exp(-result.range_exponent * (logs(1, i) - typical) - result.incidence_exponent * logs(2, i));
 }
 
-/// Intensities as grey: all but the darkest and the brightest hundredth fill the range.
+/// Intensities as grey: all but the darkest and the brightest hundredth fill the range, and the median comes as near to the
+/// middle as a power between those of light (1 / 2.2 on displays) and of grey levels (1) brings it.
 Points greyValues(const PointSet& set, const SurfaceSamples& samples, const PointTextureOptions& options,
                   PointTextureResult& result)
 {
@@ -163,9 +164,9 @@ Points greyValues(const PointSet& set, const SurfaceSamples& samples, const Poin
   if (options.exposure && quantile(0.01) > 0) // numbers below 0 are no measure of light
     equalizeIntensities(set, samples, values, options, result);
   const float low = quantile(0.01), high = std::max(quantile(0.99), std::nextafter(low, 1e38f));
-  const Eigen::RowVectorXf grey =
-      (255.f / (high - low) * (values.array() - low)).max(0.f).min(255.f).matrix().transpose();
-  return grey.replicate<3, 1>();
+  values = ((values.array() - low) / (high - low)).max(0.f).min(1.f);
+  const float power = std::clamp(std::log(0.5f) / std::log(quantile(0.5)), 1 / 2.2f, 1.f);
+  return (255.f * values.array().pow(power)).matrix().transpose().replicate<3, 1>();
 }
 
 /// Samples that none of their neighbours resembles get the mean of these: a beam that met two surfaces may have the
