@@ -150,8 +150,8 @@ void equalizeIntensities(const PointSet& set, const SurfaceSamples& samples, Eig
                  std::exp(-result.range_exponent * (logs(1, i) - typical) - result.incidence_exponent * logs(2, i));
 }
 
-/// Intensities as grey: all but the darkest and the brightest hundredth fill the range, and the median comes as near to the
-/// middle as a power between those of light (1 / 2.2 on displays) and of grey levels (1) brings it.
+/// Intensities as grey: all but the darkest and the brightest hundredth fill the range. Those that fall with the range are
+/// powers of light, of which displays take the power 1 / 2.2.
 Points greyValues(const PointSet& set, const SurfaceSamples& samples, const PointTextureOptions& options,
                   PointTextureResult& result)
 {
@@ -165,7 +165,8 @@ Points greyValues(const PointSet& set, const SurfaceSamples& samples, const Poin
     equalizeIntensities(set, samples, values, options, result);
   const float low = quantile(0.01), high = std::max(quantile(0.99), std::nextafter(low, 1e38f));
   values = ((values.array() - low) / (high - low)).max(0.f).min(1.f);
-  const float power = std::clamp(std::log(0.5f) / std::log(quantile(0.5)), 1 / 2.2f, 1.f);
+  constexpr double falling = -1; // between the square of the range and none
+  const float power = result.range_exponent < falling ? 1 / 2.2f : 1.f;
   return (255.f * values.array().pow(power)).matrix().transpose().replicate<3, 1>();
 }
 
