@@ -7,14 +7,6 @@
 using namespace fresco::texture;
 namespace fresco::test {
 namespace {
-/// Waves with detail that corners can be found in.
-Eigen::Vector3d detailed(const Eigen::Vector3d& p)
-{
-  const double checks =
-      std::sin(17 * p.x() + 3 * p.y()) * std::sin(13 * p.y() - 5 * p.z()) * std::sin(15 * p.z() + 4 * p.x() + 1);
-  return 0.7 * waves(p).array() + 40 + 70 * std::tanh(4 * checks);
-}
-
 TEST(TextureViews, ExposureIsBroughtTogether)
 {
   const TriangleMesh mesh = cube();

@@ -21,6 +21,8 @@ void validateView(const TextureView& view, std::size_t index)
   } catch (const std::invalid_argument& error) {
     throw std::invalid_argument(concat("texture: ", name, ": ", error.what()));
   }
+  require(c.projection != CameraProjection::spherical || c.width == 2 * c.height, "texture: ", name, ": a panorama of ",
+          c.width, "x", c.height, " pixels is not twice as wide as high");
   const Eigen::Matrix3d R = view.T_camera_world.linear();
   require(view.T_camera_world.matrix().allFinite() && isInReach(view.T_camera_world.translation()) &&
               (R * R.transpose() - Eigen::Matrix3d::Identity()).norm() < 1e-3 && R.determinant() > 0,
@@ -58,13 +60,14 @@ int orientationIn(const Tiff& tiff)
   return 1;
 }
 
-void warnOfRotations(const std::vector<TextureView>& views, TextureResult& result)
+void warnOfRotations(const std::vector<ViewPart>& parts, TextureResult& result)
 {
   std::string first;
   Index count = 0;
-  for (const TextureView& view : views)
-    if (view.image.empty() && exifOrientation(view.path) != 1 && count++ == 0)
-      first = view.path;
+  for (const ViewPart& part : parts)
+    if (part.given->image.empty() && part.R_part_view.isIdentity(0) && exifOrientation(part.given->path) != 1 &&
+        count++ == 0)
+      first = part.given->path;
   if (count > 0)
     result.warnings.push_back(
         concat(first, count > 1 ? concat(" and ", count - 1, " more carry") : " carries",
@@ -162,10 +165,11 @@ int exifOrientation(const std::string& path)
   return 1;
 }
 
-void checkPhotos(PhotoStore& photos, const std::vector<TextureView>& views, int threads, TextureResult& result)
+void checkPhotos(PhotoStore& photos, const std::vector<ViewPart>& parts, const TextureOptions& options,
+                 TextureResult& result)
 {
-  parallelFor(
-      views.size(), threads, [&](Index v) { photos.get(v); }, 1);
-  warnOfRotations(views, result);
+  const auto read = [&](Index v) { photos.get(v); };
+  parallelFor(parts.size(), options.threads, read, 1);
+  warnOfRotations(parts, result);
 }
 } // namespace fresco::texture

@@ -18,5 +18,7 @@ int exifOrientation(const std::string& path);
 
 /// Reads every photograph once, so that one that is missing or of another size is found before the long work. Warns of
 /// EXIF rotations.
-void checkPhotos(PhotoStore& photos, const std::vector<TextureView>& views, int threads, TextureResult& result);
+/// @param parts of the views
+void checkPhotos(PhotoStore& photos, const std::vector<ViewPart>& parts, const TextureOptions& options,
+                 TextureResult& result);
 } // namespace fresco::texture

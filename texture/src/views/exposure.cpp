@@ -27,7 +27,7 @@ Eigen::Vector3f logColor(const Candidate& c)
   return Eigen::Vector3f(c.color[0], c.color[1], c.color[2]).array().log();
 }
 
-void addPatch(const Candidates& candidates, Index patch, Pairs& pairs)
+void addPatch(const Candidates& candidates, const std::vector<int>& owner, Index patch, Pairs& pairs)
 {
   constexpr float trusted = 0.2f;            // of the best quality: views that show much less blur the colour
   constexpr std::size_t most_samples = 1000; // per pair of views: more hardly change a median
@@ -37,8 +37,9 @@ void addPatch(const Candidates& candidates, Index patch, Pairs& pairs)
     if (list[i].quality() < trusted * best || !isClear(list[i]))
       continue;
     for (Index j = i + 1; j < candidates.count(patch); ++j)
-      if (list[j].quality() >= trusted * best && isClear(list[j])) {
-        auto& ratios = pairs[{list[i].view, list[j].view}];
+      if (const int a = owner[list[i].view], b = owner[list[j].view];
+          a != b && list[j].quality() >= trusted * best && isClear(list[j])) {
+        auto& ratios = pairs[{a, b}];
         if (ratios.size() < most_samples)
           ratios.push_back({logColor(list[i]) - logColor(list[j]), {list[i].squaredRadius(), list[j].squaredRadius()}});
       }
@@ -46,7 +47,7 @@ void addPatch(const Candidates& candidates, Index patch, Pairs& pairs)
 }
 
 /// From patches spread over the whole mesh.
-Pairs collectPairs(const Candidates& candidates)
+Pairs collectPairs(const Candidates& candidates, const std::vector<int>& owner)
 {
   constexpr Index most_patches = 40000; // far more than the unknowns ask for
   const Index patches = candidates.begin.size() - 1;
@@ -57,7 +58,7 @@ Pairs collectPairs(const Candidates& candidates)
   while (taken > 1 && std::gcd(step, taken) != 1)
     step += 2;
   for (Index k = 0, at = 0; k < taken; ++k, at = (at + step) % taken)
-    addPatch(candidates, at * patches / taken, pairs);
+    addPatch(candidates, owner, at * patches / taken, pairs);
   return pairs;
 }
 
@@ -65,7 +66,7 @@ Pairs collectPairs(const Candidates& candidates)
 class FalloffSystem {
 public:
   FalloffSystem(const Pairs& pairs, const std::vector<int>& lens)
-      : pairs_(pairs), lens_(lens), lenses_(*std::max_element(lens.begin(), lens.end()) + 1)
+      : pairs_(pairs), lens_(lens), lenses_(std::max(*std::max_element(lens.begin(), lens.end()) + 1, 1))
   {}
 
   std::vector<LensFalloff> solve() const
@@ -96,8 +97,9 @@ private:
     for (int side = 0; side < 2; ++side) {
       const double sign = side == 0 ? 1 : -1, r2 = ratio.radius[side];
       for (int t = 0; t < terms; ++t) {
-        row.at[terms * side + t] = terms * lens_[view[side]] + t;
-        row.factor[terms * side + t] = sign * std::pow(r2, t + 1);
+        const int lens = lens_[view[side]];
+        row.at[terms * side + t] = terms * std::max(lens, 0) + t;
+        row.factor[terms * side + t] = lens < 0 ? 0 : sign * std::pow(r2, t + 1);
       }
       row.at[2 * terms + side] = terms * lenses_ + view[side];
       row.factor[2 * terms + side] = sign;
@@ -151,11 +153,11 @@ std::vector<LensFalloff> solveFalloff(const Pairs& pairs, const std::vector<int>
 }
 
 /// Takes the lenses' part out of the ratios.
-void correctRatios(const Photometry& photometry, Pairs& pairs)
+void correctRatios(const std::vector<LensFalloff>& falloff, const std::vector<int>& lens, Pairs& pairs)
 {
+  const auto of = [&](int view) { return lens[view] < 0 ? LensFalloff{} : falloff[lens[view]]; };
   for (auto& [views, ratios] : pairs) {
-    const LensFalloff& first = photometry.falloff[photometry.lens[views.first]];
-    const LensFalloff& second = photometry.falloff[photometry.lens[views.second]];
+    const LensFalloff first = of(views.first), second = of(views.second);
     for (ColorRatio& ratio : ratios)
       ratio.log_ratio.array() -= first.logTransmission(ratio.radius[0]) - second.logTransmission(ratio.radius[1]);
   }
@@ -198,8 +200,9 @@ Eigen::VectorXd solve(const std::vector<Equation>& equations, Index views)
   return x;
 }
 
-Points solveGains(const Pairs& pairs, Index views)
+Points solveGains(const Pairs& pairs, const std::vector<int>& owner)
 {
+  const Index views = owner.empty() ? 0 : 1 + *std::max_element(owner.begin(), owner.end());
   constexpr std::size_t least_samples = 12; // per pair of views, for a median to count
   Points gains = Points::Ones(3, views);
   for (int c = 0; c < 3 && views > 0; ++c) {
@@ -221,21 +224,29 @@ Points solveGains(const Pairs& pairs, Index views)
       if (known[v])
         gains(c, v) = std::exp(mean - x[v]);
   }
-  return gains;
+  return gains(Eigen::all, owner);
 }
 } // namespace
 
-Photometry solvePhotometry(const Candidates& candidates, const std::vector<int>& lenses)
+Points solveGains(const Candidates& candidates, const std::vector<int>& owner)
+{
+  return solveGains(collectPairs(candidates, owner), owner);
+}
+
+Photometry solvePhotometry(const Candidates& candidates, const std::vector<int>& lenses, const std::vector<int>& owner)
 {
   Photometry out;
   out.gains.setOnes(3, lenses.size());
   if (lenses.empty())
     return out;
-  Pairs pairs = collectPairs(candidates);
+  Pairs pairs = collectPairs(candidates, owner);
+  std::vector<int> lens_of_owner(1 + *std::max_element(owner.begin(), owner.end()), -1);
+  for (std::size_t v = 0; v < owner.size(); ++v)
+    lens_of_owner[owner[v]] = lenses[v];
   out.lens = lenses;
-  out.falloff = solveFalloff(pairs, lenses);
-  correctRatios(out, pairs);
-  out.gains = solveGains(pairs, lenses.size());
+  out.falloff = solveFalloff(pairs, lens_of_owner);
+  correctRatios(out.falloff, lens_of_owner, pairs);
+  out.gains = solveGains(pairs, owner);
   return out;
 }
 
@@ -244,6 +255,7 @@ void describePhotometry(const Photometry& photometry, TextureResult& result)
   result.gains = photometry.gains;
   result.vignetting = Points::Zero(3, result.gains.cols());
   for (std::size_t v = 0; v < photometry.lens.size(); ++v)
-    result.vignetting.col(v) = photometry.falloff[photometry.lens[v]].a;
+    if (photometry.lens[v] >= 0)
+      result.vignetting.col(v) = photometry.falloff[photometry.lens[v]].a;
 }
 } // namespace fresco::texture

@@ -7,8 +7,12 @@ namespace fresco::texture {
 /// least squares over the median ratio of each pair of views. Both are robust against what disagrees with the rest. Means
 /// of the factors' logarithms are 0; nothing is corrected where nothing is known.
 /// @param lenses of each view, see lensNumbers()
-Photometry solvePhotometry(const Candidates& candidates, const std::vector<int>& lenses);
+/// @param owner per candidate view what it is a part of: parts of one have the same factor
+Photometry solvePhotometry(const Candidates& candidates, const std::vector<int>& lenses, const std::vector<int>& owner);
 
 /// Fills gains and vignetting of the result.
 void describePhotometry(const Photometry& photometry, TextureResult& result);
+
+/// The factors alone.
+Points solveGains(const Candidates& candidates, const std::vector<int>& owner);
 } // namespace fresco::texture

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+#include "cameras/view_parts.h"
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
 #include <fresco/core/camera.h>
-#include <fresco/texture/core/texture_reconstruction.h>
 #include <vector>
 namespace fresco::texture {
 /// Squared distance of a pixel from the principal point, in squared half diagonals of the image: 1 in the corners of a
@@ -33,13 +33,13 @@ struct LensFalloff {
 /// How photographs answer to light: value = light * T(r) / gain.
 struct Photometry {
   Eigen::Matrix3Xf gains;           ///< 3xV
-  std::vector<int> lens;            ///< V, into `falloff`; or none: all lenses are alike everywhere
+  std::vector<int> lens;            ///< V, into `falloff`; -1 where all is let through
   std::vector<LensFalloff> falloff; ///< of each lens
 
   /// Factors on RGB at a place of a photograph.
   Eigen::Vector3f factor(int view, float squared_radius) const
   {
-    const float log_t = lens.empty() ? 0.f : falloff[lens[view]].logTransmission(squared_radius);
+    const float log_t = lens.empty() || lens[view] < 0 ? 0.f : falloff[lens[view]].logTransmission(squared_radius);
     return log_t == 0.f ? Eigen::Vector3f(gains.col(view)) : Eigen::Vector3f(std::exp(-log_t) * gains.col(view));
   }
 };
@@ -65,6 +65,7 @@ private:
   std::vector<float> table_; ///< 1 / T by stored radius; empty where it is 1 everywhere
 };
 
-/// For each view the number of its lens: cameras of one size of image and nearly one focal length share it.
-std::vector<int> lensNumbers(const std::vector<TextureView>& views);
+/// For each view the number of its lens: cameras of one size of image and nearly one focal length share it; -1 for
+/// parts of panoramas, which are evened when they are put together.
+std::vector<int> lensNumbers(const std::vector<ViewPart>& views);
 } // namespace fresco::texture

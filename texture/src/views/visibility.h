@@ -61,6 +61,7 @@ struct ViewList {
   const std::vector<Projector>& projectors;
   PhotoStore& photos;
   std::vector<char> used; ///< views that may become candidates
+  std::vector<int> owner; ///< number of what each is a part of: parts of one panorama share it
   double pose_uncertainty =
       1; ///< how far outlines are to be distrusted: 1 = by some pixels and centimetres, 0 = all is exact
   std::vector<int> lenses; ///< of each view, see lensNumbers()

@@ -24,6 +24,8 @@ void validate(const DatasetOptions& o)
   require(o.views >= 0 && o.views <= 100000, "views ", o.views, " is not in 0..100000");
   require(o.width >= 16 && o.width <= 20000 && o.height >= 16 && o.height <= 20000, "image size ", o.width, "x",
           o.height, " is not in 16..20000");
+  require(o.panorama_height >= 8 && o.panorama_height <= 10000, "panorama height ", o.panorama_height,
+          " is not in 8..10000");
   require(o.focal > 0.1 && o.focal < 100.0, "focal length ", o.focal, " is not in 0.1..100 image widths");
   require(o.exposure_spread >= 0.f && o.exposure_spread <= 0.9f, "exposure spread ", o.exposure_spread,
           " is not in 0..0.9");
@@ -147,6 +149,26 @@ CameraSet misplaced(CameraSet set, const DatasetOptions& o)
   return set;
 }
 
+/// From the places of the laser; the middle looks along the x axis of the scan, its z axis is up.
+void writePanoramas(const Run& run, const std::vector<Pose>& poses, const Progress& progress)
+{
+  constexpr int exposures_of_photographs = 100000; // numbers that photographs may have
+  const DatasetOptions& o = run.options;
+  makeFolder(run.folder + "/panoramas");
+  const CameraModel camera = sphericalCamera(2 * o.panorama_height, o.panorama_height);
+  Eigen::Matrix3d R_camera_scan;
+  R_camera_scan << 0, -1, 0, 0, 0, -1, 1, 0, 0;
+  for (std::size_t k = 0; k < poses.size(); ++k) {
+    report(progress, concat("panorama ", k + 1, " of ", poses.size()), double(k) / poses.size());
+    View view;
+    view.T_camera_world = Eigen::Isometry3d(R_camera_scan) * Eigen::Isometry3d(*poses[k]).inverse();
+    Exposure exposure = randomExposure(o.seed, exposures_of_photographs + k, o.exposure_spread);
+    exposure.noise = o.sensor_noise;
+    writeImage(concat(run.folder, "/panoramas/scan_", std::setfill('0'), std::setw(2), k, ".jpg"),
+               takePhotograph(run.lit, {camera, view, exposure}, o.threads), o.jpeg_quality);
+  }
+}
+
 /// Whether `name` is PREFIX, a number and an extension: a file that an earlier run may have written.
 bool isNumbered(const std::filesystem::path& name, const std::string& prefix)
 {
@@ -163,7 +185,7 @@ void removeOld(const std::string& folder)
   for (const char* file : {"cameras.txt", "images.txt", "points3D.txt"})
     fs::remove(folder + "/cameras/" + file);
   const std::pair<const char*, const char*> numbered_files[] = {
-      {"scans", "scan_"}, {"images", "view_"}, {"truth_images", "view_"}};
+      {"scans", "scan_"}, {"panoramas", "scan_"}, {"images", "view_"}, {"truth_images", "view_"}};
   for (const auto& [sub, prefix] : numbered_files) {
     std::vector<fs::path> old;
     if (fs::is_directory(folder + "/" + sub))
@@ -218,8 +240,10 @@ void writeDataset(const std::string& name, const std::string& folder, const Data
   report(progress, "stations", 0.3);
   const Points stations = chooseStations(planning, options.stations);
   std::vector<int> returns(scene.mesh.faceCount(), 0);
-  const std::vector<Pose> poses = writeScans(run, stations, returns, subProgress(progress, 0.32, 0.45));
+  const std::vector<Pose> poses = writeScans(run, stations, returns, subProgress(progress, 0.32, 0.4));
   writeTruth(run, returns);
+  if (options.panoramas)
+    writePanoramas(run, poses, subProgress(progress, 0.4, 0.45));
   if (options.views > 0) {
     report(progress, "views", 0.45);
     const CameraSet set = chooseViews(planning, pinhole(options), options.views);

@@ -11,6 +11,8 @@ struct DatasetOptions {
   LaserOptions laser;
   int views = 60;                 ///< photographs, >= 1; 0 = none
   int width = 1280, height = 960; ///< pixels of a photograph, 16..20000
+  bool panoramas = false;         ///< one from each station, JPEG
+  int panorama_height = 2048;     ///< pixels, 8..10000; twice as wide
   bool labels = false;            ///< scans have a field `label`, see PointLabel
   double focal = 0.9;             ///< focal length / width, > 0.1
   float exposure_spread = 0.2f;   ///< brightness of photographs is 1 +- this, 0..0.9
@@ -28,7 +30,7 @@ struct DatasetOptions {
 };
 
 /// Writes the dataset of `scene` (conference_room, apartment, or a mesh file) into `folder`:
-/// scans/scan_NN.pcd, images/view_NNN.jpg, truth_images/view_NNN.png, truth.ply (vertex colours; field `returns`: laser
+/// scans/scan_NN.pcd, panoramas/scan_NN.jpg, images/view_NNN.jpg, truth_images/view_NNN.png, truth.ply (vertex colours; field `returns`: laser
 /// points on the faces around a vertex), exposures.txt, cameras/ (COLMAP text), poses.txt. Files appear whole;
 /// poses.txt comes last and is removed first, so a folder that has it is complete.
 /// @throws std::invalid_argument for an option out of range

@@ -64,8 +64,9 @@ RayPacket<packet_size> pixelRays(const Shot& shot, const Vector3f& center, const
   for (int i = 0; i < packet_size; ++i) {
     const int pixel = i / 4;
     const Vector2d where(at.x() + pixel % block + corners[i % 4][0], at.y() + pixel / block + corners[i % 4][1]);
-    const Vector3d direction = R_world_camera * unproject(shot.camera, where);
-    packet[i] = {center, direction.cast<float>()};
+    const bool around = shot.camera.projection == CameraProjection::spherical;
+    const Vector3d beam = R_world_camera * (around ? direction(shot.camera, where) : unproject(shot.camera, where));
+    packet[i] = {center, beam.cast<float>()};
   }
   return packet;
 }
@@ -78,7 +79,7 @@ Vector3f rayColor(const LitScene& lit, const Shot& shot, const Ray& ray, const R
   if (hit.face < 0)
     return background;
   const float cosine = std::fabs(faceNormal(lit.scene.mesh, hit.face).dot(ray.direction.normalized()));
-  // distance is a depth, for directions have z = 1; of the four rays of a pixel each stands for half its width
+  // distance is a depth, for directions have z = 1 (panoramas: length 1); of the four rays of a pixel each stands for half its width
   const float footprint = 0.7f * hit.distance / static_cast<float>(shot.camera.fx) / std::sqrt(std::max(cosine, 0.1f));
   return surfaceColor(lit, hit, footprint);
 }

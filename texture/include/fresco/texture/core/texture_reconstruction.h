@@ -39,13 +39,14 @@ struct TextureOptions {
   int threads = 0;      ///< 0 = all cores; the result does not depend on it
 };
 
-/// One photograph with its calibration.
+/// One photograph or panorama (sphericalCamera(), cut into six views inside) with its calibration.
 struct TextureView {
   CameraModel camera;
   Eigen::Isometry3d T_camera_world = Eigen::Isometry3d::Identity();
-  Image image;       ///< empty: read from `path` when needed
-  std::string path;  ///< file of the photograph; names it in messages
-  bool paint = true; ///< false: its camera is refined with the others, but nothing is coloured from it
+  Image image;           ///< empty: read from `path` when needed
+  std::string path;      ///< file of the photograph; names it in messages
+  bool paint = true;     ///< false: its camera is refined with the others, but nothing is coloured from it
+  bool mirrored = false; ///< a panorama that goes around to the left
 };
 
 /// A camera at its place.
