@@ -23,10 +23,8 @@ void validateView(const TextureView& view, std::size_t index)
   }
   require(c.projection != CameraProjection::spherical || c.width == 2 * c.height, "texture: ", name, ": a panorama of ",
           c.width, "x", c.height, " pixels is not twice as wide as high");
-  const Eigen::Matrix3d R = view.T_camera_world.linear();
-  require(view.T_camera_world.matrix().allFinite() && isInReach(view.T_camera_world.translation()) &&
-              (R * R.transpose() - Eigen::Matrix3d::Identity()).norm() < 1e-3 && R.determinant() > 0,
-          "texture: ", name, ": the pose is not finite or no rigid motion");
+  require(isRigid(view.T_camera_world.matrix(), 1e-3), "texture: ", name,
+          ": the pose is not finite or no rigid motion");
   require(!view.image.empty() || !view.path.empty(), "texture: ", name, ": neither an image nor a path");
 }
 
