@@ -109,6 +109,7 @@ Json scanJson(const std::string& file, const ScanResult& scan, const Pose& pose)
   json["pose"] = pose ? toJson(*pose) : Json();
   json["pose_in_group"] = scan.group >= 0 ? toJson(scan.T_group_scan) : Json();
   json["problem"] = scan.problem;
+  json["viewpoint_problem"] = scan.viewpoint_problem;
   json["rms"] = scan.rms;
   json["translation_deviation"] = scan.translation_deviation;
   json["rotation_deviation_deg"] = scan.rotation_deviation * 180.0 / pi;
@@ -182,8 +183,10 @@ void run(int argc, char** argv)
   writeOutputs([&] { write(request, scans, result); });
   report(progress, "done", 1.0);
   for (std::size_t i = 0; i < result.scans.size(); ++i)
-    if (!result.scans[i].problem.empty())
-      inform(request.common.quiet, request.options.names[i] + ": " + result.scans[i].problem);
+    for (const auto& [what, problem] : {std::pair("", result.scans[i].problem),
+                                        std::pair("free space not used: ", result.scans[i].viewpoint_problem)})
+      if (!problem.empty())
+        inform(request.common.quiet, request.options.names[i] + ": " + what + problem);
   inform(request.common.quiet, concat(placed, " of ", scans.count, " scans placed, rms ", result.rms));
 }
 } // namespace

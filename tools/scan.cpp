@@ -9,6 +9,7 @@ namespace {
 void declare(Args& args, DatasetOptions& options, int& seed)
 {
   args.option("stations", options.stations, "laser stations, 1..1000");
+  args.option("rooms", options.rooms, "of the scene office, 4..32; the seed makes the floor");
   args.option("points", options.laser.points, "laser points per station, about, 100..100000000");
   args.option("noise", options.laser.noise,
               "deviation of the range at 4 m, metres, 0..1; it grows with range and incidence");
@@ -36,7 +37,7 @@ void declare(Args& args, DatasetOptions& options, int& seed)
   args.option("quality", options.jpeg_quality, "of the JPEG files, 1..100");
   args.flag("truth_images", options.truth_images, "also photographs without exposure differences and noise (PNG)");
   args.option("edge", options.max_edge, "longest side of a face of the rooms' truth, metres, 0.02..10");
-  args.note("SCENE is conference_room, apartment (two rooms and a door) or a mesh file (" +
+  args.note("SCENE is conference_room, apartment (two rooms and a door), office (rooms at corridors) or a mesh file (" +
             readableExtensions(FileKind::mesh) +
             ").\n"
             "Writes scans/scan_NN.pcd, panoramas/scan_NN.jpg if asked for, images/view_NNN.jpg, cameras/ (COLMAP "

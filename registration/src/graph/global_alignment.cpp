@@ -92,7 +92,7 @@ void GlobalAligner::correctViewpoints()
   for (std::vector<char> wrong = find(); std::find(wrong.begin(), wrong.end(), 1) != wrong.end(); wrong = find()) {
     for (std::size_t i = 0; i < scans_.size(); ++i)
       if (wrong[i]) {
-        distrustViewpoint(scans_[i]);
+        distrustViewpoint(scans_[i], "its viewpoint contradicts the other scans");
         features_[i] = describeScan(scans_[i], features);
       }
     std::vector<RankedPair> again;

@@ -54,8 +54,10 @@ public:
     result_.voxel = options.voxel;
     result_.poses.resize(scans.size());
     result_.scans.resize(scans.size());
-    for (std::size_t i = 0; i < scans.size(); ++i)
+    for (std::size_t i = 0; i < scans.size(); ++i) {
       result_.scans[i].problem = scans[i].problem;
+      result_.scans[i].viewpoint_problem = scans[i].viewpoint_problem;
+    }
   }
 
   ScanRegistrationResult run(const std::vector<Placement>& placements);

@@ -44,8 +44,9 @@ void ScanLevel::nearest(const Eigen::Vector3f& query, int k, std::vector<Neighbo
     tree->nearest(query, k, found);
 }
 
-void distrustViewpoint(PreparedScan& scan)
+void distrustViewpoint(PreparedScan& scan, const std::string& reason)
 {
+  scan.viewpoint_problem = reason;
   scan.oriented = false;
   scan.free_space = {};
   scan.aliases.clear();
@@ -62,7 +63,9 @@ PreparedScan prepareScan(const PointSet& scan, const Thinning& thinning, int thr
   // Of the free space: from a wrong viewpoint, one direction meets many surfaces.
   constexpr double coherence_limit = 0.7;
   PreparedScan prepared;
-  prepared.center = workingCenter(scan);
+  const WorkingCenter center = workingCenter(scan);
+  prepared.center = center.place;
+  prepared.viewpoint_given = center.given;
   prepared.size = scanSize(scan);
   RawScan raw = finitePoints(scan, prepared.center);
   if (raw.points.cols() < fewest_points) {
@@ -70,7 +73,8 @@ PreparedScan prepareScan(const PointSet& scan, const Thinning& thinning, int thr
     return prepared;
   }
   prepared.free_space = ScanFreeSpace(raw.points, raw.viewpoints, 3.f * thinning.voxels[0]);
-  prepared.oriented = prepared.free_space.coherence() > coherence_limit;
+  const bool coherent = prepared.free_space.coherence() > coherence_limit;
+  prepared.oriented = coherent && (center.given || center.assumed);
   for (const float voxel : thinning.voxels) {
     ScanLevel& level = prepared.levels.emplace_back();
     level.voxel = voxel;
@@ -82,7 +86,9 @@ PreparedScan prepareScan(const PointSet& scan, const Thinning& thinning, int thr
   if (static_cast<Index>(prepared.levels.back().samples.size()) < fewest_points)
     prepared.problem = concat("only ", prepared.levels.back().samples.size(), " points lie on surfaces");
   if (!prepared.oriented)
-    prepared.free_space = {};
+    distrustViewpoint(prepared, center.given     ? "its viewpoint is wrong: surfaces lie behind each other"
+                                : center.assumed ? "no viewpoint is given, and its frame's origin is none"
+                                                 : "no viewpoint is given, and its frame's origin is far away");
   return prepared;
 }
 } // namespace fresco::registration

@@ -40,6 +40,8 @@ using ScanAliases = std::vector<ScanAlias, Eigen::aligned_allocator<ScanAlias>>;
 struct PreparedScan {
   std::string problem;                              ///< why it cannot be registered; empty = it can
   Eigen::Vector3d center = Eigen::Vector3d::Zero(); ///< scan = center + working
+  bool viewpoint_given = false;                     ///< its file tells where it was seen from
+  std::string viewpoint_problem;                    ///< why its free space is not used; empty = it is
   double size = 0.0;                                ///< median distance of its points from where they were seen, length
   bool oriented = false;                            ///< normals point to the free side; else their sign means nothing
   std::vector<ScanLevel> levels;                    ///< coarse to fine
@@ -55,7 +57,7 @@ constexpr float variation_limit = 0.1f;
 constexpr int check_level = level_count - 2;
 
 /// For a scan whose viewpoint turned out wrong: no free space, normals towards the middle of the scan.
-void distrustViewpoint(PreparedScan& scan);
+void distrustViewpoint(PreparedScan& scan, const std::string& reason);
 
 /// @param search the caller's own search for neighbours; null = PointTree
 PreparedScan prepareScan(const PointSet& scan, const Thinning& thinning, int threads,

@@ -56,9 +56,12 @@ ScanFreeSpace::ScanFreeSpace(const Points& points, const Points& viewpoints, flo
   constexpr double points_per_cell = 3.0; // mean over the sphere: with fewer, many cells that were looked at stay empty
   const double count = points.cols(), group_count = groups.size(), cells = count / group_count / points_per_cell;
   side_ = std::clamp(static_cast<int>(std::sqrt(cells / 6.0)), 8, 128);
+  // Twice the points' mean distance from their middle: a viewpoint further off makes no range more exact.
+  const Eigen::Vector3f middle = points.rowwise().mean();
+  const double reach = 2.0 * (points.colwise() - middle).colwise().norm().mean();
   double weight = 0.0;
   for (const ViewpointGroup& group : groups) {
-    maps_.push_back(buildMap(points, group.members, group.center));
+    maps_.push_back(buildMap(points, group.members, group.center, reach));
     weight += group.members.size();
   }
   coherence_ /= weight;
@@ -66,7 +69,7 @@ ScanFreeSpace::ScanFreeSpace(const Points& points, const Points& viewpoints, flo
 }
 
 ScanFreeSpace::Map ScanFreeSpace::buildMap(const Points& points, const std::vector<Index>& members,
-                                           const Eigen::Vector3f& center)
+                                           const Eigen::Vector3f& center, double reach)
 {
   constexpr double coherent_share = 0.05; // of the range: a surface seen at a slant varies by so much within a cell
   const Index cells = 6 * side_ * side_;
@@ -97,7 +100,7 @@ ScanFreeSpace::Map ScanFreeSpace::buildMap(const Points& points, const std::vect
     coverage_ += 1.0 / cells;
     const double middle = median(cell);
     coherence_ += std::count_if(cell.begin(), cell.end(), [&](float range) {
-      return std::abs(range - middle) < grain_ + coherent_share * middle;
+      return std::abs(range - middle) < grain_ + coherent_share * std::min(middle, reach);
     });
   }
   return map;

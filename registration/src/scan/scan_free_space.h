@@ -45,7 +45,7 @@ private:
     Eigen::Vector3f center;
     std::vector<float> nearest, farthest; ///< per cell; nearest = +inf in cells without a measurement
   };
-  Map buildMap(const Points& points, const std::vector<Index>& members, const Eigen::Vector3f& center);
+  Map buildMap(const Points& points, const std::vector<Index>& members, const Eigen::Vector3f& center, double reach);
   std::vector<Map> maps_;
   int side_ = 0; ///< cells per edge of a cube face
   float grain_ = 0.f;

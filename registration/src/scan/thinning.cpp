@@ -29,12 +29,29 @@ std::vector<CellPoint> orderByCell(const Points& points, float voxel)
 }
 } // namespace
 
-Eigen::Vector3d workingCenter(const PointSet& scan)
+WorkingCenter workingCenter(const PointSet& scan)
 {
+  constexpr double far_origin = 6.0; // mean distances of the points from their middle: a scanner with a view of 20
+                                     // degrees stands nearer
   for (Index i = 0; i < scan.viewpoints.cols(); ++i)
     if (scan.viewpoints.col(i).allFinite())
-      return scan.origin + scan.viewpoints.col(i).cast<double>();
-  return Eigen::Vector3d::Zero();
+      return {scan.origin + scan.viewpoints.col(i).cast<double>(), true, false};
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  Index count = 0;
+  const auto finite = [&](Index i) { return scan.points.col(i).allFinite(); };
+  for (Index i = 0; i < scan.size(); ++i)
+    if (finite(i)) {
+      sum += scan.points.col(i).cast<double>();
+      ++count;
+    }
+  const Eigen::Vector3d middle = sum / std::max<Index>(1, count);
+  double spread = 0.0;
+  for (Index i = 0; i < scan.size(); ++i)
+    if (finite(i))
+      spread += (scan.points.col(i).cast<double>() - middle).norm() / count;
+  if ((scan.origin + middle).norm() > far_origin * spread)
+    return {scan.origin + middle, false, false};
+  return {Eigen::Vector3d::Zero(), false, true};
 }
 
 RawScan finitePoints(const PointSet& scan, const Eigen::Vector3d& center)
@@ -50,10 +67,13 @@ RawScan finitePoints(const PointSet& scan, const Eigen::Vector3d& center)
     raw.points.col(count) = scan.points.col(i) + shift;
     if (colored)
       raw.colors.col(count) = scan.colors.col(i).cast<float>();
-    const Eigen::Vector3f viewpoint =
-        known ? Eigen::Vector3f(scan.viewpoints.col(scan.viewpoints.cols() == 1 ? 0 : i) + shift)
-              : Eigen::Vector3f((-center).cast<float>());
-    raw.viewpoints.col(count++) = viewpoint.allFinite() ? viewpoint : Eigen::Vector3f(Eigen::Vector3f::Zero());
+    raw.viewpoints.col(count).setZero();
+    if (known) {
+      const Eigen::Vector3f viewpoint = scan.viewpoints.col(scan.viewpoints.cols() == 1 ? 0 : i) + shift;
+      if (viewpoint.allFinite())
+        raw.viewpoints.col(count) = viewpoint;
+    }
+    ++count;
   }
   raw.points.conservativeResize(3, count);
   raw.viewpoints.conservativeResize(3, count);
@@ -90,7 +110,7 @@ double scanSize(const PointSet& scan)
 {
   constexpr double range_spread = 2.0; // median range / median distance from the centroid: above, the points lie far
                                        // from a viewpoint that may be wrong, and the range says nothing of their extent
-  const RawScan raw = finitePoints(scan, workingCenter(scan));
+  const RawScan raw = finitePoints(scan, workingCenter(scan).place);
   if (raw.points.cols() == 0)
     return 0.0;
   const auto medianOf = [](const Eigen::VectorXf& distances) -> double {
@@ -105,7 +125,7 @@ double scanSize(const PointSet& scan)
 double fittingVoxel(const PointSet& scan, double least)
 {
   constexpr double points_per_cell = 1.5; // on average, at least: with one, cells would be no wider than the spacing
-  const RawScan raw = finitePoints(scan, workingCenter(scan));
+  const RawScan raw = finitePoints(scan, workingCenter(scan).place);
   double voxel = least;
   for (Index count = raw.points.cols(); count > fewest_points && count * points_per_cell > raw.points.cols();
        voxel *= std::cbrt(2.0))
@@ -115,7 +135,7 @@ double fittingVoxel(const PointSet& scan, double least)
 
 double narrowness(const PointSet& scan)
 {
-  const RawScan raw = finitePoints(scan, workingCenter(scan));
+  const RawScan raw = finitePoints(scan, workingCenter(scan).place);
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (Index i = 0; i < raw.points.cols(); ++i)
     sum += (raw.points.col(i) - raw.viewpoints.col(i)).cast<double>().stableNormalized();

@@ -13,10 +13,15 @@ struct RawScan {
 constexpr int level_count = 4;
 constexpr double voxels_per_size = 100.0; ///< finest thinning: a room of 3 m radius in 3 cm cells
 
-/// The first finite viewpoint; the scan's origin where none is known.
-Eigen::Vector3d workingCenter(const PointSet& scan);
+/// Where a scan was seen from, as far as its file tells.
+struct WorkingCenter {
+  Eigen::Vector3d place = Eigen::Vector3d::Zero(); ///< in the scan's frame
+  bool given = false;                              ///< it is the first finite viewpoint
+  bool assumed = false; ///< it is the frame's origin; neither: the middle of points that lie far from the origin
+};
+WorkingCenter workingCenter(const PointSet& scan);
 
-/// Finite points of a scan.
+/// Finite points of a scan, seen from the center where no viewpoint is known.
 RawScan finitePoints(const PointSet& scan, const Eigen::Vector3d& center);
 
 /// One point for each occupied cell of a grid: the mean; the viewpoint is that of its first point.

@@ -34,7 +34,9 @@ const Scene& coarseRoom(const std::string& name)
 {
   static std::map<std::string, Scene> built;
   const auto found = built.find(name);
-  return found != built.end() ? found->second : built.emplace(name, makeScene(name, 0.4f)).first->second;
+  if (found != built.end())
+    return found->second;
+  return built.emplace(name, name == "office" ? makeOffice({4, 3}) : makeScene(name, 0.4f)).first->second;
 }
 
 Scene emptyRoom()
@@ -87,7 +89,19 @@ TEST_P(VirtualRooms, CellsAndFacesAgree)
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(All, VirtualRooms, testing::Values("conference_room", "apartment"));
+INSTANTIATE_TEST_SUITE_P(All, VirtualRooms, testing::Values("conference_room", "apartment", "office"));
+
+TEST(VirtualOffice, TheSeedMakesTheFloor)
+{
+  const Scene first = makeOffice({6, 1}, 2.f), again = makeOffice({6, 1}, 2.f), other = makeOffice({6, 2}, 2.f);
+  EXPECT_EQ(first.mesh.vertices, again.mesh.vertices);
+  EXPECT_NE(first.mesh.vertices.cols(), other.mesh.vertices.cols());
+  const Scene large = makeOffice({32, 1}, 2.f);
+  EXPECT_LT(signedVolume(objectMesh(large, large.objects[0])), 3.0 * signedVolume(objectMesh(first, first.objects[0])))
+      << "the shells look inwards";
+  EXPECT_THROW(makeOffice({3, 1}), std::invalid_argument);
+  EXPECT_THROW(makeOffice({33, 1}), std::invalid_argument);
+}
 
 TEST(VirtualScene, RefusesBadRequests)
 {

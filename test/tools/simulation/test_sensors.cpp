@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simulation/scene/places.h"
+#include "simulation/scene/scene_builder.h"
 #include "simulation/sensors/laser.h"
 #include "simulation/sensors/photograph.h"
 #include "simulation/sensors/views.h"
@@ -76,6 +77,30 @@ Eigen::Matrix4d upright(double height)
   return pose;
 }
 } // namespace
+
+TEST(VirtualLaser, SeesThroughClearPanes)
+{
+  SceneBuilder builder("two halves", 1.f);
+  Material glass;
+  glass.clear = true;
+  const int paint = builder.add({}), clear = builder.add(glass);
+  builder.beginObject("box");
+  builder.boxes(
+      {{{-2, -2, -2}, {4, 2, 2}, allSides(paint), false}, {{1, -2, -2}, {1.02f, 2, 2}, allSides(clear), true}}, true);
+  const Scene scene = builder.finish();
+  const RayScene rays(scene.mesh);
+  const Lightmap light = bakeLight(scene, rays, Room::coarse());
+  LaserOptions options = quiet(20000);
+  options.veil = true;
+  const LaserScan scan = scanScene({scene, rays, light}, upright(0.0), options, 0);
+  Index pane = 0, behind = 0;
+  for (Index i = 0; i < scan.points.size(); ++i) {
+    pane += std::fabs(scan.points.points(0, i) - 1.f) < 0.01f ? 1 : 0;
+    behind += scan.points.points(0, i) > 1.1f ? 1 : 0;
+  }
+  EXPECT_GT(behind, scan.points.size() / 10);
+  EXPECT_NEAR(static_cast<double>(pane) / static_cast<double>(behind), 0.1 / 0.9, 0.06);
+}
 
 TEST(VirtualLaser, WithoutNoiseEveryPointLiesOnTheTruth)
 {

@@ -25,6 +25,8 @@ Material materialOf(const Json& described)
   material.accent = described.contains("accent") ? vectorOf(described["accent"]) : 0.7f * material.color;
   material.contrast = described.value("contrast", material.contrast);
   material.emission = described.value("emission", material.emission);
+  material.glass = described.value("glass", false);
+  material.clear = described.value("clear", false);
   const auto own = static_cast<std::uint32_t>(100.f * material.color.sum());
   material.seed = described.value("seed", own + 17u * static_cast<std::uint32_t>(material.finish));
   return material;

@@ -181,6 +181,7 @@ Points chooseStations(const PlanningInput& in, int count)
   require(count >= 1, "stations: ", count, " is not positive");
   PlaceRules rules;
   rules.heights = {1.2f, 1.6f};
+  rules.spacing *= std::max(1.f, 0.4f / in.scene.detail);
   const Points places = freePlaces(in, rules);
   if (places.cols() < count)
     throw std::runtime_error(concat("only ", places.cols(), " free places for ", count, " stations"));

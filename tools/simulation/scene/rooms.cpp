@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simulation/scene/descriptions.h"
 #include "simulation/scene/furniture.h"
+#include "simulation/scene/office.h"
 #include <algorithm>
 #include <fresco/core/require.h>
 namespace fresco::simulation {
@@ -139,18 +140,29 @@ void addShell(Furniture& f, const Json& room)
   f.builder().beginObject(room.at("object"));
   f.builder().boxes(shell, true);
 }
-} // namespace
 
-Scene makeScene(const std::string& name, float max_edge)
+Scene sceneOf(const std::string& name, const Json& room, float max_edge)
 {
   require(max_edge >= 0.02f && max_edge <= 10.f, "scene: edge ", max_edge, " m is not in 0.02..10");
-  require(name == "conference_room" || name == "apartment", "scene: unknown name ", name);
-  const Json room = Json::parse(name == "apartment" ? apartment_json : conference_room_json);
   SceneBuilder builder(name, max_edge);
   Furniture furniture(builder);
   addShell(furniture, room);
   for (const Json& placed : room.at("things"))
     furniture.add(placed);
   return builder.finish();
+}
+} // namespace
+
+Scene makeScene(const std::string& name, float max_edge)
+{
+  require(name == "conference_room" || name == "apartment", "scene: unknown name ", name);
+  return sceneOf(name, Json::parse(name == "apartment" ? apartment_json : conference_room_json), max_edge);
+}
+
+Scene makeOffice(const OfficeOptions& options, float max_edge)
+{
+  Scene scene = sceneOf("office", officeFloor(options), max_edge);
+  scene.detail = 0.2f;
+  return scene;
 }
 } // namespace fresco::simulation

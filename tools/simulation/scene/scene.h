@@ -3,6 +3,7 @@
 #include "simulation/sensors/material.h"
 #include <Eigen/Geometry>
 #include <array>
+#include <cstdint>
 #include <fresco/core/mesh.h>
 #include <string>
 #include <vector>
@@ -45,6 +46,7 @@ struct Scene {
   std::vector<Material> materials;
   std::vector<Lamp> lamps;
   std::vector<SceneObject> objects;
+  float detail = 1.f;    ///< of light and of the places for stations, 0..1: whole floors get by with less
   bool furnished = true; ///< a room of makeScene(): metres, stations stand on the floor
 };
 
@@ -86,6 +88,14 @@ inline Eigen::Vector3f cellPosition(const Scene& scene, const Cell& cell, const 
 
 /// @throws std::invalid_argument if `name` is not conference_room or apartment
 Scene makeScene(const std::string& name, float max_edge = 0.1f);
+
+struct OfficeOptions {
+  int rooms = 8; ///< 4..32
+  std::uint64_t seed = 1;
+};
+
+/// A floor of an office, see officeFloor(). @throws std::invalid_argument if an option is out of range
+Scene makeOffice(const OfficeOptions& options, float max_edge = 0.4f);
 
 /// A mesh as scene: with the colours of its vertices, or with a pattern by position under light from the sky. Faces
 /// that have no area are left out.

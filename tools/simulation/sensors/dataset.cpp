@@ -224,13 +224,15 @@ void writeDataset(const std::string& name, const std::string& folder, const Data
 {
   validate(options);
   report(progress, "scene", 0.0);
-  const Scene scene = loadScene(name, options.max_edge);
+  const Scene scene = name == "office" ? makeOffice({options.rooms, options.seed}, options.max_edge)
+                                       : loadScene(name, options.max_edge);
   makeFolder(folder);
   const FolderLock lock(folder, "fresco_scan");
   removeOld(folder);
   const RayScene rays(scene.mesh);
   LightingOptions lighting;
   lighting.threads = options.threads;
+  lighting.spacing /= scene.detail;
   report(progress, "light", 0.02);
   const Lightmap light = bakeLight(scene, rays, lighting, subProgress(progress, 0.02, 0.3));
   const LitScene lit{scene, rays, light};

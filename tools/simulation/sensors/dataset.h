@@ -9,6 +9,7 @@ namespace fresco::simulation {
 struct DatasetOptions {
   int stations = 6; ///< laser scans, >= 1
   LaserOptions laser;
+  int rooms = 8;                  ///< of the scene office, 4..32
   int views = 60;                 ///< photographs, >= 1; 0 = none
   int width = 1280, height = 960; ///< pixels of a photograph, 16..20000
   bool panoramas = false;         ///< one from each station, JPEG
@@ -29,7 +30,7 @@ struct DatasetOptions {
   int threads = 0; ///< 0 = all cores; the result does not depend on it
 };
 
-/// Writes the dataset of `scene` (conference_room, apartment, or a mesh file) into `folder`:
+/// Writes the dataset of `scene` (conference_room, apartment, office, or a mesh file) into `folder`:
 /// scans/scan_NN.pcd, panoramas/scan_NN.jpg, images/view_NNN.jpg, truth_images/view_NNN.png, truth.ply (vertex colours; field `returns`: laser
 /// points on the faces around a vertex), exposures.txt, cameras/ (COLMAP text), poses.txt. Files appear whole;
 /// poses.txt comes last and is removed first, so a folder that has it is complete.

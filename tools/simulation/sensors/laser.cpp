@@ -95,10 +95,11 @@ public:
 
   Return measure(const Vector3d& direction, Index beam) const
   {
-    const RayHit hit = middle(direction);
+    CounterRandom random(options_.seed, 1000 + number_, beam);
+    constexpr double sent_back = 0.1; // share of the beams that return from a clear pane
+    const RayHit hit = behindGlass(worldRay(direction), [&] { return random.uniform() >= sent_back; });
     if (hit.face < 0 || hit.distance > max_range_)
       return {};
-    CounterRandom random(options_.seed, 1000 + number_, beam);
     const float cosine = std::fabs(faceNormal(lit_.scene.mesh, hit.face).dot(worldRay(direction).direction));
     if (random.uniform() >= answerProbability(hit, cosine))
       return {};
@@ -125,6 +126,23 @@ private:
   float brightness() const { return CounterRandom(options_.seed, 71, number_).uniformFloat(0.92, 1.08); }
   Ray worldRay(const Vector3d& direction) const { return {center_, (R_ * direction).cast<float>().normalized()}; }
   RayHit middle(const Vector3d& direction) const { return lit_.rays.intersect(worldRay(direction)); }
+
+  /// What a ray meets behind the clear panes that `passes()` lets it through.
+  template <class Passes>
+  RayHit behindGlass(Ray ray, const Passes& passes) const
+  {
+    constexpr float past = 1e-3f; // metres behind a face: on its other side
+    RayHit hit = lit_.rays.intersect(ray);
+    float passed = 0.f;
+    while (hit.face >= 0 && materialAt(lit_.scene, hit.face).clear && passes()) {
+      passed += hit.distance + past;
+      ray.origin += (hit.distance + past) * ray.direction;
+      hit = lit_.rays.intersect(ray);
+    }
+    hit.distance += passed;
+    return hit;
+  }
+
   float radius(float range) const { return options_.beam_radius + options_.divergence * range; }
 
   float reflectance(const RayHit& hit) const
@@ -163,7 +181,8 @@ private:
     for (const RimRay& beside : rim_) {
       const float spread = beside.part * radius(hit.distance) / hit.distance;
       const Ray ray{center_, (axis.direction + spread * (beside.cosine * u + beside.sine * v)).normalized()};
-      const RayHit other = lit_.rays.intersect(ray);
+      const bool pane = materialAt(lit_.scene, hit.face).clear;
+      const RayHit other = behindGlass(ray, [&] { return !pane; });
       if (other.face < 0)
         continue;
       const bool apart = isApart(other, hit);

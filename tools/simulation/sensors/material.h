@@ -29,6 +29,7 @@ struct Material {
   std::uint32_t seed = 1;
   float emission = 0.f; ///< 0 = lit by lamps; else shines with color * emission
   bool glass = false;   ///< most laser beams do not come back
+  bool clear = false;   ///< laser beams pass, a few come back
   std::shared_ptr<const Picture> picture;
   /// Of a picture, in the object's frame: upper left corner, and the vectors that span it to the right and down.
   Eigen::Vector3f corner = {0, 0, 0}, right = {1, 0, 0}, down = {0, -1, 0};

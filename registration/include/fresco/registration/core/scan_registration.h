@@ -52,8 +52,9 @@ struct FreeMotion {
 /// One scan at the end. Lengths are in the unit of the points.
 struct ScanResult {
   bool placed = false;
-  std::string problem; ///< why it was not placed, or what is doubtful about its place
-  Index group = -1;    ///< scans held together by accepted pairs; 0 is the group with poses; -1 = none
+  std::string problem;           ///< why it was not placed, or what is doubtful about its place
+  std::string viewpoint_problem; ///< why what it saw through is not used; empty = it is
+  Index group = -1;              ///< scans held together by accepted pairs; 0 is the group with poses; -1 = none
   Eigen::Matrix4d T_group_scan = Eigen::Matrix4d::Identity(); ///< within its group, whether placed or not
   double rms = 0.0;                                           ///< point-to-plane distance over its accepted pairs
   double translation_deviation = 0.0;                         ///< standard deviation in the least certain direction

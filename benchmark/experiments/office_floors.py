@@ -1,0 +1,103 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Registers generated office floors and compares with the truth: office_floors.py BIN_DIR WORK_DIR [options].
+
+Makes each floor with BIN_DIR/fresco_scan unless it is there, registers it without start poses and prints a line:
+placed, false (more than 5 cm or 1 degree off), worst error of the others, and how errors compare with their deviations.
+"""
+import argparse
+import json
+import os
+import re
+import subprocess
+import time
+
+import numpy as np
+
+FALSE_DISTANCE, FALSE_DEGREES = 0.05, 1.0
+
+
+def read_poses(path):
+    lines = [line for line in open(path) if line.strip() and not line.startswith("#")]
+    return [None if line.startswith("none") else np.array(line.split(), float).reshape(4, 4) for line in lines]
+
+
+def degrees(R):
+    return np.degrees(np.arccos(np.clip((np.trace(R) - 1) / 2, -1, 1)))
+
+
+def fit(found, truth):
+    """Rigid motion that brings the truth onto what was found: of stations and of points 1 m away from them."""
+    local = np.array([[0, 0, 0, 1], [1, 0, 0, 1], [0, 1, 0, 1], [0, 0, 1, 1]], float).T
+    a = np.hstack([T @ local for T in truth])[:3]
+    b = np.hstack([T @ local for T in found])[:3]
+    U, _, Vt = np.linalg.svd((b - b.mean(1, keepdims=True)) @ (a - a.mean(1, keepdims=True)).T)
+    R = U @ np.diag([1, 1, np.linalg.det(U @ Vt)]) @ Vt
+    T = np.eye(4)
+    T[:3, :3], T[:3, 3] = R, b.mean(1) - R @ a.mean(1)
+    return T
+
+
+def errors(found, truth):
+    """Translation (m) and rotation (degrees) of each scan after the fit to the largest set that agrees."""
+    def off(T):
+        differences = [np.linalg.inv(T @ t) @ f for f, t in zip(found, truth)]
+        return (np.array([np.linalg.norm(D[:3, 3]) for D in differences]),
+                np.array([degrees(D[:3, :3]) for D in differences]))
+    best = None
+    for f, t in zip(found, truth):
+        shift, turn = off(f @ np.linalg.inv(t))
+        good = (shift < FALSE_DISTANCE) & (turn < FALSE_DEGREES)
+        if best is None or good.sum() > best.sum():
+            best = good
+    keep = [k for k in range(len(found)) if best[k]]
+    return off(fit([found[k] for k in keep], [truth[k] for k in keep]))
+
+
+def run(args, seed):
+    rooms, stations = args.rooms or 6 + seed % 5, args.stations or 8 + 2 * (3 * seed % 5)
+    folder = f"{args.work}/floor_{seed}_{rooms}_{stations}_{args.points}"
+    if not os.path.exists(folder + "/poses.txt"):
+        subprocess.run([args.bin + "/fresco_scan", "office", folder, "-quiet", "-no_images", "-edge", "0.4", "-seed",
+                        str(seed), "-rooms", str(rooms), "-stations", str(stations), "-points",
+                        str(args.points)], check=True)
+    start = time.time()
+    command = [args.bin + "/fresco_register", folder + "/scans", "-o", folder + "/registered", "-quiet"]
+    subprocess.run(command + args.register.split(), check=True)
+    seconds = time.time() - start
+    report = json.load(open(folder + "/registered/registration.json"))
+    truth, found = read_poses(folder + "/poses.txt"), read_poses(folder + "/registered/poses.txt")
+    placed = [k for k in range(len(found)) if found[k] is not None]
+    shift, turn = errors([found[k] for k in placed], [truth[k] for k in placed])
+    wrong = (shift > FALSE_DISTANCE) | (turn > FALSE_DEGREES)
+    right = ~wrong
+    deviations = np.array([report["scans"][k]["translation_deviation"] for k in placed])
+    ratios = shift[1:] / np.maximum(deviations[1:], 1e-9)  # the first scan defines the frame
+    worst = 1000 * shift[right].max() if right.any() else 0
+    sizes = np.bincount([s["group"] for s in report["scans"] if s["group"] >= 0])
+    print(f"| {seed} | {len(found)} | {len(placed)} | {wrong.sum()} | {worst:.2f} | {turn[right].max():.3f} | "
+          f"{', '.join(str(n) for n in sorted(sizes, reverse=True) if n > 1)} | {seconds:.1f} |", flush=True)
+    return len(found), len(placed), int(wrong.sum()), ratios
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("bin")
+    parser.add_argument("work")
+    parser.add_argument("-seeds", default="1-6", help="FIRST-LAST")
+    parser.add_argument("-rooms", type=int, default=0, help="0 = 6 to 10")
+    parser.add_argument("-stations", type=int, default=0, help="0 = 8 to 16")
+    parser.add_argument("-points", type=int, default=20000)
+    parser.add_argument("-register", default="", help="options of fresco_register")
+    args = parser.parse_args()
+    first, last = map(int, re.fullmatch(r"(\d+)-(\d+)", args.seeds).groups())
+    print("| seed | stations | placed | false | worst, mm | worst, degrees | groups | s |\n|---|---|---|---|---|---|---|---|")
+    results = [run(args, seed) for seed in range(first, last + 1)]
+    print("stations {}, placed {}, false {}".format(*(sum(r[k] for r in results) for k in range(3))))
+    ratios = np.concatenate([r[3] for r in results])
+    counts, edges = np.histogram(ratios, [0, 0.5, 1, 1.5, 2, 3, 5, 10, np.inf])
+    print("error / deviation:", ", ".join(f"{a:g}-{b:g}: {n}" for a, b, n in zip(edges, edges[1:], counts)))
+
+
+if __name__ == "__main__":
+    main()
