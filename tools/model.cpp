@@ -10,9 +10,10 @@ int main(int argc, char** argv)
     fresco::Args args(
         "fresco_model INPUT OUT_DIR [options]",
         "Makes a textured model of a room: points and normals, poses, surface, texture, pictures, report.\n"
-        "INPUT is a folder of scans and photographs (scans/*.pcd, cameras/ as COLMAP model, images/, and\n"
-        "poses.txt, of which only the first pose is used unless -use_poses is given: it ties the scans to the\n"
-        "photographs), an RGB-D folder (camera-intrinsics.txt, frame-*.{color.jpg,depth.png,pose.txt}), or a file\n"
+        "INPUT is a folder of scans (scans/*.pcd), alone, with panoramas named as the scans (panoramas/*.jpg) or\n"
+        "with photographs (cameras/ as COLMAP model, images/, and poses.txt, of which only the first pose is used\n"
+        "unless -use_poses is given: it ties the scans to the photographs), an RGB-D folder (camera-intrinsics.txt, "
+        "frame-*.{color.jpg,depth.png,pose.txt}), or a file\n"
         "of scans (.e57, .ptx).\n"
         "Writes model.obj/.mtl/.png, model.glb, mesh.ply, poses.txt, snapshots/*.png, report.html and\n"
         "report.json to OUT_DIR; OUT_DIR/work holds what -resume needs.");
@@ -31,18 +32,27 @@ int main(int argc, char** argv)
     args.option("trim", options.trim_levels, "old name of -trim_levels, for one version; 0 = keep it closed");
     args.flag("no_optimize", options.optimize,
               "leave the vertices where the reconstruction puts them: rounded edges; always so for RGB-D", false);
-    args.option("texel", options.texel, "side of a texel, metres; 0 = as fine as the photographs");
+    args.option("texel", options.texel, "side of a texel, metres; 0 = as fine as photographs, panoramas or points");
+    args.option(
+        "panorama_direction", options.panorama_direction,
+        "where the middle of a panorama looks: from the x axis of its scan counter-clockwise, degrees, -360..360");
+    args.flag("panorama_mirrored", options.panorama_mirrored,
+              "panoramas go around counter-clockwise from left to right");
     args.size("size", options.width, options.height, "size of the pictures, pixels");
     common.declare(args);
     const auto words = args.parse(argc, argv, 2);
     if (options.width < 160 || options.height < 120)
       throw fresco::UsageError("option -size: pictures of less than 160x120 pixels are too small");
-    for (const char* part : {"", "/scans", "/images", "/cameras"})
+    for (const char* part : {"", "/scans", "/panoramas", "/images", "/cameras"})
       fresco::requireDistinct({words[1]}, {words[0] + part});
     options.threads = common.threads;
+    fresco::inform(common.quiet, "input: " + fresco::describeInput(words[0]));
     const fresco::ModelReport report =
         fresco::buildModel(words[0], words[1], options, fresco::printProgress(common.quiet));
-    for (const fresco::ModelStage& stage : report.stages)
+    for (const fresco::ModelStage& stage : report.stages) {
       fresco::inform(common.quiet, fresco::stageSummary(stage));
+      for (const std::string& warning : stage.warnings)
+        fresco::inform(common.quiet, "warning: " + warning);
+    }
   });
 }

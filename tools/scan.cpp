@@ -18,6 +18,10 @@ void declare(Args& args, DatasetOptions& options, int& seed)
   args.option("seed", seed, "of all random numbers; same seed, same bytes; >= 0");
   args.size("images", options.width, options.height, "size of the photographs, pixels, 16..20000 each");
   args.option("views", options.views, "photographs, 0..100000");
+  args.flag("panoramas", options.panoramas, "a panorama from each station, as panoramas/scan_NN.jpg");
+  args.option("panorama_height", options.panorama_height, "of the panoramas, twice as wide, pixels, 8..10000");
+  args.flag("intensity", options.laser.intensity,
+            "scans get intensities in place of colours: reflectance times cosine of incidence / range^2");
   args.flag("labels", options.labels,
             "scans get a field label: 0 = of one surface, 1 = of several but within the noise of one, 2 = mixed pixel "
             "(veil point)");
@@ -25,15 +29,20 @@ void declare(Args& args, DatasetOptions& options, int& seed)
   args.option("exposure", options.exposure_spread,
               "spread of the photographs' brightness, 0..0.9; white balance a quarter of it");
   args.option("sensor_noise", options.sensor_noise, "of the photographs, grey levels of 255, 0..100");
+  args.option("vignetting", options.vignetting, "light in the photographs' corners, of that in their middle, 0.1..1");
+  args.option("blur", options.blur, "of the photographs, pixels (deviation), 0..20");
+  args.option("intruder", options.intruder, "somebody stands in every Nth photograph, >= 0; 0 = in none");
+  args.option("pose_noise", options.pose_noise, "deviation of the written cameras' positions, metres, 0..1");
+  args.option("turn_noise", options.turn_noise, "deviation of the written cameras' directions, degrees, 0..10");
   args.option("quality", options.jpeg_quality, "of the JPEG files, 1..100");
   args.flag("truth_images", options.truth_images, "also photographs without exposure differences and noise (PNG)");
   args.option("edge", options.max_edge, "longest side of a face of the rooms' truth, metres, 0.02..10");
-  args.note(
-      "SCENE is conference_room, apartment (two rooms and a door), office (rooms at corridors) or a mesh file (" +
-      readableExtensions(FileKind::mesh) +
-      ").\n"
-      "Writes scans/scan_NN.pcd, images/view_NNN.jpg, cameras/ (COLMAP text), truth.ply, exposures.txt, poses.txt.\n"
-      "Example: fresco_scan conference_room room -stations 6 -noise 0.003 -images 1280x960");
+  args.note("SCENE is conference_room, apartment (two rooms and a door), office (rooms at corridors) or a mesh file (" +
+            readableExtensions(FileKind::mesh) +
+            ").\n"
+            "Writes scans/scan_NN.pcd, panoramas/scan_NN.jpg if asked for, images/view_NNN.jpg, cameras/ (COLMAP "
+            "text), truth.ply, exposures.txt, poses.txt.\n"
+            "Example: fresco_scan conference_room room -stations 6 -noise 0.003 -images 1280x960");
 }
 } // namespace
 

@@ -269,7 +269,9 @@ void run(int argc, char** argv)
   std::vector<std::string> outputs;
   for (const Shading shading : request.shadings)
     outputs.push_back(outputName(request, shading));
-  requireDistinct(outputs, {request.model, request.reference, request.room});
+  std::vector<std::string> inputs = filesNamedBy(request.model);
+  inputs.insert(inputs.end(), {request.model, request.reference, request.room});
+  requireDistinct(outputs, inputs);
   const Progress progress = printProgress(request.common.quiet);
   report(progress, "read", 0.0);
   const Model model = readModel(request);

@@ -6,13 +6,16 @@
 #include <fresco/io/formats.h>
 #include <fresco/io/image_io.h>
 #include <fresco/io/mesh_io.h>
+#include <fresco/io/point_io.h>
+#include <fresco/texture/core/point_texture.h>
 #include <fresco/texture/core/texture_reconstruction.h>
 namespace {
 using namespace fresco;
 
 struct ToolOptions {
   int keep_out = 0;
-  std::string cameras_out;
+  std::string cameras_out, points;
+  PointTextureOptions from_points;
 };
 
 std::vector<TextureView> viewsOf(const CameraSet& set, const std::string& folder)
@@ -30,6 +33,13 @@ std::vector<TextureView> viewsOf(const CameraSet& set, const std::string& folder
 
 void declare(Args& args, TextureOptions& options, ToolOptions& tool)
 {
+  args.option("points", tool.points,
+              "cloud whose colours, else intensities, the texture is made of; of the options below it takes "
+              "-no_exposure, -no_examples, -texel, -atlas and -border");
+  args.option("point_width", tool.from_points.width,
+              "with -points: deviation of the Gaussian in distances from one point to the next, 0.3..10");
+  args.option("point_rounds", tool.from_points.rounds,
+              "with -points: corrections by what the points differ from the texture, 0..20");
   args.flag("no_refine", options.refine, "take the cameras as they are given", false);
   args.flag("no_exposure", options.exposure, "leave exposure and white balance of the photographs as they are", false);
   args.flag("no_consistency", options.consistency, "do not avoid photographs that differ from what most show", false);
@@ -87,16 +97,66 @@ void requireOtherFiles(const std::string& out, const std::vector<TextureView>& v
   requireDistinct(outputs, photographs);
 }
 
-void printResult(const TextureResult& result, std::size_t views, bool quiet)
+TriangleMesh readSurface(const std::string& path)
+{
+  TriangleMesh mesh = readMesh(path);
+  if (mesh.faceCount() == 0 || !(surfaceArea(mesh) > 0))
+    throw std::runtime_error(path + ": has no face of positive area");
+  return mesh;
+}
+
+/// The outputs of both ways.
+template <typename Result>
+void writeModel(const std::string& out, const Result& result)
+{
+  writeTexturedMesh(out, result.model);
+  for (std::size_t i = 0; i < result.masks.size(); ++i)
+    writeImage(maskPath(out, i, result.masks.size()), result.masks[i]);
+}
+
+template <typename Result>
+void printAtlas(const Result& result, bool quiet)
 {
   for (const std::string& warning : result.warnings)
     inform(quiet, "warning: " + warning);
+  const std::vector<Image>& atlases = result.model.atlases;
+  inform(quiet, format("%td charts in %zu atlas%s of %dx%d, %.0f %% of the texels used, texel %.3g", result.charts,
+                       atlases.size(), atlases.size() == 1 ? "" : "es", atlases[0].width, atlases[0].height,
+                       100 * result.used, result.texel));
+}
+
+/// @param files mesh, output
+void textureFromPoints(const std::vector<std::string>& files, const ToolOptions& tool, const TextureOptions& shared,
+                       bool quiet)
+{
+  PointTextureOptions options = tool.from_points;
+  options.texel = shared.texel;
+  options.atlas = shared.atlas;
+  options.border = shared.border;
+  options.exposure = shared.exposure;
+  options.examples = shared.examples;
+  options.threads = shared.threads;
+  requireDistinct({files[1]}, {files[0], tool.points});
+  const TriangleMesh mesh = readSurface(files[0]);
+  const PointSet points = readPoints(tool.points);
+  if (std::vector<std::string> reasons; lookOf(points, &reasons) == PointLook::none)
+    throw std::runtime_error(tool.points + ": " +
+                             (reasons.empty() ? "has neither colours nor intensities" : reasons[0]));
+  const PointTextureResult result = reconstructPointTexture(mesh, points, options, printProgress(quiet));
+  if (!(result.coverage > 0))
+    throw std::runtime_error(tool.points + ": no part of " + files[0] + " is covered with points");
+  writeOutputs([&] { writeModel(files[1], result); });
+  inform(quiet, format("%s of %td points, scans: %td, seen %.1f %% of the surface",
+                       result.look == PointLook::colors ? "colours" : "intensities", points.size(), result.gains.cols(),
+                       100 * result.coverage));
+  printAtlas(result, quiet);
+}
+
+void printResult(const TextureResult& result, std::size_t views, bool quiet)
+{
   const auto say = [&](const char* pattern, auto... values) { inform(quiet, format(pattern, values...)); };
   say("seen %.1f %% of the surface, by %td of %zu photographs", 100 * result.coverage, result.views_used, views);
-  const Image& atlas = result.model.atlases.front();
-  say("%td charts in %zu atlas%s of %dx%d, %.0f %% of the texels used, texel %.3g", result.charts,
-      result.model.atlases.size(), result.model.atlases.size() == 1 ? "" : "es", atlas.width, atlas.height,
-      100 * result.used, result.texel);
+  printAtlas(result, quiet);
   if (result.disagreement_before > 0 && result.refined)
     say("photographs disagree by %.2f pixels, %.2f with the cameras as given", result.disagreement_after,
         result.disagreement_before);
@@ -111,26 +171,30 @@ void run(int argc, char** argv)
   TextureOptions options;
   ToolOptions tool;
   CommonOptions common;
-  Args args("fresco_texture MESH CAMERAS_DIR IMAGES_DIR OUT [options]",
-            "Textures a mesh from calibrated photographs. MESH: " + readableExtensions(FileKind::mesh) +
+  Args args("fresco_texture MESH CAMERAS_DIR IMAGES_DIR OUT [options], or MESH -points CLOUD OUT [options]",
+            "Textures a mesh from calibrated photographs, or from the points it was made of. MESH: " +
+                readableExtensions(FileKind::mesh) +
                 ".\nCAMERAS_DIR: a COLMAP model, text or binary.\n"
                 "IMAGES_DIR: the photographs it names. OUT: .obj (with .mtl and .png beside it) or .glb. Beside it "
                 "NAME_mask.png:\n"
-                "white where no photograph saw the surface and the colour is inpainted.");
+                "white where no photograph saw the surface, or no point lies on it, and the colour is inpainted.");
   declare(args, options, tool);
   common.declare(args);
   args.note("Example: fresco_texture mesh.ply scan/cameras scan/images model.glb");
-  const std::vector<std::string> files = args.parse(argc, argv, 4);
-  const std::string out = files[3];
+  const std::vector<std::string> files = args.parse(argc, argv, 2, 4);
+  if (files.size() != (tool.points.empty() ? 4 : 2))
+    throw UsageError(concat("got ", files.size(), " file arguments; wanted: ",
+                            tool.points.empty() ? "MESH CAMERAS_DIR IMAGES_DIR OUT" : "MESH OUT beside -points"));
+  const std::string out = files.back();
   if (extension(out) != ".obj" && extension(out) != ".glb")
     throw UsageError(out + ": the output's extension must be .obj or .glb");
   if (tool.keep_out < 0)
     throw UsageError("-keep_out must not be negative");
   options.threads = common.threads;
+  if (!tool.points.empty())
+    return textureFromPoints(files, tool, options, common.quiet);
   requireDistinct({out}, {files[0]}); // what else it is made of is known when it has been read
-  const TriangleMesh mesh = readMesh(files[0]);
-  if (mesh.faceCount() == 0 || !(surfaceArea(mesh) > 0))
-    throw std::runtime_error(files[0] + ": has no face of positive area");
+  const TriangleMesh mesh = readSurface(files[0]);
   const CameraSet set = readColmap(files[1]);
   std::vector<TextureView> views = viewsOf(set, files[2]);
   requireOtherFiles(out, views);
@@ -141,9 +205,7 @@ void run(int argc, char** argv)
     throw std::runtime_error(
         concat(files[1], ": none of the ", views.size(), " photographs sees any part of ", files[0]));
   writeOutputs([&] {
-    writeTexturedMesh(out, result.model);
-    for (std::size_t i = 0; i < result.masks.size(); ++i)
-      writeImage(maskPath(out, i, result.masks.size()), result.masks[i]);
+    writeModel(out, result);
     if (!tool.cameras_out.empty())
       writeColmap(tool.cameras_out, usedCameras(set, result));
   });

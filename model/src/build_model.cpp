@@ -3,6 +3,7 @@
 #include "stage_log.h"
 #include "stages/stages.h"
 #include <chrono>
+#include <cmath>
 #include <fresco/core/require.h>
 #include <fresco/io/file.h>
 namespace fresco {
@@ -17,8 +18,8 @@ void validate(const ModelInput& input, const ModelOptions& options)
           " pixels are too small");
   if (options.use_poses && input.poses.empty())
     throw std::runtime_error(input.folder + "/poses.txt: no such file, but its poses are asked for");
-  if (!input.rgbd && input.cameras.views.empty())
-    throw std::runtime_error(input.folder + "/cameras: no photographs, so there is nothing to texture the model with");
+  require(std::abs(options.panorama_direction) <= 360, "model: a panorama's direction of ", options.panorama_direction,
+          " degrees");
 }
 
 /// The steps of the chain, each with the options that its outputs depend on besides the steps before it.
@@ -35,8 +36,11 @@ std::vector<Stage> stagesOf(const Job& job)
        step(makePoints)},
       {"surface", concat(options.cell, " ", options.trim_levels), {files.surface}, step(makeSurface)},
       {"optimization", concat(options.optimize), {files.mesh}, step(makeOptimizedSurface)},
-      {"texture", concat(options.texel), {files.model_obj, files.model_glb, files.viewer_glb}, step(makeTexture)},
-      {"pictures", concat(options.width, "x", options.height), pictureFiles(files), step(makePictures)}};
+      {"texture",
+       concat(options.texel, " ", options.panorama_direction, " ", options.panorama_mirrored),
+       {files.model_obj, files.model_glb, files.viewer_glb},
+       step(makeTexture)},
+      {"pictures", concat(options.width, "x", options.height), pictureFiles(job), step(makePictures)}};
 }
 } // namespace
 
@@ -55,8 +59,11 @@ ModelReport buildModel(const std::string& input_folder, const std::string& outpu
   for (const Stage& stage : stagesOf(job))
     log.run(stage);
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  const Report report = makeReport(input_folder, log.records(), seconds);
+  Report report = makeReport(input_folder, log.records(), seconds);
+  report.kind = describe(job.input);
   writeReport(report, job.files);
   return publicReport(report);
 }
+
+std::string describeInput(const std::string& input_folder) { return describe(readModelInput(input_folder)); }
 } // namespace fresco

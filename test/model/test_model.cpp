@@ -116,7 +116,7 @@ TEST(Report, SummaryOfAStageIsOneLineForPeople)
   stage.peak_megabytes = 300.2;
   stage.resumed = true;
   stage.figures = {{"vertices", 85709}, {"cell", 0.0200004}, {"seconds", {{"solve", 1.0}}}, {"up", {0, 0, 1}}};
-  const ModelReport report = publicReport({"", {stage}, {}, Eigen::Vector3d::UnitZ(), 0});
+  const ModelReport report = publicReport({"", "", {stage}, {}, Eigen::Vector3d::UnitZ(), 0});
   EXPECT_EQ(stageSummary(report.stages.at(0)),
             "surface (earlier run): 1.2 s, 2.5 s of CPU, 300 MB, vertices 85709, cell 0.02");
 }

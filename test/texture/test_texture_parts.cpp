@@ -27,16 +27,19 @@ struct BoardScene {
 
   PatchMesh cut(int threads, std::vector<char> used = {1, 1}) const
   {
-    PhotoStore photos(views, 1 << 24);
+    const std::vector<ViewPart> whole = partsOf(views);
+    PhotoStore photos(whole, 1 << 24);
     TextureOptions options;
     options.threads = threads;
-    return cutHiddenParts(patches, {RayScene(mesh), {projectors, photos, std::move(used), 0.2}, options});
+    return cutHiddenParts(patches, {RayScene(mesh), {projectors, photos, std::move(used), {0, 1}, 0.2}, options});
   }
 
   Candidates candidates(const PatchMesh& parts) const
   {
-    PhotoStore photos(views, 1 << 24);
-    return findCandidates(parts, {RayScene(mesh), {projectors, photos, {1, 1}, 0.2}, TextureOptions{}}, Progress{});
+    const std::vector<ViewPart> whole = partsOf(views);
+    PhotoStore photos(whole, 1 << 24);
+    return findCandidates(parts, {RayScene(mesh), {projectors, photos, {1, 1}, {0, 1}, 0.2}, TextureOptions{}},
+                          Progress{});
   }
 
   bool isSeen(const Eigen::Vector3d& p) const

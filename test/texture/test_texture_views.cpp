@@ -7,14 +7,6 @@
 using namespace fresco::texture;
 namespace fresco::test {
 namespace {
-/// Waves with detail that corners can be found in.
-Eigen::Vector3d detailed(const Eigen::Vector3d& p)
-{
-  const double checks =
-      std::sin(17 * p.x() + 3 * p.y()) * std::sin(13 * p.y() - 5 * p.z()) * std::sin(15 * p.z() + 4 * p.x() + 1);
-  return 0.7 * waves(p).array() + 40 + 70 * std::tanh(4 * checks);
-}
-
 TEST(TextureViews, ExposureIsBroughtTogether)
 {
   const TriangleMesh mesh = cube();
@@ -37,17 +29,97 @@ TEST(TextureViews, ExposureIsBroughtTogether)
   }
 }
 
+TEST(TextureViews, VignettingIsFoundAndTakenAway)
+{
+  const TriangleMesh mesh = cube();
+  const auto soft = [](const Eigen::Vector3d& p) { return Eigen::Vector3d(0.6 * waves(p).array() + 60); };
+  const std::vector<TextureView> clear = photographsAround(mesh, soft);
+  std::vector<TextureView> dark = clear;
+  const auto transmission = [](double r2) { return 1 - 0.4 * r2; };
+  for (TextureView& view : dark)
+    for (int y = 0; y < 200; ++y)
+      for (int x = 0; x < 200; ++x) {
+        const double r2 = (std::pow(x + 0.5 - 100, 2) + std::pow(y + 0.5 - 100, 2)) / 2e4;
+        for (int c = 0; c < 3; ++c)
+          view.image.pixel(x, y)[c] = static_cast<std::uint8_t>(view.image.pixel(x, y)[c] * transmission(r2) + 0.5);
+      }
+  EXPECT_TRUE(reconstructTexture(mesh, clear).vignetting.isZero(0)); // nothing is corrected where nothing is wrong
+  const TextureResult result = reconstructTexture(mesh, dark);
+  const Eigen::Vector3f a = result.vignetting.col(0);
+  for (const float r2 : {0.1f, 0.2f, 0.4f}) // the cube fills the middle of the pictures
+    EXPECT_NEAR(std::exp(r2 * (a[0] + r2 * (a[1] + r2 * a[2]))), transmission(r2), 0.02) << r2;
+  double worst = 0;
+  forPlaces(mesh, 500, [&](Index f, const Eigen::Vector3d& w) {
+    const Eigen::Vector3d truth = soft(pointAt(mesh, f, w));
+    worst = std::max(worst, (colorAt(result.model, f, w) - truth).cwiseAbs().maxCoeff() / truth.mean());
+  });
+  EXPECT_LT(worst, 0.08);
+}
+
+/// A red square in the middle of the second of two views that see the top.
+TEST(TextureViews, WhatStoodInOnePhotographIsNotPaintedThoughFewSeeThePlace)
+{
+  const TriangleMesh mesh = cube();
+  const auto grey = [](const Eigen::Vector3d& p) { return Eigen::Vector3d(110 + 20 * std::sin(3 * p.x()), 120, 130); };
+  std::vector<TextureView> views;
+  for (const Eigen::Vector3d& eye :
+       {Eigen::Vector3d(0.5, 0.3, 4.2), Eigen::Vector3d(-0.5, 0.2, 4), Eigen::Vector3d(0.1, -0.6, 4.4)})
+    views.push_back(photograph(mesh, grey, camera(), lookAt(eye, {0, 0, 0})));
+  for (int y = 60; y < 140; ++y)
+    for (int x = 60; x < 110; ++x)
+      std::copy_n(std::array<std::uint8_t, 3>{200, 30, 20}.data(), 3, views[1].image.pixel(x, y));
+  const TextureResult result = reconstructTexture(mesh, views);
+  int red = 0;
+  forPlaces(mesh, 2000, [&](Index f, const Eigen::Vector3d& w) {
+    const Eigen::Vector3d c = colorAt(result.model, f, w);
+    red += pointAt(mesh, f, w).z() > 0.99 && c.x() > c.z() + 30;
+  });
+  EXPECT_EQ(red, 0);
+}
+
+TEST(TextureViews, UnweldedMeshIsTexturedAsTheWeldedOne)
+{
+  const TriangleMesh mesh = cube();
+  TriangleMesh soup = mesh;
+  soup.vertices = mesh.vertices(Eigen::all, std::vector<int>(mesh.faces.data(), mesh.faces.data() + mesh.faces.size()));
+  for (Index i = 0; i < soup.faces.size(); ++i)
+    soup.faces.data()[i] = static_cast<int>(i);
+  const std::vector<TextureView> views = photographsAround(mesh, detailed);
+  const TextureResult welded = reconstructTexture(mesh, views), unwelded = reconstructTexture(soup, views);
+  EXPECT_EQ(unwelded.charts, welded.charts);
+  EXPECT_TRUE(welded.warnings.empty());
+  ASSERT_EQ(unwelded.warnings.size(), 1u);
+  EXPECT_EQ(unwelded.model.mesh.faces, soup.faces);
+  double worst = 0; // sums come in another order
+  forPlaces(mesh, 200, [&](Index f, const Eigen::Vector3d& w) {
+    worst = std::max(worst, (colorAt(unwelded.model, f, w) - colorAt(welded.model, f, w)).cwiseAbs().maxCoeff());
+  });
+  EXPECT_LT(worst, 3);
+}
+
+TEST(TextureViews, LittleSeenSurfaceIsAWarningWithItsLikelyCause)
+{
+  TriangleMesh mesh = cube();
+  const std::vector<TextureView> views = photographsAround(mesh, waves);
+  mesh.vertices *= 1000.f;
+  const TextureResult result = reconstructTexture(mesh, views);
+  ASSERT_FALSE(result.warnings.empty());
+  EXPECT_NE(result.warnings.back().find("millimetres"), std::string::npos) << result.warnings.back();
+}
+
 TEST(TextureViews, SeamsAreLevelled)
 {
   const TriangleMesh mesh = cube();
   const auto grey = [](const Eigen::Vector3d&) { return Eigen::Vector3d(120, 120, 120); };
   std::vector<TextureView> views = photographsAround(mesh, grey);
-  for (std::size_t v = 0; v < views.size(); ++v) // vignetting, which no gain takes away
+  for (std::size_t v = 0; v < views.size();
+       ++v) // darker outwards, each in its own way: no gain and no common lens takes it away
     for (int y = 0; y < 200; ++y)
       for (int x = 0; x < 200; ++x) {
-        const double r2 = (std::pow(x - 100, 2) + std::pow(y - 100, 2)) / 1e4;
+        const double r2 = (std::pow(x - 100, 2) + std::pow(y - 100, 2)) / 2e4, share = r2 * (v % 2 == 0 ? 2.0 : 0.2);
         for (int c = 0; c < 3; ++c)
-          views[v].image.pixel(x, y)[c] = static_cast<std::uint8_t>(views[v].image.pixel(x, y)[c] * (1 - 0.3 * r2));
+          views[v].image.pixel(x, y)[c] =
+              static_cast<std::uint8_t>(views[v].image.pixel(x, y)[c] * std::max(0.1, 1 - 0.3 * share));
       }
   TextureOptions options;
   options.smoothness = 0;
@@ -161,7 +233,10 @@ TEST(TextureViews, OfManyViewsThoseThatShowAPatchBestAreKept)
     for (Index p = 0; p < patches; ++p)
       if (random() % 2 == 0 && p % 5 != 0) {
         const float resolution = size(random);
-        table.add(p, {v, {}, 0, resolution});
+        Candidate candidate{};
+        candidate.view = v;
+        candidate.resolution = resolution;
+        table.add(p, candidate);
         added[p].emplace_back(-resolution, v);
       }
   const Candidates kept = table.take();

@@ -15,6 +15,14 @@ inline Eigen::Vector3d waves(const Eigen::Vector3d& p)
           128 + 90 * std::cos(3 * p.z() - 2 * p.x() + p.y())};
 }
 
+/// Waves with detail that corners can be found in.
+inline Eigen::Vector3d detailed(const Eigen::Vector3d& p)
+{
+  const double checks =
+      std::sin(17 * p.x() + 3 * p.y()) * std::sin(13 * p.y() - 5 * p.z()) * std::sin(15 * p.z() + 4 * p.x() + 1);
+  return 0.7 * waves(p).array() + 40 + 70 * std::tanh(4 * checks);
+}
+
 inline void appendBox(const Eigen::Vector3f& low, const Eigen::Vector3f& high, bool inward, TriangleMesh& mesh)
 {
   const int corner[6][4] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};

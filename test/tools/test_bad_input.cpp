@@ -148,6 +148,22 @@ TEST(Tools, PhotographsThatDoNotFit)
   expectRefused(folder, "texture mesh.ply cameras images out.obj", "images.txt");
 }
 
+TEST(Tools, PointsWithoutALookGiveNoTexture)
+{
+  const std::string folder = soundFolder();
+  put(folder + "/grey.xyz", "0 0 0\n1 0 0\n0 1 0\n");
+  expectRefused(folder, "texture mesh.ply -points grey.xyz out.obj", "neither colours nor intensities");
+  put(folder + "/black.xyz", "0 0 0 0 0 0\n1 0 0 0 0 0\n0 1 0 0 0 0\n");
+  expectRefused(folder, "texture mesh.ply -points black.xyz out.obj", "all black");
+  put(folder + "/equal.xyz", "0 0 1 7\n1 0 0 7\n0 1 0 7\n");
+  expectRefused(folder, "texture mesh.ply -points equal.xyz out.obj", "all equal");
+  put(folder + "/behind.xyz", "nan 0 1 7 7 7\n1 nan 0 1 2 3\n");
+  expectRefused(folder, "texture mesh.ply -points behind.xyz out.obj", "no point lies");
+  put(folder + "/far.xyz", "100 0 1 7 7 7\n100 0 2 1 2 3\n");
+  expectRefused(folder, "texture mesh.ply -points far.xyz out.obj", "far.xyz: no part of mesh.ply is covered");
+  expectRefused(folder, "texture mesh.ply -points cut.pcd out.obj", "cut.pcd");
+}
+
 TEST(Tools, ModelInputThatDoesNotFit)
 {
   const std::string folder = soundFolder();
@@ -156,8 +172,14 @@ TEST(Tools, ModelInputThatDoesNotFit)
   fs::create_directories(folder + "/in/scans");
   expectRefused(folder, "model in out", "scans");
   fs::copy(folder + "/cloud.pcd", folder + "/in/scans/scan_00.pcd");
-  expectRefused(folder, "model in out", "cameras");
   expectRefused(folder, "model in out -use_poses", "poses.txt");
+  fs::create_directory(folder + "/in/panoramas");
+  writeImage(folder + "/in/panoramas/scan_00.png", Image(64, 33));
+  expectRefused(folder, "model in out", "64x33 pixels is not twice as wide as high");
+  writeImage(folder + "/in/panoramas/scan_00.png", Image(64, 32));
+  writeImage(folder + "/in/panoramas/scan_01.jpg", Image(64, 32));
+  expectRefused(folder, "model in out", "scan_01.jpg: a panorama of no scan");
+  fs::remove_all(folder + "/in/panoramas");
   fs::copy(folder + "/cameras", folder + "/in/cameras");
   expectRefused(folder, "model in out", "a.png");
   writePoses(folder + "/in/poses.txt", {Pose(), Pose()});

@@ -137,6 +137,49 @@ TEST(VirtualDataset, IsCompleteAndConsistent)
   EXPECT_TRUE(fs::exists(out + "/exposures.txt"));
 }
 
+TEST(VirtualDataset, PanoramasShowWhatTheLaserMet)
+{
+  const std::string folder = test::scratchFolder(), out = folder + "/out";
+  DatasetOptions options = small();
+  options.views = 0;
+  options.panoramas = true;
+  options.panorama_height = 128;
+  options.exposure_spread = 0.f;
+  writeDataset(boxFile(folder), out, options);
+  const CameraModel camera = sphericalCamera(256, 128);
+  Eigen::Matrix3d R_camera_scan; // the middle looks along x, z is up
+  R_camera_scan << 0, -1, 0, 0, 0, -1, 1, 0, 0;
+  for (int k = 0; k < 2; ++k) {
+    const Image image = readImage(out + "/panoramas/scan_0" + std::to_string(k) + ".jpg");
+    ASSERT_EQ(image.width, 256);
+    ASSERT_EQ(image.height, 128);
+    const PointSet scan = readPoints(out + "/scans/scan_0" + std::to_string(k) + ".pcd");
+    std::vector<int> differences;
+    for (Index i = 0; i < scan.size(); ++i) {
+      const Eigen::Vector2i at = project(camera, R_camera_scan * scan.points.col(i).cast<double>()).cast<int>();
+      differences.push_back(std::abs(image.pixel(std::min(at.x(), 255), std::min(at.y(), 127))[1] - scan.colors(1, i)));
+    }
+    std::nth_element(differences.begin(), differences.begin() + differences.size() / 2, differences.end());
+    EXPECT_LT(differences[differences.size() / 2], 20); // scans are up to 8 % brighter or darker
+  }
+}
+
+TEST(VirtualDataset, IntensitiesFallWithTheSquareOfTheRange)
+{
+  const std::string folder = test::scratchFolder(), out = folder + "/out";
+  DatasetOptions options = small();
+  options.views = 0;
+  options.laser.intensity = true;
+  writeDataset(boxFile(folder), out, options);
+  const PointSet scan = readPoints(out + "/scans/scan_00.pcd");
+  EXPECT_EQ(scan.colors.cols(), 0);
+  ASSERT_EQ(scan.intensities.size(), scan.size());
+  EXPECT_GT(scan.intensities.minCoeff(), 0.f);
+  const Eigen::ArrayXf at_one_metre =
+      scan.intensities.array() * scan.points.colwise().squaredNorm().transpose().array();
+  EXPECT_LT(at_one_metre.maxCoeff(), 1.3f); // no surface sends more back than a white one
+}
+
 TEST(VirtualDataset, MeshFromOutsideIsSeenFromAllAround)
 {
   const std::string folder = test::scratchFolder();

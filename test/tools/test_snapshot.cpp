@@ -148,6 +148,11 @@ TEST_F(SnapshotTool, WrongUsageEndsWithTwo)
     EXPECT_EQ(result.status, 2) << arguments << ": " << result.errors;
     EXPECT_FALSE(fs::exists(out_));
   }
+  writeTexturedMesh(folder_ + "/square.obj", texturedSquare(Image(16, 16, 3, 60)));
+  const std::string texture = readFile(folder_ + "/square.png");
+  for (const char* shading : {"texture", "normals"})
+    EXPECT_EQ(run(folder_ + "/square.obj " + folder_ + "/square.png -shading " + shading).status, 2);
+  EXPECT_EQ(readFile(folder_ + "/square.png"), texture);
 }
 
 TEST_F(SnapshotTool, BadInputEndsWithOneLineAndNoPicture)

@@ -7,6 +7,7 @@
 #include <fresco/core/poses.h>
 #include <fresco/core/require.h>
 #include <fstream>
+#include <iomanip>
 namespace fresco::texture {
 namespace {
 void validateView(const TextureView& view, std::size_t index)
@@ -20,10 +21,10 @@ void validateView(const TextureView& view, std::size_t index)
   } catch (const std::invalid_argument& error) {
     throw std::invalid_argument(concat("texture: ", name, ": ", error.what()));
   }
-  const Eigen::Matrix3d R = view.T_camera_world.linear();
-  require(view.T_camera_world.matrix().allFinite() && isInReach(view.T_camera_world.translation()) &&
-              (R * R.transpose() - Eigen::Matrix3d::Identity()).norm() < 1e-3 && R.determinant() > 0,
-          "texture: ", name, ": the pose is not finite or no rigid motion");
+  require(c.projection != CameraProjection::spherical || c.width == 2 * c.height, "texture: ", name, ": a panorama of ",
+          c.width, "x", c.height, " pixels is not twice as wide as high");
+  require(isRigid(view.T_camera_world.matrix(), 1e-3), "texture: ", name,
+          ": the pose is not finite or no rigid motion");
   require(!view.image.empty() || !view.path.empty(), "texture: ", name, ": neither an image nor a path");
 }
 
@@ -57,13 +58,14 @@ int orientationIn(const Tiff& tiff)
   return 1;
 }
 
-void warnOfRotations(const std::vector<TextureView>& views, TextureResult& result)
+void warnOfRotations(const std::vector<ViewPart>& parts, TextureResult& result)
 {
   std::string first;
   Index count = 0;
-  for (const TextureView& view : views)
-    if (view.image.empty() && exifOrientation(view.path) != 1 && count++ == 0)
-      first = view.path;
+  for (const ViewPart& part : parts)
+    if (part.given->image.empty() && part.R_part_view.isIdentity(0) && exifOrientation(part.given->path) != 1 &&
+        count++ == 0)
+      first = part.given->path;
   if (count > 0)
     result.warnings.push_back(
         concat(first, count > 1 ? concat(" and ", count - 1, " more carry") : " carries",
@@ -94,6 +96,47 @@ void validate(const TriangleMesh& mesh, const std::vector<TextureView>& views, c
     validateView(views[v], v);
 }
 
+void weld(TextureResult& result)
+{
+  TriangleMesh& mesh = result.model.mesh;
+  const Faces faces = weldedFaces(mesh);
+  const auto vertices = [](const Faces& f) {
+    std::vector<int> list(f.data(), f.data() + f.size());
+    std::sort(list.begin(), list.end());
+    return std::unique(list.begin(), list.end()) - list.begin();
+  };
+  constexpr double hardly = 0.5; // vertices left: an unwelded closed mesh has a sixth, one cut along creases nearly all
+  const auto before = vertices(mesh.faces), after = vertices(faces);
+  if (after < hardly * before)
+    result.warnings.push_back(concat("faces do not share their corners: ", before, " vertices stand at ", after,
+                                     " places; they are taken as joined there"));
+  mesh.faces = faces;
+}
+
+void warnOfLittleSeen(double seen, const std::vector<TextureView>& views, TextureResult& result)
+{
+  constexpr double little = 0.3;      // a room that is photographed from its middle is seen by half
+  constexpr double other_scale = 100; // of cameras and mesh: units rather than a far or a narrow view
+  if (seen >= little || views.empty())
+    return;
+  Eigen::AlignedBox3d cameras, surface;
+  for (const TextureView& view : views)
+    cameras.extend(Eigen::Vector3d(view.T_camera_world.inverse().translation()));
+  const TriangleMesh& mesh = result.model.mesh;
+  for (Index i = 0; i < mesh.faces.size(); ++i)
+    surface.extend(mesh.origin + mesh.vertices.col(mesh.faces.data()[i]).cast<double>());
+  const double scale = surface.diagonal().norm() / std::max(cameras.diagonal().norm(), 1e-12);
+  const char* cause = "do the cameras' poses belong to this mesh?";
+  if (scale > other_scale && views.size() > 1)
+    cause = "is the mesh in millimetres and are the cameras in metres?";
+  else if (scale < 1 / other_scale)
+    cause = "is the mesh in metres and are the cameras in millimetres?";
+  else if (surface.exteriorDistance(cameras.center()) == 0)
+    cause = "are the mesh's faces turned to the cameras?";
+  result.warnings.push_back(
+      concat("only ", std::fixed, std::setprecision(1), 100 * seen, " % of the surface is seen: ", cause));
+}
+
 int exifOrientation(const std::string& path)
 {
   if (!std::filesystem::is_regular_file(path)) // reading the photograph says what is wrong
@@ -120,10 +163,11 @@ int exifOrientation(const std::string& path)
   return 1;
 }
 
-void checkPhotos(PhotoStore& photos, const std::vector<TextureView>& views, int threads, TextureResult& result)
+void checkPhotos(PhotoStore& photos, const std::vector<ViewPart>& parts, const TextureOptions& options,
+                 TextureResult& result)
 {
-  parallelFor(
-      views.size(), threads, [&](Index v) { photos.get(v); }, 1);
-  warnOfRotations(views, result);
+  const auto read = [&](Index v) { photos.get(v); };
+  parallelFor(parts.size(), options.threads, read, 1);
+  warnOfRotations(parts, result);
 }
 } // namespace fresco::texture

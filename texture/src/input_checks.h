@@ -5,11 +5,20 @@ namespace fresco::texture {
 /// @throws std::invalid_argument as reconstructTexture() says
 void validate(const TriangleMesh& mesh, const std::vector<TextureView>& views, const TextureOptions& options);
 
+/// Joins corners at equal places for the length of the work, and says so where neighbours shared hardly a vertex.
+void weld(TextureResult& result);
+
+/// Warns where little of the surface is seen, with the likely cause.
+/// @param seen share of the area, 0..1
+void warnOfLittleSeen(double seen, const std::vector<TextureView>& views, TextureResult& result);
+
 /// Orientation that a JPEG file carries in its EXIF block: 1 = as stored (also where there is none, or no JPEG), 2..8
 /// turned or mirrored. CIPA DC-008-2012, "Exchangeable image file format", tag 274.
 int exifOrientation(const std::string& path);
 
 /// Reads every photograph once, so that one that is missing or of another size is found before the long work. Warns of
 /// EXIF rotations.
-void checkPhotos(PhotoStore& photos, const std::vector<TextureView>& views, int threads, TextureResult& result);
+/// @param parts of the views
+void checkPhotos(PhotoStore& photos, const std::vector<ViewPart>& parts, const TextureOptions& options,
+                 TextureResult& result);
 } // namespace fresco::texture

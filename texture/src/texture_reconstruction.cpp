@@ -42,13 +42,22 @@ private:
   std::chrono::steady_clock::time_point begin_;
 };
 
-/// @return one per view, in the mesh's coordinates
-std::vector<Projector> projectorsOf(const TriangleMesh& mesh, const std::vector<PlacedCamera>& cameras)
+/// @return one per part, in the mesh's coordinates
+std::vector<Projector> projectorsOf(const TriangleMesh& mesh, const std::vector<ViewPart>& parts,
+                                    const std::vector<PlacedCamera>& cameras)
 {
   std::vector<Projector> out;
-  for (const PlacedCamera& c : cameras)
-    out.emplace_back(c.camera, c.T_camera_world, mesh.origin);
+  for (const ViewPart& part : parts) {
+    const auto& [camera, T_camera_world] = cameras[part.view];
+    out.emplace_back(part.ofPanorama() ? part.camera : camera, part.R_part_view * T_camera_world, mesh.origin);
+  }
   return out;
+}
+
+/// Numbers of what was given in place of numbers of parts.
+Eigen::VectorXi ownersOf(const Eigen::VectorXi& view, const std::vector<int>& owner)
+{
+  return view.unaryExpr([&](int v) { return v < 0 ? -1 : owner[v]; });
 }
 
 /// What all steps read and write.
@@ -62,9 +71,18 @@ struct Job {
 /// Which photograph each patch is painted from.
 struct ViewChoice {
   VisibleSurface surface;
-  std::vector<float> penalties; ///< octaves, of each candidate: photo-consistency
-  Eigen::VectorXi view;         ///< P, -1 = unseen
+  Photometry photometry;
+  PhotoConsistency consistency;
+  Eigen::VectorXi view; ///< P, -1 = unseen
 };
+
+/// Patches that are painted from what does not belong to the surface become unseen.
+void hideForeign(const Candidates& candidates, const std::vector<char>& foreign, Eigen::VectorXi& view)
+{
+  for (Index i = 0; i < view.size(); ++i)
+    if (view[i] >= 0 && foreign[candidates.find(i, view[i]) - candidates.list.data()])
+      view[i] = -1;
+}
 
 ViewChoice chooseViews(const Job& job, const RayScene& rays, const Progress& progress)
 {
@@ -75,29 +93,34 @@ ViewChoice chooseViews(const Job& job, const RayScene& rays, const Progress& pro
   const auto& [patches, candidates, outlines] = out.surface;
 
   steps.begin("exposure", 0.4);
-  const Index count = views.projectors.size();
-  result.gains = options.exposure ? solveGains(candidates, count) : Points(Points::Ones(3, count));
+  if (options.exposure)
+    out.photometry = solvePhotometry(candidates, views.lenses, views.owner);
+  else
+    out.photometry.gains.setOnes(3, views.projectors.size());
+  describePhotometry(out.photometry, result);
 
   steps.begin("view selection", 0.4);
-  out.penalties.assign(candidates.list.size(), 0.f);
   if (options.consistency)
-    out.penalties = photoConsistencyPenalties(patches, candidates, result.gains, options.threads);
+    out.consistency = photoConsistency(patches, candidates, out.photometry, {rays, views, options});
+  else
+    out.consistency = {std::vector<float>(candidates.list.size(), 0.f), std::vector<char>(candidates.list.size(), 0)};
   const double seam_cost = options.smoothness * diagonalOf(result.model.mesh);
-  out.view = selectViews(patches, {candidates, out.penalties}, seam_cost, options.threads);
+  out.view = selectViews(patches, {candidates, out.consistency.penalties}, seam_cost, options.threads);
+  hideForeign(candidates, out.consistency.foreign, out.view);
   return out;
 }
 
 /// Paints what photographs show; patches that none shows clean become unseen.
 /// @param view of the scene's patches
-void paintPhotographs(const PaintScene& scene, const PaintSources& sources, Eigen::VectorXi& view,
-                      TextureResult& result)
+void paintPhotographs(const PaintScene& scene, const PaintSources& sources, Eigen::VectorXi& view, const Job& job)
 {
+  TextureResult& result = job.result;
   OutlineTexels beside;
   if (!sources.masks.empty())
     beside = findOutlineTexels(scene, sources);
   for (const int patch : beside.hidden)
     view[patch] = -1;
-  describeViews(scene.patches, view, result);
+  describeViews(scene.patches, ownersOf(view, job.views.owner), result);
   paintSeen(scene, sources, result.model.atlases);
   paintTexels(scene, sources, beside.by_view, result.model.atlases);
   fillUnknown(scene, beside.unknown, result.model.atlases, result.masks);
@@ -114,15 +137,15 @@ void paintModel(const Job& job, ViewChoice& choice)
 
   steps.begin("seams", 0.7);
   const double blend_width = options.blend_width * pixelSize(resolution);
-  const Blend blend =
-      blendViews({patches, candidates, choice.view, result.gains}, {blend_width, options.level, options.threads});
+  const Blend blend = blendViews({patches, candidates, choice.view, choice.photometry, choice.consistency.penalties},
+                                 {blend_width, options.level, options.threads});
 
   steps.begin("painting", 0.8);
   const std::vector<TexelSlot> slots = texelSlots(charts, patches.size());
   const PaintScene scene{patches, charts, choice.view, slots, options.threads};
-  const PaintSources sources{views.projectors, views.photos,     result.gains, blend,
-                             candidates,       choice.penalties, outlines};
-  paintPhotographs(scene, sources, choice.view, result);
+  const PaintSources sources{
+      views.projectors, views.photos, choice.photometry, blend, candidates, choice.consistency.penalties, outlines};
+  paintPhotographs(scene, sources, choice.view, job);
 
   steps.begin("back-projection", 0.85);
   if (options.exposure && photographsAgree(result))
@@ -146,23 +169,37 @@ TextureResult reconstructTexture(const TriangleMesh& mesh, const std::vector<Tex
   validate(mesh, views, options);
   TextureResult result;
   result.model.mesh = mesh;
+  weld(result);
   Steps steps(progress, result);
   steps.begin("photographs", 0.0);
-  PhotoStore photos(views, std::size_t(options.memory) << 20);
-  checkPhotos(photos, views, options.threads, result);
+  const std::vector<ViewPart> parts = partsOf(views);
+  PhotoStore photos(parts, std::size_t(options.memory) << 20);
+  checkPhotos(photos, parts, options, result);
 
   steps.begin("camera refinement", 0.05);
-  auto rays = std::make_unique<RayScene>(mesh);
-  placeCameras({mesh, *rays, views, photos}, options, subProgress(progress, 0.05, 0.25), result);
+  auto rays = std::make_unique<RayScene>(result.model.mesh);
+  placeCameras({mesh, *rays, parts, photos}, options, subProgress(progress, 0.05, 0.25), result);
 
-  const std::vector<Projector> projectors = projectorsOf(mesh, result.cameras);
-  ViewList list{projectors, photos, {}, poseUncertainty(result)};
-  for (const TextureView& view : views)
-    list.used.push_back(view.paint);
+  const std::vector<Projector> projectors = projectorsOf(mesh, parts, result.cameras);
+  ViewList list{projectors, photos, {}, {}, poseUncertainty(result), lensNumbers(parts)};
+  for (const ViewPart& part : parts) {
+    list.used.push_back(part.given->paint);
+    list.owner.push_back(part.view);
+  }
   const Job job{options, list, steps, result};
   ViewChoice choice = chooseViews(job, *rays, progress);
   rays.reset(); // painting needs the memory
   paintModel(job, choice);
+  warnOfLittleSeen(result.coverage, views, result);
+  result.model.mesh.faces = mesh.faces;
+  Points gains(3, views.size()); // parts of one panorama have the same
+  for (std::size_t k = 0; k < parts.size(); ++k)
+    gains.col(parts[k].view) = result.gains.col(k);
+  result.gains = gains;
+  Points vignetting(3, views.size());
+  for (std::size_t k = 0; k < parts.size(); ++k)
+    vignetting.col(parts[k].view) = result.vignetting.col(k);
+  result.vignetting = vignetting;
   steps.begin("done", 1.0);
   return result;
 }

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
 #include <fresco/core/grouped.h>
 #include <fresco/core/mesh.h>
 #include <fresco/core/parallel.h>
 #include <fresco/core/require.h>
+#include <tuple>
 namespace fresco {
 namespace {
 Eigen::Vector3f unitOrZero(const Eigen::Vector3d& v)
@@ -64,6 +66,20 @@ double signedVolume(const TriangleMesh& mesh)
 double surfaceArea(const TriangleMesh& mesh)
 {
   return parallelSum(mesh.faceCount(), 0, 0.0, [&](Index f) { return areaVector(mesh, f).norm() / 2.0; });
+}
+
+Faces weldedFaces(const TriangleMesh& mesh)
+{
+  const auto key = [&](int v) {
+    return std::make_tuple(mesh.vertices(0, v), mesh.vertices(1, v), mesh.vertices(2, v));
+  };
+  std::vector<int> used(mesh.faces.data(), mesh.faces.data() + mesh.faces.size());
+  std::sort(used.begin(), used.end(),
+            [&](int a, int b) { return std::make_pair(key(a), a) < std::make_pair(key(b), b); });
+  std::vector<int> first(mesh.vertexCount());
+  for (std::size_t i = 0; i < used.size(); ++i)
+    first[used[i]] = i > 0 && key(used[i]) == key(used[i - 1]) ? first[used[i - 1]] : used[i];
+  return mesh.faces.unaryExpr([&](int v) { return first[v]; });
 }
 
 TriangleMesh removeUnreferencedVertices(const TriangleMesh& mesh)

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <Eigen/LU>
 #include <fresco/core/require.h>
 #include <fresco/io/file.h>
 #include <fresco/io/pose_file.h>
@@ -7,14 +6,6 @@
 #include <sstream>
 namespace fresco {
 namespace {
-bool isRigid(const Eigen::Matrix4d& T)
-{
-  const Eigen::Matrix3d R = T.topLeftCorner<3, 3>();
-  return T.allFinite() && isInReach(T.topRightCorner<3, 1>()) &&
-         (R.transpose() * R - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() < 1e-3 && R.determinant() > 0 &&
-         T.row(3).isApprox(Eigen::RowVector4d(0, 0, 0, 1), 1e-6);
-}
-
 Pose parsePose(const std::string& line, const std::string& where)
 {
   std::istringstream words(line);
@@ -27,7 +18,7 @@ Pose parsePose(const std::string& line, const std::string& where)
       throw std::runtime_error(concat(where, ": wants 16 numbers or the word none"));
   if (words >> word)
     throw std::runtime_error(concat(where, ": more than 16 numbers"));
-  if (!isRigid(T))
+  if (!isRigid(T, 1e-3))
     throw std::runtime_error(concat(where, ": not a rigid transform"));
   return T;
 }

@@ -9,6 +9,7 @@
 #include <fresco/io/formats.h>
 #include <fresco/io/image_io.h>
 #include <fresco/io/pose_file.h>
+#include <map>
 namespace fresco::model {
 namespace {
 namespace fs = std::filesystem;
@@ -37,6 +38,30 @@ void takeScans(ModelInput& input, const std::vector<std::string>& files)
     input.poses.clear();
 }
 
+/// Those of `panoramas/`, each named as its scan.
+void readPanoramas(ModelInput& input)
+{
+  const std::string folder = input.folder + "/panoramas";
+  if (!fs::is_directory(folder))
+    return;
+  std::map<std::string, Index> numbers; // of the files that are one scan
+  for (std::size_t s = 0; s < input.scans.size(); ++s)
+    if (input.scans[s].scan < 0)
+      numbers[fs::path(input.scans[s].file).stem().string()] = s;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    const std::string path = entry.path().string(), kind = extension(path);
+    if (entry.path().filename().string()[0] == '.' ||
+        (kind != ".jpg" && kind != ".jpeg" && kind != ".png" && kind != ".tif" && kind != ".tiff"))
+      continue;
+    const auto scan = numbers.find(entry.path().stem().string());
+    if (scan == numbers.end())
+      throw std::runtime_error(path + ": a panorama of no scan: none in " + input.folder + "/scans has this name");
+    input.panoramas.push_back({path, scan->second});
+  }
+  std::sort(input.panoramas.begin(), input.panoramas.end(),
+            [](const auto& a, const auto& b) { return a.file < b.file; });
+}
+
 void readPhotographs(ModelInput& input)
 {
   const std::string cameras = input.folder + "/cameras";
@@ -58,6 +83,8 @@ std::vector<std::string> ModelInput::files() const
       all.push_back(scan.file);
   for (const View& view : cameras.views)
     all.push_back(images + "/" + view.image);
+  for (const Panorama& panorama : panoramas)
+    all.push_back(panorama.file);
   for (const char* name : {"poses.txt", "cameras/cameras.txt", "cameras/images.txt", "camera-intrinsics.txt"})
     if (fs::exists(folder + "/" + name))
       all.push_back(folder + "/" + name);
@@ -93,7 +120,23 @@ ModelInput readModelInput(const std::string& folder)
           concat(folder, "/poses.txt: ", input.poses.size(), " poses for ", input.scans.size(), " scans"));
   }
   readPhotographs(input);
+  readPanoramas(input);
   return input;
+}
+
+std::string describe(const ModelInput& input)
+{
+  const auto counted = [](std::size_t count, const char* what) {
+    return concat(count, " ", what, count == 1 ? "" : "s");
+  };
+  if (input.rgbd)
+    return counted(input.rgbd->frames.size(), "RGB-D frame");
+  std::string text = counted(input.scans.size(), "scan");
+  if (!input.panoramas.empty())
+    text += ", " + counted(input.panoramas.size(), "panorama");
+  if (!input.cameras.views.empty())
+    text += ", " + counted(input.cameras.views.size(), "photograph");
+  return input.hasPictures() ? text : text + ", no pictures: the texture comes from the points";
 }
 
 void checkPhotographs(const ModelInput& input, int threads)
@@ -101,6 +144,7 @@ void checkPhotographs(const ModelInput& input, int threads)
   struct Photograph {
     std::string file;
     const CameraModel* camera; ///< nullptr: any size
+    bool panorama = false;
   };
   std::vector<Photograph> photographs;
   for (const View& view : input.cameras.views)
@@ -108,14 +152,19 @@ void checkPhotographs(const ModelInput& input, int threads)
   if (input.rgbd)
     for (const RgbdFrame& frame : input.rgbd->frames)
       photographs.push_back({frame.color, nullptr});
+  for (const Panorama& panorama : input.panoramas)
+    photographs.push_back({panorama.file, nullptr, true});
   std::vector<std::string> problems(photographs.size());
   const auto look = [&](Index i) {
-    const auto& [file, camera] = photographs[i];
+    const auto& [file, camera, panorama] = photographs[i];
     try {
       const Image image = readImage(file);
       if (camera && (image.width != camera->width || image.height != camera->height))
         problems[i] = concat(file, ": is ", image.width, "x", image.height, " pixels, its camera has ", camera->width,
                              "x", camera->height);
+      if (panorama && image.width != 2 * image.height)
+        problems[i] =
+            concat(file, ": a panorama of ", image.width, "x", image.height, " pixels is not twice as wide as high");
     } catch (const std::runtime_error& error) {
       problems[i] = error.what();
     }

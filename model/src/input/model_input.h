@@ -8,6 +8,12 @@
 #include <string>
 #include <vector>
 namespace fresco::model {
+/// A picture of all directions, taken where a scan was.
+struct Panorama {
+  std::string file;
+  Index scan = 0;
+};
+
 /// What a model is made from: a folder of scans and photographs, or a folder of RGB-D frames.
 struct ModelInput {
   std::string folder;
@@ -15,19 +21,25 @@ struct ModelInput {
   std::vector<Pose> poses;     ///< world from scan; empty where neither folder nor scans have any
   CameraSet cameras;           ///< photographs; no view where the folder has none
   std::string images;          ///< folder of the photographs
+  std::vector<Panorama> panoramas;
   std::optional<RgbdFolder> rgbd;
 
+  bool hasPictures() const { return rgbd || !cameras.views.empty() || !panoramas.empty(); }
   std::vector<std::string> files() const; ///< everything that the model depends on
 };
 
 /// Looks at a folder and reads everything small (poses, cameras). Folder of scans: `scans/*.pcd` (or another format; each
-/// scan of a file of several is one), `poses.txt` (else the poses that the scans themselves have), `cameras/`, `images/`.
+/// scan of a file of several is one), `panoramas/` (named as their scans), `poses.txt` (else the poses that the scans themselves have), `cameras/`, `images/`.
 /// RGB-D: see readRgbdFolder(). In place of a folder: a file of scans (.e57, .ptx).
 /// @throws std::runtime_error naming what is missing or does not fit together: neither kind, no scan, more or fewer
 ///         poses than scans, a photograph that is missing
 ModelInput readModelInput(const std::string& folder);
 
-/// Decodes every photograph once, so that a damaged one is found before hours of work, not after.
-/// @throws std::runtime_error naming the first that is damaged or has another size than its camera
+/// "6 scans, 60 photographs".
+std::string describe(const ModelInput& input);
+
+/// Decodes every photograph and panorama once, so that a damaged one is found before hours of work, not after.
+/// @throws std::runtime_error naming the first that is damaged, has another size than its camera or is a panorama not
+///         twice as wide as high
 void checkPhotographs(const ModelInput& input, int threads);
 } // namespace fresco::model

@@ -81,11 +81,11 @@ RgbdFolder readRgbdFolder(const std::string& folder)
     const Eigen::MatrixXd T = readMatrix(stem + ".pose.txt", 4, 4);
     if (!T.allFinite())
       continue;
-    const Eigen::Matrix3d R = T.topLeftCorner<3, 3>();
-    if ((R * R.transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() > 0.02 || !(R.determinant() > 0) ||
-        !isInReach(T.topRightCorner<3, 1>()))
+    constexpr double rounded = 0.02; // trackers add up rotations without making them rotations again
+    if (!isRigid(T, rounded))
       throw std::runtime_error(stem + ".pose.txt: not a rigid transform");
-    frame.T_world_camera.linear() = Eigen::Quaterniond(R).normalized().toRotationMatrix();
+    frame.T_world_camera.linear() =
+        Eigen::Quaterniond(Eigen::Matrix3d(T.topLeftCorner<3, 3>())).normalized().toRotationMatrix();
     frame.T_world_camera.translation() = T.topRightCorner<3, 1>();
     result.frames.push_back(frame);
   }

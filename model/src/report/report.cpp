@@ -30,7 +30,9 @@ std::string shown(const Json& value)
 /// What describes the pictures is left out.
 ModelStage publicStage(const StageRecord& record)
 {
-  ModelStage stage{record.name, record.seconds, record.cpu_seconds, record.peak_megabytes, record.resumed, {}};
+  ModelStage stage{record.name, record.seconds, record.cpu_seconds, record.peak_megabytes, record.resumed, {}, {}};
+  if (record.figures.is_object())
+    stage.warnings = record.figures.value("warnings", stage.warnings);
   for (const auto& [name, value] : record.figures.items())
     if (name != "pictures" && name != "up")
       stage.figures.emplace_back(name, shown(value));
@@ -45,8 +47,11 @@ Eigen::Vector3d vectorOf(const Json& object, const char* name)
 
 Json toJson(const Report& report)
 {
-  Json json{
-      {"input", report.input}, {"seconds", report.seconds}, {"stages", Json::array()}, {"pictures", Json::array()}};
+  Json json{{"input", report.input},
+            {"kind", report.kind},
+            {"seconds", report.seconds},
+            {"stages", Json::array()},
+            {"pictures", Json::array()}};
   for (const StageRecord& stage : report.stages) {
     Json figures = stage.figures;
     figures.erase("pictures");
@@ -97,7 +102,7 @@ std::string toHtml(const Report& report, const ModelFiles& files)
       ".viewer{height:min(75vh,800px);margin:1em 0}"
       "figure{margin:1.5em 0}img{max-width:100%;border:1px solid #ddd}figcaption{color:#555}"
       "</style></head><body>\n<h1>fresco model</h1>\n<p>Input: " +
-      escapedHtml(report.input) + ". Time of this run: " + fixed(report.seconds, 1) +
+      escapedHtml(report.input) + " (" + escapedHtml(report.kind) + "). Time of this run: " + fixed(report.seconds, 1) +
       " s. Model: <code>model.glb</code>, <code>model.obj</code>; mesh: <code>mesh.ply</code>; poses: "
       "<code>poses.txt</code>.</p>\n" +
       viewer(report, files) + stageTable(report);
@@ -111,7 +116,7 @@ std::string toHtml(const Report& report, const ModelFiles& files)
 
 Report makeReport(const std::string& input, const std::vector<StageRecord>& stages, double seconds)
 {
-  Report report{input, stages, {}, Eigen::Vector3d::UnitZ(), seconds};
+  Report report{input, "", stages, {}, Eigen::Vector3d::UnitZ(), seconds};
   const Json& figures = stages.back().figures;
   report.up = vectorOf(figures, "up");
   for (const Json& picture : figures["pictures"])
@@ -123,6 +128,7 @@ Report makeReport(const std::string& input, const std::vector<StageRecord>& stag
 ModelReport publicReport(const Report& report)
 {
   ModelReport result;
+  result.input = report.kind;
   for (const StageRecord& stage : report.stages)
     result.stages.push_back(publicStage(stage));
   for (const ReportPicture& picture : report.pictures)

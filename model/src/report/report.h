@@ -16,6 +16,7 @@ struct ReportPicture {
 
 struct Report {
   std::string input; ///< folder
+  std::string kind;  ///< what is in it
   std::vector<StageRecord> stages;
   std::vector<ReportPicture> pictures;
   Eigen::Vector3d up = Eigen::Vector3d::UnitZ(); ///< upright direction

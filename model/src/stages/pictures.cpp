@@ -7,32 +7,33 @@
 #include <fresco/core/constants.h>
 #include <fresco/io/image_io.h>
 #include <fresco/io/mesh_io.h>
+#include <fresco/io/pose_file.h>
 #include <limits>
 namespace fresco::model {
 using namespace rendering;
 namespace {
-enum class From { inside, photograph, above };
+enum class From { inside, place, above };
 
 struct Shot {
   std::string name, title;
   Shading shading;
   From from;
-  std::size_t photograph = 0; ///< number among the photographs' places that are shown
+  std::size_t place = 0; ///< number among the places of photographs, else of scans, that are shown
 };
 
-const std::vector<Shot>& shots()
+std::vector<Shot> shots(const ModelInput& input)
 {
-  static const std::vector<Shot> all = {
-      {"inside_texture", "From inside, textured", Shading::Texture, From::inside},
-      {"photograph_1_texture", "From where a photograph was taken, textured", Shading::Texture, From::photograph, 0},
-      {"photograph_2_texture", "From where another photograph was taken", Shading::Texture, From::photograph, 1},
-      {"photograph_3_texture", "From where a third photograph was taken", Shading::Texture, From::photograph, 2},
-      {"above_texture", "From above without the ceiling, textured", Shading::Texture, From::above},
-      {"inside_normals", "From inside, coloured by normal", Shading::Normals, From::inside},
-      {"inside_gouraud", "From inside, surface alone", Shading::Gouraud, From::inside},
-      {"above_normals", "From above, coloured by normal", Shading::Normals, From::above},
-      {"above_gouraud", "From above, surface alone", Shading::Gouraud, From::above}};
-  return all;
+  const std::string what = input.rgbd || !input.cameras.views.empty() ? "photograph" : "scan",
+                    taken = what + " was taken";
+  return {{"inside_texture", "From inside, textured", Shading::Texture, From::inside},
+          {what + "_1_texture", "From where a " + taken + ", textured", Shading::Texture, From::place, 0},
+          {what + "_2_texture", "From where another " + taken, Shading::Texture, From::place, 1},
+          {what + "_3_texture", "From where a third " + taken, Shading::Texture, From::place, 2},
+          {"above_texture", "From above without the ceiling, textured", Shading::Texture, From::above},
+          {"inside_normals", "From inside, coloured by normal", Shading::Normals, From::inside},
+          {"inside_gouraud", "From inside, surface alone", Shading::Gouraud, From::inside},
+          {"above_normals", "From above, coloured by normal", Shading::Normals, From::above},
+          {"above_gouraud", "From above, surface alone", Shading::Gouraud, From::above}};
 }
 
 /// Where a photograph was taken, with its opening angle.
@@ -44,6 +45,26 @@ Viewpoint viewOf(const CameraModel& camera, const Eigen::Isometry3d& T_world_cam
   view.up = -T_world_camera.linear().col(1);
   view.angle = 2 * std::atan(0.5 * camera.height / camera.fy) * 180.0 / pi;
   return view;
+}
+
+/// From where each scan was taken, level to the middle of the model.
+std::vector<Viewpoint> viewsFromScans(const Job& job, const TriangleMesh& mesh, const Eigen::Vector3d& up)
+{
+  constexpr double angle = 62; // degrees, of a person looking around
+  const Eigen::Vector3d middle =
+      mesh.origin + 0.5 * (mesh.vertices.rowwise().minCoeff() + mesh.vertices.rowwise().maxCoeff()).cast<double>();
+  std::vector<Viewpoint> views;
+  for (const Pose& pose : readPoses(job.files.poses)) {
+    if (!pose)
+      continue;
+    const Eigen::Vector3d eye = pose->topRightCorner<3, 1>();
+    Eigen::Vector3d ahead = middle - eye;
+    ahead -= ahead.dot(up) * up;
+    if (ahead.norm() < 1e-3)
+      ahead = up.unitOrthogonal();
+    views.push_back({eye, eye + ahead.normalized(), up, angle});
+  }
+  return views;
 }
 
 /// Views of the photographs that look about level; all of them where none does.
@@ -105,11 +126,11 @@ Figures entryOf(const Shot& shot, const Viewpoint& view)
 }
 } // namespace
 
-std::vector<std::string> pictureFiles(const ModelFiles& files)
+std::vector<std::string> pictureFiles(const Job& job)
 {
   std::vector<std::string> paths;
-  for (const Shot& shot : shots())
-    paths.push_back(files.snapshots + "/" + shot.name + ".png");
+  for (const Shot& shot : shots(job.input))
+    paths.push_back(job.files.snapshots + "/" + shot.name + ".png");
   return paths;
 }
 
@@ -117,29 +138,33 @@ Figures makePictures(const Job& job, const Progress& progress)
 {
   const auto& [input, files, options] = job;
   const TexturedMesh model = readTexturedMesh(files.model_obj);
+  const Eigen::Vector3d up = uprightOf(input).value_or(Eigen::Vector3d::UnitZ());
   const IndoorOptions indoor{uprightOf(input), static_cast<double>(options.width) / options.height, options.threads};
   const Viewpoint above = aboveView(model.mesh, indoor);
   const Viewpoint inside = insideView(model.mesh, indoor).value_or(above);
-  const std::vector<Viewpoint> photographs =
-      variedViews(levelViews(input, indoor.up.value_or(Eigen::Vector3d::UnitZ())), 3);
+  std::vector<Viewpoint> places = levelViews(input, up);
+  if (places.empty())
+    places = viewsFromScans(job, model.mesh, up);
+  places = variedViews(places, 3);
+  const std::vector<Shot> all = shots(input);
   PictureOptions picture;
   picture.width = options.width;
   picture.height = options.height;
   picture.threads = options.threads;
   Figures list = Figures::array();
-  for (std::size_t i = 0; i < shots().size(); ++i) {
-    const Shot& shot = shots()[i];
-    report(progress, shot.name, double(i) / shots().size());
-    picture.shading = shot.shading;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const Shot& shot = all[i];
+    report(progress, shot.name, double(i) / all.size());
+    picture.shading = shot.shading == Shading::Texture && model.atlases.empty() ? Shading::Gouraud : shot.shading;
     picture.oversampling = shot.shading == Shading::Texture ? 2 : 1; // textures hold finer detail than the picture
-    picture.view = shot.from == From::above ? above : shot.from == From::inside ? inside : photographs[shot.photograph];
+    picture.view = shot.from == From::above ? above : shot.from == From::inside ? inside : places[shot.place];
     picture.cull_back_faces = shot.from == From::above;
     picture.no_colors = shot.shading == Shading::Gouraud;
     const Image image =
-        shot.shading == Shading::Texture ? renderPicture(model, picture) : renderPicture(model.mesh, picture);
-    writeImage(pictureFiles(files)[i], image);
+        picture.shading == Shading::Texture ? renderPicture(model, picture) : renderPicture(model.mesh, picture);
+    writeImage(pictureFiles(job)[i], image);
     list.push_back(entryOf(shot, *picture.view));
   }
-  return {{"up", listOf(indoor.up.value_or(Eigen::Vector3d::UnitZ()))}, {"pictures", list}};
+  return {{"up", listOf(up)}, {"pictures", list}};
 }
 } // namespace fresco::model

@@ -30,7 +30,7 @@ Figures makeSurface(const Job& job, const Progress& progress);
 /// surface is taken as it is.
 Figures makeOptimizedSurface(const Job& job, const Progress& progress);
 
-/// Texture from the photographs: reads `files.mesh`, writes the model and the masks.
+/// Texture from photographs and panoramas, else from the points: reads `files.mesh`, writes the model and the masks.
 Figures makeTexture(const Job& job, const Progress& progress);
 
 /// Pictures of the model from inside and above: reads `files.model_obj`, writes PNG files into `files.snapshots`.
@@ -38,5 +38,5 @@ Figures makeTexture(const Job& job, const Progress& progress);
 Figures makePictures(const Job& job, const Progress& progress);
 
 /// The files that makePictures() writes.
-std::vector<std::string> pictureFiles(const ModelFiles& files);
+std::vector<std::string> pictureFiles(const Job& job);
 } // namespace fresco::model

@@ -1,16 +1,55 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "stages/stages.h"
+#include <cmath>
+#include <fresco/core/constants.h>
 #include <fresco/core/require.h>
 #include <fresco/io/image_io.h>
 #include <fresco/io/mesh_io.h>
+#include <fresco/io/point_io.h>
 #include <fresco/io/pose_file.h>
+#include <fresco/texture/core/point_texture.h>
 #include <fresco/texture/core/texture_reconstruction.h>
 namespace fresco::model {
 namespace {
-/// @param poses of the frames of an RGB-D folder, world from camera
-std::vector<TextureView> viewsOf(const ModelInput& input, const std::vector<Pose>& poses)
+/// Where a panorama was taken, in the frame of its scan: where the scanner stood.
+Eigen::Isometry3d panoramaPose(const ScanPath& path, double direction)
+{
+  const PointSet scan = readPoints(path);
+  Eigen::Isometry3d T_scan_camera = Eigen::Isometry3d::Identity();
+  if (scan.viewpoints.cols() == 1)
+    T_scan_camera.translation() = scan.origin + scan.viewpoints.col(0).cast<double>();
+  const double angle = direction / degrees_per_radian;
+  T_scan_camera.linear().col(2) << std::cos(angle), std::sin(angle), 0;
+  T_scan_camera.linear().col(1) << 0, 0, -1;
+  T_scan_camera.linear().col(0) << std::sin(angle), -std::cos(angle), 0;
+  return T_scan_camera;
+}
+
+/// @param poses of the scans; panoramas of scans without a place are left out
+std::vector<TextureView> panoramaViews(const Job& job, const std::vector<Pose>& poses)
 {
   std::vector<TextureView> views;
+  for (const Panorama& panorama : job.input.panoramas) {
+    if (!poses.at(panorama.scan))
+      continue;
+    const Image image = readImage(panorama.file);
+    TextureView next;
+    next.camera = sphericalCamera(image.width, image.height);
+    next.T_camera_world = (Eigen::Isometry3d(*poses[panorama.scan]) *
+                           panoramaPose(job.input.scans[panorama.scan], job.options.panorama_direction))
+                              .inverse();
+    next.path = panorama.file;
+    next.mirrored = job.options.panorama_mirrored;
+    views.push_back(std::move(next));
+  }
+  return views;
+}
+
+/// @param poses of scans, or of the frames of an RGB-D folder, world from camera
+std::vector<TextureView> viewsOf(const Job& job, const std::vector<Pose>& poses)
+{
+  const ModelInput& input = job.input;
+  std::vector<TextureView> views = panoramaViews(job, poses);
   for (const View& view : input.cameras.views) {
     TextureView next;
     next.camera = input.cameras.cameras[view.camera];
@@ -28,37 +67,66 @@ std::vector<TextureView> viewsOf(const ModelInput& input, const std::vector<Pose
     }
   return views;
 }
+
+/// Writes the model of a TextureResult or PointTextureResult. @return the figures that both have
+template <typename Result>
+Figures writeModel(const Result& result, const ModelFiles& files)
+{
+  for (std::size_t i = 0; i < result.masks.size(); ++i)
+    writeImage(files.mask(i, result.masks.size()), result.masks[i]);
+  writeTexturedMesh(files.model_glb, result.model);
+  writeTexturedMesh(files.model_obj, result.model);
+  writeTexturedMesh(files.viewer_glb, result.model, 90); // smaller, since the report has it inside
+  return {{"coverage", result.coverage},
+          {"charts", result.charts},
+          {"atlases", result.model.atlases.size()},
+          {"atlas_width", result.model.atlases.empty() ? 0 : result.model.atlases[0].width},
+          {"atlas_used", result.used},
+          {"texel", result.texel},
+          {"warnings", result.warnings}};
+}
+
+Figures textureFromPoints(const Job& job, const TriangleMesh& mesh, const Progress& progress)
+{
+  static constexpr const char* looks[] = {"nothing: no colours, no intensities", "colours of the points",
+                                          "intensities of the points"};
+  PointTextureOptions texture;
+  texture.texel = job.options.texel;
+  texture.threads = job.options.threads;
+  const PointTextureResult result = reconstructPointTexture(mesh, readPoints(job.files.points), texture, progress);
+  Figures figures = {{"made_of", looks[int(result.look)]}};
+  figures.update(writeModel(result, job.files));
+  if (result.look == PointLook::intensities)
+    figures.update({{"range_exponent", result.range_exponent}, {"incidence_exponent", result.incidence_exponent}});
+  return figures;
+}
 } // namespace
 
 Figures makeTexture(const Job& job, const Progress& progress)
 {
   const auto& [input, files, options] = job;
   const TriangleMesh mesh = readMesh(files.mesh);
+  const std::vector<TextureView> views = viewsOf(job, readPoses(files.poses));
+  if (views.empty())
+    return textureFromPoints(job, mesh, progress);
   TextureOptions texture;
   texture.texel = options.texel;
   texture.threads = options.threads;
-  const std::vector<TextureView> views = viewsOf(input, readPoses(files.poses));
-  const TextureResult result = reconstructTexture(mesh, views, texture, progress);
-  for (std::size_t i = 0; i < result.masks.size(); ++i)
-    writeImage(files.mask(i, result.masks.size()), result.masks[i]);
-  writeTexturedMesh(files.model_glb, result.model);
-  writeTexturedMesh(files.model_obj, result.model);
-  writeTexturedMesh(files.viewer_glb, result.model, 90); // smaller, since the report has it inside
-  Figures phases;
+  TextureResult result = reconstructTexture(mesh, views, texture, progress);
+  const std::size_t given = input.panoramas.size() + input.cameras.views.size();
+  if (views.size() < given)
+    result.warnings.push_back(concat(given - views.size(), " panoramas are not used: their scans have no place"));
+  Figures figures = {{"made_of", input.panoramas.empty()       ? "photographs"
+                                 : input.cameras.views.empty() ? "panoramas"
+                                                               : "photographs and panoramas"},
+                     {"photographs", views.size()},
+                     {"photographs_used", result.views_used},
+                     {"cameras", result.refined ? "refined" : "left as given"},
+                     {"disagreement_before_pixels", result.disagreement_before},
+                     {"disagreement_after_pixels", result.disagreement_after}};
+  figures.update(writeModel(result, files));
   for (const auto& [phase, seconds] : result.seconds)
-    phases[phase] = seconds;
-  return {{"photographs", views.size()},
-          {"photographs_used", result.views_used},
-          {"coverage", result.coverage},
-          {"cameras", result.refined ? "refined" : "left as given"},
-          {"disagreement_before_pixels", result.disagreement_before},
-          {"disagreement_after_pixels", result.disagreement_after},
-          {"charts", result.charts},
-          {"atlases", result.model.atlases.size()},
-          {"atlas_width", result.model.atlases.empty() ? 0 : result.model.atlases[0].width},
-          {"atlas_used", result.used},
-          {"texel", result.texel},
-          {"warnings", result.warnings},
-          {"seconds", phases}};
+    figures["seconds"][phase] = seconds;
+  return figures;
 }
 } // namespace fresco::model

@@ -4,6 +4,7 @@
 #include <Eigen/SVD>
 #include <cmath>
 #include <fresco/core/parallel.h>
+#include <fresco/core/poses.h>
 #include <fresco/core/require.h>
 #include <utility>
 namespace fresco {
@@ -17,8 +18,7 @@ void validate(const DepthFrames& frames, const DepthFusionOptions& options)
   require(camera.width > 1 && camera.height > 1 && camera.fx > 0 && camera.fy > 0 && !camera.hasDistortion(),
           "depth fusion: the camera is not a pinhole camera");
   for (const Eigen::Isometry3d& T : frames.T_world_camera)
-    require((T.linear() * T.linear().transpose()).isIdentity(1e-6) && T.matrix().allFinite(),
-            "depth fusion: a pose is not rigid");
+    require(isRigid(T.matrix(), 1e-6), "depth fusion: a pose is not rigid");
   require(options.cell > 0 && std::isfinite(options.cell), "depth fusion: cell ", options.cell, " is not positive");
   require(options.truncation >= 2 && options.truncation <= 16, "depth fusion: truncation ", options.truncation,
           " is not in 2..16");

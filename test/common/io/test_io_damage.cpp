@@ -1,31 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "common/io/memory_limit.h"
 #include "common/io/test_io_data.h"
 #include <fresco/io/cloud_file.h>
 #include <fresco/io/mesh_io.h>
 #include <fresco/io/point_io.h>
 #include <fstream>
-#include <sys/resource.h>
-#include <unistd.h>
 namespace {
 using namespace fresco;
-
-/// While it lives, the process may take 256 MiB more than it has: an allocation that a damaged count asks for fails.
-class MemoryLimit {
-public:
-  MemoryLimit()
-  {
-    getrlimit(RLIMIT_AS, &before_);
-    std::size_t pages = 0;
-    std::ifstream("/proc/self/statm") >> pages;
-    const rlimit limit{pages * static_cast<std::size_t>(sysconf(_SC_PAGESIZE)) + (std::size_t{256} << 20),
-                       before_.rlim_max};
-    setrlimit(RLIMIT_AS, &limit);
-  }
-  ~MemoryLimit() { setrlimit(RLIMIT_AS, &before_); }
-
-private:
-  rlimit before_{};
-};
 
 using Reader = std::function<void(const std::string&)>;
 
@@ -143,7 +124,7 @@ TEST(DamagedFiles, CutAtEveryByte)
   std::filesystem::create_directory(folder + "/cut");
   std::filesystem::copy(folder + "/model.mtl", folder + "/cut/model.mtl");
   std::filesystem::copy(folder + "/model.png", folder + "/cut/model.png");
-  const MemoryLimit limit;
+  const test::MemoryLimit limit;
   for (const Sample& sample : all) {
     const std::string path = folder + "/cut/" + sample.name;
     for (std::size_t length = 0; length < sample.content.size(); ++length) {
@@ -161,7 +142,7 @@ TEST(DamagedFiles, ChangedBytes)
   std::filesystem::create_directory(folder + "/changed");
   std::filesystem::copy(folder + "/model.mtl", folder + "/changed/model.mtl");
   std::filesystem::copy(folder + "/model.png", folder + "/changed/model.png");
-  const MemoryLimit limit;
+  const test::MemoryLimit limit;
   std::mt19937 generator(99);
   const char likely[] = "0123456789-+.eE \n\xff\x7f\x80";
   for (const Sample& sample : all) {

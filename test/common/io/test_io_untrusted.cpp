@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Files made to do harm: counts that wrap, sections twice, nesting, names of other people's files, and small files that
 // ask for much time or memory.
+#include "common/io/memory_limit.h"
 #include "io/points/pcd.h"
 #include "test_data.h"
 #include <chrono>
@@ -68,14 +69,17 @@ std::string triangleBytes()
 
 #ifdef __SANITIZE_ADDRESS__
 constexpr double most_seconds = 60; // instrumented code takes a few times as long
+struct Limit {};                    // and keeps what it has freed
 #else
 constexpr double most_seconds = 10; // linear work takes one; quadratic work would take minutes
+using Limit = test::MemoryLimit;
 #endif
 
-/// Whether `read` ends in time.
+/// Whether `read` ends in time and takes no memory without measure.
 template <typename Read>
 void expectFast(const Read& read)
 {
+  [[maybe_unused]] const Limit limit{};
   const auto start = std::chrono::steady_clock::now();
   read();
   EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), most_seconds);
@@ -247,6 +251,21 @@ TEST(UntrustedCameras, NumbersOutOfRange)
   EXPECT_THROW(readPoses(put(folder + "/poses.txt", "1 0 0 1e300 0 1 0 0 0 0 1 0 0 0 0 1\n")), std::runtime_error);
 }
 
+TEST(UntrustedCameras, OnlyRotationsAndTranslationsAreRigid)
+{
+  const Eigen::Matrix4d still = Eigen::Matrix4d::Identity();
+  EXPECT_TRUE(isRigid(still, 0));
+  const auto with = [&](int row, int column, double value) {
+    Eigen::Matrix4d T = still;
+    T(row, column) = value;
+    return T;
+  };
+  EXPECT_TRUE(isRigid(with(1, 1, 1.01), 0.05));
+  for (const Eigen::Matrix4d& T : {with(1, 1, 1.01), with(0, 1, 0.01), with(2, 2, -1.0), with(0, 0, NAN),
+                                   with(0, 3, 1e300), with(1, 3, NAN), with(3, 0, 0.1), with(3, 3, 0.0)})
+    EXPECT_FALSE(isRigid(T, 1e-3)) << T;
+}
+
 TEST(UntrustedImages, DamageIsAnErrorAndSizesAreCheckedFirst)
 {
   const std::string folder = test::scratchFolder();
@@ -271,5 +290,38 @@ TEST(UntrustedImages, DamageIsAnErrorAndSizesAreCheckedFirst)
   const std::size_t frame = large.find("\xff\xc0");
   large.replace(frame + 5, 4, "\xff\xff\xff\xff"); // 65,535 x 65,535 pixels
   EXPECT_THROW(readImage(put(folder + "/large.jpg", large)), std::runtime_error);
+}
+
+TEST(UntrustedImages, SizesOfOtherFormats)
+{
+  const std::string folder = test::scratchFolder(), pixels(4000, '\x40');
+  const auto bmp = [&](std::int32_t width, std::int32_t height) {
+    return "BM" + raw<std::uint32_t>(4054) + raw<std::uint32_t>(0) + raw<std::uint32_t>(54) + raw<std::uint32_t>(40) +
+           raw(width) + raw(height) + raw<std::uint16_t>(1) + raw<std::uint16_t>(24) + std::string(24, '\0') + pixels;
+  };
+  const auto tiff = [&](std::uint32_t width, std::uint32_t height) {
+    using Entry = std::pair<std::uint16_t, std::uint32_t>;
+    std::string entries;
+    for (const auto& [tag, value] : {Entry{256, width}, Entry{257, height}, Entry{258, 8}, Entry{259, 1}, Entry{262, 1},
+                                     Entry{273, 122}, Entry{277, 1}, Entry{278, height}, Entry{279, width * height}})
+      entries += raw(tag) + raw<std::uint16_t>(4) + raw<std::uint32_t>(1) + raw(value);
+    return std::string("II*\0", 4) + raw<std::uint32_t>(8) + raw<std::uint16_t>(9) + entries + raw<std::uint32_t>(0) +
+           pixels;
+  };
+  const auto webp = [&](std::uint32_t side) { // lossless
+    return "RIFF" + raw<std::uint32_t>(4020) + "WEBPVP8L" + raw<std::uint32_t>(4000) + "\x2f" +
+           raw<std::uint32_t>((side - 1) | (side - 1) << 14) + pixels;
+  };
+  EXPECT_EQ(readImage(put(folder + "/a.bmp", bmp(40, -30))).height, 30);
+  EXPECT_EQ(readImage(put(folder + "/a.tif", tiff(50, 60))).width, 50);
+  const test::MemoryLimit limit; // less than any of these asks for
+  for (const std::string& image : {bmp(60000, 30000), bmp(30000, -60000), tiff(60000, 30000), webp(16383)}) {
+    try {
+      readImage(put(folder + "/large", image));
+      ADD_FAILURE() << image.substr(0, 4);
+    } catch (const std::runtime_error& error) {
+      EXPECT_NE(std::string(error.what()).find("truncated or damaged"), std::string::npos) << error.what();
+    }
+  }
 }
 } // namespace

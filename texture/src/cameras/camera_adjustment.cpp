@@ -42,9 +42,11 @@ struct Projection {
   Eigen::Matrix<double, 2, shared_count> by_shared;
 };
 
-Projection projectAll(const CameraModel& camera, const Eigen::Isometry3d& T, const Eigen::Vector3d& point)
+Projection projectAll(const CameraState& state, int view, const Eigen::Vector3d& point)
 {
   Projection out;
+  const CameraModel& camera = state.cameras[state.group[view]];
+  const Eigen::Isometry3d& T = state.T_camera_mesh[view];
   const Eigen::Vector3d q = T * point;
   out.pixel = project(camera, q);
   Eigen::Matrix<double, 2, 3> by_camera_point;
@@ -54,8 +56,8 @@ Projection projectAll(const CameraModel& camera, const Eigen::Isometry3d& T, con
         (project(camera, q + step * Eigen::Vector3d::Unit(k)) - project(camera, q - step * Eigen::Vector3d::Unit(k))) /
         (2 * step);
   out.by_point = by_camera_point * T.linear();
-  out.by_shared.leftCols<3>() = -by_camera_point * skew(q);
-  out.by_shared.middleCols<3>(3) = by_camera_point;
+  out.by_shared.leftCols<3>() = -by_camera_point * skew(q) * state.R_part_view[view];
+  out.by_shared.middleCols<3>(3) = by_camera_point * state.R_part_view[view];
   for (int k = 6; k < shared_count; ++k) {
     const SharedVector x = 1e-5 * SharedVector::Unit(k);
     out.by_shared.col(k) = (project(corrected(camera, x), q) - project(corrected(camera, -x), q)) / 2e-5;
@@ -85,7 +87,8 @@ class Adjustment {
 public:
   Adjustment(const std::vector<PhotoMatch>& matches, const CameraState& initial, const AdjustmentPrior& prior,
              int threads)
-      : matches_(matches), initial_(initial), groups_(initial.cameras.size()), views_(initial.group.size()),
+      : matches_(matches), initial_(initial), groups_(initial.cameras.size()),
+        poses_(initial.pose.empty() ? 0 : 1 + *std::max_element(initial.pose.begin(), initial.pose.end())),
         threads_(threads)
   {
     SharedVector shared;
@@ -94,10 +97,13 @@ public:
     Vector6 pose;
     pose << Eigen::Vector3d::Constant(prior.pose_turn), Eigen::Vector3d::Constant(prior.pose_shift);
     sigma_.resize(size());
-    for (int g = 0; g < groups_; ++g)
+    constexpr double fixed = 1e-6; // far below a pixel
+    for (int g = 0; g < groups_; ++g) {
       sigma_.segment<shared_count>(g * shared_count) = shared;
-    for (int v = 0; v < views_; ++v)
-      sigma_.segment<pose_count>(poseAt(v)) = pose;
+      if (initial.fixed_lens[g])
+        sigma_.segment<shared_count - pose_count>(g * shared_count + pose_count).setConstant(fixed);
+    }
+    sigma_.tail(poses_ * pose_count) = pose.replicate(poses_, 1);
     x_ = Eigen::VectorXd::Zero(size());
   }
 
@@ -114,18 +120,21 @@ public:
   }
 
 private:
-  int size() const { return groups_ * shared_count + views_ * pose_count; }
-  int poseAt(int view) const { return groups_ * shared_count + view * pose_count; }
+  int size() const { return groups_ * shared_count + poses_ * pose_count; }
+  int poseAt(int view) const { return groups_ * shared_count + initial_.pose[view] * pose_count; }
 
-  /// Corrections of the initial cameras: turn before shift and mount after pose, T = mount * pose * initial.
+  /// Corrections of the initial cameras: turn before shift and mount after pose, T = part * mount * pose * view.
   CameraState stateOf(const Eigen::VectorXd& x) const
   {
     CameraState state = initial_;
     for (int g = 0; g < groups_; ++g)
       state.cameras[g] = corrected(initial_.cameras[g], x.segment<shared_count>(g * shared_count));
-    for (int v = 0; v < views_; ++v)
-      state.T_camera_mesh[v] = motion(x.segment<pose_count>(initial_.group[v] * shared_count)) *
-                               motion(x.segment<pose_count>(poseAt(v))) * initial_.T_camera_mesh[v];
+    for (std::size_t v = 0; v < initial_.group.size(); ++v) {
+      const Eigen::Matrix3d& R = initial_.R_part_view[v];
+      state.T_camera_mesh[v] =
+          R * (motion(x.segment<pose_count>(initial_.group[v] * shared_count)) *
+               motion(x.segment<pose_count>(poseAt(v))) * (R.transpose() * initial_.T_camera_mesh[v]));
+    }
     return state;
   }
 
@@ -197,10 +206,9 @@ private:
     row.r = residual(match, state);
     if (!(row.r.norm() < 100))
       return row;
-    const int from = state.group[match.from], to = state.group[match.to];
+    const int from = state.group[match.from];
     const Eigen::Vector3d point = onPlane(match, state.cameras[from], state.T_camera_mesh[match.from]);
-    const Projection a = projectAll(state.cameras[from], state.T_camera_mesh[match.from], point),
-                     b = projectAll(state.cameras[to], state.T_camera_mesh[match.to], point);
+    const Projection a = projectAll(state, match.from, point), b = projectAll(state, match.to, point);
     Eigen::Matrix3d M;
     M << a.by_point, match.normal.transpose();
     const Eigen::Matrix<double, 2, 3> transfer = b.by_point * M.inverse();
@@ -229,7 +237,7 @@ private:
 
   const std::vector<PhotoMatch>& matches_;
   const CameraState& initial_;
-  int groups_, views_, threads_;
+  int groups_, poses_, threads_;
   double scale_ = 1; ///< pixels: errors beyond count less and less
   Eigen::VectorXd sigma_, x_, gradient_;
   Eigen::MatrixXd H_;

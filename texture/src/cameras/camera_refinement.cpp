@@ -13,19 +13,26 @@ constexpr double agreement_pixels = 0.5;
 
 auto numbersOf(const CameraModel& c)
 {
-  return std::tie(c.width, c.height, c.fx, c.fy, c.cx, c.cy, c.k1, c.k2, c.p1, c.p2);
+  return std::tie(c.width, c.height, c.fx, c.fy, c.cx, c.cy, c.k1, c.k2, c.p1, c.p2, c.k3, c.k4, c.k5, c.k6, c.sx1,
+                  c.sy1, c.projection);
 }
 
-CameraState stateOf(const TriangleMesh& mesh, const std::vector<TextureView>& views)
+CameraState stateOf(const TriangleMesh& mesh, const std::vector<ViewPart>& views)
 {
   CameraState state;
-  for (const TextureView& view : views) {
-    const auto same = [&](const CameraModel& c) { return numbersOf(c) == numbersOf(view.camera); };
-    const auto at = std::find_if(state.cameras.begin(), state.cameras.end(), same);
-    state.group.push_back(at - state.cameras.begin());
-    if (at == state.cameras.end())
+  for (const ViewPart& view : views) {
+    std::size_t g = 0;
+    while (g < state.cameras.size() &&
+           !(numbersOf(state.cameras[g]) == numbersOf(view.camera) && bool(state.fixed_lens[g]) == view.ofPanorama()))
+      ++g;
+    if (g == state.cameras.size()) {
       state.cameras.push_back(view.camera);
-    state.T_camera_mesh.push_back(view.T_camera_world * Eigen::Translation3d(mesh.origin));
+      state.fixed_lens.push_back(view.ofPanorama());
+    }
+    state.group.push_back(g);
+    state.T_camera_mesh.push_back(view.R_part_view * (view.given->T_camera_world * Eigen::Translation3d(mesh.origin)));
+    state.pose.push_back(view.view);
+    state.R_part_view.push_back(view.R_part_view);
   }
   return state;
 }
@@ -127,9 +134,13 @@ void refineCameras(const RefinementInput& input, int threads, const Progress& pr
   result.refined = matches.size() >= least_matches && after < least_gain * before;
   if (!result.refined)
     after = before;
-  for (std::size_t v = 0; v < views && result.refined; ++v)
-    result.cameras[v] = {state.cameras[state.group[v]],
-                         state.T_camera_mesh[v] * Eigen::Translation3d(-input.mesh.origin)};
+  for (std::size_t v = 0; v < views && result.refined; ++v) {
+    PlacedCamera& camera = result.cameras[state.pose[v]];
+    if (!input.views[v].ofPanorama())
+      camera.camera = state.cameras[state.group[v]];
+    camera.T_camera_world =
+        state.R_part_view[v].transpose() * (state.T_camera_mesh[v] * Eigen::Translation3d(-input.mesh.origin));
+  }
 }
 } // namespace
 
@@ -137,9 +148,10 @@ void placeCameras(const RefinementInput& input, const TextureOptions& options, c
                   TextureResult& result)
 {
   constexpr std::size_t most_views = 400; // the normal equations are solved densely
-  const std::size_t views = input.views.size();
-  for (const TextureView& view : input.views)
-    result.cameras.push_back({view.camera, view.T_camera_world});
+  for (const ViewPart& part : input.views)
+    if (part.view == Index(result.cameras.size()))
+      result.cameras.push_back({part.given->camera, part.given->T_camera_world});
+  const std::size_t views = result.cameras.size();
   if (options.refine && views > most_views)
     result.warnings.push_back(
         concat("cameras are taken as given: ", views, " views are more than the ", most_views, " that are refined"));

@@ -7,8 +7,8 @@ namespace fresco::texture {
 /// What cameras are refined by.
 struct RefinementInput {
   const TriangleMesh& mesh;
-  const RayScene& scene;                 ///< of the mesh
-  const std::vector<TextureView>& views; ///< those with equal camera models share one camera
+  const RayScene& scene;              ///< of the mesh
+  const std::vector<ViewPart>& views; ///< those with equal camera models share one camera
   PhotoStore& photos;
 };
 

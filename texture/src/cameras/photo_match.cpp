@@ -21,7 +21,7 @@ class Matcher {
 public:
   Matcher(const RayScene& scene, const std::vector<MatchPhoto>& photos, const CameraState& state,
           const MatchOptions& options)
-      : scene_(scene), photos_(photos), options_(options)
+      : scene_(scene), photos_(photos), pose_(state.pose), options_(options)
   {
     for (std::size_t v = 0; v < photos.size(); ++v)
       views_.emplace_back(state.cameras[state.group[v]], state.T_camera_mesh[v], Eigen::Vector3d::Zero());
@@ -108,7 +108,7 @@ private:
     Eigen::Vector2d pixel;
     const Index n = photos_.size(), most = options_.partners;
     for (int v = 0; v < n; ++v)
-      for (std::size_t i = 0; i < corners.size() && v != from; i += sampled)
+      for (std::size_t i = 0; i < corners.size() && pose_[v] != pose_[from]; i += sampled)
         shared[v] += sampled * sees(v, corners[i], pixel);
     std::iota(order.begin(), order.end(), 0);
     std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return shared[a] > shared[b]; });
@@ -165,6 +165,7 @@ private:
 
   const RayScene& scene_;
   const std::vector<MatchPhoto>& photos_;
+  const std::vector<int>& pose_; ///< of a view; those of one pose agree by themselves
   const MatchOptions& options_;
   std::vector<Projector> views_;
 };

@@ -9,6 +9,9 @@ struct CameraState {
   std::vector<CameraModel> cameras;             ///< one per group of views that share it
   std::vector<int> group;                       ///< V
   std::vector<Eigen::Isometry3d> T_camera_mesh; ///< V
+  std::vector<int> pose;                        ///< V, number of the pose; parts of one panorama share it
+  std::vector<Eigen::Matrix3d> R_part_view;     ///< V, from the axes that the pose has
+  std::vector<char> fixed_lens;                 ///< of the cameras: parts of panoramas have no lens
 };
 
 /// One place of the surface in two photographs.

@@ -117,9 +117,8 @@ std::vector<Chart> makeAtlas(const PatchMesh& patches, const Eigen::VectorXf& re
     const float factor = coarser;
     density /= factor;
     result.warnings.push_back(concat("texels are ", std::fixed, std::setprecision(2), coarser, std::defaultfloat,
-                                     std::setprecision(6),
-                                     " times as large as the photographs give, so that there are ", most_texels / 1e6,
-                                     " million: a smaller -texel makes more"));
+                                     std::setprecision(6), " times as large as the input gives, so that there are ",
+                                     most_texels / 1e6, " million: a smaller -texel makes more"));
   }
   const int side = options.atlas > 0 ? options.atlas : largest_atlas;
   LayoutOptions layout;

@@ -12,11 +12,19 @@ void store(const Eigen::Vector3f& color, std::uint8_t* pixel)
     pixel[c] = std::clamp(color[c], 0.f, 255.f) + 0.5f;
 }
 
+/// A view at work: only its own photograph is held.
+struct PaintedView {
+  const PaintSources& sources;
+  const Image& photo;
+  PixelGain gain;
+};
+
 /// Colours of a patch's texels in one photograph.
 class PatchSampler {
 public:
   /// @param map that looks at the photograph
-  PatchSampler(const PaintScene& scene, const PatchMap& map, const Image& photo, Index patch) : map_(map), photo_(photo)
+  PatchSampler(const PaintScene& scene, const PatchMap& map, const PaintedView& view, Index patch)
+      : map_(map), photo_(view.photo), gain_(view.gain)
   {
     for (int k = 0; k < 3; ++k)
       least_[k] = goesOn(scene, patch, (k + 1) % 3) ? -far_beyond : inset(k);
@@ -26,13 +34,12 @@ public:
     steps_ = std::isfinite(pixels_per_texel) ? std::lround(std::clamp(pixels_per_texel, 1.f, most)) : 1;
   }
 
-  /// Mean over the texel.
+  /// Mean over the texel, corrected.
   Eigen::Vector3f operator()(const Eigen::Vector2f& center) const
   {
-    if (steps_ == 1) {
-      const Eigen::Vector2f p = pixel(center);
-      return samplePhoto(photo_, p.x(), p.y());
-    }
+    const Eigen::Vector2f middle = pixel(center);
+    if (steps_ == 1)
+      return gain_(middle).cwiseProduct(samplePhoto(photo_, middle.x(), middle.y()));
     Eigen::Vector3f sum = Eigen::Vector3f::Zero();
     const float step = 1.f / steps_;
     for (int j = 0; j < steps_; ++j)
@@ -40,7 +47,7 @@ public:
         const Eigen::Vector2f p = pixel(center + Eigen::Vector2f((i + 0.5f) * step - 0.5f, (j + 0.5f) * step - 0.5f));
         sum += samplePhoto(photo_, p.x(), p.y());
       }
-    return sum * (step * step);
+    return gain_(middle).cwiseProduct(sum * (step * step));
   }
 
 private:
@@ -68,6 +75,7 @@ private:
 
   const PatchMap& map_;
   const Image& photo_;
+  const PixelGain& gain_;
   Eigen::Vector3f least_; ///< of the corners' weights: below 0 where the surface goes on straight and is seen
   int steps_;
 };
@@ -96,16 +104,9 @@ std::vector<std::vector<PaintedShare>> sharesByView(const PaintScene& scene, con
   return out;
 }
 
-/// A view at work: only its own photograph is held.
-struct PaintedView {
-  const PaintSources& sources;
-  const Image& photo;
-};
-
 void paintShare(const PaintScene& scene, const PaintedView& view, const PaintedShare& part, std::vector<Image>& atlases)
 {
   const PaintSources& sources = view.sources;
-  const Image& photo = view.photo;
   PatchFrame frame(scene, part.patch);
   Image& atlas = atlases[frame.chart.atlas];
   const BlendShare& share = sources.blend.list[part.share];
@@ -115,18 +116,17 @@ void paintShare(const PaintScene& scene, const PaintedView& view, const PaintedS
     });
   if (!frame.map.look(sources.views[share.view]))
     return;
-  const PatchSampler sampler(scene, frame.map, photo, part.patch);
-  const Eigen::Vector3f gain = sources.gains.col(share.view);
+  const PatchSampler sampler(scene, frame.map, view, part.patch);
   const bool plain = share.weights.minCoeff() == 1 && share.offsets.isZero(0);
   frame.forTexels([&](const Eigen::Vector2f& center, int x, int y) {
     std::uint8_t* pixel = atlas.pixel(frame.chart.x + x, frame.chart.y + y);
     Eigen::Vector3f color(pixel[0], pixel[1], pixel[2]);
     if (plain) {
-      color += gain.cwiseProduct(sampler(center));
+      color += sampler(center);
     } else {
       const Eigen::Vector3f corners = frame.inside(center);
       if (const float weight = share.weights.dot(corners); weight > 0)
-        color += weight * (gain.cwiseProduct(sampler(center)) + share.offsets * corners);
+        color += weight * (sampler(center) + share.offsets * corners);
     }
     store(color, pixel);
   });
@@ -144,9 +144,8 @@ void paintSeen(const PaintScene& scene, const PaintSources& sources, std::vector
     if (parts[v].empty())
       continue;
     const std::shared_ptr<const Image> photo = sources.photos.get(v);
-    parallelFor(parts[v].size(), scene.threads, [&](Index i) {
-      paintShare(scene, {sources, *photo}, parts[v][i], atlases);
-    });
+    const PaintedView view{sources, *photo, {sources.photometry, static_cast<int>(v), sources.views[v].camera()}};
+    parallelFor(parts[v].size(), scene.threads, [&](Index i) { paintShare(scene, view, parts[v][i], atlases); });
   }
 }
 
@@ -163,14 +162,14 @@ void paintTexels(const PaintScene& scene, const PaintSources& sources,
         runs.push_back(k);
     runs.push_back(texels.size());
     const std::shared_ptr<const Image> photo = sources.photos.get(v);
-    const Eigen::Vector3f gain = sources.gains.col(v);
+    const PaintedView view{sources, *photo, {sources.photometry, static_cast<int>(v), sources.views[v].camera()}};
     parallelFor(runs.size() - 1, scene.threads, [&](Index r) {
       PatchFrame frame(scene, texels[runs[r]].patch);
       if (!frame.map.look(sources.views[v]))
         return;
-      const PatchSampler sampler(scene, frame.map, *photo, texels[runs[r]].patch);
+      const PatchSampler sampler(scene, frame.map, view, texels[runs[r]].patch);
       for (std::size_t k = runs[r]; k < runs[r + 1]; ++k)
-        store(gain.cwiseProduct(sampler(frame.place(texels[k].x, texels[k].y))),
+        store(sampler(frame.place(texels[k].x, texels[k].y)),
               atlases[frame.chart.atlas].pixel(frame.chart.x + texels[k].x, frame.chart.y + texels[k].y));
     });
   }

@@ -40,7 +40,7 @@ bool goesOn(const PaintScene& scene, Index patch, int side);
 struct PaintSources {
   const std::vector<Projector>& views;
   PhotoStore& photos;
-  const Points& gains;                   ///< 3xV, factor per view and channel
+  const Photometry& photometry;
   const Blend& blend;                    ///< views that each patch is painted from
   const Candidates& candidates;          ///< views that show each patch
   const std::vector<float>& penalties;   ///< octaves, of each candidate: photo-consistency

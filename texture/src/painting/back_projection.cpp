@@ -69,7 +69,7 @@ private:
       const Index v = first + i;
       if (!shown_[v].empty())
         residuals_[v] = residualOf({scene_, atlases_, sources_.views[v], shown_[v]}, *sources_.photos.get(v),
-                                   sources_.gains.col(v));
+                                   {sources_.photometry, static_cast<int>(v), sources_.views[v].camera()});
     };
     parallelFor(last - first, scene_.threads, compute, 1);
   }

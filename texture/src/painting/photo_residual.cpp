@@ -91,7 +91,7 @@ float coverageWeight(float covered)
 }
 } // namespace
 
-PhotoResidual residualOf(const Prediction& prediction, const Image& photo, const Eigen::Vector3f& gain)
+PhotoResidual residualOf(const Prediction& prediction, const Image& photo, const PixelGain& gain)
 {
   constexpr std::uint8_t overexposed = 254; // grey level: the light may have been any brighter
   PhotoResidual out;
@@ -101,14 +101,17 @@ PhotoResidual residualOf(const Prediction& prediction, const Image& photo, const
   for (const int patch : prediction.patches)
     draw(prediction, patch, out);
   const std::uint8_t* p = photo.data.data();
-  for (Eigen::Vector4f& pixel : out.pixels) {
+  for (Index i = 0; i < Index(out.pixels.size()); ++i, p += 3) {
+    Eigen::Vector4f& pixel = out.pixels[i];
     const float trust = std::max({p[0], p[1], p[2]}) < overexposed ? coverageWeight(pixel.w()) : 0.f;
     if (trust > 0)
-      pixel.head<3>() = trust * (gain.cwiseProduct(Eigen::Vector3f(p[0], p[1], p[2])) - pixel.head<3>() / pixel.w());
+      pixel.head<3>() =
+          trust *
+          (gain({i % photo.width + 0.5f, i / photo.width + 0.5f}).cwiseProduct(Eigen::Vector3f(p[0], p[1], p[2])) -
+           pixel.head<3>() / pixel.w());
     else
       pixel.setZero();
     pixel.w() = 0;
-    p += 3;
   }
   return out;
 }

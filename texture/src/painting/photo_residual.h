@@ -31,7 +31,7 @@ struct Prediction {
 
 /// A pixel is predicted as the mean of what bilinear interpolation of the texels gives over its area. Pixels that the
 /// patches cover in part or more than once, at outlines for instance, are trusted little or not.
-PhotoResidual residualOf(const Prediction& prediction, const Image& photo, const Eigen::Vector3f& gain);
+PhotoResidual residualOf(const Prediction& prediction, const Image& photo, const PixelGain& gain);
 
 /// Bytes of residualOf()'s result.
 std::size_t residualBytes(const CameraModel& camera);

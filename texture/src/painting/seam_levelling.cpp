@@ -14,7 +14,7 @@ using Triplet = Eigen::Triplet<float>;
 class Levelling {
 public:
   Levelling(const BlendInput& input, const Groups& around, const VertexViews& shares)
-      : patches_(input.patches), around_(around), shares_(shares), candidates_(input.candidates), gains_(input.gains)
+      : patches_(input.patches), around_(around), shares_(shares), input_(input), photometry_(input.photometry)
   {
     out_.begin.assign(1, 0);
     for (const auto& list : shares_)
@@ -77,11 +77,11 @@ private:
         Eigen::Vector3f step = Eigen::Vector3f::Zero();
         float count = 0;
         for (int k = around_.begin[v]; k < around_.begin[v + 1]; ++k) {
-          const Candidate *ca = candidates_.find(around_.list[k], list[a].view),
-                          *cb = candidates_.find(around_.list[k], list[b].view);
+          const Candidate *ca = input_.usable(around_.list[k], list[a].view),
+                          *cb = input_.usable(around_.list[k], list[b].view);
           if (!ca || !cb)
             continue;
-          step += cb->corrected(gains_) - ca->corrected(gains_);
+          step += cb->corrected(photometry_) - ca->corrected(photometry_);
           ++count;
         }
         if (!(count > 0))
@@ -114,8 +114,8 @@ private:
   const PatchMesh& patches_;
   const Groups& around_;
   const VertexViews& shares_;
-  const Candidates& candidates_;
-  const Points& gains_;
+  const BlendInput& input_;
+  const Photometry& photometry_;
   SeamOffsets out_;
   std::vector<Triplet> entries_; ///< below the diagonal
   Eigen::VectorXf diagonal_;

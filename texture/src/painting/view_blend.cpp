@@ -24,7 +24,7 @@ int roundsFor(const PatchMesh& patches, double width)
 class Blending {
 public:
   Blending(const BlendInput& input, const BlendOptions& options)
-      : patches_(input.patches), candidates_(input.candidates), view_(input.view), around_(vertexPatches(patches_)),
+      : input_(input), patches_(input.patches), view_(input.view), around_(vertexPatches(patches_)),
         shares_(shareVertices(patches_, around_, view_, roundsFor(patches_, options.blend_width)))
   {
     if (options.level)
@@ -49,7 +49,7 @@ private:
     std::vector<int> views{view_[patch]};
     for (int k = 0; k < 3; ++k)
       for (const VertexShare& s : shares_[patches_.faces(k, patch)])
-        if (std::find(views.begin(), views.end(), s.view) == views.end() && candidates_.find(patch, s.view))
+        if (std::find(views.begin(), views.end(), s.view) == views.end() && input_.usable(patch, s.view))
           views.push_back(s.view);
     const std::size_t first = out.size();
     for (const int view : views)
@@ -89,8 +89,8 @@ private:
     return share;
   }
 
+  const BlendInput input_;
   const PatchMesh& patches_;
-  const Candidates& candidates_;
   const Eigen::VectorXi& view_;
   Groups around_;
   VertexViews shares_;

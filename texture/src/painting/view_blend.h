@@ -28,7 +28,20 @@ struct BlendInput {
   const PatchMesh& patches;
   const Candidates& candidates;
   const Eigen::VectorXi& view; ///< P, -1 = unseen
-  const Points& gains;         ///< 3xV, factor per view and channel
+  const Photometry& photometry;
+  const std::vector<float>& penalties; ///< octaves, of each candidate: photo-consistency
+
+  /// The candidate of a view that may take part in a seen patch's colours: not one that is much less consistent than the
+  /// view chosen.
+  const Candidate* usable(Index patch, int other) const
+  {
+    constexpr float doubtful = 2; // octaves: some 28 grey levels
+    const Candidate* at = candidates.find(patch, other);
+    if (!at || other == view[patch] || view[patch] < 0)
+      return at;
+    const auto penalty = [&](const Candidate* c) { return penalties[c - candidates.list.data()]; };
+    return penalty(at) < penalty(candidates.find(patch, view[patch])) + doubtful ? at : nullptr;
+  }
 };
 
 /// Feathers the seams: near them the colours of a patch are made of both views.

@@ -2,8 +2,17 @@
 #pragma once
 #include "views/visibility.h"
 namespace fresco::texture {
-/// Factor per view and channel that makes views of the same surface agree: least squares over the median ratio of each
-/// pair of views, robust against pairs that disagree with the rest. Means of their logarithms are 0; 1 where nothing is
-/// known.
-Points solveGains(const Candidates& candidates, Index views);
+/// Vignetting of each lens, a polynomial as in Goldman 2010, "Vignette and Exposure Calibration and Compensation", by
+/// least squares over patches that several views show; then a factor per view and channel that makes the views agree:
+/// least squares over the median ratio of each pair of views. Both are robust against what disagrees with the rest. Means
+/// of the factors' logarithms are 0; nothing is corrected where nothing is known.
+/// @param lenses of each view, see lensNumbers()
+/// @param owner per candidate view what it is a part of: parts of one have the same factor
+Photometry solvePhotometry(const Candidates& candidates, const std::vector<int>& lenses, const std::vector<int>& owner);
+
+/// Fills gains and vignetting of the result.
+void describePhotometry(const Photometry& photometry, TextureResult& result);
+
+/// The factors alone.
+Points solveGains(const Candidates& candidates, const std::vector<int>& owner);
 } // namespace fresco::texture

@@ -22,9 +22,22 @@ Eigen::Vector4f cubicWeights(float t)
   const float t2 = t * t, t3 = t2 * t;
   return {-0.5f * t + t2 - 0.5f * t3, 1 - 2.5f * t2 + 1.5f * t3, 0.5f * t + 2 * t2 - 1.5f * t3, -0.5f * t2 + 0.5f * t3};
 }
+
+std::shared_ptr<const Image> loadGiven(const TextureView& v, Index view)
+{
+  std::shared_ptr<const Image> image;
+  if (v.image.empty())
+    image = std::make_shared<const Image>(readImage(v.path));
+  else
+    image = std::shared_ptr<const Image>(std::shared_ptr<void>(), &v.image);
+  if (image->width != v.camera.width || image->height != v.camera.height)
+    throw std::runtime_error(concat(v.path.empty() ? concat("photograph ", view) : v.path, ": is ", image->width, "x",
+                                    image->height, " pixels, its camera has ", v.camera.width, "x", v.camera.height));
+  return image->channels == 3 ? image : std::make_shared<const Image>(asRgb(*image));
+}
 } // namespace
 
-PhotoStore::PhotoStore(const std::vector<TextureView>& views, std::size_t most_bytes)
+PhotoStore::PhotoStore(const std::vector<ViewPart>& views, std::size_t most_bytes)
     : views_(views), most_bytes_(most_bytes), slots_(views.size())
 {}
 
@@ -43,18 +56,25 @@ std::shared_ptr<const Image> PhotoStore::get(Index view)
   return image;
 }
 
-std::shared_ptr<const Image> PhotoStore::load(Index view) const
+std::shared_ptr<const Image> PhotoStore::load(Index view)
 {
-  const TextureView& v = views_[view];
-  std::shared_ptr<const Image> image;
-  if (v.image.empty())
-    image = std::make_shared<const Image>(readImage(v.path));
-  else
-    image = std::shared_ptr<const Image>(std::shared_ptr<void>(), &v.image);
-  if (image->width != v.camera.width || image->height != v.camera.height)
-    throw std::runtime_error(concat(v.path.empty() ? concat("photograph ", view) : v.path, ": is ", image->width, "x",
-                                    image->height, " pixels, its camera has ", v.camera.width, "x", v.camera.height));
-  return image->channels == 3 ? image : std::make_shared<const Image>(asRgb(*image));
+  return views_[view].ofPanorama() ? std::make_shared<const Image>(cutPanorama(*panoramaOf(view), views_[view]))
+                                   : loadGiven(*views_[view].given, views_[view].view);
+}
+
+std::shared_ptr<const Image> PhotoStore::panoramaOf(Index view)
+{
+  const int number = views_[view].view;
+  {
+    const std::lock_guard lock(mutex_);
+    if (panorama_view_ == number)
+      return panorama_;
+  }
+  auto image = std::make_shared<const Image>(wrapPanorama(*loadGiven(*views_[view].given, views_[view].view)));
+  const std::lock_guard lock(mutex_);
+  panorama_ = image;
+  panorama_view_ = number;
+  return image;
 }
 
 void PhotoStore::keep(Index view, std::shared_ptr<const Image> image)

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include <fresco/texture/core/texture_reconstruction.h>
+#include "cameras/view_parts.h"
 #include <list>
 #include <memory>
 #include <mutex>
 namespace fresco::texture {
-/// Photographs as 8-bit RGB, read when first asked for; the ones asked for last are kept within a limit of memory. May
+/// Photographs and parts of panoramas as 8-bit RGB, read when first asked for; the ones asked for last are kept within a limit of memory. May
 /// be used by several threads at a time.
 class PhotoStore {
 public:
-  PhotoStore(const std::vector<TextureView>& views, std::size_t most_bytes);
+  PhotoStore(const std::vector<ViewPart>& views, std::size_t most_bytes);
 
   /// @throws std::runtime_error naming the photograph if it cannot be read or is of another size than its camera
   std::shared_ptr<const Image> get(Index view);
@@ -23,14 +23,17 @@ public:
 private:
   void drop();
   void dropOldest();
-  std::shared_ptr<const Image> load(Index view) const;
+  std::shared_ptr<const Image> load(Index view);
+  std::shared_ptr<const Image> panoramaOf(Index view);
   void keep(Index view, std::shared_ptr<const Image> image);
 
   struct Slot {
     std::shared_ptr<const Image> image;
     std::list<Index>::iterator recent;
   };
-  const std::vector<TextureView>& views_;
+  const std::vector<ViewPart>& views_;
+  std::shared_ptr<const Image> panorama_; ///< the one cut last, wrapped
+  int panorama_view_ = -1;
   std::size_t most_bytes_, aside_ = 0, bytes_ = 0;
   std::vector<Slot> slots_;
   std::list<Index> recent_; ///< kept views, the one asked for last in front

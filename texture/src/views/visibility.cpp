@@ -15,9 +15,7 @@ constexpr float beside_penalty = 1;  // where a pixel next to it shows something
 
 struct Seen {
   int patch;
-  std::array<std::uint8_t, 3> color;
-  std::uint8_t penalty;
-  float resolution;
+  Candidate candidate;
 };
 
 /// @param step length by which depth jumps at an outline
@@ -86,7 +84,10 @@ public:
         else if (isAtRim(patch, farthest, rim, outline_))
           penalty += limits_.pose_uncertainty * rim_penalty;
         const float resolution = view_.focal() * cosine / (0.5f * (patch.nearest + patch.farthest));
-        seen.push_back({static_cast<int>(i), meanColor(photo, i), static_cast<std::uint8_t>(16 * penalty), resolution});
+        Candidate candidate = colored(photo, i);
+        candidate.penalty = 16 * penalty;
+        candidate.resolution = resolution;
+        seen.push_back({static_cast<int>(i), candidate});
       }
     return seen;
   }
@@ -109,20 +110,26 @@ private:
     return cosineTowards(patches_, i, view_);
   }
 
-  /// From the middle and halfway to the corners.
-  std::array<std::uint8_t, 3> meanColor(const Image& photo, Index i) const
+  /// What the photograph shows in the middle and halfway to the corners.
+  Candidate colored(const Image& photo, Index i) const
   {
+    constexpr float clipped = 254; // grey levels: the light may have been any brighter
     const Eigen::Matrix3f at = corners(i);
     const Eigen::Vector2f middle = at.topRows<2>().rowwise().mean();
     Eigen::Vector3f sum = samplePhotoQuickly(photo, middle.x(), middle.y());
+    float brightest = sum.maxCoeff();
     for (int k = 0; k < 3; ++k) {
       const Eigen::Vector2f p = 0.5f * (middle + at.col(k).head<2>());
-      sum += samplePhotoQuickly(photo, p.x(), p.y());
+      const Eigen::Vector3f color = samplePhotoQuickly(photo, p.x(), p.y());
+      brightest = std::max(brightest, color.maxCoeff());
+      sum += color;
     }
-    std::array<std::uint8_t, 3> mean;
+    Candidate out{};
     for (int c = 0; c < 3; ++c)
-      mean[c] = sum[c] / 4 + 0.5f;
-    return mean;
+      out.color[c] = sum[c] / 4 + 0.5f;
+    out.clipped = brightest >= clipped;
+    out.radius = storedRadius(squaredRadius(view_.camera(), middle));
+    return out;
   }
 
   const PatchMesh& patches_;
@@ -209,8 +216,10 @@ Candidates findCandidates(const PatchMesh& patches, const VisibilityInput& input
     };
     parallelFor(count, input.options.threads, test, 1);
     for (Index i = 0; i < count; ++i)
-      for (const Seen& s : seen[i])
-        table.add(s.patch, {static_cast<int>(first + i), s.color, s.penalty, s.resolution});
+      for (Seen& s : seen[i]) {
+        s.candidate.view = first + i;
+        table.add(s.patch, s.candidate);
+      }
   }
   views.photos.dropUnlessAll();
   return table.take();

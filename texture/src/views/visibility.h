@@ -4,6 +4,7 @@
 #include "views/depth_map.h"
 #include "views/patch_mesh.h"
 #include "views/photo_store.h"
+#include "views/photometry.h"
 #include <array>
 #include <cmath>
 #include <fresco/core/progress.h>
@@ -11,16 +12,18 @@
 namespace fresco::texture {
 /// A view that shows a patch.
 struct Candidate {
-  int view;
+  std::int32_t view : 23;
+  std::uint32_t clipped : 1;         ///< a part of the patch is overexposed
+  std::uint32_t radius : 8;          ///< of the patch's middle in the photograph, see storedRadius()
   std::array<std::uint8_t, 3> color; ///< mean over the patch in the photograph
   std::uint8_t penalty; ///< octaves / 16 by which the view is to be trusted less: outlines, the image's border
   float resolution;     ///< pixels per mesh unit in the direction seen most obliquely
 
   float quality() const { return resolution * std::exp2(penalty * (-1 / 16.f)); }
-  /// @param gains 3xV, factor per view and channel
-  Eigen::Vector3f corrected(const Points& gains) const
+  float squaredRadius() const { return static_cast<float>(radius) / radius_steps; }
+  Eigen::Vector3f corrected(const Photometry& photometry) const
   {
-    return Eigen::Vector3f(color[0], color[1], color[2]).cwiseProduct(gains.col(view));
+    return Eigen::Vector3f(color[0], color[1], color[2]).cwiseProduct(photometry.factor(view, squaredRadius()));
   }
 };
 
@@ -58,8 +61,10 @@ struct ViewList {
   const std::vector<Projector>& projectors;
   PhotoStore& photos;
   std::vector<char> used; ///< views that may become candidates
+  std::vector<int> owner; ///< number of what each is a part of: parts of one panorama share it
   double pose_uncertainty =
       1; ///< how far outlines are to be distrusted: 1 = by some pixels and centimetres, 0 = all is exact
+  std::vector<int> lenses; ///< of each view, see lensNumbers()
 };
 
 /// What visibility is judged by.

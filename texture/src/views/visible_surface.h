@@ -17,7 +17,7 @@ VisibleSurface findVisibleSurface(const TriangleMesh& mesh, const VisibilityInpu
 PatchMesh cutHiddenParts(PatchMesh patches, const VisibilityInput& input);
 
 /// Fills coverage, views_used, seam_length and face_view of the result.
-/// @param view P, -1 = unseen
+/// @param view P, -1 = unseen; panoramas as a whole
 void describeViews(const PatchMesh& patches, const Eigen::VectorXi& view, TextureResult& result);
 
 /// Diagonal of the bounding box of all faces, mesh units.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simulation/sensors/dataset.h"
 #include "simulation/scene/labels.h"
+#include "simulation/sensors/random.h"
 #include "simulation/sensors/views.h"
 #include <filesystem>
 #include <fresco/core/parallel.h>
@@ -23,10 +24,17 @@ void validate(const DatasetOptions& o)
   require(o.views >= 0 && o.views <= 100000, "views ", o.views, " is not in 0..100000");
   require(o.width >= 16 && o.width <= 20000 && o.height >= 16 && o.height <= 20000, "image size ", o.width, "x",
           o.height, " is not in 16..20000");
+  require(o.panorama_height >= 8 && o.panorama_height <= 10000, "panorama height ", o.panorama_height,
+          " is not in 8..10000");
   require(o.focal > 0.1 && o.focal < 100.0, "focal length ", o.focal, " is not in 0.1..100 image widths");
   require(o.exposure_spread >= 0.f && o.exposure_spread <= 0.9f, "exposure spread ", o.exposure_spread,
           " is not in 0..0.9");
   require(o.sensor_noise >= 0.f && o.sensor_noise <= 100.f, "sensor noise ", o.sensor_noise, " is not in 0..100");
+  require(o.vignetting >= 0.1f && o.vignetting <= 1.f, "vignetting ", o.vignetting, " is not in 0.1..1");
+  require(o.blur >= 0.f && o.blur <= 20.f, "blur ", o.blur, " is not in 0..20");
+  require(o.intruder >= 0, "intruder ", o.intruder, " is negative");
+  require(o.pose_noise >= 0 && o.pose_noise <= 1, "pose noise ", o.pose_noise, " is not in 0..1");
+  require(o.turn_noise >= 0 && o.turn_noise <= 10, "turn noise ", o.turn_noise, " is not in 0..10");
   require(o.jpeg_quality >= 1 && o.jpeg_quality <= 100, "JPEG quality ", o.jpeg_quality, " is not in 1..100");
 }
 
@@ -109,14 +117,56 @@ void writePhotographs(const Run& run, const CameraSet& set, const Progress& prog
     const View& view = set.views[k];
     Exposure exposure = randomExposure(o.seed, k, o.exposure_spread);
     exposure.noise = o.sensor_noise;
-    writeImage(run.folder + "/images/" + view.image,
-               takePhotograph(run.lit, {set.cameras[0], view, exposure}, o.threads), o.jpeg_quality);
+    exposure.corner = o.vignetting;
+    exposure.blur = o.blur;
+    Shot shot{set.cameras[0], view, exposure};
+    if (o.intruder > 0 && (k + 1) % o.intruder == 0)
+      shot.intruder = intruderBefore(run.lit, view);
+    writeImage(run.folder + "/images/" + view.image, takePhotograph(run.lit, shot, o.threads), o.jpeg_quality);
     if (o.truth_images)
       writeImage(run.folder + "/truth_images/" + std::filesystem::path(view.image).replace_extension(".png").string(),
                  takePhotograph(run.lit, {set.cameras[0], view, {}}, o.threads));
     gains.write(concat(view.image, ' ', exposure.gain[0], ' ', exposure.gain[1], ' ', exposure.gain[2], '\n'));
   }
   gains.commit();
+}
+
+/// Cameras as somebody measured them who was a little wrong.
+CameraSet misplaced(CameraSet set, const DatasetOptions& o)
+{
+  for (std::size_t k = 0; k < set.views.size(); ++k) {
+    CounterRandom random(o.seed, 67, k);
+    const auto vector = [&](double deviation) {
+      const double x = random.gaussian(), y = random.gaussian(), z = random.gaussian();
+      return Eigen::Vector3d(deviation * Eigen::Vector3d(x, y, z));
+    };
+    const Eigen::Vector3d shift = vector(o.pose_noise), turn = vector(o.turn_noise * pi / 180);
+    Eigen::Isometry3d& T = set.views[k].T_camera_world;
+    T = T * Eigen::Translation3d(shift);
+    if (turn.norm() > 0)
+      T = Eigen::AngleAxisd(turn.norm(), turn.normalized()) * T;
+  }
+  return set;
+}
+
+/// From the places of the laser; the middle looks along the x axis of the scan, its z axis is up.
+void writePanoramas(const Run& run, const std::vector<Pose>& poses, const Progress& progress)
+{
+  constexpr int exposures_of_photographs = 100000; // numbers that photographs may have
+  const DatasetOptions& o = run.options;
+  makeFolder(run.folder + "/panoramas");
+  const CameraModel camera = sphericalCamera(2 * o.panorama_height, o.panorama_height);
+  Eigen::Matrix3d R_camera_scan;
+  R_camera_scan << 0, -1, 0, 0, 0, -1, 1, 0, 0;
+  for (std::size_t k = 0; k < poses.size(); ++k) {
+    report(progress, concat("panorama ", k + 1, " of ", poses.size()), double(k) / poses.size());
+    View view;
+    view.T_camera_world = Eigen::Isometry3d(R_camera_scan) * Eigen::Isometry3d(*poses[k]).inverse();
+    Exposure exposure = randomExposure(o.seed, exposures_of_photographs + k, o.exposure_spread);
+    exposure.noise = o.sensor_noise;
+    writeImage(concat(run.folder, "/panoramas/scan_", std::setfill('0'), std::setw(2), k, ".jpg"),
+               takePhotograph(run.lit, {camera, view, exposure}, o.threads), o.jpeg_quality);
+  }
 }
 
 /// Whether `name` is PREFIX, a number and an extension: a file that an earlier run may have written.
@@ -135,7 +185,7 @@ void removeOld(const std::string& folder)
   for (const char* file : {"cameras.txt", "images.txt", "points3D.txt"})
     fs::remove(folder + "/cameras/" + file);
   const std::pair<const char*, const char*> numbered_files[] = {
-      {"scans", "scan_"}, {"images", "view_"}, {"truth_images", "view_"}};
+      {"scans", "scan_"}, {"panoramas", "scan_"}, {"images", "view_"}, {"truth_images", "view_"}};
   for (const auto& [sub, prefix] : numbered_files) {
     std::vector<fs::path> old;
     if (fs::is_directory(folder + "/" + sub))
@@ -192,13 +242,15 @@ void writeDataset(const std::string& name, const std::string& folder, const Data
   report(progress, "stations", 0.3);
   const Points stations = chooseStations(planning, options.stations);
   std::vector<int> returns(scene.mesh.faceCount(), 0);
-  const std::vector<Pose> poses = writeScans(run, stations, returns, subProgress(progress, 0.32, 0.45));
+  const std::vector<Pose> poses = writeScans(run, stations, returns, subProgress(progress, 0.32, 0.4));
   writeTruth(run, returns);
+  if (options.panoramas)
+    writePanoramas(run, poses, subProgress(progress, 0.4, 0.45));
   if (options.views > 0) {
     report(progress, "views", 0.45);
     const CameraSet set = chooseViews(planning, pinhole(options), options.views);
     writePhotographs(run, set, subProgress(progress, 0.5, 1.0));
-    writeColmap(folder + "/cameras", set);
+    writeColmap(folder + "/cameras", misplaced(set, options));
   }
   writePoses(folder + "/poses.txt", poses);
 }

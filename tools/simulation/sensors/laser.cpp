@@ -67,6 +67,7 @@ struct Return {
   int face = -1;
   bool mixed = false;
   float deviation = 0.f; ///< of the noise, metres
+  float intensity = 0.f; ///< 1 = a white surface seen frontally at 1 m
   Eigen::Matrix<std::uint8_t, 3, 1> color;
 };
 
@@ -111,6 +112,11 @@ public:
     const double deviation = options_.noise * (0.6 + 0.1 * back.range) / grazing;
     back.deviation = deviation;
     back.range += static_cast<float>(deviation * random.gaussian());
+    if (options_.intensity) {
+      constexpr double speckle = 0.03; // deviation of a beam's strength on one surface, relative
+      back.intensity = brightness_ * reflectance(hit) * cosine / (hit.distance * hit.distance) *
+                       std::exp(speckle * random.gaussian());
+    }
     const Vector3f color = brightness_ * surfaceColor(lit_, hit, 2.f * radius(hit.distance));
     back.color = (255.f * color).array().round().max(0.f).min(255.f).cast<std::uint8_t>();
     return back;
@@ -139,12 +145,16 @@ private:
 
   float radius(float range) const { return options_.beam_radius + options_.divergence * range; }
 
+  float reflectance(const RayHit& hit) const
+  {
+    return std::pow(surfaceAlbedo(lit_.scene, hit, 2.f * radius(hit.distance)).mean(), 2.2f);
+  }
+
   /// Dark, glassy and obliquely met surfaces often send too little light back.
   double answerProbability(const RayHit& hit, float cosine) const
   {
-    const float reflectance = std::pow(surfaceAlbedo(lit_.scene, hit, 2.f * radius(hit.distance)).mean(), 2.2f);
     const float far = hit.distance / unit_, distance = std::min(1.f, 36.f / (far * far));
-    const float answer = smoothStep(0.003f, 0.02f, reflectance * cosine * distance);
+    const float answer = smoothStep(0.003f, 0.02f, reflectance(hit) * cosine * distance);
     const double glass = materialAt(lit_.scene, hit.face).glass ? 0.25 : 1.0;
     return glass * answer * smoothStep(0.02f, 0.08f, cosine);
   }
@@ -233,7 +243,8 @@ LaserScan scanScene(const LitScene& lit, const Eigen::Matrix4d& T_world_scan, co
   const Index count = std::count_if(returns.begin(), returns.end(), [](const Return& r) { return r.range > 0.f; });
   LaserScan scan;
   scan.points.points.resize(3, count);
-  scan.points.colors.resize(3, count);
+  scan.points.colors.resize(3, options.intensity ? 0 : count);
+  scan.points.intensities.resize(options.intensity ? count : 0);
   scan.points.viewpoints = Points::Zero(3, 1);
   Index next = 0;
   for (Index b = 0; b < beams; ++b) {
@@ -241,7 +252,10 @@ LaserScan scanScene(const LitScene& lit, const Eigen::Matrix4d& T_world_scan, co
     if (back.range <= 0.f)
       continue;
     scan.points.points.col(next) = (back.range * grid.direction(b)).cast<float>();
-    scan.points.colors.col(next++) = back.color;
+    if (options.intensity)
+      scan.points.intensities[next++] = back.intensity;
+    else
+      scan.points.colors.col(next++) = back.color;
     scan.faces.push_back(back.face);
     scan.mixed.push_back(back.mixed);
     scan.deviations.push_back(back.deviation);

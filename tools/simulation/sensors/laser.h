@@ -13,12 +13,13 @@ struct LaserOptions {
   float pulse = 0.4f;         ///< metres; surfaces further apart within a beam are told apart, the stronger one counts
   int rings = 1;              ///< of rays around the middle of a beam: 6, then 12 more ...
   float max_range = 0.f;      ///< metres, >= 0; 0 = 30 in rooms, without limit for meshes
+  bool intensity = false;     ///< points get the strength of the answer in place of a colour
   std::uint64_t seed = 1;
   int threads = 0; ///< 0 = all cores; the result does not depend on it
 };
 
 struct LaserScan {
-  PointSet points;         ///< in the sensor's own frame, coloured, viewpoint (0, 0, 0)
+  PointSet points;         ///< in the sensor's own frame, with colours or intensities, viewpoint (0, 0, 0)
   std::vector<int> faces;  ///< per point, the face that the middle of the beam met
   std::vector<bool> mixed; ///< per point, whether its range belongs to more than one surface or to a neighbouring one
   std::vector<float> deviations; ///< per point, of the noise of its range, metres

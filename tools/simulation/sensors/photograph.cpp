@@ -5,6 +5,7 @@
 #include <cmath>
 #include <fresco/core/parallel.h>
 #include <fresco/core/require.h>
+#include <opencv2/imgproc.hpp>
 namespace fresco::simulation {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
@@ -31,13 +32,28 @@ Vector3f pixelNoise(const Exposure& exposure, std::uint64_t pixel)
   return noise;
 }
 
-void store(Image& image, const Shot& shot, const Eigen::Vector2i& at, const Vector3f& color)
+/// What the sensor makes of the light, display values as fractions of white, row by row.
+Image develop(const std::vector<Vector3f>& light, const Shot& shot, int threads)
 {
-  Vector3f value = 255.f * color.cwiseProduct(shot.exposure.gain);
-  if (shot.exposure.noise > 0.f)
-    value += shot.exposure.noise * pixelNoise(shot.exposure, static_cast<std::uint64_t>(at.y()) * image.width + at.x());
-  for (int channel = 0; channel < 3; ++channel)
-    image.pixel(at.x(), at.y())[channel] = static_cast<std::uint8_t>(std::clamp(value[channel] + 0.5f, 0.f, 255.f));
+  const auto& [gain, noise, corner, blur, seed, number] = shot.exposure;
+  const CameraModel& camera = shot.camera;
+  Image image(camera.width, camera.height);
+  const double half = 0.5 * std::hypot(camera.width, camera.height);
+  parallelFor(image.height, threads, [&, gain = gain, noise = noise, corner = corner](Index y) {
+    for (int x = 0; x < image.width; ++x) {
+      const Index at = y * image.width + x;
+      Vector3f value = 255.f * light[at].cwiseProduct(gain);
+      if (corner < 1.f) {
+        const double r = std::hypot(x + 0.5 - camera.cx, y + 0.5 - camera.cy) / half;
+        value *= 1 - (1 - corner) * r * r;
+      }
+      if (noise > 0.f)
+        value += noise * pixelNoise(shot.exposure, at);
+      for (int channel = 0; channel < 3; ++channel)
+        image.pixel(x, y)[channel] = static_cast<std::uint8_t>(std::clamp(value[channel] + 0.5f, 0.f, 255.f));
+    }
+  });
+  return image;
 }
 
 /// Rays of the pixels at (x, y) .. (x + 1, y + 1), four a pixel.
@@ -48,19 +64,23 @@ RayPacket<packet_size> pixelRays(const Shot& shot, const Vector3f& center, const
   for (int i = 0; i < packet_size; ++i) {
     const int pixel = i / 4;
     const Vector2d where(at.x() + pixel % block + corners[i % 4][0], at.y() + pixel / block + corners[i % 4][1]);
-    const Vector3d direction = R_world_camera * unproject(shot.camera, where);
-    packet[i] = {center, direction.cast<float>()};
+    const bool around = shot.camera.projection == CameraProjection::spherical;
+    const Vector3d beam = R_world_camera * (around ? direction(shot.camera, where) : unproject(shot.camera, where));
+    packet[i] = {center, beam.cast<float>()};
   }
   return packet;
 }
 
-Vector3f rayColor(const LitScene& lit, const CameraModel& camera, const Ray& ray, const RayHit& hit)
+Vector3f rayColor(const LitScene& lit, const Shot& shot, const Ray& ray, const RayHit& hit)
 {
+  if (shot.intruder)
+    if (const auto seen = shot.intruder->hit(ray); seen && (hit.face < 0 || seen->first < hit.distance))
+      return seen->second;
   if (hit.face < 0)
     return background;
   const float cosine = std::fabs(faceNormal(lit.scene.mesh, hit.face).dot(ray.direction.normalized()));
-  // distance is a depth, for directions have z = 1; of the four rays of a pixel each stands for half its width
-  const float footprint = 0.7f * hit.distance / static_cast<float>(camera.fx) / std::sqrt(std::max(cosine, 0.1f));
+  // distance is a depth, for directions have z = 1 (panoramas: length 1); of the four rays of a pixel each stands for half its width
+  const float footprint = 0.7f * hit.distance / static_cast<float>(shot.camera.fx) / std::sqrt(std::max(cosine, 0.1f));
   return surfaceColor(lit, hit, footprint);
 }
 } // namespace
@@ -78,11 +98,45 @@ Exposure randomExposure(std::uint64_t seed, std::uint64_t number, float spread)
   return exposure;
 }
 
+std::optional<std::pair<float, Vector3f>> Intruder::hit(const Ray& ray) const
+{
+  const Vector3f from = (ray.origin - center).cwiseQuotient(radii), along = ray.direction.cwiseQuotient(radii);
+  const float a = along.squaredNorm(), b = from.dot(along), c = from.squaredNorm() - 1;
+  const float root = b * b - a * c;
+  if (!(root > 0) || !(c > 0)) // passes by, or the camera is inside
+    return {};
+  const float distance = (-b - std::sqrt(root)) / a;
+  if (!(distance > 0))
+    return {};
+  const Vector3f at = from + distance * along; // on the unit sphere
+  constexpr float stripes = 7;                 // over the height
+  const Vector3f color =
+      std::fmod(stripes * (at.z() + 1), 2.f) < 1 ? Vector3f(0.75f, 0.2f, 0.15f) : Vector3f(0.15f, 0.25f, 0.6f);
+  return std::pair{distance, Vector3f((0.6f + 0.4f * at.z()) * color)};
+}
+
+std::optional<Intruder> intruderBefore(const LitScene& lit, const View& view)
+{
+  const Vector3f radii(0.28f, 0.28f, 0.85f);  // of a person, metres
+  constexpr float least = 0.9f, share = 0.6f; // metres from the camera; of the way to what stands there
+  const Vector3f eye = (view.center() - lit.scene.mesh.origin).cast<float>();
+  const Vector3f ahead = view.T_camera_world.linear().transpose().col(2).cast<float>();
+  const RayHit wall = lit.rays.intersect(Ray{eye, ahead});
+  if (wall.face < 0 || share * wall.distance < least)
+    return {};
+  Vector3f center = eye + share * wall.distance * ahead;
+  center.z() = lit.scene.mesh.vertices.row(2).minCoeff() + radii.z();
+  return Intruder{center, radii};
+}
+
 Image takePhotograph(const LitScene& lit, const Shot& shot, int threads)
 {
   const CameraModel& camera = shot.camera;
   require(camera.width > 0 && camera.height > 0 && camera.fx > 0 && camera.fy > 0, "photograph: not a camera");
-  Image image(camera.width, camera.height);
+  require(shot.exposure.corner >= 0.1f && shot.exposure.corner <= 1.f && shot.exposure.blur >= 0.f &&
+              shot.exposure.blur <= 20.f,
+          "photograph: vignetting or blur out of range");
+  std::vector<Vector3f> light(static_cast<std::size_t>(camera.width) * camera.height);
   const Vector3f center = (shot.view.center() - lit.scene.mesh.origin).cast<float>();
   const Index rows = (camera.height + block - 1) / block;
   parallelFor(
@@ -99,13 +153,17 @@ Image takePhotograph(const LitScene& lit, const Shot& shot, int threads)
             Vector3f sum = Vector3f::Zero();
             for (std::size_t k = 0; k < 4; ++k) {
               const std::size_t i = 4 * pixel + k;
-              sum += rayColor(lit, camera, packet[i], hits[i]);
+              sum += rayColor(lit, shot, packet[i], hits[i]);
             }
-            store(image, shot, own, 0.25f * sum);
+            light[static_cast<std::size_t>(own.y()) * camera.width + own.x()] = 0.25f * sum;
           }
         }
       },
       4);
-  return image;
+  if (const float blur = shot.exposure.blur; blur > 0.f) {
+    cv::Mat pixels(camera.height, camera.width, CV_32FC3, light.data());
+    cv::GaussianBlur(pixels, pixels, {}, blur, blur, cv::BORDER_REPLICATE);
+  }
+  return develop(light, shot, threads);
 }
 } // namespace fresco::simulation

@@ -3,11 +3,14 @@
 #include "simulation/sensors/lighting.h"
 #include <fresco/core/camera.h>
 #include <fresco/core/image.h>
+#include <optional>
 namespace fresco::simulation {
 /// How a photograph differs from the truth.
 struct Exposure {
   Eigen::Vector3f gain = Eigen::Vector3f::Ones(); ///< factor on display values per channel
   float noise = 0.f;                              ///< deviation per pixel and channel, grey levels of 0..255
+  float corner = 1.f;                             ///< light in the image's corners / in its middle (vignetting), 0.1..1
+  float blur = 0.f;                               ///< deviation of the blur (Gaussian), pixels, >= 0
   std::uint64_t seed = 1, number = 0;             ///< of the noise; number of the photograph
 };
 
@@ -15,13 +18,26 @@ struct Exposure {
 /// @param spread 0..0.9
 Exposure randomExposure(std::uint64_t seed, std::uint64_t number, float spread);
 
+/// Somebody who stands in the picture: an upright ellipsoid with stripes.
+struct Intruder {
+  Eigen::Vector3f center, radii; ///< metres, in the coordinates of the scene's mesh
+
+  /// Distance along the ray and colour there; nothing where it passes by.
+  std::optional<std::pair<float, Eigen::Vector3f>> hit(const Ray& ray) const;
+};
+
 struct Shot {
   const CameraModel& camera;
   const View& view;
   Exposure exposure;
+  std::optional<Intruder> intruder = {};
 };
 
-/// What the camera sees: 4 rays a pixel; a pixel is their mean times the gain.
+/// Somebody on the floor, in the middle of the picture and nearer than what it shows there.
+/// @return nothing where there is no room before the camera
+std::optional<Intruder> intruderBefore(const LitScene& lit, const View& view);
+
+/// What the camera sees: 4 rays a pixel; a pixel is their mean, blurred, times vignetting and gain.
 /// @param threads 0 = all cores; the result does not depend on it
 Image takePhotograph(const LitScene& lit, const Shot& shot, int threads);
 } // namespace fresco::simulation

@@ -67,6 +67,9 @@ struct MeshTopology {
 /// Faces with a repeated index are left out.
 FRESCO_EXPORT MeshTopology meshTopology(const TriangleMesh& mesh);
 
+/// 3xF: the faces with each corner moved to the first vertex of equal coordinates, so that neighbours share vertices.
+FRESCO_EXPORT Faces weldedFaces(const TriangleMesh& mesh);
+
 /// `mesh` without the vertices that no face names; attributes follow.
 FRESCO_EXPORT TriangleMesh removeUnreferencedVertices(const TriangleMesh& mesh);
 } // namespace fresco

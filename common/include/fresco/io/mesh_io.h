@@ -4,6 +4,7 @@
 #include <fresco/core/mesh.h>
 #include <fresco/core/textured_mesh.h>
 #include <string>
+#include <vector>
 namespace fresco {
 /// PLY (ASCII, both binary orders, polygons, triangle strips), OBJ, legacy VTK polydata by extension. Polygons are
 /// triangulated as fans. Normals, colours and further scalars per vertex are kept. Coordinates too large for float are
@@ -25,4 +26,8 @@ FRESCO_EXPORT void writeTexturedMesh(const std::string& path, const TexturedMesh
 /// corners have no texture coordinates, are without texture. From a .glb, vertices at the same place become one.
 /// @throws std::runtime_error "PATH: reason" if the model or a file that it names is missing, truncated or malformed
 FRESCO_EXPORT TexturedMesh readTexturedMesh(const std::string& path);
+
+/// Material libraries and images that an OBJ file names, below its folder; none of other files.
+/// @throws std::runtime_error "PATH: reason" if the file cannot be read
+FRESCO_EXPORT std::vector<std::string> filesNamedBy(const std::string& path);
 } // namespace fresco

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fresco/core/polygon_fans.h>
+#include <fresco/core/poses.h>
 #include <fresco/core/require.h>
 #include <limits>
 namespace fresco::io {
@@ -235,7 +236,7 @@ void readCamera(Source& source, const PlyElement& element, PointTable& sensor)
       axes(row, column) =
           static_cast<float>(value(axis + "_axis" + static_cast<char>('x' + column), row == column ? 1.0 : 0.0));
   }
-  if (axes.allFinite() && axes.isUnitary(1e-3f))
+  if (isRotation(axes.cast<double>(), 1e-3))
     pose.orientation = Eigen::Quaternionf(axes);
   sensor.sensor = pose;
   sensor.width = static_cast<Index>(std::clamp(value("viewportx", 0), 0.0, 1e9));

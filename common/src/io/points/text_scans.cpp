@@ -2,9 +2,9 @@
 #include "io/points/text_scans.h"
 #include "io/points/file_window.h"
 #include "io/points/text_numbers.h"
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <fresco/core/poses.h>
 #include <fresco/core/require.h>
 #include <limits>
 #include <stdexcept>
@@ -105,7 +105,7 @@ Eigen::Isometry3d poseOf(LineReader& lines)
   }
   const Eigen::Matrix3d R = M.topLeftCorner<3, 3>().transpose();
   constexpr double rounded = 1e-3; // numbers are written with 6 digits
-  if (!((R * R.transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() < rounded) || !(R.determinant() > 0))
+  if (!isRotation(R, rounded))
     throw std::runtime_error("its matrix is no rotation");
   Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
   T.linear() = R.isIdentity(0) ? R : Eigen::Quaterniond(R).normalized().toRotationMatrix();

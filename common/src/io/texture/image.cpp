@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "io/points/parse_file.h"
+#include "io/texture/image_size.h"
 #include "io/texture/jpeg_reader.h"
 #include "io/texture/texture_io.h"
 #include <algorithm>
@@ -55,6 +56,14 @@ bool hasPossibleSize(std::string_view png)
   return bigEndian(png, 20) <= best_ratio * png.size() / std::max<std::uint64_t>(row, 1);
 }
 
+/// The same of the other formats, whose codes have no such bound: images of one colour are small in all of them.
+bool hasLikelySize(std::string_view bytes)
+{
+  constexpr std::uint64_t always = 1 << 24, best_ratio = 4096; // pixels; pixels per byte
+  const std::uint64_t pixels = io::pixelsOf(bytes);
+  return pixels > 0 && pixels <= std::max(always, best_ratio * bytes.size());
+}
+
 /// OpenCV also passes on to libraries that end the program over a damaged file (DICOM, GDAL's formats).
 bool isCommonFormat(std::string_view bytes)
 {
@@ -82,7 +91,8 @@ cv::Mat decode(std::string_view bytes, int flags)
   if (!isCommonFormat(bytes))
     throw std::runtime_error("no PNG, JPEG, TIFF, BMP or WebP image");
   const bool is_png = startsWith(bytes, "\x89PNG");
-  if ((is_png && !(hasIntactChunks(bytes) && hasPossibleSize(bytes))) ||
+  const bool is_jpeg = startsWith(bytes, "\xff\xd8");
+  if (!(is_png ? hasIntactChunks(bytes) && hasPossibleSize(bytes) : is_jpeg || hasLikelySize(bytes)) ||
       bytes.size() > static_cast<std::size_t>(std::numeric_limits<int>::max()))
     throw std::runtime_error("the image is truncated or damaged");
   const cv::Mat raw(1, static_cast<int>(bytes.size()), CV_8U, const_cast<char*>(bytes.data()));

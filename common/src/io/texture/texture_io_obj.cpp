@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fresco/core/require.h>
 #include <fresco/io/image_io.h>
+#include <fresco/io/mesh_io.h>
 #include <map>
 #include <memory>
 namespace fresco::io {
@@ -120,6 +121,19 @@ std::vector<int> readAtlases(const std::string& path, const ObjContent& obj, std
   }
   return of_material;
 }
+
+/// The rest of each line that begins with `keyword`.
+std::vector<std::string> entriesOf(std::string_view text, std::string_view keyword)
+{
+  std::vector<std::string> entries;
+  for (std::size_t at = text.find(keyword); at != std::string_view::npos; at = text.find(keyword, at + 1)) {
+    const std::string_view line = text.substr(at, text.find_first_of("\r\n", at) - at);
+    const std::size_t begin = line.find_first_not_of(" \t", keyword.size());
+    if ((at == 0 || text[at - 1] == '\n') && begin != std::string_view::npos)
+      entries.emplace_back(line.substr(begin));
+  }
+  return entries;
+}
 } // namespace
 
 void writeTexturedObj(const std::string& path, const TexturedMesh& model)
@@ -167,3 +181,19 @@ TexturedMesh readTexturedObj(const std::string& path)
   return model;
 }
 } // namespace fresco::io
+
+std::vector<std::string> fresco::filesNamedBy(const std::string& path)
+{
+  std::vector<std::string> files;
+  if (extension(path) != ".obj")
+    return files;
+  const io::fs::path folder = io::fs::path(path).parent_path();
+  for (const std::string& library : io::entriesOf(readFile(path), "mtllib ")) {
+    files.push_back((folder / library).string());
+    if (io::fs::is_regular_file(files.back()))
+      for (const auto& [name, entry] : io::parseMtl(readFile(files.back())))
+        if (!entry.empty())
+          files.push_back((io::fs::path(folder / library).parent_path() / io::imageName(entry)).string());
+  }
+  return files;
+}

@@ -17,7 +17,9 @@ struct ModelOptions {
   bool optimize = true;           ///< move the vertices so that edges become sharp; scans only
   double trim_levels = 2.0;       ///< see VolumetricOptions::trim_levels, >= 0; 0 = keep the surface closed; RGB-D:
                                   ///< at most 0.75
-  double texel = 0.0;             ///< side of a texel, >= 0; 0 = as fine as the photographs
+  double texel = 0.0;             ///< side of a texel, >= 0; 0 = as fine as photographs, panoramas or points
+  double panorama_direction = 0;  ///< degrees counter-clockwise from the scan's x axis to the middle of its panorama
+  bool panorama_mirrored = false; ///< panoramas go around counter-clockwise from left to right
   int width = 1280, height = 960; ///< of the pictures, pixels, at least 160 x 120
   int threads = 0;                ///< 0 = all cores; the result does not depend on it
 };
@@ -31,9 +33,11 @@ struct ModelStage {
   bool resumed = false;      ///< taken over from an earlier run
   /// Name and value, numbers with four digits, lists as JSON; report.json has them in full.
   std::vector<std::pair<std::string, std::string>> figures;
+  std::vector<std::string> warnings; ///< what was left out or ignored, a sentence each
 };
 
 struct ModelReport {
+  std::string input;                 ///< see describeInput()
   std::vector<ModelStage> stages;    ///< in the order in which they ran
   std::vector<std::string> pictures; ///< files, relative to the output folder
   double seconds = 0;                ///< wall clock of this run
@@ -45,8 +49,8 @@ struct ModelReport {
 /// Stages hand over files, so a resumed run gives the same bytes as an undisturbed one. Every file is written whole or
 /// not at all. Written are model.obj with .mtl and .png, model.glb, model_mask.png, mesh.ply, poses.txt,
 /// snapshots/*.png, report.html, report.json, and in work/ what `resume` needs.
-/// @param input_folder  scans and photographs (scans/*.pcd, poses.txt, cameras/ as COLMAP model, images/) or RGB-D
-///                      frames (camera-intrinsics.txt, frame-*.{color.jpg,depth.png,pose.txt}); see docs/model.md
+/// @param input_folder  scans with or without photographs (scans/*.pcd, poses.txt, cameras/ as COLMAP model, images/,
+///                      panoramas/ named as the scans) or RGB-D frames (camera-intrinsics.txt, frame-*.{color.jpg,depth.png,pose.txt}); see docs/model.md
 /// @param output_folder made where it is missing
 /// @param progress      hears "STAGE: STEP" and the share of the stage
 /// @throws std::invalid_argument if an option is out of range
@@ -55,6 +59,10 @@ struct ModelReport {
 /// @throws Cancelled if `progress` asks to stop
 FRESCO_EXPORT ModelReport buildModel(const std::string& input_folder, const std::string& output_folder,
                                      const ModelOptions& options = {}, const Progress& progress = {});
+
+/// What kind of input a folder or file is: "6 scans, 60 photographs".
+/// @throws std::runtime_error as buildModel()
+FRESCO_EXPORT std::string describeInput(const std::string& input_folder);
 
 /// One line with time, memory and figures of a stage.
 FRESCO_EXPORT std::string stageSummary(const ModelStage& stage);

@@ -39,13 +39,14 @@ struct TextureOptions {
   int threads = 0;      ///< 0 = all cores; the result does not depend on it
 };
 
-/// One photograph with its calibration.
+/// One photograph or panorama (sphericalCamera(), cut into six views inside) with its calibration.
 struct TextureView {
   CameraModel camera;
   Eigen::Isometry3d T_camera_world = Eigen::Isometry3d::Identity();
-  Image image;       ///< empty: read from `path` when needed
-  std::string path;  ///< file of the photograph; names it in messages
-  bool paint = true; ///< false: its camera is refined with the others, but nothing is coloured from it
+  Image image;           ///< empty: read from `path` when needed
+  std::string path;      ///< file of the photograph; names it in messages
+  bool paint = true;     ///< false: its camera is refined with the others, but nothing is coloured from it
+  bool mirrored = false; ///< a panorama that goes around to the left
 };
 
 /// A camera at its place.
@@ -67,6 +68,9 @@ struct TextureResult {
   double seam_length = 0;            ///< mesh units, along which two views meet
   std::vector<PlacedCamera> cameras; ///< of each view, as used: refined where that made the photographs agree better
   Points gains; ///< 3xV, factors on RGB that bring the photographs together; their mean logarithm is 0
+  /// 3xV, vignetting found: light that arrives at distance r from the principal point, in half diagonals of the image, is
+  /// exp(a_1 r^2 + a_2 r^4 + a_3 r^6) of that in the middle; zeros where nothing is known. Colours are corrected by it.
+  Points vignetting;
   double disagreement_before = 0; ///< pixels, median, between photographs on the mesh; 0 where it was not measured
   double disagreement_after = 0;  ///< with `cameras`; the same where these were left as given
   /// Whether `cameras` differ from what was given: not where photographs agree within half a pixel already, nor where no

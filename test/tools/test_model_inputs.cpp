@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// fresco_model with each kind of input that scans come in.
+#include "test_data.h"
+#include "tools/small_room.h"
+#include "tools/tool_runs.h"
+#include <nlohmann/json.hpp>
+namespace fresco::test {
+namespace {
+/// A small room as scans with their poses and nothing else.
+std::string scansAlone()
+{
+  const std::string folder = scratchFolder();
+  writeSmallRoom(folder + "/room");
+  fs::remove_all(folder + "/room/images");
+  fs::remove_all(folder + "/room/cameras");
+  return folder;
+}
+
+nlohmann::json modelOf(const std::string& folder, const std::string& options = "")
+{
+  const Outcome outcome = run(folder, "model room out -use_poses -cell 0.1 -size 160x120 " + options);
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(outcome.err.rfind("input: 2 scans, ", 0), 0u) << outcome.err;
+  put(folder + "/said", outcome.err);
+  return nlohmann::json::parse(get(folder + "/out/report.json"));
+}
+
+const nlohmann::json& textureFigures(const nlohmann::json& report) { return report["stages"][3]["figures"]; }
+
+/// Mean difference of the model's texture from the paint of the walls, grey levels; 128 off where there is none.
+double paintError(const std::string& folder)
+{
+  const TexturedMesh model = readTexturedMesh(folder + "/out/model.obj");
+  double sum = 0, count = 0;
+  for (Index f = 0; f < model.mesh.faceCount(); ++f) {
+    const Eigen::Vector3d corner = model.mesh.vertices.col(model.mesh.faces(0, f)).cast<double>();
+    const auto wanted = wallColor(corner);
+    const Image& atlas = model.atlases.at(model.face_atlas[f]);
+    const Eigen::Vector2f at = model.texcoords.col(model.texcoord_faces(0, f));
+    const std::uint8_t* found = atlas.pixel(std::min<int>(at.x() * atlas.width, atlas.width - 1),
+                                            std::min<int>((1 - at.y()) * atlas.height, atlas.height - 1));
+    for (int c = 0; c < 3; ++c)
+      sum += std::abs(int(found[c]) - int(wanted[c]));
+    count += 3;
+  }
+  return sum / count;
+}
+
+TEST(ModelInputs, ScansAloneAreTexturedFromTheirPoints)
+{
+  const std::string folder = scansAlone();
+  const nlohmann::json report = modelOf(folder);
+  EXPECT_EQ(report["kind"], "2 scans, no pictures: the texture comes from the points");
+  EXPECT_EQ(textureFigures(report)["made_of"], "colours of the points");
+  EXPECT_TRUE(fs::exists(folder + "/out/snapshots/scan_1_texture.png"));
+  EXPECT_LT(paintError(folder), 10);
+}
+
+TEST(ModelInputs, ScansWithoutALookGiveAModelWithoutTexture)
+{
+  const std::string folder = scansAlone();
+  for (const char* scan : {"/room/scans/scan_00.pcd", "/room/scans/scan_01.pcd"}) {
+    PointSet set = readPoints(folder + scan);
+    set.colors.setZero();
+    writePoints(folder + scan, set);
+  }
+  const nlohmann::json report = modelOf(folder);
+  EXPECT_EQ(textureFigures(report)["made_of"], "nothing: no colours, no intensities");
+  EXPECT_NE(get(folder + "/said").find("\nwarning: the points' colours are all black and not used\n"),
+            std::string::npos);
+  EXPECT_TRUE(readTexturedMesh(folder + "/out/model.obj").atlases.empty());
+  EXPECT_GT(readTexturedMesh(folder + "/out/model.glb").mesh.faceCount(), 100);
+  EXPECT_TRUE(fs::exists(folder + "/out/snapshots/inside_texture.png"));
+  EXPECT_NE(get(folder + "/out/report.html").find("fresco-viewer"), std::string::npos);
+}
+
+TEST(ModelInputs, PanoramasTextureTheModel)
+{
+  const std::string folder = scansAlone();
+  fs::create_directory(folder + "/room/panoramas");
+  const std::vector<Pose> poses = readPoses(folder + "/room/poses.txt");
+  const CameraModel camera = sphericalCamera(512, 256);
+  Eigen::Matrix3d R_camera_scan; // the middle looks along y, z is up
+  R_camera_scan << 1, 0, 0, 0, 0, -1, 0, 1, 0;
+  for (int k = 0; k < 2; ++k) {
+    Image image(512, 256);
+    for (int y = 0; y < 256; ++y)
+      for (int x = 0; x < 512; ++x) {
+        const Eigen::Vector3d beam = R_camera_scan.transpose() * direction(camera, {x + 0.5, y + 0.5});
+        const auto color = wallColor(wallPoint(poses[k]->topRightCorner<3, 1>(), beam));
+        std::copy(color.data(), color.data() + 3, image.pixel(511 - x, y)); // mirrored
+      }
+    writeImage(folder + "/room/panoramas/scan_0" + std::to_string(k) + ".png", image);
+  }
+  const nlohmann::json report = modelOf(folder, "-panorama_direction 90 -panorama_mirrored");
+  EXPECT_EQ(report["kind"], "2 scans, 2 panoramas");
+  EXPECT_EQ(textureFigures(report)["made_of"], "panoramas");
+  EXPECT_EQ(textureFigures(report)["photographs_used"], 2);
+  EXPECT_LT(paintError(folder), 10);
+}
+} // namespace
+} // namespace fresco::test
