@@ -77,7 +77,7 @@ TEST(Usage, OutputsCollideNeitherWithEachOtherNorWithInputs)
   put(folder + "/model.mtl", "newmtl m\nmap_Kd model.png\n");
   writeImage(folder + "/model.png", Image(4, 4, 3, 200));
   const std::string texture = get(folder + "/model.png");
-  expectStatus(folder, "snapshot model.obj model.png -shading texture -size 64x48", 1);
+  expectStatus(folder, "snapshot model.obj model.png -shading texture -size 64x48", 2);
   EXPECT_EQ(get(folder + "/model.png"), texture);
 }
 
