@@ -100,10 +100,11 @@ void weld(TextureResult& result)
 {
   TriangleMesh& mesh = result.model.mesh;
   const Faces faces = weldedFaces(mesh);
-  const auto vertices = [](const Faces& f) {
-    std::vector<int> list(f.data(), f.data() + f.size());
-    std::sort(list.begin(), list.end());
-    return std::unique(list.begin(), list.end()) - list.begin();
+  const auto vertices = [&](const Faces& f) {
+    std::vector<char> used(mesh.vertexCount(), 0);
+    for (Index i = 0; i < f.size(); ++i)
+      used[f.data()[i]] = 1;
+    return std::count(used.begin(), used.end(), 1);
   };
   constexpr double hardly = 0.5; // vertices left: an unwelded closed mesh has a sixth, one cut along creases nearly all
   const auto before = vertices(mesh.faces), after = vertices(faces);

@@ -97,7 +97,7 @@ ViewChoice chooseViews(const Job& job, const RayScene& rays, const Progress& pro
     out.photometry = solvePhotometry(candidates, views.lenses, views.owner);
   else
     out.photometry.gains.setOnes(3, views.projectors.size());
-  describePhotometry(out.photometry, result);
+  describePhotometry(out.photometry, views.owner, result.cameras.size(), result);
 
   steps.begin("view selection", 0.4);
   if (options.consistency)
@@ -192,14 +192,6 @@ TextureResult reconstructTexture(const TriangleMesh& mesh, const std::vector<Tex
   paintModel(job, choice);
   warnOfLittleSeen(result.coverage, views, result);
   result.model.mesh.faces = mesh.faces;
-  Points gains(3, views.size()); // parts of one panorama have the same
-  for (std::size_t k = 0; k < parts.size(); ++k)
-    gains.col(parts[k].view) = result.gains.col(k);
-  result.gains = gains;
-  Points vignetting(3, views.size());
-  for (std::size_t k = 0; k < parts.size(); ++k)
-    vignetting.col(parts[k].view) = result.vignetting.col(k);
-  result.vignetting = vignetting;
   steps.begin("done", 1.0);
   return result;
 }

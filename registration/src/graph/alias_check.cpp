@@ -9,8 +9,24 @@ struct ChainLink {
   Index from, to; // clusters
   Eigen::Isometry3d T_from_to;
 };
-constexpr double least_overlap = 0.3; // of another hypothesis / of the join: less is no evidence against it
 using ChainLinks = std::vector<ChainLink, Eigen::aligned_allocator<ChainLink>>;
+
+// Hypotheses that stand comparison with the best of their pair.
+VerifiedHypotheses soundHypotheses(const PairAlignment& pair)
+{
+  constexpr double sound_overlap = 0.4; // of the best overlap: twins of a room are seen as well as the room itself
+  double overlap = 0.0, violation = 1.0;
+  for (const VerifiedHypothesis& hypothesis : pair.hypotheses)
+    overlap = std::max(overlap, hypothesis.check.overlap);
+  for (const VerifiedHypothesis& hypothesis : pair.hypotheses)
+    if (hypothesis.check.overlap > sound_overlap * overlap)
+      violation = std::min(violation, hypothesis.check.violation);
+  VerifiedHypotheses sound;
+  for (const VerifiedHypothesis& hypothesis : pair.hypotheses)
+    if (hypothesis.check.overlap > sound_overlap * overlap && !clearlyWorse(hypothesis.check.violation, violation))
+      sound.push_back(hypothesis);
+  return sound;
+}
 
 // Whether a pose of the second cluster is another place than that of the join.
 bool isElsewhere(const GraphInput& input, const ScanCluster& first, const ClusterJoin& join, const Eigen::Isometry3d& T)
@@ -43,6 +59,7 @@ private:
 // To clusters other than the two to be joined. Scans without free space cannot speak for an alias.
 ChainLinks ChainCheck::linksFrom(Index cluster) const
 {
+  constexpr double least_overlap = 0.3; // of a link / of the join: less is no evidence against it
   const std::vector<ClusterPlace> places = placesOf(clusters_, input_.scans.size());
   ChainLinks links;
   for (const PairAlignment& pair : input_.pairs) {
@@ -105,22 +122,6 @@ IsometryVector aliasPoses(const GraphInput& input, const ScanCluster& cluster, c
 }
 } // namespace
 
-VerifiedHypotheses soundHypotheses(const PairAlignment& pair)
-{
-  constexpr double sound_overlap = 0.4; // of the best overlap: twins of a room are seen as well as the room itself
-  double overlap = 0.0, violation = 1.0;
-  for (const VerifiedHypothesis& hypothesis : pair.hypotheses)
-    overlap = std::max(overlap, hypothesis.check.overlap);
-  for (const VerifiedHypothesis& hypothesis : pair.hypotheses)
-    if (hypothesis.check.overlap > sound_overlap * overlap)
-      violation = std::min(violation, hypothesis.check.violation);
-  VerifiedHypotheses sound;
-  for (const VerifiedHypothesis& hypothesis : pair.hypotheses)
-    if (hypothesis.check.overlap > sound_overlap * overlap && !clearlyWorse(hypothesis.check.violation, violation))
-      sound.push_back(hypothesis);
-  return sound;
-}
-
 double worstViolation(const GraphInput& input, const ScanCluster& first, const ScanCluster& second,
                       const Eigen::Isometry3d& T_first_second)
 {
@@ -142,32 +143,6 @@ double worstViolation(const GraphInput& input, const ScanCluster& first, const S
 bool hasAliasByChain(const GraphInput& input, const std::vector<ScanCluster>& clusters, const ClusterJoin& join)
 {
   return ChainCheck(input, clusters, join).run();
-}
-
-bool hasAliasByPair(const GraphInput& input, const std::vector<ScanCluster>& clusters, const ClusterJoin& join)
-{
-  const ScanCluster &first = clusters[join.first], &second = clusters[join.second];
-  if (first.scans.size() + second.scans.size() < 3)
-    return false; // there is no other pair
-  const std::vector<ClusterPlace> places = placesOf(clusters, input.scans.size());
-  const double here = worstViolation(input, first, second, join.T_first_second);
-  for (const PairAlignment& pair : input.pairs) {
-    const ClusterPlace &a = places[pair.a], &b = places[pair.b];
-    if (!(a.cluster == join.first && b.cluster == join.second) &&
-        !(b.cluster == join.first && a.cluster == join.second))
-      continue;
-    for (const VerifiedHypothesis& hypothesis : soundHypotheses(pair)) {
-      const Eigen::Isometry3d T_ab =
-          clusters[a.cluster].poses[a.position] * hypothesis.T_a_b * clusters[b.cluster].poses[b.position].inverse();
-      const Eigen::Isometry3d T = a.cluster == join.first ? T_ab : Eigen::Isometry3d(T_ab.inverse());
-      if (hypothesis.check.overlap <= least_overlap * join.overlap || !isElsewhere(input, first, join, T))
-        continue;
-      const double there = worstViolation(input, first, second, T);
-      if (there <= input.options.max_violation && !clearlyWorse(there, here))
-        return true;
-    }
-  }
-  return false;
 }
 
 bool hasAliasByScan(const GraphInput& input, const std::vector<ScanCluster>& clusters, const ClusterJoin& join)

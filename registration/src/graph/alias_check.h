@@ -10,9 +10,6 @@ struct ClusterJoin {
   bool has_joined = false; ///< only a place that free space does not rule out any more than this one speaks against it
 };
 
-/// Hypotheses that stand comparison with the best of their pair.
-VerifiedHypotheses soundHypotheses(const PairAlignment& pair);
-
 /// Largest violation of any scan of one cluster with any of the other, 0..1.
 double worstViolation(const GraphInput& input, const ScanCluster& first, const ScanCluster& second,
                       const Eigen::Isometry3d& T_first_second);
@@ -22,9 +19,6 @@ double worstViolation(const GraphInput& input, const ScanCluster& first, const S
 /// the other; only what the scans saw through the doors does.
 /// @param join not contradicted by free space
 bool hasAliasByChain(const GraphInput& input, const std::vector<ScanCluster>& clusters, const ClusterJoin& join);
-
-/// The same by another pair of scans of the two clusters.
-bool hasAliasByPair(const GraphInput& input, const std::vector<ScanCluster>& clusters, const ClusterJoin& join);
 
 /// The same by an alias of a scan of either cluster.
 bool hasAliasByScan(const GraphInput& input, const std::vector<ScanCluster>& clusters, const ClusterJoin& join);

@@ -250,12 +250,13 @@ Photometry solvePhotometry(const Candidates& candidates, const std::vector<int>&
   return out;
 }
 
-void describePhotometry(const Photometry& photometry, TextureResult& result)
+void describePhotometry(const Photometry& photometry, const std::vector<int>& owner, Index views, TextureResult& result)
 {
-  result.gains = photometry.gains;
-  result.vignetting = Points::Zero(3, result.gains.cols());
-  for (std::size_t v = 0; v < photometry.lens.size(); ++v)
-    if (photometry.lens[v] >= 0)
-      result.vignetting.col(v) = photometry.falloff[photometry.lens[v]].a;
+  result.gains.resize(3, views);
+  result.vignetting.resize(3, views);
+  for (std::size_t part = 0; part < owner.size(); ++part) {
+    result.gains.col(owner[part]) = photometry.gains.col(part);
+    result.vignetting.col(owner[part]) = photometry.falloffOf(part).a;
+  }
 }
 } // namespace fresco::texture

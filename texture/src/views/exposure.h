@@ -10,8 +10,9 @@ namespace fresco::texture {
 /// @param owner per candidate view what it is a part of: parts of one have the same factor
 Photometry solvePhotometry(const Candidates& candidates, const std::vector<int>& lenses, const std::vector<int>& owner);
 
-/// Fills gains and vignetting of the result.
-void describePhotometry(const Photometry& photometry, TextureResult& result);
+/// Fills gains and vignetting of the result's `views`, of which the parts of a panorama share them.
+void describePhotometry(const Photometry& photometry, const std::vector<int>& owner, Index views,
+                        TextureResult& result);
 
 /// The factors alone.
 Points solveGains(const Candidates& candidates, const std::vector<int>& owner);

@@ -6,9 +6,9 @@ namespace fresco::texture {
 PixelGain::PixelGain(const Photometry& photometry, int view, const CameraModel& camera)
     : camera_(camera), gain_(photometry.gains.col(view))
 {
-  if (photometry.lens.empty() || photometry.lens[view] < 0 || photometry.falloff[photometry.lens[view]].a.isZero(0))
+  const LensFalloff falloff = photometry.falloffOf(view);
+  if (falloff.a.isZero(0))
     return;
-  const LensFalloff& falloff = photometry.falloff[photometry.lens[view]];
   for (int i = 0; i <= static_cast<int>(last_); ++i)
     table_.push_back(std::exp(-falloff.logTransmission(static_cast<float>(i) / radius_steps)));
 }

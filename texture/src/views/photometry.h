@@ -36,10 +36,12 @@ struct Photometry {
   std::vector<int> lens;            ///< V, into `falloff`; -1 where all is let through
   std::vector<LensFalloff> falloff; ///< of each lens
 
+  LensFalloff falloffOf(int view) const { return lens.empty() || lens[view] < 0 ? LensFalloff{} : falloff[lens[view]]; }
+
   /// Factors on RGB at a place of a photograph.
   Eigen::Vector3f factor(int view, float squared_radius) const
   {
-    const float log_t = lens.empty() || lens[view] < 0 ? 0.f : falloff[lens[view]].logTransmission(squared_radius);
+    const float log_t = falloffOf(view).logTransmission(squared_radius);
     return log_t == 0.f ? Eigen::Vector3f(gains.col(view)) : Eigen::Vector3f(std::exp(-log_t) * gains.col(view));
   }
 };
