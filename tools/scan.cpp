@@ -20,6 +20,7 @@ void declare(Args& args, DatasetOptions& options, int& seed)
   args.option("views", options.views, "photographs, 0..100000");
   args.flag("panoramas", options.panoramas, "a panorama from each station, as panoramas/scan_NN.jpg");
   args.option("panorama_height", options.panorama_height, "of the panoramas, twice as wide, pixels, 8..10000");
+  args.flag("e57", options.survey, "also scans, panoramas and photographs with their poses in one file, survey.e57");
   args.flag("intensity", options.laser.intensity,
             "scans get intensities in place of colours: reflectance times cosine of incidence / range^2");
   args.flag("labels", options.labels,
@@ -41,7 +42,7 @@ void declare(Args& args, DatasetOptions& options, int& seed)
             readableExtensions(FileKind::mesh) +
             ").\n"
             "Writes scans/scan_NN.pcd, panoramas/scan_NN.jpg if asked for, images/view_NNN.jpg, cameras/ (COLMAP "
-            "text), truth.ply, exposures.txt, poses.txt.\n"
+            "text), truth.ply, exposures.txt, poses.txt, with -e57 survey.e57.\n"
             "Example: fresco_scan conference_room room -stations 6 -noise 0.003 -images 1280x960");
 }
 } // namespace

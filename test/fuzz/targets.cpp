@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "targets.h"
-#include "common/io/e57_writer.h"
+#include "simulation/sensors/e57_writer.h"
 #include "input/rgbd.h"
 #include "stage_log.h"
 #include "support/args.h"
@@ -108,8 +108,8 @@ void readE57(Bytes bytes, const std::string& folder)
   std::string logical(bytes);
   logical.resize((logical.size() + 1019) / 1020 * 1020);
   if (logical.size() >= 24)
-    logical.replace(16, 8, test::e57::raw(std::uint64_t{logical.size() / 1020 * 1024}));
-  store(path, test::e57::File::withChecksums(logical));
+    logical.replace(16, 8, simulation::e57::raw(std::uint64_t{logical.size() / 1020 * 1024}));
+  store(path, simulation::e57::File::withChecksums(logical));
   readChecked(folder, [&] { readPointsAndCloud(path); });
   readChecked(folder, [&] { readScans(path); });
   readChecked(folder, [&] {

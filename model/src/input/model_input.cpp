@@ -36,6 +36,7 @@ void takeScans(ModelInput& input, const std::vector<std::string>& files)
   input.poses = posesOf(input.scans);
   if (std::none_of(input.poses.begin(), input.poses.end(), [](const Pose& pose) { return pose.has_value(); }))
     input.poses.clear();
+  input.inside = picturesOf(input.scans);
 }
 
 /// Those of `panoramas/`, each named as its scan.
@@ -131,11 +132,16 @@ std::string describe(const ModelInput& input)
   };
   if (input.rgbd)
     return counted(input.rgbd->frames.size(), "RGB-D frame");
+  const auto& inside = input.inside.pictures;
+  const std::size_t panoramas_inside =
+      std::count_if(inside.begin(), inside.end(), [](const ScanPicture& picture) { return picture.isPanorama(); });
+  const std::size_t panoramas = input.panoramas.size() + panoramas_inside;
+  const std::size_t photographs = input.cameras.views.size() + inside.size() - panoramas_inside;
   std::string text = counted(input.scans.size(), "scan");
-  if (!input.panoramas.empty())
-    text += ", " + counted(input.panoramas.size(), "panorama");
-  if (!input.cameras.views.empty())
-    text += ", " + counted(input.cameras.views.size(), "photograph");
+  if (panoramas > 0)
+    text += ", " + counted(panoramas, "panorama");
+  if (photographs > 0)
+    text += ", " + counted(photographs, "photograph");
   return input.hasPictures() ? text : text + ", no pictures: the texture comes from the points";
 }
 
@@ -154,7 +160,7 @@ void checkPhotographs(const ModelInput& input, int threads)
       photographs.push_back({frame.color, nullptr});
   for (const Panorama& panorama : input.panoramas)
     photographs.push_back({panorama.file, nullptr, true});
-  std::vector<std::string> problems(photographs.size());
+  std::vector<std::string> problems(photographs.size() + input.inside.pictures.size());
   const auto look = [&](Index i) {
     const auto& [file, camera, panorama] = photographs[i];
     try {
@@ -170,6 +176,14 @@ void checkPhotographs(const ModelInput& input, int threads)
     }
   };
   parallelFor(photographs.size(), threads, look, 1);
+  const auto lookInside = [&](Index i) {
+    try {
+      readPicture(input.inside.pictures[i]);
+    } catch (const std::runtime_error& error) {
+      problems[photographs.size() + i] = error.what();
+    }
+  };
+  parallelFor(input.inside.pictures.size(), threads, lookInside, 1);
   for (const std::string& problem : problems)
     if (!problem.empty())
       throw std::runtime_error(problem);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include "input/rgbd.h"
+#include "input/scan_pictures.h"
 #include <fresco/core/camera.h>
 #include <fresco/io/pose_file.h>
 #include <fresco/io/scan_file.h>
@@ -22,15 +23,17 @@ struct ModelInput {
   CameraSet cameras;           ///< photographs; no view where the folder has none
   std::string images;          ///< folder of the photographs
   std::vector<Panorama> panoramas;
+  ScanPictures inside; ///< pictures in the files of the scans
   std::optional<RgbdFolder> rgbd;
 
-  bool hasPictures() const { return rgbd || !cameras.views.empty() || !panoramas.empty(); }
+  bool hasPictures() const { return rgbd || !cameras.views.empty() || !panoramas.empty() || !inside.pictures.empty(); }
   std::vector<std::string> files() const; ///< everything that the model depends on
 };
 
 /// Looks at a folder and reads everything small (poses, cameras). Folder of scans: `scans/*.pcd` (or another format; each
 /// scan of a file of several is one), `panoramas/` (named as their scans), `poses.txt` (else the poses that the scans themselves have), `cameras/`, `images/`.
-/// RGB-D: see readRgbdFolder(). In place of a folder: a file of scans (.e57, .ptx).
+/// RGB-D: see readRgbdFolder(). In place of a folder: a file of scans (.e57, .ptx). Pictures
+/// inside of an .e57 are taken too.
 /// @throws std::runtime_error naming what is missing or does not fit together: neither kind, no scan, more or fewer
 ///         poses than scans, a photograph that is missing
 ModelInput readModelInput(const std::string& folder);
@@ -38,7 +41,7 @@ ModelInput readModelInput(const std::string& folder);
 /// "6 scans, 60 photographs".
 std::string describe(const ModelInput& input);
 
-/// Decodes every photograph and panorama once, so that a damaged one is found before hours of work, not after.
+/// Decodes every photograph and panorama once, also those inside of files of scans, so that a damaged one is found before hours of work, not after.
 /// @throws std::runtime_error naming the first that is damaged, has another size than its camera or is a panorama not
 ///         twice as wide as high
 void checkPhotographs(const ModelInput& input, int threads);

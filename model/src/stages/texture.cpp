@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "stages/stages.h"
+#include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <fresco/core/constants.h>
 #include <fresco/core/require.h>
+#include <fresco/io/file.h>
 #include <fresco/io/image_io.h>
 #include <fresco/io/mesh_io.h>
 #include <fresco/io/point_io.h>
@@ -45,11 +48,38 @@ std::vector<TextureView> panoramaViews(const Job& job, const std::vector<Pose>& 
   return views;
 }
 
+/// Pictures inside of files of scans, unpacked into a folder of their own; those of scans without a place are left out.
+std::vector<TextureView> scanPictureViews(const Job& job, const std::vector<Pose>& poses)
+{
+  std::vector<TextureView> views;
+  for (const ScanPicture& picture : job.input.inside.pictures) {
+    if (!poses.at(picture.scan))
+      continue;
+    makeFolder(job.files.pictures);
+    const CameraPicture taken = readPicture(picture);
+    const std::string stem = concat(job.files.pictures, "/picture_", views.size() + 1);
+    TextureView next;
+    next.camera = taken.camera;
+    next.T_camera_world = picture.T_camera_scan * Eigen::Isometry3d(*poses[picture.scan]).inverse();
+    next.path = stem + (taken.as_stored && picture.what.encoding == ScanImage::Encoding::jpeg ? ".jpg" : ".png");
+    if (taken.as_stored)
+      writeFile(next.path, readScanImageBytes(picture.file, picture.number));
+    else
+      writeImage(next.path, taken.image);
+    if (!taken.mask.empty())
+      writeImage(next.mask_path = stem + "_mask.png", taken.mask);
+    views.push_back(std::move(next));
+  }
+  return views;
+}
+
 /// @param poses of scans, or of the frames of an RGB-D folder, world from camera
 std::vector<TextureView> viewsOf(const Job& job, const std::vector<Pose>& poses)
 {
   const ModelInput& input = job.input;
   std::vector<TextureView> views = panoramaViews(job, poses);
+  for (TextureView& view : scanPictureViews(job, poses))
+    views.push_back(std::move(view));
   for (const View& view : input.cameras.views) {
     TextureView next;
     next.camera = input.cameras.cameras[view.camera];
@@ -100,33 +130,44 @@ Figures textureFromPoints(const Job& job, const TriangleMesh& mesh, const Progre
     figures.update({{"range_exponent", result.range_exponent}, {"incidence_exponent", result.incidence_exponent}});
   return figures;
 }
-} // namespace
 
-Figures makeTexture(const Job& job, const Progress& progress)
+Figures textureFromViews(const Job& job, const TriangleMesh& mesh, const std::vector<TextureView>& views,
+                         const Progress& progress)
 {
-  const auto& [input, files, options] = job;
-  const TriangleMesh mesh = readMesh(files.mesh);
-  const std::vector<TextureView> views = viewsOf(job, readPoses(files.poses));
-  if (views.empty())
-    return textureFromPoints(job, mesh, progress);
+  const ModelInput& input = job.input;
   TextureOptions texture;
-  texture.texel = options.texel;
-  texture.threads = options.threads;
+  texture.texel = job.options.texel;
+  texture.threads = job.options.threads;
   TextureResult result = reconstructTexture(mesh, views, texture, progress);
-  const std::size_t given = input.panoramas.size() + input.cameras.views.size();
+  const std::size_t given = input.panoramas.size() + input.inside.pictures.size() + input.cameras.views.size();
   if (views.size() < given)
-    result.warnings.push_back(concat(given - views.size(), " panoramas are not used: their scans have no place"));
-  Figures figures = {{"made_of", input.panoramas.empty()       ? "photographs"
-                                 : input.cameras.views.empty() ? "panoramas"
-                                                               : "photographs and panoramas"},
+    result.warnings.push_back(concat(given - views.size(), " pictures are not used: their scans have no place"));
+  const auto isPanorama = [](const TextureView& view) { return view.camera.projection == CameraProjection::spherical; };
+  const std::size_t panoramas = std::count_if(views.begin(), views.end(), isPanorama);
+  Figures figures = {{"made_of", panoramas == 0              ? "photographs"
+                                 : panoramas == views.size() ? "panoramas"
+                                                             : "photographs and panoramas"},
                      {"photographs", views.size()},
                      {"photographs_used", result.views_used},
                      {"cameras", result.refined ? "refined" : "left as given"},
                      {"disagreement_before_pixels", result.disagreement_before},
                      {"disagreement_after_pixels", result.disagreement_after}};
-  figures.update(writeModel(result, files));
+  figures.update(writeModel(result, job.files));
   for (const auto& [phase, seconds] : result.seconds)
     figures["seconds"][phase] = seconds;
+  return figures;
+}
+} // namespace
+
+Figures makeTexture(const Job& job, const Progress& progress)
+{
+  const TriangleMesh mesh = readMesh(job.files.mesh);
+  const std::vector<TextureView> views = viewsOf(job, readPoses(job.files.poses));
+  Figures figures =
+      views.empty() ? textureFromPoints(job, mesh, progress) : textureFromViews(job, mesh, views, progress);
+  for (const std::string& warning : job.input.inside.warnings)
+    figures["warnings"].push_back(warning);
+  std::filesystem::remove_all(job.files.pictures);
   return figures;
 }
 } // namespace fresco::model

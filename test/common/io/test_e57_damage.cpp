@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "common/io/e57_writer.h"
+#include "simulation/sensors/e57_writer.h"
 #include "common/io/test_io_data.h"
 #include "io/points/e57/paged_file.h"
 #include <fresco/io/point_io.h>
@@ -10,9 +10,9 @@ using namespace fresco;
 
 std::string smallFile()
 {
-  test::e57::Scan scan{"small", {}, 100};
+  simulation::e57::Scan scan{"small", {}, 100};
   for (const char* name : {"cartesianX", "cartesianY", "cartesianZ"}) {
-    test::e57::Field field{name, "ScaledInteger"};
+    simulation::e57::Field field{name, "ScaledInteger"};
     field.minimum = -5000;
     field.maximum = 5000;
     field.scale = 0.001;
@@ -20,7 +20,7 @@ std::string smallFile()
       field.stored.push_back(i * 37 % 10001 - 5000);
     scan.fields.push_back(field);
   }
-  return test::e57::fileOf({scan});
+  return simulation::e57::fileOf({scan});
 }
 
 std::string errorOf(const std::string& content)
@@ -43,7 +43,7 @@ TEST(E57Damage, ChecksumIsThatOfTheStandard)
     std::string bytes(size, '\0');
     for (char& c : bytes)
       c = static_cast<char>(random());
-    EXPECT_EQ(io::e57::crc32c(bytes.data(), size), test::e57::checksum(bytes));
+    EXPECT_EQ(io::e57::crc32c(bytes.data(), size), simulation::e57::checksum(bytes));
   }
 }
 
@@ -76,7 +76,7 @@ TEST(E57Damage, WhatTheXmlAsksForMustBeThere)
 {
   const std::string good = smallFile();
   const auto error = [&](const std::string& what, const std::string& by) {
-    const std::string bad = test::e57::edited(good, what, by);
+    const std::string bad = simulation::e57::edited(good, what, by);
     EXPECT_FALSE(bad.empty()) << what;
     return errorOf(bad);
   };
@@ -96,24 +96,24 @@ TEST(E57Damage, WhatTheXmlAsksForMustBeThere)
 TEST(E57Damage, SectionsEndWithTheFile)
 {
   const std::string good = smallFile();
-  using test::e57::raw;
+  using simulation::e57::raw;
   std::string logical;
   for (std::size_t at = 0; at < good.size(); at += 1024)
     logical += good.substr(at, 1020);
   const std::string length = logical.substr(48 + 8, 8);
   logical.replace(48 + 8, 8, raw(std::uint64_t{1} << 40));
-  EXPECT_TRUE(says(errorOf(test::e57::File::withChecksums(logical)), "truncated: the section at offset 48"));
+  EXPECT_TRUE(says(errorOf(simulation::e57::File::withChecksums(logical)), "truncated: the section at offset 48"));
   logical.replace(48 + 8, 8, length);
   logical.replace(48 + 16, 8, raw(std::uint64_t{1} << 40)); // where its packets begin
-  EXPECT_TRUE(says(errorOf(test::e57::File::withChecksums(logical)), "beyond the end of the file"));
+  EXPECT_TRUE(says(errorOf(simulation::e57::File::withChecksums(logical)), "beyond the end of the file"));
 }
 
 TEST(E57Damage, PointsWithoutBitsAreNotTakenAtTheirWord)
 {
-  test::e57::Scan scan{"constant", {}, 1000000000};
+  simulation::e57::Scan scan{"constant", {}, 1000000000};
   for (const char* name : {"cartesianX", "cartesianY", "cartesianZ"})
     scan.fields.push_back({name, "Integer"}); // 0..0: no bits are stored
-  EXPECT_TRUE(says(errorOf(test::e57::fileOf({scan})), "do not fit")) << errorOf(test::e57::fileOf({scan}));
+  EXPECT_TRUE(says(errorOf(simulation::e57::fileOf({scan})), "do not fit")) << errorOf(simulation::e57::fileOf({scan}));
 }
 
 TEST(E57Damage, FilesOfOtherWritersAreReadOrRefused)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "common/io/e57_writer.h"
+#include "simulation/sensors/e57_writer.h"
 #include "common/io/las_writer.h"
 #include "common/io/test_io_data.h"
 #include <fresco/io/point_io.h>
@@ -7,7 +7,7 @@
 #include <sstream>
 namespace {
 using namespace fresco;
-using test::e57::exact;
+using simulation::e57::exact;
 
 std::string stored(const std::string& name, const std::string& content)
 {
@@ -62,17 +62,17 @@ std::string ptxOf(const std::vector<Station>& stations, const std::string& line_
     for (Index i = 0; i < station.points.cols(); ++i)
       text << station.points.col(i).transpose() << " " << 0.01 * static_cast<double>(i) << " " << i << " 20 255\n";
   }
-  return test::e57::replaced(text.str(), "\n", line_end);
+  return simulation::e57::replaced(text.str(), "\n", line_end);
 }
 
 std::string e57Of(const std::vector<Station>& stations)
 {
-  std::vector<test::e57::Scan> scans;
+  std::vector<simulation::e57::Scan> scans;
   for (const Station& station : stations) {
-    test::e57::Scan scan{
+    simulation::e57::Scan scan{
         "station " + std::to_string(scans.size() + 1), {}, static_cast<std::size_t>(station.points.cols())};
     for (int axis = 0; axis < 3; ++axis) {
-      test::e57::Field field{std::string("cartesian") + "XYZ"[axis]};
+      simulation::e57::Field field{std::string("cartesian") + "XYZ"[axis]};
       field.single = true;
       for (Index i = 0; i < station.points.cols(); ++i)
         field.reals.push_back(station.points(axis, i));
@@ -80,10 +80,10 @@ std::string e57Of(const std::vector<Station>& stations)
     }
     const Eigen::Quaterniond q(station.T_file_scan.linear());
     const Eigen::Vector3d t = station.T_file_scan.translation();
-    scan.more = test::e57::poseXml(q.w(), q.z(), t.x(), t.y(), t.z());
+    scan.more = simulation::e57::poseXml(q.w(), q.z(), t.x(), t.y(), t.z());
     scans.push_back(scan);
   }
-  return test::e57::fileOf(scans);
+  return simulation::e57::fileOf(scans);
 }
 
 /// Points of all stations in the frame of the file, metres.
@@ -206,8 +206,8 @@ TEST(Ptx, WrongCountsAndNumbersAreNamed)
             std::string::npos);
   EXPECT_NE(error(good + "4\n").find("station 3: header"), std::string::npos);
   EXPECT_NE(error("1000000\n1000000" + good.substr(good.find('\n', 2))).find("points announced"), std::string::npos);
-  EXPECT_NE(error(test::e57::replaced(good, " 20 255\n", " 20 twenty\n")).find("line 11"), std::string::npos);
-  EXPECT_NE(error(test::e57::replaced(header, exact(stations[0].T_file_scan(0, 0)), "7")).find("no rotation"),
+  EXPECT_NE(error(simulation::e57::replaced(good, " 20 255\n", " 20 twenty\n")).find("line 11"), std::string::npos);
+  EXPECT_NE(error(simulation::e57::replaced(header, exact(stations[0].T_file_scan(0, 0)), "7")).find("no rotation"),
             std::string::npos);
   EXPECT_NE(error("three\n").find("station 1: header, line 1"), std::string::npos);
 }

@@ -2,6 +2,7 @@
 #include "simulation/sensors/dataset.h"
 #include "simulation/scene/labels.h"
 #include "simulation/sensors/random.h"
+#include "simulation/sensors/survey.h"
 #include "simulation/sensors/views.h"
 #include <filesystem>
 #include <fresco/core/parallel.h>
@@ -182,6 +183,7 @@ void removeOld(const std::string& folder)
 {
   namespace fs = std::filesystem;
   fs::remove(folder + "/poses.txt");
+  fs::remove(folder + "/survey.e57");
   for (const char* file : {"cameras.txt", "images.txt", "points3D.txt"})
     fs::remove(folder + "/cameras/" + file);
   const std::pair<const char*, const char*> numbered_files[] = {
@@ -246,12 +248,16 @@ void writeDataset(const std::string& name, const std::string& folder, const Data
   writeTruth(run, returns);
   if (options.panoramas)
     writePanoramas(run, poses, subProgress(progress, 0.4, 0.45));
+  CameraSet photographs;
   if (options.views > 0) {
     report(progress, "views", 0.45);
-    const CameraSet set = chooseViews(planning, pinhole(options), options.views);
-    writePhotographs(run, set, subProgress(progress, 0.5, 1.0));
-    writeColmap(folder + "/cameras", misplaced(set, options));
+    photographs = chooseViews(planning, pinhole(options), options.views);
+    writePhotographs(run, photographs, subProgress(progress, 0.5, 1.0));
+    photographs = misplaced(photographs, options);
+    writeColmap(folder + "/cameras", photographs);
   }
+  if (options.survey)
+    writeSurvey(folder, poses, photographs);
   writePoses(folder + "/poses.txt", poses);
 }
 } // namespace fresco::simulation

@@ -14,6 +14,7 @@ struct DatasetOptions {
   int width = 1280, height = 960; ///< pixels of a photograph, 16..20000
   bool panoramas = false;         ///< one from each station, JPEG
   int panorama_height = 2048;     ///< pixels, 8..10000; twice as wide
+  bool survey = false;            ///< also all of it as one file, survey.e57
   bool labels = false;            ///< scans have a field `label`, see PointLabel
   double focal = 0.9;             ///< focal length / width, > 0.1
   float exposure_spread = 0.2f;   ///< brightness of photographs is 1 +- this, 0..0.9
@@ -32,7 +33,7 @@ struct DatasetOptions {
 
 /// Writes the dataset of `scene` (conference_room, apartment, office, or a mesh file) into `folder`:
 /// scans/scan_NN.pcd, panoramas/scan_NN.jpg, images/view_NNN.jpg, truth_images/view_NNN.png, truth.ply (vertex colours; field `returns`: laser
-/// points on the faces around a vertex), exposures.txt, cameras/ (COLMAP text), poses.txt. Files appear whole;
+/// points on the faces around a vertex), exposures.txt, cameras/ (COLMAP text), survey.e57, poses.txt. Files appear whole;
 /// poses.txt comes last and is removed first, so a folder that has it is complete.
 /// @throws std::invalid_argument for an option out of range
 /// @throws std::runtime_error "PATH: reason" for a file that cannot be read or written, or a scene without free place

@@ -4,11 +4,16 @@
 #include <fresco/core/export.h>
 #include <fresco/core/image.h>
 #include <string>
+#include <string_view>
 #include <vector>
 namespace fresco {
 /// PNG, JPEG, TIFF, BMP or WebP; 16 bit and alpha are reduced to 8-bit RGB; EXIF orientation is not applied.
 /// @throws std::runtime_error naming the file if it is missing, empty, truncated or no image
 FRESCO_EXPORT Image readImage(const std::string& path);
+
+/// The same from the bytes of such a file.
+/// @throws std::runtime_error if they are damaged, truncated, fewer than the size asks for or none of these
+FRESCO_EXPORT Image decodeImage(std::string_view bytes);
 
 /// @throws std::runtime_error as readImage, and if the image is not 16 bit with one channel
 FRESCO_EXPORT Image16 readImage16(const std::string& path);

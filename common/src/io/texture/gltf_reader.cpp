@@ -5,6 +5,7 @@
 #include <cmath>
 #include <fresco/core/point_table.h>
 #include <fresco/core/require.h>
+#include <fresco/io/image_io.h>
 #include <limits>
 #include <unordered_map>
 namespace fresco::io {

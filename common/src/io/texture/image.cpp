@@ -125,10 +125,10 @@ cv::Mat toOpenCv(const Image& image)
 }
 } // namespace
 
-Image io::decodeImage(std::string_view bytes)
+Image decodeImage(std::string_view bytes)
 {
   if (startsWith(bytes, "\xff\xd8"))
-    return decodeJpeg(bytes);
+    return io::decodeJpeg(bytes);
   const cv::Mat bgr = decode(bytes, cv::IMREAD_COLOR | cv::IMREAD_IGNORE_ORIENTATION);
   Image image(bgr.cols, bgr.rows, 3);
   cv::Mat rgb(bgr.rows, bgr.cols, CV_8UC3, image.data.data());
@@ -136,7 +136,7 @@ Image io::decodeImage(std::string_view bytes)
   return image;
 }
 
-Image readImage(const std::string& path) { return io::parseFile(path, io::decodeImage); }
+Image readImage(const std::string& path) { return io::parseFile(path, decodeImage); }
 
 Image16 readImage16(const std::string& path)
 {

@@ -14,10 +14,6 @@ TexturedMesh readTexturedObj(const std::string& path);
 /// @param jpeg_quality of the images inside, 1..100; 0: PNG
 void writeGlb(const std::string& path, const TexturedMesh& model, int jpeg_quality);
 
-/// RGB image from the bytes of a PNG, JPEG, TIFF, BMP or WebP file.
-/// @throws std::runtime_error if it is damaged, truncated, smaller than its size asks for or none of these
-Image decodeImage(std::string_view bytes);
-
 /// All triangles of all nodes; vertices at the same place become one.
 /// @param folder of the file: buffers and images outside of it are read from there and below only
 /// @throws std::runtime_error if malformed

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cstdint>
 #include <cstring>
@@ -8,8 +9,9 @@
 #include <string>
 #include <string_view>
 #include <vector>
-/// Writes E57 files for tests, of all that the reader promises to read. Shares no code with it.
-namespace fresco::test::e57 {
+/// Writes E57 files (ASTM E2807) of all that the reader promises to read. Shares no code with it, so that one checks the
+/// other. A file is made in memory.
+namespace fresco::simulation::e57 {
 /// A field of the records and its values: `stored` for whole numbers, `reals` for floats, `texts` for strings.
 struct Field {
   std::string name;
@@ -106,11 +108,16 @@ inline std::string packetsOf(const std::vector<Field>& fields)
   for (const Field& field : fields)
     streams.push_back(streamOf(field));
   std::string packets;
-  for (std::size_t turn = 1; !std::all_of(streams.begin(), streams.end(), [](auto& s) { return s.empty(); }); ++turn) {
+  std::vector<std::size_t> done(streams.size(), 0);
+  std::size_t left = 0;
+  for (const std::string& stream : streams)
+    left += stream.size();
+  for (std::size_t turn = 1; left > 0; ++turn) {
     std::string lengths, pieces;
     for (std::size_t f = 0; f < streams.size(); ++f) {
-      const std::string piece = streams[f].substr(0, (turn * 37 + f * 101) % 700);
-      streams[f].erase(0, piece.size());
+      const std::string piece = streams[f].substr(done[f], (turn * 37 + f * 101) % 700);
+      done[f] += piece.size();
+      left -= piece.size();
       lengths += raw(static_cast<std::uint16_t>(piece.size()));
       pieces += piece;
     }
@@ -237,13 +244,27 @@ inline std::string edited(const std::string& file, const std::string& what, std:
   return File::withChecksums(logical.replace(at, what.size(), by));
 }
 
+inline std::string element(const std::string& name, double value)
+{
+  return "<" + name + " type=\"Float\">" + exact(value) + "</" + name + ">";
+}
+
+inline std::string element(const std::string& name, int value)
+{
+  return "<" + name + " type=\"Integer\">" + std::to_string(value) + "</" + name + ">";
+}
+
+inline std::string poseXml(const Eigen::Isometry3d& T)
+{
+  const Eigen::Quaterniond q(T.linear());
+  const Eigen::Vector3d t = T.translation();
+  return "<pose type=\"Structure\"><rotation type=\"Structure\">" + element("w", q.w()) + element("x", q.x()) +
+         element("y", q.y()) + element("z", q.z()) + "</rotation><translation type=\"Structure\">" +
+         element("x", t.x()) + element("y", t.y()) + element("z", t.z()) + "</translation></pose>";
+}
+
 inline std::string poseXml(double qw, double qz, double x, double y, double z)
 {
-  const auto number = [](const char* name, double value) {
-    return std::string("<") + name + " type=\"Float\">" + exact(value) + "</" + name + ">";
-  };
-  return "<pose type=\"Structure\"><rotation type=\"Structure\">" + number("w", qw) + number("x", 0) + number("y", 0) +
-         number("z", qz) + "</rotation><translation type=\"Structure\">" + number("x", x) + number("y", y) +
-         number("z", z) + "</translation></pose>";
+  return poseXml(Eigen::Translation3d(x, y, z) * Eigen::Isometry3d(Eigen::Quaterniond(qw, 0, 0, qz)));
 }
-} // namespace fresco::test::e57
+} // namespace fresco::simulation::e57
