@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "support/tool.h"
+#include <algorithm>
 #include <fresco/core/require.h>
 #include <fresco/io/colmap.h>
 #include <fresco/io/file.h>
@@ -26,6 +27,7 @@ std::vector<TextureView> viewsOf(const CameraSet& set, const std::string& folder
     out.camera = set.cameras[view.camera];
     out.T_camera_world = view.T_camera_world;
     out.path = folder + "/" + view.image;
+    out.mask_path = maskFileOf(folder, view.image);
     views.push_back(std::move(out));
   }
   return views;
@@ -92,8 +94,11 @@ void requireOtherFiles(const std::string& out, const std::vector<TextureView>& v
   std::vector<std::string> outputs{stem + ".mtl", stem + ".png", maskPath(out, 0, 1)}, photographs;
   for (std::size_t i = 0; i < 10; ++i) // there are rarely more than two
     outputs.insert(outputs.end(), {concat(stem, '_', i, ".png"), maskPath(out, i, 2)});
-  for (const TextureView& view : views)
+  for (const TextureView& view : views) {
     photographs.push_back(view.path);
+    if (!view.mask_path.empty())
+      photographs.push_back(view.mask_path);
+  }
   requireDistinct(outputs, photographs);
 }
 
@@ -152,10 +157,12 @@ void textureFromPoints(const std::vector<std::string>& files, const ToolOptions&
   printAtlas(result, quiet);
 }
 
-void printResult(const TextureResult& result, std::size_t views, bool quiet)
+void printResult(const TextureResult& result, const std::vector<TextureView>& views, bool quiet)
 {
   const auto say = [&](const char* pattern, auto... values) { inform(quiet, format(pattern, values...)); };
-  say("seen %.1f %% of the surface, by %td of %zu photographs", 100 * result.coverage, result.views_used, views);
+  say("seen %.1f %% of the surface, by %td of %zu photographs", 100 * result.coverage, result.views_used, views.size());
+  if (const auto masked = std::count_if(views.begin(), views.end(), [](const auto& v) { return !v.mask_path.empty(); }))
+    say("masks of %td photographs are used", masked);
   printAtlas(result, quiet);
   if (result.disagreement_before > 0 && result.refined)
     say("photographs disagree by %.2f pixels, %.2f with the cameras as given", result.disagreement_after,
@@ -175,7 +182,8 @@ void run(int argc, char** argv)
             "Textures a mesh from calibrated photographs, or from the points it was made of. MESH: " +
                 readableExtensions(FileKind::mesh) +
                 ".\nCAMERAS_DIR: a COLMAP model, text or binary.\n"
-                "IMAGES_DIR: the photographs it names. OUT: .obj (with .mtl and .png beside it) or .glb. Beside it "
+                "IMAGES_DIR: the photographs it names; masks/NAME.png in it or beside it is white where NAME.jpg is to "
+                "be used.\nOUT: .obj (with .mtl and .png beside it) or .glb. Beside it "
                 "NAME_mask.png:\n"
                 "white where no photograph saw the surface, or no point lies on it, and the colour is inpainted.");
   declare(args, options, tool);
@@ -209,7 +217,7 @@ void run(int argc, char** argv)
     if (!tool.cameras_out.empty())
       writeColmap(tool.cameras_out, usedCameras(set, result));
   });
-  printResult(result, views.size(), common.quiet);
+  printResult(result, views, common.quiet);
 }
 } // namespace
 

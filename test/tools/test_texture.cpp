@@ -81,6 +81,25 @@ TEST(TextureTool, BadInputIsNamed)
   EXPECT_FALSE(std::filesystem::exists(files.folder + "/model.obj"));
 }
 
+TEST(TextureTool, MasksBesideThePhotographs)
+{
+  const Files files;
+  for (const std::string& masks : {files.folder + "/masks", files.images + "/masks"}) {
+    makeFolder(masks);
+    writeImage(masks + "/3.png", Image(200, 200, 3, 255));
+    writeImage(masks + "/4.png.png", Image(200, 200, 1, 255));
+    ASSERT_EQ(files.texture("model.obj"), 0) << readFile(files.messages);
+    EXPECT_TRUE(files.says("masks of 2 photographs"));
+    writeImage(masks + "/3.png", Image(64, 48));
+    EXPECT_EQ(files.texture("model.obj"), 1);
+    EXPECT_TRUE(files.says("masks/3.png") && files.says("64x48") && files.says("200x200"));
+    writeFile(masks + "/3.png", "no image");
+    EXPECT_EQ(files.texture("model.obj"), 1);
+    EXPECT_TRUE(files.says("masks/3.png"));
+    std::filesystem::remove_all(masks);
+  }
+}
+
 TEST(TextureTool, NoPhotographSeesTheMesh)
 {
   const Files files;

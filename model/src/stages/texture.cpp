@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "stages/stages.h"
+#include <algorithm>
 #include <cmath>
 #include <fresco/core/constants.h>
 #include <fresco/core/require.h>
@@ -9,6 +10,7 @@
 #include <fresco/io/pose_file.h>
 #include <fresco/texture/core/point_texture.h>
 #include <fresco/texture/core/texture_reconstruction.h>
+#include <map>
 namespace fresco::model {
 namespace {
 /// Where a panorama was taken, in the frame of its scan: where the scanner stood.
@@ -65,6 +67,11 @@ std::vector<TextureView> viewsOf(const Job& job, const std::vector<Pose>& poses)
       next.path = input.rgbd->frames[f].color;
       views.push_back(std::move(next));
     }
+  std::map<std::string, std::string> masks;
+  for (const PictureFile& picture : input.pictures())
+    masks[picture.file] = picture.mask;
+  for (TextureView& view : views)
+    view.mask_path = masks[view.path];
   return views;
 }
 
@@ -116,14 +123,16 @@ Figures makeTexture(const Job& job, const Progress& progress)
   const std::size_t given = input.panoramas.size() + input.cameras.views.size();
   if (views.size() < given)
     result.warnings.push_back(concat(given - views.size(), " panoramas are not used: their scans have no place"));
-  Figures figures = {{"made_of", input.panoramas.empty()       ? "photographs"
-                                 : input.cameras.views.empty() ? "panoramas"
-                                                               : "photographs and panoramas"},
-                     {"photographs", views.size()},
-                     {"photographs_used", result.views_used},
-                     {"cameras", result.refined ? "refined" : "left as given"},
-                     {"disagreement_before_pixels", result.disagreement_before},
-                     {"disagreement_after_pixels", result.disagreement_after}};
+  Figures figures = {
+      {"made_of", input.panoramas.empty()       ? "photographs"
+                  : input.cameras.views.empty() ? "panoramas"
+                                                : "photographs and panoramas"},
+      {"photographs", views.size()},
+      {"photographs_used", result.views_used},
+      {"masks", std::count_if(views.begin(), views.end(), [](const auto& v) { return !v.mask_path.empty(); })},
+      {"cameras", result.refined ? "refined" : "left as given"},
+      {"disagreement_before_pixels", result.disagreement_before},
+      {"disagreement_after_pixels", result.disagreement_after}};
   figures.update(writeModel(result, files));
   for (const auto& [phase, seconds] : result.seconds)
     figures["seconds"][phase] = seconds;
