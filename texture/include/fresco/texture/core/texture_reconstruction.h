@@ -89,4 +89,12 @@ struct TextureResult {
 /// @throws Cancelled if `progress` asks to stop
 FRESCO_EXPORT TextureResult reconstructTexture(const TriangleMesh& mesh, const std::vector<TextureView>& views,
                                                const TextureOptions& options = {}, const Progress& progress = {});
+
+/// The same, painted in the layout that the model has: its texture coordinates stay. Its atlases give their sizes alone;
+/// those below 16 texels or without any get what the photographs ask for. `options.atlas` is the longest side then, which
+/// keeps their shape; `options.texel` must be 0.
+/// @throws std::invalid_argument also if a face with area has no texture coordinates, or such beyond 0..1, or if two
+///         faces cover one texel
+FRESCO_EXPORT TextureResult reconstructTexture(const TexturedMesh& model, const std::vector<TextureView>& views,
+                                               const TextureOptions& options = {}, const Progress& progress = {});
 } // namespace fresco
