@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "support/tool.h"
+#include <algorithm>
 #include <fresco/core/require.h>
 #include <fresco/io/colmap.h>
 #include <fresco/io/file.h>
@@ -14,7 +15,7 @@ using namespace fresco;
 
 struct ToolOptions {
   int keep_out = 0;
-  std::string cameras_out, points;
+  std::string cameras_out, points, uv = "new";
   PointTextureOptions from_points;
 };
 
@@ -26,6 +27,7 @@ std::vector<TextureView> viewsOf(const CameraSet& set, const std::string& folder
     out.camera = set.cameras[view.camera];
     out.T_camera_world = view.T_camera_world;
     out.path = folder + "/" + view.image;
+    out.mask_path = maskFileOf(folder, view.image);
     views.push_back(std::move(out));
   }
   return views;
@@ -56,6 +58,8 @@ void declare(Args& args, TextureOptions& options, ToolOptions& tool)
   args.option("cameras_out", tool.cameras_out, "folder for the cameras as used, a COLMAP text model; empty = none");
   args.option("texel", options.texel, "side of a texel in mesh units; 0 = as fine as the photographs show each part");
   args.option("atlas", options.atlas, "side of each square atlas, 128..16384 pixels; 0 = one as small as possible");
+  args.option("uv", tool.uv,
+              "texture coordinates: new, or keep those of MESH (.obj, .glb) and the sizes of its images");
   args.option("border", options.border, "texels around each chart against bleeding, 1..16");
   args.option(
       "smoothness", options.smoothness,
@@ -85,24 +89,43 @@ std::string maskPath(const std::string& model, std::size_t index, std::size_t co
   return stem + (count > 1 ? concat("_mask_", index, ".png") : "_mask.png");
 }
 
-/// The pictures beside the model must not replace photographs.
-void requireOtherFiles(const std::string& out, const std::vector<TextureView>& views)
+/// The pictures beside the model must not replace photographs or other inputs.
+void requireOtherFiles(const std::string& out, const std::vector<TextureView>& views, std::vector<std::string> inputs)
 {
   const std::string stem = out.substr(0, out.size() - extension(out).size());
-  std::vector<std::string> outputs{stem + ".mtl", stem + ".png", maskPath(out, 0, 1)}, photographs;
+  std::vector<std::string> outputs{stem + ".mtl", stem + ".png", maskPath(out, 0, 1)};
   for (std::size_t i = 0; i < 10; ++i) // there are rarely more than two
     outputs.insert(outputs.end(), {concat(stem, '_', i, ".png"), maskPath(out, i, 2)});
-  for (const TextureView& view : views)
-    photographs.push_back(view.path);
-  requireDistinct(outputs, photographs);
+  for (const TextureView& view : views) {
+    inputs.push_back(view.path);
+    if (!view.mask_path.empty())
+      inputs.push_back(view.mask_path);
+  }
+  requireDistinct(outputs, inputs);
+}
+
+void requireSurface(const std::string& path, const TriangleMesh& mesh)
+{
+  if (mesh.faceCount() == 0 || !(surfaceArea(mesh) > 0))
+    throw std::runtime_error(path + ": has no face of positive area");
 }
 
 TriangleMesh readSurface(const std::string& path)
 {
   TriangleMesh mesh = readMesh(path);
-  if (mesh.faceCount() == 0 || !(surfaceArea(mesh) > 0))
-    throw std::runtime_error(path + ": has no face of positive area");
+  requireSurface(path, mesh);
   return mesh;
+}
+
+/// @param path of the mesh
+TextureResult reconstruct(const std::string& path, const std::vector<TextureView>& views, const TextureOptions& options,
+                          const CommonOptions& common, bool keep_uv)
+{
+  if (!keep_uv)
+    return reconstructTexture(readSurface(path), views, options, printProgress(common.quiet));
+  const TexturedMesh model = readTextureLayout(path);
+  requireSurface(path, model.mesh);
+  return reconstructTexture(model, views, options, printProgress(common.quiet));
 }
 
 /// The outputs of both ways.
@@ -152,10 +175,12 @@ void textureFromPoints(const std::vector<std::string>& files, const ToolOptions&
   printAtlas(result, quiet);
 }
 
-void printResult(const TextureResult& result, std::size_t views, bool quiet)
+void printResult(const TextureResult& result, const std::vector<TextureView>& views, bool quiet)
 {
   const auto say = [&](const char* pattern, auto... values) { inform(quiet, format(pattern, values...)); };
-  say("seen %.1f %% of the surface, by %td of %zu photographs", 100 * result.coverage, result.views_used, views);
+  say("seen %.1f %% of the surface, by %td of %zu photographs", 100 * result.coverage, result.views_used, views.size());
+  if (const auto masked = std::count_if(views.begin(), views.end(), [](const auto& v) { return !v.mask_path.empty(); }))
+    say("masks of %td photographs are used", masked);
   printAtlas(result, quiet);
   if (result.disagreement_before > 0 && result.refined)
     say("photographs disagree by %.2f pixels, %.2f with the cameras as given", result.disagreement_after,
@@ -175,7 +200,8 @@ void run(int argc, char** argv)
             "Textures a mesh from calibrated photographs, or from the points it was made of. MESH: " +
                 readableExtensions(FileKind::mesh) +
                 ".\nCAMERAS_DIR: a COLMAP model, text or binary.\n"
-                "IMAGES_DIR: the photographs it names. OUT: .obj (with .mtl and .png beside it) or .glb. Beside it "
+                "IMAGES_DIR: the photographs it names; masks/NAME.png in it or beside it is white where NAME.jpg is to "
+                "be used.\nOUT: .obj (with .mtl and .png beside it) or .glb. Beside it "
                 "NAME_mask.png:\n"
                 "white where no photograph saw the surface, or no point lies on it, and the colour is inpainted.");
   declare(args, options, tool);
@@ -188,19 +214,21 @@ void run(int argc, char** argv)
   const std::string out = files.back();
   if (extension(out) != ".obj" && extension(out) != ".glb")
     throw UsageError(out + ": the output's extension must be .obj or .glb");
+  if (tool.uv != "new" && (tool.uv != "keep" || options.texel > 0 || !tool.points.empty()))
+    throw UsageError("-uv is new or keep, which goes with neither -texel nor -points");
   if (tool.keep_out < 0)
     throw UsageError("-keep_out must not be negative");
   options.threads = common.threads;
   if (!tool.points.empty())
     return textureFromPoints(files, tool, options, common.quiet);
   requireDistinct({out}, {files[0]}); // what else it is made of is known when it has been read
-  const TriangleMesh mesh = readSurface(files[0]);
+  const bool keep_uv = tool.uv == "keep";
   const CameraSet set = readColmap(files[1]);
   std::vector<TextureView> views = viewsOf(set, files[2]);
-  requireOtherFiles(out, views);
+  requireOtherFiles(out, views, keep_uv ? filesNamedBy(files[0]) : std::vector<std::string>());
   for (std::size_t v = 0; v < views.size() && tool.keep_out > 0; ++v)
     views[v].paint = (v + 1) % static_cast<std::size_t>(tool.keep_out) != 0;
-  const TextureResult result = reconstructTexture(mesh, views, options, printProgress(common.quiet));
+  const TextureResult result = reconstruct(files[0], views, options, common, keep_uv);
   if (!(result.coverage > 0))
     throw std::runtime_error(
         concat(files[1], ": none of the ", views.size(), " photographs sees any part of ", files[0]));
@@ -209,7 +237,7 @@ void run(int argc, char** argv)
     if (!tool.cameras_out.empty())
       writeColmap(tool.cameras_out, usedCameras(set, result));
   });
-  printResult(result, views.size(), common.quiet);
+  printResult(result, views, common.quiet);
 }
 } // namespace
 

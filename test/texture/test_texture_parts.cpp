@@ -19,7 +19,7 @@ struct BoardScene {
     for (const double x : {-0.8, 0.8}) {
       const CameraModel model = camera(400, 400, 480);
       const Eigen::Isometry3d T = lookAt({x, 0.1, 3}, {0, 0, 0});
-      views.push_back({model, T, Image(400, 400), "", true});
+      views.push_back({model, T, Image(400, 400), "", true, false, Image(), ""});
       projectors.emplace_back(model, T, mesh.origin);
     }
     patches = cutFaces(mesh, 0.2f, 1);

@@ -77,6 +77,37 @@ TEST(TextureViews, WhatStoodInOnePhotographIsNotPaintedThoughFewSeeThePlace)
   EXPECT_EQ(red, 0);
 }
 
+/// Photographs with something green in their middles, hidden by masks.
+TEST(TextureViews, NothingIsTakenFromWhatMasksHide)
+{
+  const TriangleMesh mesh = cube();
+  std::vector<TextureView> views = photographsAround(mesh, waves);
+  for (TextureView& view : views) {
+    view.mask = Image(200, 200, 1, 255);
+    for (int y = 70; y < 120; ++y)
+      for (int x = 70; x < 110; ++x) {
+        *view.mask.pixel(x, y) = 0;
+        std::copy_n(std::array<std::uint8_t, 3>{0, 255, 0}.data(), 3, view.image.pixel(x, y));
+      }
+  }
+  TextureOptions options;
+  options.consistency = false; // masks alone
+  const TextureResult result = reconstructTexture(mesh, views, options);
+  EXPECT_LT(colorError(result.model, waves).mean, 2.0); // other photographs show each place
+  double greenest = 0;
+  forPlaces(mesh, 300, [&](Index f, const Eigen::Vector3d& w) {
+    const Eigen::Vector3d more = colorAt(result.model, f, w) - waves(pointAt(mesh, f, w));
+    greenest = std::max(greenest, more.y() - 0.5 * (more.x() + more.z()));
+  });
+  EXPECT_LT(greenest, 15); // of 255
+  EXPECT_GT(result.coverage, 0.99);
+  for (TextureView& view : views)
+    view.mask = Image(200, 200, 1, 0);
+  EXPECT_EQ(reconstructTexture(mesh, views).coverage, 0);
+  views[1].mask = Image(100, 200, 1, 255);
+  EXPECT_THROW(reconstructTexture(mesh, views), std::runtime_error);
+}
+
 TEST(TextureViews, UnweldedMeshIsTexturedAsTheWeldedOne)
 {
   const TriangleMesh mesh = cube();

@@ -81,6 +81,44 @@ TEST(TextureTool, BadInputIsNamed)
   EXPECT_FALSE(std::filesystem::exists(files.folder + "/model.obj"));
 }
 
+TEST(TextureTool, TextureCoordinatesAreKept)
+{
+  const Files files;
+  writeFile(files.folder + "/uv.obj", "v 0 0 1\nv 1 0 1\nv 0 1 1\nvt 0.1 0.2\nvt 0.8 0.2\nvt 0.1 0.9\nf 1/1 2/2 3/3\n");
+  const auto keep = [&](const std::string& mesh) {
+    return files.run(files.folder + "/" + mesh + " " + files.cameras + " " + files.images + " " + files.folder +
+                     "/model.obj -uv keep");
+  };
+  ASSERT_EQ(keep("uv.obj"), 0) << readFile(files.messages);
+  const TexturedMesh model = readTexturedMesh(files.folder + "/model.obj");
+  EXPECT_EQ(model.texcoords(0, 1), 0.8f);
+  writeFile(files.folder + "/bare.obj", "v 0 0 1\nv 1 0 1\nv 0 1 1\nf 1 2 3\n");
+  EXPECT_EQ(keep("bare.obj"), 1);
+  EXPECT_TRUE(files.says("no texture coordinates"));
+  EXPECT_EQ(keep("cube.ply"), 1);
+  EXPECT_EQ(files.texture("model.obj", "-uv other"), 2);
+  EXPECT_EQ(files.texture("model.obj", "-uv keep -texel 0.1"), 2);
+}
+
+TEST(TextureTool, MasksBesideThePhotographs)
+{
+  const Files files;
+  for (const std::string& masks : {files.folder + "/masks", files.images + "/masks"}) {
+    makeFolder(masks);
+    writeImage(masks + "/3.png", Image(200, 200, 3, 255));
+    writeImage(masks + "/4.png.png", Image(200, 200, 1, 255));
+    ASSERT_EQ(files.texture("model.obj"), 0) << readFile(files.messages);
+    EXPECT_TRUE(files.says("masks of 2 photographs"));
+    writeImage(masks + "/3.png", Image(64, 48));
+    EXPECT_EQ(files.texture("model.obj"), 1);
+    EXPECT_TRUE(files.says("masks/3.png") && files.says("64x48") && files.says("200x200"));
+    writeFile(masks + "/3.png", "no image");
+    EXPECT_EQ(files.texture("model.obj"), 1);
+    EXPECT_TRUE(files.says("masks/3.png"));
+    std::filesystem::remove_all(masks);
+  }
+}
+
 TEST(TextureTool, NoPhotographSeesTheMesh)
 {
   const Files files;

@@ -167,7 +167,10 @@ int exifOrientation(const std::string& path)
 void checkPhotos(PhotoStore& photos, const std::vector<ViewPart>& parts, const TextureOptions& options,
                  TextureResult& result)
 {
-  const auto read = [&](Index v) { photos.get(v); };
+  const auto read = [&](Index v) {
+    photos.mask(v);
+    photos.get(v);
+  };
   parallelFor(parts.size(), options.threads, read, 1);
   warnOfRotations(parts, result);
 }

@@ -16,7 +16,7 @@ void warnOfLittleSeen(double seen, const std::vector<TextureView>& views, Textur
 /// turned or mirrored. CIPA DC-008-2012, "Exchangeable image file format", tag 274.
 int exifOrientation(const std::string& path);
 
-/// Reads every photograph once, so that one that is missing or of another size is found before the long work. Warns of
+/// Reads every photograph and mask once, so that one that is missing or of another size is found before the long work. Warns of
 /// EXIF rotations.
 /// @param parts of the views
 void checkPhotos(PhotoStore& photos, const std::vector<ViewPart>& parts, const TextureOptions& options,

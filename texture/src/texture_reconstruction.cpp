@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cameras/camera_refinement.h"
+#include "charts/given_layout.h"
 #include "charts/texture_atlas.h"
 #include "filling/color_diffusion.h"
 #include "filling/exemplar_inpainting.h"
@@ -13,6 +14,7 @@
 #include "views/view_selection.h"
 #include "views/visible_surface.h"
 #include <chrono>
+#include <fresco/core/require.h>
 #include <fresco/texture/core/texture_reconstruction.h>
 #include <memory>
 namespace fresco {
@@ -161,14 +163,14 @@ void paintModel(const Job& job, ViewChoice& choice)
   steps.begin("gaps", 0.98);
   fillGaps(charts, options.threads, atlases);
 }
-} // namespace
 
-TextureResult reconstructTexture(const TriangleMesh& mesh, const std::vector<TextureView>& views,
-                                 const TextureOptions& options, const Progress& progress)
+/// @param model of which texture coordinates are kept, if there are any
+TextureResult reconstruct(const TexturedMesh& model, const std::vector<TextureView>& views,
+                          const TextureOptions& options, const Progress& progress)
 {
-  validate(mesh, views, options);
+  const TriangleMesh& mesh = model.mesh;
   TextureResult result;
-  result.model.mesh = mesh;
+  result.model = model;
   weld(result);
   Steps steps(progress, result);
   steps.begin("photographs", 0.0);
@@ -194,5 +196,24 @@ TextureResult reconstructTexture(const TriangleMesh& mesh, const std::vector<Tex
   result.model.mesh.faces = mesh.faces;
   steps.begin("done", 1.0);
   return result;
+}
+} // namespace
+
+TextureResult reconstructTexture(const TriangleMesh& mesh, const std::vector<TextureView>& views,
+                                 const TextureOptions& options, const Progress& progress)
+{
+  validate(mesh, views, options);
+  TexturedMesh model;
+  model.mesh = mesh;
+  return reconstruct(model, views, options, progress);
+}
+
+TextureResult reconstructTexture(const TexturedMesh& model, const std::vector<TextureView>& views,
+                                 const TextureOptions& options, const Progress& progress)
+{
+  validate(model.mesh, views, options);
+  validateLayout(model);
+  require(options.texel == 0, "texture: texels of a given layout have their size");
+  return reconstruct(model, views, options, progress);
 }
 } // namespace fresco

@@ -82,16 +82,32 @@ std::vector<std::string> ModelInput::files() const
   for (const ScanPath& scan : scans)
     if (all.empty() || all.back() != scan.file)
       all.push_back(scan.file);
-  for (const View& view : cameras.views)
-    all.push_back(images + "/" + view.image);
-  for (const Panorama& panorama : panoramas)
-    all.push_back(panorama.file);
+  for (const PictureFile& picture : pictures()) {
+    all.push_back(picture.file);
+    if (!picture.mask.empty())
+      all.push_back(picture.mask);
+  }
   for (const char* name : {"poses.txt", "cameras/cameras.txt", "cameras/images.txt", "camera-intrinsics.txt"})
     if (fs::exists(folder + "/" + name))
       all.push_back(folder + "/" + name);
   if (rgbd)
     for (const RgbdFrame& frame : rgbd->frames)
-      all.insert(all.end(), {frame.color, frame.depth});
+      all.push_back(frame.depth);
+  return all;
+}
+
+std::vector<PictureFile> ModelInput::pictures() const
+{
+  std::vector<PictureFile> all;
+  for (const View& view : cameras.views)
+    all.push_back({images + "/" + view.image, maskFileOf(images, view.image), &cameras.cameras[view.camera]});
+  if (rgbd)
+    for (const RgbdFrame& frame : rgbd->frames)
+      all.push_back({frame.color, maskFileOf(folder, fs::path(frame.color).filename().string())});
+  for (const Panorama& panorama : panoramas) {
+    const fs::path file(panorama.file);
+    all.push_back({panorama.file, maskFileOf(file.parent_path().string(), file.filename().string()), nullptr, true});
+  }
   return all;
 }
 
@@ -147,22 +163,10 @@ std::string describe(const ModelInput& input)
 
 void checkPhotographs(const ModelInput& input, int threads)
 {
-  struct Photograph {
-    std::string file;
-    const CameraModel* camera; ///< nullptr: any size
-    bool panorama = false;
-  };
-  std::vector<Photograph> photographs;
-  for (const View& view : input.cameras.views)
-    photographs.push_back({input.images + "/" + view.image, &input.cameras.cameras[view.camera]});
-  if (input.rgbd)
-    for (const RgbdFrame& frame : input.rgbd->frames)
-      photographs.push_back({frame.color, nullptr});
-  for (const Panorama& panorama : input.panoramas)
-    photographs.push_back({panorama.file, nullptr, true});
+  const std::vector<PictureFile> photographs = input.pictures();
   std::vector<std::string> problems(photographs.size() + input.inside.pictures.size());
   const auto look = [&](Index i) {
-    const auto& [file, camera, panorama] = photographs[i];
+    const auto& [file, mask, camera, panorama] = photographs[i];
     try {
       const Image image = readImage(file);
       if (camera && (image.width != camera->width || image.height != camera->height))
@@ -171,6 +175,11 @@ void checkPhotographs(const ModelInput& input, int threads)
       if (panorama && image.width != 2 * image.height)
         problems[i] =
             concat(file, ": a panorama of ", image.width, "x", image.height, " pixels is not twice as wide as high");
+      if (mask.empty())
+        return;
+      if (const Image area = readImage(mask); area.width != image.width || area.height != image.height)
+        problems[i] = concat(mask, ": is ", area.width, "x", area.height, " pixels, its photograph ", image.width, "x",
+                             image.height);
     } catch (const std::runtime_error& error) {
       problems[i] = error.what();
     }

@@ -15,6 +15,13 @@ struct Panorama {
   Index scan = 0;
 };
 
+/// A photograph or panorama as a file.
+struct PictureFile {
+  std::string file, mask;              ///< mask: "" = none, see maskFileOf()
+  const CameraModel* camera = nullptr; ///< nullptr: of any size
+  bool panorama = false;
+};
+
 /// What a model is made from: a folder of scans and photographs, or a folder of RGB-D frames.
 struct ModelInput {
   std::string folder;
@@ -27,7 +34,8 @@ struct ModelInput {
   std::optional<RgbdFolder> rgbd;
 
   bool hasPictures() const { return rgbd || !cameras.views.empty() || !panoramas.empty() || !inside.pictures.empty(); }
-  std::vector<std::string> files() const; ///< everything that the model depends on
+  std::vector<std::string> files() const;    ///< everything that the model depends on
+  std::vector<PictureFile> pictures() const; ///< photographs or colour images of the frames, then panoramas
 };
 
 /// Looks at a folder and reads everything small (poses, cameras). Folder of scans: `scans/*.pcd` (or another format; each
@@ -41,8 +49,8 @@ ModelInput readModelInput(const std::string& folder);
 /// "6 scans, 60 photographs".
 std::string describe(const ModelInput& input);
 
-/// Decodes every photograph and panorama once, also those inside of files of scans, so that a damaged one is found before hours of work, not after.
-/// @throws std::runtime_error naming the first that is damaged, has another size than its camera or is a panorama not
+/// Decodes every photograph, panorama and mask once, so that a damaged one is found before hours of work, not after.
+/// @throws std::runtime_error naming the first that is damaged, has another size than its camera or photograph or is a panorama not
 ///         twice as wide as high
 void checkPhotographs(const ModelInput& input, int threads);
 } // namespace fresco::model

@@ -12,6 +12,7 @@
 #include <fresco/io/pose_file.h>
 #include <fresco/texture/core/point_texture.h>
 #include <fresco/texture/core/texture_reconstruction.h>
+#include <map>
 namespace fresco::model {
 namespace {
 /// Where a panorama was taken, in the frame of its scan: where the scanner stood.
@@ -95,6 +96,11 @@ std::vector<TextureView> viewsOf(const Job& job, const std::vector<Pose>& poses)
       next.path = input.rgbd->frames[f].color;
       views.push_back(std::move(next));
     }
+  std::map<std::string, std::string> masks;
+  for (const PictureFile& picture : input.pictures())
+    masks[picture.file] = picture.mask;
+  for (TextureView& view : views)
+    view.mask_path = masks[view.path];
   return views;
 }
 
@@ -149,6 +155,7 @@ Figures textureFromViews(const Job& job, const TriangleMesh& mesh, const std::ve
                                                              : "photographs and panoramas"},
                      {"photographs", views.size()},
                      {"photographs_used", result.views_used},
+                     {"masks", std::count_if(views.begin(), views.end(), [](const auto& v) { return !v.mask_path.empty(); })},
                      {"cameras", result.refined ? "refined" : "left as given"},
                      {"disagreement_before_pixels", result.disagreement_before},
                      {"disagreement_after_pixels", result.disagreement_after}};

@@ -37,6 +37,21 @@ CameraState stateOf(const TriangleMesh& mesh, const std::vector<ViewPart>& views
   return state;
 }
 
+void applyMask(const Image& mask, MatchPhoto& photo)
+{
+  if (mask.empty())
+    return;
+  const Image& level = photo.pyramid.levels[0];
+  photo.used.reserve(cellCount(level.width, level.height));
+  for (int y = 0; y < level.height; ++y)
+    for (int x = 0; x < level.width; ++x)
+      photo.used.push_back(*mask.pixel(std::min<int>((x + 0.5) / photo.pyramid.scale, mask.width - 1),
+                                       std::min<int>((y + 0.5) / photo.pyramid.scale, mask.height - 1)) > 0);
+  auto& corners = photo.corners;
+  corners.erase(std::remove_if(corners.begin(), corners.end(), [&](const auto& c) { return !photo.uses(c); }),
+                corners.end());
+}
+
 /// Grey copies take at most half of what may be kept of the photographs; the rest keeps what they are made of.
 std::vector<MatchPhoto> prepare(PhotoStore& photos, Index count, int threads)
 {
@@ -52,6 +67,7 @@ std::vector<MatchPhoto> prepare(PhotoStore& photos, Index count, int threads)
   const auto prepareOne = [&](Index v) {
     out[v].pyramid = buildPyramid(*photos.get(v), pixels, levels);
     out[v].corners = findCorners(out[v].pyramid.levels[0], corner_cells);
+    applyMask(photos.mask(v), out[v]);
   };
   parallelFor(count, threads, prepareOne, 1);
   return out;

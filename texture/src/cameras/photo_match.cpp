@@ -157,7 +157,7 @@ private:
                            (corner.pixel * a).cast<float>(),  (expected * b).cast<float>(),
                            T_to_from.inverse().cast<float>(), static_cast<float>(options_.search * b)};
     Eigen::Vector2f place;
-    if (!findPatch(query, place))
+    if (!findPatch(query, place) || !photos_[match.to].uses(place))
       return false;
     match.pixel_to = place.cast<double>() / b;
     return true;

@@ -2,6 +2,8 @@
 #pragma once
 #include "cameras/grey_pyramid.h"
 #include "cameras/projector.h"
+#include "grid.h"
+#include <algorithm>
 #include <fresco/search/ray_scene.h>
 namespace fresco::texture {
 /// Cameras that are being refined, in mesh coordinates.
@@ -25,6 +27,14 @@ struct PhotoMatch {
 struct MatchPhoto {
   GreyPyramid pyramid;
   std::vector<Eigen::Vector2f> corners; ///< pixels of the pyramid's level 0
+  std::vector<bool> used;               ///< pixels of level 0 that the mask leaves; empty: all
+
+  bool uses(const Eigen::Vector2f& pixel) const
+  {
+    const int width = pyramid.levels[0].width, height = pyramid.levels[0].height;
+    return used.empty() ||
+           used[cellAt(std::clamp<int>(pixel.x(), 0, width - 1), std::clamp<int>(pixel.y(), 0, height - 1), width)];
+  }
 };
 
 struct MatchOptions {

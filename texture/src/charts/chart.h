@@ -2,6 +2,7 @@
 #pragma once
 #include "charts/texel_spans.h"
 #include "views/patch_mesh.h"
+#include <memory>
 #include <vector>
 namespace fresco::texture {
 /// Faces projected along one direction into a rectangle of texels.
@@ -11,6 +12,8 @@ struct Chart {
   Eigen::Matrix<double, 2, 3> T_texel =
       Eigen::Matrix<double, 2, 3>::Zero(); ///< texel = T_texel * vertex + offset; texel i covers i .. i+1
   Eigen::Vector2d offset = Eigen::Vector2d::Zero();
+  /// F, of a layout that was given: texel of the atlas = map * (vertex, 1) of each face; null otherwise.
+  std::shared_ptr<const std::vector<Eigen::Matrix<double, 2, 4>>> given;
   int width = 0, height = 0;    ///< texels, border included
   OwnedTexels texels;           ///< by the patches that give them their colours
   int atlas = -1, x = 0, y = 0; ///< place of the upper left texel

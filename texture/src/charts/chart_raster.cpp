@@ -26,13 +26,17 @@ Box boxOf(const Eigen::Matrix<double, 2, 3>& c, const Chart& chart)
 /// clockwise in a frame whose y points down as they run counter-clockwise seen from outside.
 class SideDistances {
 public:
-  explicit SideDistances(const Eigen::Matrix<double, 2, 3>& c)
+  /// @param either whether the corners may also run the other way
+  SideDistances(const Eigen::Matrix<double, 2, 3>& c, bool either)
   {
     for (int k = 0; k < 3; ++k) {
       const Eigen::Vector2d edge =
           (c.col((k + 1) % 3) - c.col(k)) / std::max((c.col((k + 1) % 3) - c.col(k)).norm(), 1e-12);
       sides_.row(k) << edge.y(), -edge.x(), edge.x() * c(1, k) - edge.y() * c(0, k);
     }
+    const Eigen::Vector2d u = c.col(1) - c.col(0), v = c.col(2) - c.col(0);
+    if (either && u.x() * v.y() - u.y() * v.x() > 0)
+      sides_ = -sides_;
   }
 
   double least(const Eigen::Vector2d& p) const { return (sides_ * p.homogeneous()).minCoeff(); }
@@ -47,7 +51,7 @@ void forTexels(const PatchMesh& patches, const Chart& chart, int patch, const Vi
 {
   const Eigen::Matrix<double, 2, 3> c = patchTexels(patches, chart, patch);
   const Box box = boxOf(c, chart);
-  const SideDistances distances(c);
+  const SideDistances distances(c, chart.given != nullptr); // layouts of others may be mirrored
   for (int y = box.y0; y <= box.y1; ++y)
     for (int x = box.x0; x <= box.x1; ++x)
       if (const double depth = distances.least({x + 0.5, y + 0.5}); depth >= -inside_margin)
@@ -136,6 +140,12 @@ Eigen::Matrix<double, 2, 3> patchTexels(const PatchMesh& patches, const Chart& c
   Eigen::Matrix<double, 2, 3> out;
   for (int k = 0; k < 3; ++k)
     out.col(k) = chart.texel(patches.vertices.col(patches.faces(k, patch)));
+  if (!chart.given)
+    return out;
+  const Eigen::Matrix<double, 2, 4>& map = (*chart.given)[patches.parent[patch]];
+  for (int k = 0; k < 3; ++k)
+    out.col(k) = map * patches.vertices.col(patches.faces(k, patch)).cast<double>().homogeneous() -
+                 Eigen::Vector2d(chart.x, chart.y);
   return out;
 }
 

@@ -2,6 +2,7 @@
 #include "charts/texture_atlas.h"
 #include "charts/atlas_packing.h"
 #include "charts/chart_layout.h"
+#include "charts/given_layout.h"
 #include <algorithm>
 #include <cmath>
 #include <fresco/core/require.h>
@@ -45,7 +46,9 @@ double typicalTexel(const std::vector<Chart>& charts, const FaceGraph& graph)
     double area = 0;
     for (const int f : chart.faces)
       area += graph.areas[f];
-    sizes.emplace_back(1 / chart.T_texel.row(0).norm(), area);
+    const double texels =
+        chart.given ? (*chart.given)[chart.faces[0]].leftCols<3>().norm() / std::sqrt(2) : chart.T_texel.row(0).norm();
+    sizes.emplace_back(1 / texels, area);
   }
   return sizes.empty() ? 0 : weightedQuantile(sizes, 0.5);
 }
@@ -82,6 +85,29 @@ Eigen::VectorXf wantedDensities(const PatchMesh& patches, Index faces, const Eig
     out[f] = oversampling * std::max(unseen_share * typical, area[f] > 0 ? sum[f] / area[f] : 0.f);
   return out;
 }
+
+struct WantedTexels {
+  const FaceGraph& graph;
+  const Eigen::VectorXf& density; ///< F
+};
+
+std::vector<Chart> keepAtlas(const PatchMesh& patches, const WantedTexels& wanted, const TextureOptions& options,
+                             TextureResult& result)
+{
+  std::vector<Chart> charts = keepLayout(patches, wanted.graph, wanted.density, options, result.model);
+  double owned = 0, all = 0;
+  for (const Chart& chart : charts)
+    owned += chart.texels.count();
+  result.masks.clear();
+  for (const Image& atlas : result.model.atlases) {
+    result.masks.emplace_back(atlas.width, atlas.height, 1);
+    all += 1.0 * atlas.width * atlas.height;
+  }
+  result.used = owned / all;
+  result.charts = charts.size();
+  result.texel = typicalTexel(charts, wanted.graph);
+  return charts;
+}
 } // namespace
 
 Eigen::VectorXf patchResolutions(const PatchMesh& patches, const std::vector<Projector>& views,
@@ -113,6 +139,8 @@ std::vector<Chart> makeAtlas(const PatchMesh& patches, const Eigen::VectorXf& re
 {
   const FaceGraph graph = buildFaceGraph(result.model.mesh, options.threads);
   Eigen::VectorXf density = wantedDensities(patches, result.model.mesh.faceCount(), resolution, options.texel);
+  if (result.model.texcoord_faces.cols() > 0)
+    return keepAtlas(patches, {graph, density}, options, result);
   if (const double coarser = coarsening(graph, density); options.texel == 0 && coarser > 1) {
     const float factor = coarser;
     density /= factor;

@@ -111,7 +111,7 @@ std::vector<OutlineMask> outlineMasks(const PatchMesh& patches, const Visibility
   std::vector<OutlineMask> masks(views.used.size());
   const auto make = [&](Index v) {
     if (views.used[v])
-      masks[v] = OutlineMask(depthMap(input.scene, views.projectors[v], most_cells), reach_pixels, step);
+      masks[v] = OutlineMask(shownDepth(input, v, most_cells), reach_pixels, step);
   };
   parallelFor(masks.size(), input.options.threads, make, 1);
   return masks;

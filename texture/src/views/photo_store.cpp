@@ -4,6 +4,7 @@
 #include <cmath>
 #include <fresco/core/require.h>
 #include <fresco/io/image_io.h>
+#include <opencv2/imgproc.hpp>
 namespace fresco::texture {
 namespace {
 Image asRgb(const Image& in)
@@ -23,6 +24,13 @@ Eigen::Vector4f cubicWeights(float t)
   return {-0.5f * t + t2 - 0.5f * t3, 1 - 2.5f * t2 + 1.5f * t3, 0.5f * t + 2 * t2 - 1.5f * t3, -0.5f * t2 + 0.5f * t3};
 }
 
+void requireSize(const Image& image, const CameraModel& camera, const std::string& name)
+{
+  if (image.width != camera.width || image.height != camera.height)
+    throw std::runtime_error(concat(name, ": is ", image.width, "x", image.height, " pixels, its camera has ",
+                                    camera.width, "x", camera.height));
+}
+
 std::shared_ptr<const Image> loadGiven(const TextureView& v, Index view)
 {
   std::shared_ptr<const Image> image;
@@ -30,9 +38,7 @@ std::shared_ptr<const Image> loadGiven(const TextureView& v, Index view)
     image = std::make_shared<const Image>(readImage(v.path));
   else
     image = std::shared_ptr<const Image>(std::shared_ptr<void>(), &v.image);
-  if (image->width != v.camera.width || image->height != v.camera.height)
-    throw std::runtime_error(concat(v.path.empty() ? concat("photograph ", view) : v.path, ": is ", image->width, "x",
-                                    image->height, " pixels, its camera has ", v.camera.width, "x", v.camera.height));
+  requireSize(*image, v.camera, v.path.empty() ? concat("photograph ", view) : v.path);
   return image->channels == 3 ? image : std::make_shared<const Image>(asRgb(*image));
 }
 } // namespace
@@ -75,6 +81,25 @@ std::shared_ptr<const Image> PhotoStore::panoramaOf(Index view)
   panorama_ = image;
   panorama_view_ = number;
   return image;
+}
+
+Image PhotoStore::mask(Index view) const
+{
+  const ViewPart& part = views_[view];
+  const TextureView& v = *part.given;
+  if (v.mask.empty() && v.mask_path.empty())
+    return {};
+  Image rgb = asRgb(v.mask.empty() ? readImage(v.mask_path) : v.mask);
+  requireSize(rgb, v.camera, v.mask_path.empty() ? concat("mask of photograph ", part.view) : v.mask_path);
+  if (part.ofPanorama())
+    rgb = cutPanorama(wrapPanorama(rgb), part);
+  constexpr int used = 128, reach = 2; // grey level; pixels, of cubic interpolation
+  Image out(rgb.width, rgb.height, 1);
+  for (std::size_t i = 0; i < out.data.size(); ++i)
+    out.data[i] = rgb.data[3 * i + 1] >= used ? 255 : 0;
+  cv::Mat grey(out.height, out.width, CV_8U, out.data.data());
+  cv::erode(grey, grey, cv::Mat::ones(2 * reach + 1, 2 * reach + 1, CV_8U));
+  return out;
 }
 
 void PhotoStore::keep(Index view, std::shared_ptr<const Image> image)

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "views/visibility.h"
+#include "grid.h"
 #include "views/patch_visibility.h"
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -60,12 +61,13 @@ public:
       pixels_.col(v) = pixelWithin(view, patches.vertices.col(v));
   }
 
-  std::vector<Seen> run(const RayScene& scene, const Image& photo) const
+  std::vector<Seen> run(const VisibilityInput& input, Index number) const
   {
     std::vector<Seen> seen;
     if (!(pixels_.row(2).array() > 0).any())
       return seen;
-    const DepthMap map = depthMap(scene, view_, most_cells);
+    const std::shared_ptr<const Image> photo = input.views.photos.get(number);
+    const DepthMap map = shownDepth(input, number, most_cells);
     const float radius = limits_.margin / map.step;
     constexpr float rim_pixels = 2; // reach of cubic interpolation
     const float rim = rim_pixels / map.step;
@@ -84,7 +86,7 @@ public:
         else if (isAtRim(patch, farthest, rim, outline_))
           penalty += limits_.pose_uncertainty * rim_penalty;
         const float resolution = view_.focal() * cosine / (0.5f * (patch.nearest + patch.farthest));
-        Candidate candidate = colored(photo, i);
+        Candidate candidate = colored(*photo, i);
         candidate.penalty = 16 * penalty;
         candidate.resolution = resolution;
         seen.push_back({static_cast<int>(i), candidate});
@@ -198,6 +200,22 @@ const Candidate* Candidates::find(Index patch, int view) const
   return at != last && at->view == view ? at : nullptr;
 }
 
+DepthMap shownDepth(const VisibilityInput& input, Index view, Index cells)
+{
+  constexpr float before_lens = 1e-3f; // of the distance of what is nearest
+  DepthMap map = depthMap(input.scene, input.views.projectors[view], cells);
+  const Image mask = input.views.photos.mask(view);
+  if (mask.empty())
+    return map;
+  const float depth = before_lens * *std::min_element(map.depth.begin(), map.depth.end());
+  for (int y = 0; y < mask.height; ++y)
+    for (int x = 0; x < mask.width; ++x)
+      if (*mask.pixel(x, y) == 0)
+        map.depth[cellAt(std::min<int>(x / map.step, map.width - 1), std::min<int>(y / map.step, map.height - 1),
+                         map.width)] = depth;
+  return map;
+}
+
 Candidates findCandidates(const PatchMesh& patches, const VisibilityInput& input, const Progress& progress)
 {
   const ViewList& views = input.views;
@@ -212,7 +230,7 @@ Candidates findCandidates(const PatchMesh& patches, const VisibilityInput& input
     const auto test = [&](Index i) {
       seen[i].clear();
       if (const Index v = first + i; views.used[v])
-        seen[i] = ViewTest(patches, views.projectors[v], limits).run(input.scene, *views.photos.get(v));
+        seen[i] = ViewTest(patches, views.projectors[v], limits).run(input, v);
     };
     parallelFor(count, input.options.threads, test, 1);
     for (Index i = 0; i < count; ++i)

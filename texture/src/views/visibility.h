@@ -74,6 +74,9 @@ struct VisibilityInput {
   const TextureOptions& options;
 };
 
+/// Depth of what a view shows in at most `cells` cells. Where its mask says not to use the photograph, something stands before the lens.
+DepthMap shownDepth(const VisibilityInput& input, Index view, Index cells);
+
 /// A patch counts as seen by a view where all of it lies in the image, turned towards the camera, and no ray through
 /// the pixels that it covers ends clearly before it.
 Candidates findCandidates(const PatchMesh& patches, const VisibilityInput& input, const Progress& progress);

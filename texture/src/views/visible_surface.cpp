@@ -47,16 +47,18 @@ Eigen::VectorXi viewsOfFaces(const PatchMesh& patches, const Eigen::VectorXi& vi
   }
   return out;
 }
-std::vector<DepthMap> coarseMaps(const RayScene& scene, const ViewList& views, int threads)
+
+std::vector<DepthMap> coarseMaps(const VisibilityInput& input)
 {
   constexpr Index cells_of_all = 64'000'000; // 256 MB
+  const ViewList& views = input.views;
   const Index n = views.projectors.size();
   std::vector<DepthMap> maps(views.projectors.size());
   const auto make = [&](Index v) {
     if (views.used[v])
-      maps[v] = depthMap(scene, views.projectors[v], std::min(most_cells, cells_of_all / n));
+      maps[v] = shownDepth(input, v, std::min(most_cells, cells_of_all / n));
   };
-  parallelFor(n, threads, make, 1);
+  parallelFor(n, input.options.threads, make, 1);
   return maps;
 }
 
@@ -99,7 +101,7 @@ double diagonalOf(const TriangleMesh& mesh)
 PatchMesh cutHiddenParts(PatchMesh patches, const VisibilityInput& input)
 {
   const int threads = input.options.threads;
-  const std::vector<DepthMap> maps = coarseMaps(input.scene, input.views, threads);
+  const std::vector<DepthMap> maps = coarseMaps(input);
   const DepthTest test{input.views.projectors, maps, limitsFor(patches, input.views, input.options).tolerance};
   constexpr int rounds = 3; // each halves the sides: patches of 2 pixels
   for (int round = 0; round < rounds; ++round) {

@@ -22,6 +22,11 @@ FRESCO_EXPORT Image16 readImage16(const std::string& path);
 /// @param quality of JPEG, 0..100
 FRESCO_EXPORT void writeImage(const std::string& path, const Image& image, int quality = 95);
 
+/// File of the mask of a photograph (white = use): NAME.png or NAME.EXT.png of `folder`/masks, else of masks beside
+/// `folder`, where NAME.EXT is the photograph. "" if there is none.
+/// @param name of the photograph, below `folder`
+FRESCO_EXPORT std::string maskFileOf(const std::string& folder, const std::string& name);
+
 /// The bytes that writeImage() would put into a file with extension ".png" or ".jpg".
 FRESCO_EXPORT std::vector<std::uint8_t> encodeImage(const Image& image, const std::string& extension, int quality = 95);
 } // namespace fresco

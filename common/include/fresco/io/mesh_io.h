@@ -27,6 +27,10 @@ FRESCO_EXPORT void writeTexturedMesh(const std::string& path, const TexturedMesh
 /// @throws std::runtime_error "PATH: reason" if the model or a file that it names is missing, truncated or malformed
 FRESCO_EXPORT TexturedMesh readTexturedMesh(const std::string& path);
 
+/// The same for its texture coordinates: faces of an OBJ file keep them where there is no image. Each material without one
+/// has an empty atlas.
+FRESCO_EXPORT TexturedMesh readTextureLayout(const std::string& path);
+
 /// Material libraries and images that an OBJ file names, below its folder; none of other files.
 /// @throws std::runtime_error "PATH: reason" if the file cannot be read
 FRESCO_EXPORT std::vector<std::string> filesNamedBy(const std::string& path);

@@ -4,6 +4,7 @@
 #include "io/texture/jpeg_reader.h"
 #include "io/texture/texture_io.h"
 #include <algorithm>
+#include <filesystem>
 #include <fresco/core/require.h>
 #include <fresco/io/file.h>
 #include <fresco/io/image_io.h>
@@ -150,6 +151,16 @@ Image16 readImage16(const std::string& path)
       image.data.insert(image.data.end(), depth.ptr<std::uint16_t>(y), depth.ptr<std::uint16_t>(y) + depth.cols);
     return image;
   });
+}
+
+std::string maskFileOf(const std::string& folder, const std::string& name)
+{
+  namespace fs = std::filesystem;
+  for (const fs::path& masks : {fs::path(folder) / "masks", fs::path(folder) / ".." / "masks"})
+    for (const std::string& file : {fs::path(name).replace_extension(".png").string(), name + ".png"})
+      if (std::error_code none; fs::exists(masks / file, none))
+        return (masks / file).string();
+  return "";
 }
 
 std::vector<std::uint8_t> encodeImage(const Image& image, const std::string& extension, int quality)

@@ -52,4 +52,10 @@ TexturedMesh readTexturedMesh(const std::string& path)
     });
   return io::readTexturedObj(path);
 }
+
+TexturedMesh readTextureLayout(const std::string& path)
+{
+  return isGlb(io::formatToRead(path, FileKind::textured_mesh)) ? readTexturedMesh(path)
+                                                                : io::readTexturedObj(path, true);
+}
 } // namespace fresco

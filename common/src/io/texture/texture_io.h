@@ -8,7 +8,8 @@ namespace fresco::io {
 void writeTexturedObj(const std::string& path, const TexturedMesh& model);
 
 /// @throws std::runtime_error "PATH: reason"
-TexturedMesh readTexturedObj(const std::string& path);
+/// @param empty_atlases whether materials without image have an empty atlas
+TexturedMesh readTexturedObj(const std::string& path, bool empty_atlases = false);
 
 /// Binary glTF, one primitive per atlas and one for the faces without texture. `origin` becomes the node's translation.
 /// @param jpeg_quality of the images inside, 1..100; 0: PNG

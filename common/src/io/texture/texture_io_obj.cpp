@@ -158,21 +158,28 @@ void writeTexturedObj(const std::string& path, const TexturedMesh& model)
   object.commit();
 }
 
-TexturedMesh readTexturedObj(const std::string& path)
+TexturedMesh readTexturedObj(const std::string& path, bool empty_atlases)
 {
   const ObjContent obj = parseFile(path, parseObj);
   TexturedMesh model;
   model.mesh = tableToMesh(objVertices(obj));
   model.mesh.faces = objFaces(obj);
   model.texcoords = Eigen::Map<const Eigen::Matrix2Xf>(obj.texcoords.data(), 2, obj.texcoords.size() / 2);
-  const std::vector<int> atlas_of_material = readAtlases(path, obj, model.atlases);
+  std::vector<int> atlas_of_material = readAtlases(path, obj, model.atlases);
+  atlas_of_material.push_back(-1); // of faces without material
+  for (const ObjTriangle& triangle : obj.triangles)
+    if (int& atlas = triangle.material < 0 ? atlas_of_material.back() : atlas_of_material[triangle.material];
+        atlas < 0 && empty_atlases) {
+      atlas = model.atlases.size();
+      model.atlases.emplace_back();
+    }
   const Index faces = model.mesh.faceCount();
   model.texcoord_faces.setConstant(3, faces, -1);
   model.face_atlas.setConstant(faces, -1);
   for (Index f = 0; f < faces; ++f) {
     const ObjTriangle& triangle = obj.triangles[f];
     const Eigen::Vector3i texcoords(triangle.texcoords[0], triangle.texcoords[1], triangle.texcoords[2]);
-    const int atlas = triangle.material < 0 ? -1 : atlas_of_material[triangle.material];
+    const int atlas = triangle.material < 0 ? atlas_of_material.back() : atlas_of_material[triangle.material];
     if (atlas < 0 || texcoords.minCoeff() < 0)
       continue;
     model.texcoord_faces.col(f) = texcoords;

@@ -33,7 +33,7 @@ public:
   /// @param file           photograph, read when needed
   void addView(const CameraModel& camera, const Eigen::Isometry3d& T_camera_world, const std::string& file)
   {
-    views_.push_back({camera, T_camera_world, Image(), file});
+    views_.push_back({camera, T_camera_world, Image(), file, true, false, Image(), ""});
   }
   void clearViews() { views_.clear(); }
   const std::vector<TextureView>& getViews() const { return views_; }

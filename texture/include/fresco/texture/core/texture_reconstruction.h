@@ -47,6 +47,8 @@ struct TextureView {
   std::string path;      ///< file of the photograph; names it in messages
   bool paint = true;     ///< false: its camera is refined with the others, but nothing is coloured from it
   bool mirrored = false; ///< a panorama that goes around to the left
+  Image mask; ///< of the photograph's size: what is darker than 128 is not used, nor what is beside; empty: see
+  std::string mask_path; ///< file of the mask; empty: all of the photograph is used
 };
 
 /// A camera at its place.
@@ -82,9 +84,17 @@ struct TextureResult {
 
 /// @param mesh  as validateMesh() wants it, with at least one face of positive area
 /// @throws std::invalid_argument if the mesh, an option or a view (pose, intrinsics) is out of range
-/// @throws std::runtime_error naming the photograph that is missing, no image, or of another size than its camera
+/// @throws std::runtime_error naming the photograph or mask that is missing, no image, or of another size than its camera
 /// @throws std::runtime_error if the texture would be larger than a thousand megatexels
 /// @throws Cancelled if `progress` asks to stop
 FRESCO_EXPORT TextureResult reconstructTexture(const TriangleMesh& mesh, const std::vector<TextureView>& views,
+                                               const TextureOptions& options = {}, const Progress& progress = {});
+
+/// The same, painted in the layout that the model has: its texture coordinates stay. Its atlases give their sizes alone;
+/// those below 16 texels or without any get what the photographs ask for. `options.atlas` is the longest side then, which
+/// keeps their shape; `options.texel` must be 0.
+/// @throws std::invalid_argument also if a face with area has no texture coordinates, or such beyond 0..1, or if two
+///         faces cover one texel
+FRESCO_EXPORT TextureResult reconstructTexture(const TexturedMesh& model, const std::vector<TextureView>& views,
                                                const TextureOptions& options = {}, const Progress& progress = {});
 } // namespace fresco
