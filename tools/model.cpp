@@ -14,7 +14,7 @@ int main(int argc, char** argv)
         "with photographs (cameras/ as COLMAP model, images/, and poses.txt, of which only the first pose is used\n"
         "unless -use_poses is given: it ties the scans to the photographs), an RGB-D folder (camera-intrinsics.txt, "
         "frame-*.{color.jpg,depth.png,pose.txt}), or a file\n"
-        "of scans (.e57, .ptx).\n"
+        "of scans (.e57 with the pictures inside, .ptx).\n"
         "Writes model.obj/.mtl/.png, model.glb, mesh.ply, poses.txt, snapshots/*.png, report.html and\n"
         "report.json to OUT_DIR; OUT_DIR/work holds what -resume needs.");
     args.flag("use_poses", options.use_poses,

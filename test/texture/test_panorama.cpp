@@ -107,6 +107,25 @@ TEST(Panorama, MirroredOnesShowTheSame)
   }
 }
 
+TEST(Panorama, WhatTheScannerLeavesBlackIsNotPainted)
+{
+  const auto bright = [](const Eigen::Vector3d& p) -> Eigen::Vector3d { return waves(p).array().max(60); };
+  std::vector<TextureView> views{panorama({0.3, 0.2, 0}, bright)};
+  EXPECT_TRUE(blackEnds(views[0].image).empty());
+  Image& image = views[0].image;
+  for (int y = 220; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x)
+      std::fill_n(image.pixel(x, y), 3, 3);
+  const TextureResult result = reconstructTexture(room(), views, quick());
+  EXPECT_LT(result.coverage, 0.999);
+  EXPECT_GT(result.coverage, 0.8);
+  const Image& atlas = result.model.atlases[0];
+  int dark = 0;
+  for (std::size_t i = 0; i < atlas.data.size(); i += 3)
+    dark += result.masks[0].data[i / 3] == 255 && atlas.data[i] < 20 && atlas.data[i + 1] < 20 && atlas.data[i + 2] < 20;
+  EXPECT_EQ(dark, 0) << "what nobody saw continues what is around it";
+}
+
 TEST(Panorama, RoomIsTexturedAsWhole)
 {
   const TextureResult result = reconstructTexture(room(), panoramas(waves), quick());

@@ -2,6 +2,7 @@
 #include "texture/texture_scene.h"
 #include <fresco/texture/point_texture_reconstruction.h>
 #include <gtest/gtest.h>
+#include <numeric>
 #include <pcl/point_types.h>
 namespace fresco::test {
 namespace {
@@ -51,6 +52,20 @@ PointSet scansAround(const TriangleMesh& mesh, const Pattern& pattern, int count
     all = k == 0 ? scan : mergePoints(all, scan);
   }
   return all;
+}
+
+TEST(PointTexture, CornersAtOnePlaceAreOne)
+{
+  const TriangleMesh mesh = cube();
+  TriangleMesh soup = mesh;
+  soup.vertices = mesh.vertices(Eigen::all, std::vector<int>(mesh.faces.data(), mesh.faces.data() + mesh.faces.size()));
+  std::iota(soup.faces.data(), soup.faces.data() + soup.faces.size(), 0);
+  const PointSet points = scansAround(mesh, waves, 800);
+  const PointTextureResult welded = reconstructPointTexture(mesh, points),
+                           unwelded = reconstructPointTexture(soup, points);
+  EXPECT_EQ(unwelded.charts, welded.charts);
+  EXPECT_EQ(unwelded.warnings.size(), 1u);
+  EXPECT_EQ(unwelded.model.mesh.faces, soup.faces);
 }
 
 TEST(PointTexture, ConvergesWithTheDensityOfThePoints)

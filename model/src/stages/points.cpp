@@ -101,13 +101,16 @@ Figures pointsFromScans(const Job& job, const Progress& progress)
   Figures figures;
   const Index count = job.input.scans.size();
   const std::vector<Pose> poses = placeScans(job.input, job.options, subProgress(progress, 0.0, 0.4), figures);
-  Index raw = 0;
+  Index raw = 0, colored = 0, with_intensities = 0, read = 0;
   const double step = 0.55 / count;
   const auto prepared = [&](Index s) {
     const double begin = 0.4 + step * s;
     report(progress, concat("scan ", s + 1, " of ", count), begin);
     PointSet scan = readPoints(job.input.scans[s]);
     raw += scan.size();
+    ++read;
+    colored += scan.colors.cols() > 0;
+    with_intensities += scan.intensities.size() > 0;
     return preparedScan(std::move(scan), job.options, subProgress(progress, begin, begin + step));
   };
   const PointSet merged = mergeScans({count, prepared}, poses, job.options.threads);
@@ -118,6 +121,9 @@ Figures pointsFromScans(const Job& job, const Progress& progress)
   figures["raw_points"] = raw; // of the scans that have a place
   figures["points"] = merged.size();
   figures["unplaced_scans"] = std::count(poses.begin(), poses.end(), std::nullopt);
+  for (const auto& [having, what] : {std::pair{colored, "colours"}, {with_intensities, "intensities"}})
+    if (having > 0 && having < read && !job.input.hasPictures())
+      figures["warnings"].push_back(concat(what, " of ", having, " scans are not used: ", read - having, " have none"));
   return figures;
 }
 

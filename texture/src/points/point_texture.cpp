@@ -80,8 +80,10 @@ PointTextureResult reconstructPointTexture(const TriangleMesh& mesh, const Point
   report(progress, "painting", 0.4);
   TextureResult painted;
   painted.model.mesh = mesh;
+  weld(painted);
   paintModel(samples, values, options, painted);
   result.model = std::move(painted.model);
+  result.model.mesh.faces = mesh.faces;
   result.masks = std::move(painted.masks);
   result.coverage = painted.coverage;
   result.used = painted.used;

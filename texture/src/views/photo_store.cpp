@@ -83,16 +83,25 @@ std::shared_ptr<const Image> PhotoStore::panoramaOf(Index view)
   return image;
 }
 
-Image PhotoStore::mask(Index view) const
+Image PhotoStore::mask(Index view)
 {
   const ViewPart& part = views_[view];
   const TextureView& v = *part.given;
-  if (v.mask.empty() && v.mask_path.empty())
+  Image rgb;
+  if (!v.mask.empty() || !v.mask_path.empty()) {
+    rgb = asRgb(v.mask.empty() ? readImage(v.mask_path) : v.mask);
+    requireSize(rgb, v.camera, v.mask_path.empty() ? concat("mask of photograph ", part.view) : v.mask_path);
+  }
+  if (part.ofPanorama()) {
+    const Image ends = blackEnds(*panoramaOf(view));
+    rgb = rgb.empty() ? ends : wrapPanorama(rgb);
+    for (std::size_t i = 0; i < ends.data.size(); ++i)
+      rgb.data[i] = std::min(rgb.data[i], ends.data[i]);
+    if (!rgb.empty())
+      rgb = cutPanorama(rgb, part);
+  }
+  if (rgb.empty())
     return {};
-  Image rgb = asRgb(v.mask.empty() ? readImage(v.mask_path) : v.mask);
-  requireSize(rgb, v.camera, v.mask_path.empty() ? concat("mask of photograph ", part.view) : v.mask_path);
-  if (part.ofPanorama())
-    rgb = cutPanorama(wrapPanorama(rgb), part);
   constexpr int used = 128, reach = 2; // grey level; pixels, of cubic interpolation
   Image out(rgb.width, rgb.height, 1);
   for (std::size_t i = 0; i < out.data.size(); ++i)

@@ -14,9 +14,10 @@ public:
   /// @throws std::runtime_error naming the photograph if it cannot be read or is of another size than its camera
   std::shared_ptr<const Image> get(Index view);
 
-  /// Where the photograph is to be used, one channel: 255, else 0, also where interpolation would reach what is 0. Not
-  /// kept. Empty: everywhere. @throws std::runtime_error as get(), naming the mask
-  Image mask(Index view) const;
+  /// Where the photograph is to be used, one channel: 255, else 0, also where interpolation would reach what is 0. Black
+  /// ends of panoramas are not (blackEnds()). Not kept. Empty: everywhere.
+  /// @throws std::runtime_error as get(), naming the mask
+  Image mask(Index view);
 
   std::size_t mostBytes() const { return most_bytes_; }
   /// Keeps so much less while something else made of the photographs needs memory.
