@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "seeds.h"
-#include "simulation/sensors/e57_writer.h"
 #include "common/io/las_writer.h"
+#include "simulation/sensors/e57_writer.h"
 #include "stage_log.h"
 #include "targets.h"
 #include <filesystem>
@@ -86,8 +86,8 @@ std::string someE57()
   azimuth.name = "sphericalAzimuth";
   elevation.name = "sphericalElevation";
   const simulation::e57::Image picture{"<sphericalRepresentation type=\"Structure\"><jpegImage type=\"Blob\" PICTURE/>"
-                                 "</sphericalRepresentation>",
-                                 "jpeg", ""};
+                                       "</sphericalRepresentation>",
+                                       "jpeg", ""};
   const std::string file = simulation::e57::fileOf(
       {{"a", {x, y, z, state, row, column, red, green, blue, label}, 3, simulation::e57::poseXml(1, 0, 1, 2, 3)},
        {"b", {range, azimuth, elevation}, 3}},

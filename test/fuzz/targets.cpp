@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "targets.h"
-#include "simulation/sensors/e57_writer.h"
 #include "input/rgbd.h"
+#include "simulation/sensors/e57_writer.h"
 #include "stage_log.h"
 #include "support/args.h"
 #include <filesystem>

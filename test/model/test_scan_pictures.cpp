@@ -75,15 +75,17 @@ TEST(ScanPictures, ShowWhereTheirFileSaysThatTheyLook)
 {
   const double focal = 0.02, pixel = 0.0005, angle = 2 * pi / 200;
   const std::string pose = e57::poseXml(T_file_image);
-  e57::Image pinhole = stored("pinhole", numbered(60, 40),
-                              element("focalLength", focal) + element("pixelWidth", pixel) +
-                                  element("pixelHeight", pixel) + element("principalPointX", 30.0) +
-                                  element("principalPointY", 20.0));
-  e57::Image whole = stored("spherical", numbered(200, 100), element("pixelWidth", angle) + element("pixelHeight", angle));
-  e57::Image part = stored("spherical", numbered(100, 50), element("pixelWidth", angle) + element("pixelHeight", angle));
-  e57::Image cylinder =
-      stored("cylindrical", numbered(200, 60), element("pixelWidth", angle) + element("pixelHeight", 0.05) +
-                                                   element("radius", 2.0) + element("principalPointY", 25.0));
+  e57::Image pinhole =
+      stored("pinhole", numbered(60, 40),
+             element("focalLength", focal) + element("pixelWidth", pixel) + element("pixelHeight", pixel) +
+                 element("principalPointX", 30.0) + element("principalPointY", 20.0));
+  e57::Image whole =
+      stored("spherical", numbered(200, 100), element("pixelWidth", angle) + element("pixelHeight", angle));
+  e57::Image part =
+      stored("spherical", numbered(100, 50), element("pixelWidth", angle) + element("pixelHeight", angle));
+  e57::Image cylinder = stored("cylindrical", numbered(200, 60),
+                               element("pixelWidth", angle) + element("pixelHeight", 0.05) + element("radius", 2.0) +
+                                   element("principalPointY", 25.0));
   pinhole.more = whole.more = part.more = cylinder.more = pose;
   whole.more += "<associatedData3DGuid type=\"String\">guid of a</associatedData3DGuid>";
   const ModelInput input = readModelInput(survey({pinhole, whole, part, cylinder}));
@@ -120,8 +122,7 @@ TEST(ScanPictures, OfNoUseAreNamedAndDamagedOnesRefused)
   oblong.more = broken.more = wide.more = masked.more = e57::poseXml(T_file_image);
   broken.picture.resize(40);
   wide.representation = stored("spherical", numbered(20, 10), element("pixelWidth", 1.0)).representation;
-  masked.representation =
-      stored("spherical", numbered(20, 10), "<imageMask type=\"Blob\" MASK/>").representation;
+  masked.representation = stored("spherical", numbered(20, 10), "<imageMask type=\"Blob\" MASK/>").representation;
   masked.mask = png(Image(20, 11, 1, 255));
   const ModelInput input = readModelInput(survey({lost, oblong, broken, wide, masked}));
   ASSERT_EQ(input.inside.pictures.size(), 4u);

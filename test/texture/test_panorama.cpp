@@ -122,7 +122,8 @@ TEST(Panorama, WhatTheScannerLeavesBlackIsNotPainted)
   const Image& atlas = result.model.atlases[0];
   int dark = 0;
   for (std::size_t i = 0; i < atlas.data.size(); i += 3)
-    dark += result.masks[0].data[i / 3] == 255 && atlas.data[i] < 20 && atlas.data[i + 1] < 20 && atlas.data[i + 2] < 20;
+    dark +=
+        result.masks[0].data[i / 3] == 255 && atlas.data[i] < 20 && atlas.data[i + 1] < 20 && atlas.data[i + 2] < 20;
   EXPECT_EQ(dark, 0) << "what nobody saw continues what is around it";
 }
 

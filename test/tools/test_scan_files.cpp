@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "simulation/sensors/e57_writer.h"
 #include "registration/registration_scene.h"
+#include "simulation/sensors/e57_writer.h"
 #include "tools/cloud_tool.h"
 #include <fresco/io/pose_file.h>
 #include <fresco/io/scan_file.h>
@@ -29,7 +29,7 @@ TEST_F(RegisterStations, EachScanOfAFileIsPlacedAndAnEmptyOneIsNamed)
 {
   const test::ScannedScene scene = test::scanTwoRooms(20000);
   std::vector<simulation::e57::Scan> scans = {scanOf("a", scene.scans[0]), scanOf("nothing", PointSet()),
-                                        scanOf("b", scene.scans[1])};
+                                              scanOf("b", scene.scans[1])};
   for (simulation::e57::Scan& scan : scans)
     scan.more = simulation::e57::poseXml(1, 0, 100, 0, 0); // all alike: not where they belong
   writeFile(path("all.e57"), simulation::e57::fileOf(scans));

@@ -26,8 +26,7 @@ std::vector<Station> stationsOf(const std::vector<ScanPath>& scans, std::size_t 
   std::vector<Station> stations;
   for (std::size_t s = first; s < scans.size() && scans[s].file == scans[first].file; ++s) {
     const ScanInfo& info = infos.at(std::max<Index>(0, scans[s].scan));
-    stations.push_back(
-        {Index(s), info.T_file_scan, info.T_file_scan * info.sensor.value_or(Vector3d::Zero())});
+    stations.push_back({Index(s), info.T_file_scan, info.T_file_scan * info.sensor.value_or(Vector3d::Zero())});
   }
   return stations;
 }
@@ -50,8 +49,7 @@ ScanPicture placed(const ScanImage& what, const std::vector<Station>& stations)
     return (a.sensor - center).squaredNorm() < (b.sensor - center).squaredNorm();
   };
   const bool has_scan = what.scan >= 0 && what.scan < Index(stations.size());
-  const Station& station =
-      has_scan ? stations[what.scan] : *std::min_element(stations.begin(), stations.end(), closer);
+  const Station& station = has_scan ? stations[what.scan] : *std::min_element(stations.begin(), stations.end(), closer);
   ScanPicture picture;
   picture.what = what;
   picture.scan = station.scan;
@@ -113,7 +111,8 @@ CameraPicture completed(const ScanImage& what, const Image& image)
   require(what.projection == Projection::spherical || what.radius > 0, "a cylinder of radius ", what.radius, " m");
   const int height = std::ceil(pi / what.pixel_width);
   require(height >= 2 && height <= 20000, "a pixel of ", what.pixel_width, " radians");
-  CameraPicture out{sphericalCamera(2 * height, height), Image(2 * height, height), Image(2 * height, height, 1), false};
+  CameraPicture out{sphericalCamera(2 * height, height), Image(2 * height, height), Image(2 * height, height, 1),
+                    false};
   const PartialPanorama partial{what, double(image.width), double(image.height)};
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < 2 * height; ++x) {

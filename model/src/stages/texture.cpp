@@ -150,15 +150,16 @@ Figures textureFromViews(const Job& job, const TriangleMesh& mesh, const std::ve
     result.warnings.push_back(concat(given - views.size(), " pictures are not used: their scans have no place"));
   const auto isPanorama = [](const TextureView& view) { return view.camera.projection == CameraProjection::spherical; };
   const std::size_t panoramas = std::count_if(views.begin(), views.end(), isPanorama);
-  Figures figures = {{"made_of", panoramas == 0              ? "photographs"
-                                 : panoramas == views.size() ? "panoramas"
-                                                             : "photographs and panoramas"},
-                     {"photographs", views.size()},
-                     {"photographs_used", result.views_used},
-                     {"masks", std::count_if(views.begin(), views.end(), [](const auto& v) { return !v.mask_path.empty(); })},
-                     {"cameras", result.refined ? "refined" : "left as given"},
-                     {"disagreement_before_pixels", result.disagreement_before},
-                     {"disagreement_after_pixels", result.disagreement_after}};
+  Figures figures = {
+      {"made_of", panoramas == 0              ? "photographs"
+                  : panoramas == views.size() ? "panoramas"
+                                              : "photographs and panoramas"},
+      {"photographs", views.size()},
+      {"photographs_used", result.views_used},
+      {"masks", std::count_if(views.begin(), views.end(), [](const auto& v) { return !v.mask_path.empty(); })},
+      {"cameras", result.refined ? "refined" : "left as given"},
+      {"disagreement_before_pixels", result.disagreement_before},
+      {"disagreement_after_pixels", result.disagreement_after}};
   figures.update(writeModel(result, job.files));
   for (const auto& [phase, seconds] : result.seconds)
     figures["seconds"][phase] = seconds;

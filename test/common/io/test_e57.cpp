@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "simulation/sensors/e57_writer.h"
 #include "common/io/test_io_data.h"
 #include "io/points/e57/e57.h"
+#include "simulation/sensors/e57_writer.h"
 #include <fresco/core/constants.h>
 #include <fresco/io/point_io.h>
 #include <fresco/io/scan_images.h>
@@ -242,19 +242,21 @@ TEST(E57, PicturesAreTheBytesThatWereStored)
   const std::string picture(3000, 'p'), mask(70, 'm');
   const std::string sizes = "<imageWidth type=\"Integer\">640</imageWidth><imageHeight type=\"Integer\">480"
                             "</imageHeight>";
-  simulation::e57::Image pinhole{"<pinholeRepresentation type=\"Structure\"><pngImage type=\"Blob\" PICTURE/><imageMask "
-                           "type=\"Blob\" MASK/>" +
-                               sizes +
-                               "<focalLength type=\"Float\">0.01</focalLength><pixelWidth type=\"Float\">0.00002"
-                               "</pixelWidth><pixelHeight type=\"Float\">0.00001</pixelHeight><principalPointX "
-                               "type=\"Float\">320</principalPointX><principalPointY type=\"Float\">240"
-                               "</principalPointY></pinholeRepresentation>",
-                           picture, mask};
+  simulation::e57::Image pinhole{
+      "<pinholeRepresentation type=\"Structure\"><pngImage type=\"Blob\" PICTURE/><imageMask "
+      "type=\"Blob\" MASK/>" +
+          sizes +
+          "<focalLength type=\"Float\">0.01</focalLength><pixelWidth type=\"Float\">0.00002"
+          "</pixelWidth><pixelHeight type=\"Float\">0.00001</pixelHeight><principalPointX "
+          "type=\"Float\">320</principalPointX><principalPointY type=\"Float\">240"
+          "</principalPointY></pinholeRepresentation>",
+      picture, mask};
   pinhole.more = simulation::e57::poseXml(std::sqrt(0.5), std::sqrt(0.5), 1, 2, 3) +
                  "<associatedData3DGuid type=\"String\">guid of a</associatedData3DGuid>";
-  const simulation::e57::Image spherical{"<sphericalRepresentation type=\"Structure\"><jpegImage type=\"Blob\" PICTURE/>" +
-                                       sizes + "</sphericalRepresentation>",
-                                   "jpeg", ""};
+  const simulation::e57::Image spherical{
+      "<sphericalRepresentation type=\"Structure\"><jpegImage type=\"Blob\" PICTURE/>" + sizes +
+          "</sphericalRepresentation>",
+      "jpeg", ""};
   const std::string path = stored(simulation::e57::fileOf({Scan{"a", cartesian(3), 3}}, {pinhole, spherical}));
   const std::vector<ScanImage> images = readScanImages(path);
   ASSERT_EQ(images.size(), 2u);

@@ -57,8 +57,8 @@ Image wrapPanorama(const Image& panorama)
 
 Image blackEnds(const Image& panorama)
 {
-  constexpr int black = 10;        // of 255: what JPEG makes of 0
-  constexpr double whole = 0.99;   // share of a row; JPEG bleeds in single blocks
+  constexpr int black = 10;      // of 255: what JPEG makes of 0
+  constexpr double whole = 0.99; // share of a row; JPEG bleeds in single blocks
   const auto isBlack = [&](int x, int y) {
     const std::uint8_t* color = panorama.pixel(x, y);
     return std::max({color[0], color[1], color[2]}) <= black;

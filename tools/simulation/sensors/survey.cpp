@@ -83,8 +83,7 @@ void writeSurvey(const std::string& folder, const std::vector<Pose>& poses, cons
       images.push_back(packedPanorama(panorama, name, T_world_scan));
   }
   for (const View& view : photographs.views)
-    images.push_back(
-        packedPhotograph(folder + "/images/" + view.image, photographs.cameras[view.camera], view));
+    images.push_back(packedPhotograph(folder + "/images/" + view.image, photographs.cameras[view.camera], view));
   writeFile(folder + "/survey.e57", e57::fileOf(scans, images));
 }
 } // namespace fresco::simulation
