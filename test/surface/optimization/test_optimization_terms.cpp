@@ -22,7 +22,7 @@ OptimizationProblem problemOf(const TriangleMesh& mesh, const PointSet& points)
   problem.start = problem.x;
   problem.data = findCorrespondences(problem.graph, problem.x, points, problem.frame, 6, 1);
   problem.coverage =
-      findCoverage(problem.graph, problem.x, problem.data, pointsOfFaces(problem.data, problem.graph.faceCount()), 1);
+      findCoverage(problem.graph, problem.x, problem.data, sharePoints(problem.graph, problem.x, problem.data, 1), 1);
   return problem;
 }
 
@@ -113,15 +113,35 @@ TEST(OptimizationTerms, FollowingFindsTheClosestFaceAgain)
   EXPECT_LT(missed, followed.size() / 10);
 }
 
+TEST(OptimizationTerms, SharesOfADatumAreOneAndChangeLittle)
+{
+  const PointSet points = test::cubePoints(3000, 0.02);
+  OptimizationProblem problem = problemOf(test::roundedCube(8, 0.3), points);
+  const auto sharesAt = [&](const Positions& x) {
+    const FacePoints lists = sharePoints(problem.graph, x, problem.data, 1);
+    Eigen::MatrixXf shares = Eigen::MatrixXf::Zero(problem.graph.faceCount(), problem.data.size());
+    for (Index f = 0; f < problem.graph.faceCount(); ++f)
+      for (int j = lists.begin[f]; j < lists.begin[f + 1]; ++j)
+        shares(f, lists.order[j]) += lists.share[j];
+    return shares;
+  };
+  const Eigen::MatrixXf before = sharesAt(problem.x);
+  EXPECT_LT((before.colwise().sum().array() - 1.f).abs().maxCoeff(), 1e-5f);
+  EXPECT_GT((before.array() > 0.f).count(), 1.02 * problem.data.size()) << "none is shared";
+  const Eigen::MatrixXf after = sharesAt(problem.x + randomMove(problem.x.cols(), 1e-5, 3));
+  EXPECT_LT((after - before).cwiseAbs().maxCoeff(), 1e-2f); // a whole one where faces are changed at once
+}
+
 TEST(OptimizationTerms, SolverReachesTheMinimum)
 {
-  const OptimizationProblem problem = problemOf(test::roundedCube(6, 0.3), test::cubePoints(1000, 0.02));
-  const FacePoints lists = pointsOfFaces(problem.data, problem.graph.faceCount());
+  OptimizationProblem problem = problemOf(test::roundedCube(6, 0.3), test::cubePoints(1000, 0.02));
+  const FacePoints lists = sharePoints(problem.graph, problem.x, problem.data, 1);
   Eigen::Matrix3Xf normals = areaVectors(problem.graph, problem.x, 1).cast<float>();
   normals.colwise().normalize();
   TermWeights weights;
   weights.robust = 3;
-  const QuadraticEnergy energy = makeEnergy(problem, lists, normals, dataResiduals(problem, normals, 1), weights, 1);
+  const QuadraticEnergy energy =
+      makeEnergy(problem, lists, normals, dataResiduals(problem, lists, normals, 1), weights, 1);
   const Positions move = solveMoves(energy, problem.graph, problem.x, 1000, 1);
   const double least = evaluate(energy, problem.graph, problem.x, move, 1).sum();
   EXPECT_LT(least, evaluate(energy, problem.graph, problem.x, Positions::Zero(3, move.cols()), 1).sum());
@@ -155,7 +175,7 @@ TEST(OptimizationTerms, InvertedFacesAreRepaired)
     return std::count(inverted.begin(), inverted.end(), char{1});
   };
   EXPECT_GT(inversions(), 0);
-  repairInverted(graph, start, std::vector<char>(x.cols(), 1), x, 1);
+  repairInverted(graph, start, Eigen::VectorXf::Ones(x.cols()), x, 1);
   EXPECT_EQ(inversions(), 0);
 }
 

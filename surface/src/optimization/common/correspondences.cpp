@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "optimization/common/correspondences.h"
 #include <algorithm>
+#include <cmath>
 #include <fresco/core/parallel.h>
 #include <fresco/search/closest_on_triangle.h>
 #include <fresco/search/triangle_tree.h>
+#include <limits>
 #include <numeric>
 namespace fresco::optimization {
 namespace {
@@ -105,7 +107,7 @@ public:
   {
     face_ = face;
     foot_ = footOn(graph_, x_, face, point_);
-    squared_ = squaredDistance(face, foot_);
+    squared_ = offsetFrom(graph_, x_, face, foot_, point_).squaredNorm();
     constexpr int longest_walk = 16; // faces; a step moves the mesh by less than 16 edges
     for (int step = 0; step < longest_walk; ++step) {
       const int last = face_;
@@ -131,20 +133,12 @@ private:
     if (face < 0 || face == face_)
       return;
     const Vector3d foot = footOn(graph_, x_, face, point_);
-    const double squared = squaredDistance(face, foot);
+    const double squared = offsetFrom(graph_, x_, face, foot, point_).squaredNorm();
     if (squared < squared_ && areaVector(graph_, x_, face).dot(normal_) >= 0.0) {
       face_ = face;
       foot_ = foot;
       squared_ = squared;
     }
-  }
-
-  double squaredDistance(int face, const Vector3d& foot) const
-  {
-    Vector3d offset = -point_;
-    for (int k = 0; k < 3; ++k)
-      offset += foot[k] * x_.col(graph_.faces(k, face));
-    return offset.squaredNorm();
   }
 
   const MeshGraph& graph_;
@@ -154,12 +148,154 @@ private:
   Vector3d foot_;
   double squared_ = 0;
 };
+struct FaceShare {
+  int face;
+  float share;
+};
+
+// The prisms over all faces, which tell quickly that a point is far from one.
+class FacePrisms {
+public:
+  FacePrisms(const MeshGraph& graph, const Positions& x, int threads) : planes_(graph.faceCount())
+  {
+    parallelFor(graph.faceCount(), threads, [&](Index f) {
+      Eigen::Matrix4f& planes = planes_[f];
+      planes.setZero(); // of a face without area: nothing is known
+      const Vector3d normal = areaVector(graph, x, f).stableNormalized();
+      for (int k = 0; k < 3 && !normal.isZero(0.0); ++k) {
+        const Vector3d a = x.col(graph.faces(k, f)), b = x.col(graph.faces((k + 1) % 3, f));
+        const Vector3d outward = (b - a).cross(normal).stableNormalized();
+        planes.row(k) << outward.cast<float>().transpose(), static_cast<float>(-outward.dot(a));
+        planes.row(3) << normal.cast<float>().transpose(), static_cast<float>(-normal.dot(a));
+      }
+    });
+  }
+
+  /// Not more than the squared distance of p to face f.
+  float leastSquaredDistance(int f, const Eigen::Vector3f& p) const
+  {
+    constexpr float rounding = 1e-3f; // mean edge lengths
+    const Eigen::Vector4f heights = planes_[f] * p.homogeneous();
+    const float beside = std::max(0.f, heights.head<3>().maxCoeff() - rounding),
+                above = std::max(0.f, std::abs(heights[3]) - rounding);
+    return beside * beside + above * above;
+  }
+
+private:
+  std::vector<Eigen::Matrix4f> planes_; ///< rows: outward planes of the sides, plane of the face
+};
+
+// The faces around `face` that are closest to p, with shares that fall to nothing where a face is farther off than the
+// closest by `width`. Faces that look away from the normal count as farther off.
+class Sharing {
+public:
+  Sharing(const MeshGraph& graph, const Positions& x, const FacePrisms& prisms) : graph_(graph), x_(x), prisms_(prisms)
+  {}
+
+  const std::vector<FaceShare>& shares(int face, const Vector3d& p, const Vector3d& normal)
+  {
+    collect(face, p, normal);
+    double sum = 0.0;
+    for (Candidate& c : candidates_)
+      sum += c.counted = ramp(c.counted, least_counted_ + width, least_counted_);
+    shares_.clear();
+    for (const Candidate& c : candidates_)
+      if (c.counted > 0.0)
+        shares_.push_back({c.face, static_cast<float>(c.counted / sum)});
+    return shares_;
+  }
+
+  /// The same face for the same shares, whichever it began with.
+  int most() const
+  {
+    constexpr float alike = 1e-3f; // of shares that only rounding tells apart
+    const FaceShare* best = &shares_.front();
+    for (const FaceShare& s : shares_)
+      if (s.share > best->share + alike || (s.share > best->share - alike && s.face < best->face))
+        best = &s;
+    return best->face;
+  }
+
+private:
+  struct Candidate {
+    int face;
+    double distance; ///< infinite where it is known to be too far
+    double counted;  ///< with the handicap
+  };
+
+  // Faces and their distances: those around the corners of `face` and of all that share p.
+  void collect(int face, const Vector3d& p, const Vector3d& normal)
+  {
+    constexpr std::size_t most_faces = 64; // where hundreds meet at a point
+    candidates_.clear();
+    least_ = least_counted_ = std::numeric_limits<double>::infinity();
+    add(face, p, normal);
+    for (std::size_t i = 0; i < candidates_.size() && candidates_.size() < most_faces; ++i)
+      for (int k = 0; k < 3 && candidates_[i].distance <= least_ + width; ++k)
+        for (const int f : facesAround(graph_, graph_.faces(k, candidates_[i].face)))
+          if (std::none_of(candidates_.begin(), candidates_.end(), [f](const Candidate& c) { return c.face == f; }))
+            add(f, p, normal);
+  }
+
+  void add(int f, const Vector3d& p, const Vector3d& normal)
+  {
+    Candidate next{f, std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
+    const double reach = least_counted_ + width;
+    if (!(prisms_.leastSquaredDistance(f, p.cast<float>()) > reach * reach)) {
+      next.distance = offsetFrom(graph_, x_, f, footOn(graph_, x_, f, p), p).norm();
+      next.counted = next.distance + handicap(f, normal);
+      least_ = std::min(least_, next.distance);
+      least_counted_ = std::min(least_counted_, next.counted);
+    }
+    candidates_.push_back(next);
+  }
+
+  // The more a face is turned away the more it counts as farther off.
+  double handicap(int f, const Vector3d& normal) const
+  {
+    constexpr double seen = 0.25, lengths = 4.0; // cosine; at 90 degrees one edge length farther, at 180 five
+    if (normal.isZero(0.0))
+      return 0.0;
+    const Vector3d area = areaVector(graph_, x_, f);
+    return lengths * std::max(0.0, seen - area.dot(normal) / (area.norm() + small_area));
+  }
+
+  static constexpr double width = 0.05; // mean edge lengths: wide against rounding, narrow against a rounded crease
+
+  const MeshGraph& graph_;
+  const Positions& x_;
+  const FacePrisms& prisms_;
+  std::vector<Candidate> candidates_;
+  double least_ = 0.0, least_counted_ = 0.0;
+  std::vector<FaceShare> shares_;
+};
+
+Vector3d normalOf(const DataPoints& data, Index i)
+{
+  return data.hasNormals() ? data.normals.col(i).cast<double>().eval() : Vector3d::Zero().eval();
+}
 } // namespace
 
 DataPoints findCorrespondences(const MeshGraph& graph, const Positions& x, const PointSet& set,
                                const WorkingFrame& frame, double reach, int threads)
 {
-  const Assigned assigned = assignFaces(graph, x, set, frame, reach, threads);
+  Assigned assigned = assignFaces(graph, x, set, frame, reach, threads);
+  const auto place = [&](Index column) -> Vector3d {
+    return (set.points.col(column).cast<double>() + set.origin - frame.center) / frame.unit;
+  };
+  const auto normal = [&](Index column) -> Eigen::Vector3f {
+    return set.hasNormals() && set.normals.col(column).allFinite() ? set.normals.col(column).stableNormalized()
+                                                                   : Eigen::Vector3f::Zero();
+  };
+  const FacePrisms prisms(graph, x, threads);
+  parallelRanges(assigned.columns.size(), threads, [&](Index first, Index end) { // of faces alike, always the same
+    Sharing sharing(graph, x, prisms);
+    for (Index i = first; i < end; ++i) {
+      const Index column = assigned.columns[i];
+      sharing.shares(assigned.faces[i], place(column), normal(column).cast<double>());
+      assigned.faces[i] = sharing.most();
+    }
+  });
   std::vector<int> begin;
   const std::vector<int> order = sortedByFace(assigned.faces, graph.faceCount(), begin);
   DataPoints data;
@@ -168,15 +304,15 @@ DataPoints findCorrespondences(const MeshGraph& graph, const Positions& x, const
   data.points.resize(3, count);
   data.normals.resize(3, set.hasNormals() ? count : 0);
   data.face.resize(count);
+  for (Index f = 0; f < graph.faceCount(); ++f)
+    for (int j = begin[f] + 1; j < begin[f + 1]; j += 2)
+      data.pairs.push_back(j);
   parallelFor(count, threads, [&](Index i) {
-    const std::size_t from = order[i];
-    const Index column = assigned.columns[from];
-    data.face[i] = assigned.faces[from];
-    data.points.col(i) =
-        ((set.points.col(column).cast<double>() + set.origin - frame.center) / frame.unit).cast<float>();
+    const Index column = assigned.columns[order[i]];
+    data.face[i] = assigned.faces[order[i]];
+    data.points.col(i) = place(column).cast<float>();
     if (set.hasNormals())
-      data.normals.col(i) = set.normals.col(column).allFinite() ? set.normals.col(column).stableNormalized().eval()
-                                                                : Eigen::Vector3f::Zero().eval();
+      data.normals.col(i) = normal(column);
   });
   return data;
 }
@@ -184,8 +320,7 @@ DataPoints findCorrespondences(const MeshGraph& graph, const Positions& x, const
 void followFaces(const MeshGraph& graph, const Positions& x, DataPoints& data, int threads)
 {
   parallelFor(data.size(), threads, [&](Index i) {
-    const Vector3d normal = data.hasNormals() ? data.normals.col(i).cast<double>().eval() : Vector3d::Zero().eval();
-    Walk walk(graph, x, data.points.col(i).cast<double>(), normal);
+    Walk walk(graph, x, data.points.col(i).cast<double>(), normalOf(data, i));
     data.face[i] = walk.from(data.face[i]);
   });
 }
@@ -194,7 +329,55 @@ FacePoints pointsOfFaces(const DataPoints& data, Index faces)
 {
   FacePoints lists;
   lists.order = sortedByFace(data.face, faces, lists.begin);
+  lists.share.assign(lists.order.size(), 1.f);
   return lists;
+}
+
+FacePoints sharePoints(const MeshGraph& graph, const Positions& x, DataPoints& data, int threads)
+{
+  constexpr Index block = 4096; // data that a thread takes at a time
+  struct Entry {
+    int point, face;
+    float share;
+  };
+  const FacePrisms prisms(graph, x, threads);
+  std::vector<std::vector<Entry>> parts((data.size() + block - 1) / block);
+  parallelRanges(
+      data.size(), threads,
+      [&](Index begin, Index end) {
+        Sharing sharing(graph, x, prisms);
+        std::vector<Entry>& part = parts[begin / block];
+        for (Index i = begin; i < end; ++i) {
+          for (const FaceShare& s : sharing.shares(data.face[i], data.points.col(i).cast<double>(), normalOf(data, i)))
+            part.push_back({static_cast<int>(i), s.face, s.share});
+          data.face[i] = sharing.most();
+        }
+      },
+      block);
+  FacePoints lists;
+  lists.begin.assign(graph.faceCount() + 1, 0);
+  for (const auto& part : parts)
+    for (const Entry& entry : part)
+      ++lists.begin[entry.face + 1];
+  std::partial_sum(lists.begin.begin(), lists.begin.end(), lists.begin.begin());
+  lists.order.resize(lists.begin.back());
+  lists.share.resize(lists.begin.back());
+  std::vector<int> next(lists.begin.begin(), lists.begin.end() - 1);
+  for (const auto& part : parts)
+    for (const Entry& entry : part) {
+      const int at = next[entry.face]++;
+      lists.order[at] = entry.point;
+      lists.share[at] = entry.share;
+    }
+  return lists;
+}
+
+Vector3d offsetFrom(const MeshGraph& graph, const Positions& x, Index f, const Vector3d& foot, const Vector3d& p)
+{
+  Vector3d offset = p;
+  for (int k = 0; k < 3; ++k)
+    offset -= foot[k] * x.col(graph.faces(k, f));
+  return offset;
 }
 
 Vector3d footOn(const MeshGraph& graph, const Positions& x, Index f, const Vector3d& p)

@@ -12,10 +12,11 @@ struct WorkingFrame {
 /// Points and the faces they correspond to. Sorted by the face they had at the start, so that what is near lies near in
 /// memory.
 struct DataPoints {
-  Points points;         ///< 3xN, working frame
-  Points normals;        ///< 3xN or 3x0
-  std::vector<int> face; ///< N, the face that each corresponds to
-  Index left_out = 0;    ///< points of the input that are not here
+  Points points;          ///< 3xN, working frame
+  Points normals;         ///< 3xN or 3x0
+  std::vector<int> face;  ///< N, the face that each corresponds to
+  std::vector<int> pairs; ///< data that had the same face at the start as the datum before them, each datum once
+  Index left_out = 0;     ///< points of the input that are not here
 
   Index size() const { return points.cols(); }
   bool hasNormals() const { return normals.cols() > 0; }
@@ -30,14 +31,24 @@ DataPoints findCorrespondences(const MeshGraph& graph, const Positions& x, const
 /// closest. Faces that look away from the normal of the point do not count.
 void followFaces(const MeshGraph& graph, const Positions& x, DataPoints& data, int threads);
 
-/// The points of each face: order[begin[f]] .. order[begin[f + 1] - 1], ascending.
+/// The points of each face: order[begin[f]] .. order[begin[f + 1] - 1], ascending, and what share of them.
 struct FacePoints {
   std::vector<int> begin, order;
+  std::vector<float> share; ///< as long as `order`; 1 for every point of a face together
   Index count(Index f) const { return begin[f + 1] - begin[f]; }
 };
 
+/// Every point belongs to its face, as a whole.
 FacePoints pointsOfFaces(const DataPoints& data, Index faces);
+
+/// Points that are about as close to other faces around theirs belong to these in part, so that no point changes its
+/// face at once. data.face becomes the face with the greatest share.
+FacePoints sharePoints(const MeshGraph& graph, const Positions& x, DataPoints& data, int threads);
 
 /// Barycentric coordinates of the point of triangle f that is closest to p.
 Eigen::Vector3d footOn(const MeshGraph& graph, const Positions& x, Index f, const Eigen::Vector3d& p);
+
+/// From the point of triangle f with barycentric coordinates `foot` to p.
+Eigen::Vector3d offsetFrom(const MeshGraph& graph, const Positions& x, Index f, const Eigen::Vector3d& foot,
+                           const Eigen::Vector3d& p);
 } // namespace fresco::optimization

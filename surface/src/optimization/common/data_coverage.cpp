@@ -9,96 +9,70 @@ namespace fresco::optimization {
 namespace {
 using Eigen::Vector3d;
 
-struct Seeds {
-  std::vector<int> of_vertex; // face with points, or -1
-  Eigen::Matrix3Xf middle;    // F, mean of the face's points
-};
-
-Eigen::Matrix3Xf middles(const DataPoints& data, const FacePoints& lists, Index faces, int threads)
+// Nearer datum for v, of `datum` and `best`; the smaller index where both are equally far.
+void improve(const DataPoints& data, const Vector3d& v, int datum, int& best, double& squared)
 {
-  Eigen::Matrix3Xf middle = Eigen::Matrix3Xf::Zero(3, faces);
-  parallelFor(faces, threads, [&](Index f) {
-    for (int i = lists.begin[f]; i < lists.begin[f + 1]; ++i)
-      middle.col(f) += data.points.col(lists.order[i]);
-    const float count = lists.count(f);
-    if (count > 0.f)
-      middle.col(f) /= count;
-  });
-  return middle;
-}
-
-// Nearer seed for v, of `seed` and `best`; the smaller index where both are equally far.
-void improve(const Eigen::Matrix3Xf& middle, const Vector3d& v, int seed, int& best, double& squared)
-{
-  if (seed < 0 || seed == best)
+  if (datum < 0 || datum == best)
     return;
-  const double own = (middle.col(seed).cast<double>() - v).squaredNorm();
-  if (own < squared || (own == squared && seed < best)) {
+  const double own = (data.points.col(datum).cast<double>() - v).squaredNorm();
+  if (own < squared || (own == squared && datum < best)) {
     squared = own;
-    best = seed;
+    best = datum;
   }
 }
 
-std::vector<int> firstSeeds(const MeshGraph& graph, const Positions& x, const FacePoints& lists,
-                            const Eigen::Matrix3Xf& middle, int threads)
-{
-  std::vector<int> seed(graph.vertexCount(), -1);
-  parallelFor(graph.vertexCount(), threads, [&](Index v) {
-    double squared = std::numeric_limits<double>::infinity();
-    for (const int f : facesAround(graph, v))
-      if (lists.count(f) > 0)
-        improve(middle, x.col(v), f, seed[v], squared);
-  });
-  return seed;
-}
-
-Seeds spreadSeeds(const MeshGraph& graph, const Positions& x, const DataPoints& data, const FacePoints& lists,
-                  int threads)
+// The nearest datum of each vertex, along the mesh; -1 = none.
+std::vector<int> nearestData(const MeshGraph& graph, const Positions& x, const DataPoints& data,
+                             const FacePoints& lists, int threads)
 {
   constexpr int most_rings = 24; // data so sparse that they are farther apart say nothing of what lies between
-  Seeds seeds;
-  seeds.middle = middles(data, lists, graph.faceCount(), threads);
-  seeds.of_vertex = firstSeeds(graph, x, lists, seeds.middle, threads);
-  std::vector<int> next(seeds.of_vertex.size());
+  constexpr double none = std::numeric_limits<double>::infinity();
+  std::vector<int> nearest(graph.vertexCount(), -1), next(nearest.size());
+  parallelFor(graph.vertexCount(), threads, [&](Index v) {
+    double squared = none;
+    for (const int f : facesAround(graph, v))
+      for (int j = lists.begin[f]; j < lists.begin[f + 1]; ++j)
+        improve(data, x.col(v), lists.order[j], nearest[v], squared);
+  });
   for (int ring = 0; ring < most_rings; ++ring) {
     const Index changes = parallelSum(graph.vertexCount(), threads, Index{0}, [&](Index v) -> Index {
-      int best = seeds.of_vertex[v];
-      double squared = best < 0 ? std::numeric_limits<double>::infinity()
-                                : (seeds.middle.col(best).cast<double>() - x.col(v)).squaredNorm();
+      int best = nearest[v];
+      double squared = best < 0 ? none : (data.points.col(best).cast<double>() - x.col(v)).squaredNorm();
       for (const int e : edgesAround(graph, v))
-        improve(seeds.middle, x.col(v), seeds.of_vertex[graph.otherVertex(e, v)], best, squared);
+        improve(data, x.col(v), nearest[graph.otherVertex(e, v)], best, squared);
       next[v] = best;
-      return best != seeds.of_vertex[v] ? 1 : 0;
+      return best != nearest[v] ? 1 : 0;
     });
-    seeds.of_vertex.swap(next);
+    nearest.swap(next);
     if (changes == 0)
       break;
   }
-  return seeds;
+  return nearest;
 }
 
-// Distance of each seed to its second nearest neighbour: one close companion says nothing of the others.
-std::vector<double> seedSpacing(const MeshGraph& graph, const Seeds& seeds, Index faces)
+// Distance of each datum that is nearest to a vertex to its second nearest neighbour among these: one close companion
+// says nothing of the others.
+std::vector<double> spacingOf(const MeshGraph& graph, const DataPoints& data, const std::vector<int>& nearest)
 {
   constexpr double none = std::numeric_limits<double>::infinity();
-  std::vector<double> first(faces, none), second(faces, none);
-  std::vector<int> nearest(faces, -1);
-  const auto tell = [&](int seed, int other, double distance) {
-    if (nearest[seed] == other)
+  std::vector<double> first(data.size(), none), second(data.size(), none);
+  std::vector<int> companion(data.size(), -1);
+  const auto tell = [&](int datum, int other, double distance) {
+    if (companion[datum] == other)
       return;
-    if (distance < first[seed]) {
-      second[seed] = first[seed];
-      first[seed] = distance;
-      nearest[seed] = other;
-    } else if (distance < second[seed]) {
-      second[seed] = distance;
+    if (distance < first[datum]) {
+      second[datum] = first[datum];
+      first[datum] = distance;
+      companion[datum] = other;
+    } else if (distance < second[datum]) {
+      second[datum] = distance;
     }
   };
   for (const auto& [a, b] : graph.edges) {
-    const int s = seeds.of_vertex[a], t = seeds.of_vertex[b];
+    const int s = nearest[a], t = nearest[b];
     if (s < 0 || t < 0 || s == t)
       continue;
-    const double distance = (seeds.middle.col(s) - seeds.middle.col(t)).cast<double>().norm();
+    const double distance = (data.points.col(s) - data.points.col(t)).cast<double>().norm();
     tell(s, t, distance);
     tell(t, s, distance);
   }
@@ -118,40 +92,123 @@ std::vector<double> vertexAreas(const MeshGraph& graph, const Positions& x, int 
   });
   return areas;
 }
+
+struct NearDatum {
+  int datum;
+  double share, distance;
+};
+
+// The data nearest to v and to the vertices around it, with shares that fall to nothing where one is farther than the
+// nearest by `width`.
+void findNear(const MeshGraph& graph, const Positions& x, const DataPoints& data, const std::vector<int>& nearest,
+              Index v, std::vector<NearDatum>& near)
+{
+  constexpr double width = 0.25; // mean edge lengths
+  near.clear();
+  double least = std::numeric_limits<double>::infinity(), sum = 0.0;
+  const auto add = [&](int datum) {
+    if (datum < 0 || std::any_of(near.begin(), near.end(), [&](const NearDatum& n) { return n.datum == datum; }))
+      return;
+    near.push_back({datum, 0.0, (data.points.col(datum).cast<double>() - x.col(v)).norm()});
+    least = std::min(least, near.back().distance);
+  };
+  add(nearest[v]);
+  for (const int e : edgesAround(graph, v))
+    add(nearest[graph.otherVertex(e, v)]);
+  for (NearDatum& n : near)
+    sum += n.share = ramp(n.distance, least + width, least);
+  for (NearDatum& n : near)
+    n.share /= sum;
+}
+
+// The area of vertices goes to the data on the faces around them by their barycentric coordinates, that of vertices
+// without such data to the nearest.
+class Covering {
+public:
+  Covering(const MeshGraph& graph, const Positions& x, const DataPoints& data, const FacePoints& lists, int threads)
+      : graph_(graph), x_(x), data_(data), lists_(lists), threads_(threads)
+  {}
+
+  DataCoverage run()
+  {
+    coverage_.vertex.assign(graph_.vertexCount(), 0);
+    coverage_.nearness.setZero(graph_.vertexCount());
+    coverage_.point_weight.setZero(data_.size());
+    const Eigen::VectorXd around = countAround();
+    const std::vector<double> areas = vertexAreas(graph_, x_, threads_);
+    std::vector<double> rate(areas.size()); // of a datum on the vertex
+    const std::vector<int> nearest = nearestData(graph_, x_, data_, lists_, threads_);
+    const std::vector<double> spacing = spacingOf(graph_, data_, nearest);
+    for (Index v = 0; v < graph_.vertexCount(); ++v) {
+      constexpr double enough = 0.5; // of a datum: takes the whole area
+      const double own = ramp(around[v], 0.0, enough);
+      rate[v] = areas[v] / std::max(around[v], enough);
+      giveToNearest(v, (1.0 - own) * areas[v], nearest, spacing);
+    }
+    for (Index f = 0; f < graph_.faceCount(); ++f)
+      for (int j = lists_.begin[f]; j < lists_.begin[f + 1]; ++j) {
+        const Vector3d foot = footOf(f, j);
+        for (int k = 0; k < 3; ++k)
+          coverage_.point_weight[lists_.order[j]] +=
+              static_cast<float>(lists_.share[j] * foot[k] * rate[graph_.faces(k, f)]);
+      }
+    return std::move(coverage_);
+  }
+
+private:
+  Vector3d footOf(Index f, int j) const
+  {
+    return footOn(graph_, x_, f, data_.points.col(lists_.order[j]).cast<double>());
+  }
+
+  // Data on the faces around each vertex, by their barycentric coordinates.
+  Eigen::VectorXd countAround() const
+  {
+    Eigen::VectorXd around = Eigen::VectorXd::Zero(graph_.vertexCount());
+    for (Index f = 0; f < graph_.faceCount(); ++f)
+      for (int j = lists_.begin[f]; j < lists_.begin[f + 1]; ++j) {
+        const Vector3d foot = footOf(f, j);
+        for (int k = 0; k < 3; ++k)
+          around[graph_.faces(k, f)] += lists_.share[j] * foot[k];
+      }
+    return around;
+  }
+
+  void giveToNearest(Index v, double area, const std::vector<int>& nearest, const std::vector<double>& spacing)
+  {
+    // Lengths of an edge, or of the distance between neighbouring data where that is longer: two and a half pass over
+    // one missing datum, but not over two.
+    constexpr double reach_lengths = 2.5, near_lengths = 2.25;
+    findNear(graph_, x_, data_, nearest, v, near_);
+    double nearness = 0.0;
+    for (const NearDatum& n : near_) {
+      const double unit = std::max(1.0, spacing[n.datum]);
+      const double part = n.share * ramp(n.distance, reach_lengths * unit, near_lengths * unit);
+      nearness += part;
+      coverage_.point_weight[n.datum] += static_cast<float>(part * area);
+    }
+    coverage_.nearness[v] = static_cast<float>(nearness);
+    coverage_.vertex[v] = nearness > 0.0 ? 1 : 0;
+  }
+
+  const MeshGraph& graph_;
+  const Positions& x_;
+  const DataPoints& data_;
+  const FacePoints& lists_;
+  int threads_;
+  DataCoverage coverage_;
+  std::vector<NearDatum> near_;
+};
 } // namespace
 
 DataCoverage findCoverage(const MeshGraph& graph, const Positions& x, const DataPoints& data, const FacePoints& lists,
                           int threads)
 {
-  // Lengths of an edge, or of the distance between neighbouring data where that is longer: two and a half pass over one
-  // missing datum, but not over two.
-  constexpr double reach_lengths = 2.5;
-  const Seeds seeds = spreadSeeds(graph, x, data, lists, threads);
-  const std::vector<double> spacing = seedSpacing(graph, seeds, graph.faceCount());
-  const std::vector<double> areas = vertexAreas(graph, x, threads);
-  DataCoverage coverage;
-  coverage.vertex.assign(graph.vertexCount(), 0);
-  Eigen::VectorXf face_area = Eigen::VectorXf::Zero(graph.faceCount());
-  for (Index v = 0; v < graph.vertexCount(); ++v) {
-    const int s = seeds.of_vertex[v];
-    if (s < 0)
-      continue;
-    const double reach = reach_lengths * std::max(1.0, spacing[s]);
-    if ((seeds.middle.col(s).cast<double>() - x.col(v)).norm() > reach)
-      continue;
-    coverage.vertex[v] = 1;
-    const float area = areas[v];
-    face_area[s] += area;
-  }
-  coverage.point_weight.setZero(data.size());
+  DataCoverage coverage = Covering(graph, x, data, lists, threads).run();
   std::vector<float> spacings;
-  for (Index i = 0; i < data.size(); ++i) {
-    const Index f = data.face[i];
-    const float count = lists.count(f);
-    coverage.point_weight[i] = face_area[f] / count;
-    if (coverage.point_weight[i] > 0.f)
-      spacings.push_back(std::sqrt(coverage.point_weight[i]));
-  }
+  for (const float weight : coverage.point_weight)
+    if (weight > 0.f)
+      spacings.push_back(std::sqrt(weight));
   if (!spacings.empty())
     coverage.spacing = median(spacings);
   return coverage;

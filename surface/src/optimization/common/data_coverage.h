@@ -5,12 +5,15 @@ namespace fresco::optimization {
 /// Which part of the surface each datum stands for, and where there are no data.
 struct DataCoverage {
   std::vector<char> vertex;     ///< V, 1 where data are near
+  Eigen::VectorXf nearness;     ///< V, 1 near data; falls to 0 where `vertex` does
   Eigen::VectorXf point_weight; ///< per datum, area that it stands for; 0 where it covers nothing
   double spacing = 0;           ///< between data, median; mean edge lengths
 };
 
-/// Every vertex is given to the nearest face that holds points, along the mesh. Vertices much farther from it than it
-/// is from its own neighbours are not covered.
+/// Every datum gets a part of the area of the vertices of its face; vertices without data on the faces around them are
+/// given to the nearest datum, along the mesh, or shared by those that are about as near. Vertices much farther from it
+/// than it is from its own neighbours are not covered.
+/// @param lists of sharePoints()
 DataCoverage findCoverage(const MeshGraph& graph, const Positions& x, const DataPoints& data, const FacePoints& lists,
                           int threads);
 } // namespace fresco::optimization

@@ -2,28 +2,31 @@
 #include "optimization/common/inversion_guard.h"
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 #include <fresco/core/parallel.h>
+#include <numeric>
 namespace fresco::optimization {
 namespace {
 using Eigen::Vector3d;
 
 constexpr int halvings = 5; // of a move before it is given up: what is left of it, 3 %, is below what a step gains
 
-Vector3d movedAreaVector(const MeshGraph& graph, const Positions& x, const Positions& move, Index f)
+// How much of `move` face f can take: all, or up to where nearly nothing is left of its area.
+double partAllowed(const MeshGraph& graph, const Positions& x, const Positions& move, const Vector3d& normal, Index f)
 {
-  Vector3d corner[3];
-  for (int k = 0; k < 3; ++k)
-    corner[k] = x.col(graph.faces(k, f)) + move.col(graph.faces(k, f));
-  return (corner[1] - corner[0]).cross(corner[2] - corner[0]);
-}
-
-bool isInvertedBy(const MeshGraph& graph, const Positions& x, const Positions& move, const Vector3d& normal, Index f)
-{
-  constexpr double least_area = 1e-4; // squared mean edge lengths: the area vector of a needle below is mostly rounding
-  if (graph.face_edges(0, f) < 0 || normal.squaredNorm() == 0.0)
-    return false;
-  const double after = movedAreaVector(graph, x, move, f).dot(normal);
-  return after < least_area && after < areaVector(graph, x, f).dot(normal);
+  // A face that is small or inverted may lose `slack` more. A tenth is left of others.
+  constexpr double slack = 0.5 * small_area, least_share = 0.1;
+  const auto corner = [&](const Positions& of, int k) -> Vector3d { return of.col(graph.faces(k, f)); };
+  const Vector3d e1 = corner(x, 1) - corner(x, 0), e2 = corner(x, 2) - corner(x, 0),
+                 m1 = corner(move, 1) - corner(move, 0), m2 = corner(move, 2) - corner(move, 0);
+  // The area along the normal after the part t of the move: before + linear t + square t^2. A positive square is left
+  // out: whether the area comes back before it is gone would be decided at once.
+  const double before = e1.cross(e2).dot(normal), linear = (e1.cross(m2) + m1.cross(e2)).dot(normal),
+               square = std::min(0.0, m1.cross(m2).dot(normal));
+  const double most_lost = before - std::min(least_share * before, before - slack);
+  // The least t > 0 with linear t + square t^2 = -most_lost, in a form without cancellation.
+  const double denominator = -linear + std::sqrt(linear * linear - 4.0 * square * most_lost);
+  return denominator > 2.0 * most_lost ? 2.0 * most_lost / denominator : 1.0;
 }
 
 // Marks the corners of an inverted face that can still be moved back, and where there is none, the ring around it: with
@@ -48,47 +51,28 @@ bool touchInverted(const MeshGraph& graph, Index f, const std::vector<char>& tim
   return any;
 }
 
-// Free vertices inside the surface that `which` names go to the middle of their neighbours.
-template <typename Which>
-void relaxWhere(const MeshGraph& graph, const std::vector<char>& free, Positions& x, int threads, const Which& which)
+void sortUnique(std::vector<int>& numbers)
+{
+  std::sort(numbers.begin(), numbers.end());
+  numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
+}
+
+// Vertices inside the surface go to the middle of their neighbours, the share(v) of the way.
+template <typename Share>
+void relaxBy(const MeshGraph& graph, Positions& x, int threads, const Share& share)
 {
   const Positions before = x;
   parallelFor(graph.vertexCount(), threads, [&](Index v) {
-    if (free[v] && !graph.border[v] && edgesAround(graph, v).size() > 0 && which(v))
-      x.col(v) = meanOfNeighbours(graph, before, v);
-  });
-}
-} // namespace
-
-void limitMoves(const MeshGraph& graph, const Positions& x, const Eigen::Matrix3Xf& normals, Positions& move,
-                int threads)
-{
-  constexpr int limit_rounds = 40; // a vertex given up can invert a face of its neighbours, but not for long
-  std::vector<char> inverted(graph.faceCount()), times(graph.vertexCount(), 0);
-  for (int round = 0; round < limit_rounds; ++round) {
-    const Index count = parallelSum(graph.faceCount(), threads, Index{0}, [&](Index f) -> Index {
-      inverted[f] = isInvertedBy(graph, x, move, normals.col(f).cast<double>(), f) ? 1 : 0;
-      return inverted[f];
-    });
-    if (count == 0)
+    if (graph.border[v] || edgesAround(graph, v).size() == 0)
       return;
-    parallelFor(graph.vertexCount(), threads, [&](Index v) {
-      for (const int f : facesAround(graph, v))
-        if (inverted[f]) {
-          move.col(v) *= ++times[v] > halvings ? 0.0 : 0.5;
-          times[v] = std::min<char>(times[v], halvings);
-          return;
-        }
-    });
-  }
-  parallelFor(graph.vertexCount(), threads, [&](Index v) {
-    for (const int f : facesAround(graph, v))
-      if (inverted[f])
-        move.col(v).setZero();
+    if (const double way = share(v); way > 0.0)
+      x.col(v) += way * (meanOfNeighbours(graph, before, v) - before.col(v));
   });
 }
 
-std::vector<char> invertedFaces(const MeshGraph& graph, const Positions& x, int threads)
+// F, cosine of the angle between each face and the area-weighted mean of the faces around its corners, nearer to 0 the
+// smaller the face.
+Eigen::VectorXd facing(const MeshGraph& graph, const Positions& x, int threads)
 {
   const Eigen::Matrix3Xd areas = areaVectors(graph, x, threads);
   Positions around = Positions::Zero(3, graph.vertexCount());
@@ -96,39 +80,91 @@ std::vector<char> invertedFaces(const MeshGraph& graph, const Positions& x, int 
     for (const int f : facesAround(graph, v))
       around.col(v) += areas.col(f);
   });
-  std::vector<char> inverted(graph.faceCount(), 0);
+  Eigen::VectorXd cosines(graph.faceCount());
   parallelFor(graph.faceCount(), threads, [&](Index f) {
-    if (graph.face_edges(0, f) < 0)
-      return;
     Vector3d mean = Vector3d::Zero();
     for (int k = 0; k < 3; ++k)
       mean += around.col(graph.faces(k, f));
-    inverted[f] = areas.col(f).dot(mean) < 0.0 ? 1 : 0;
+    const double lengths = (areas.col(f).norm() + 3.0 * small_area) * mean.norm();
+    cosines[f] = graph.face_edges(0, f) < 0 || !(lengths > 0.0) ? 1.0 : areas.col(f).dot(mean) / lengths;
   });
+  return cosines;
+}
+} // namespace
+
+Eigen::VectorXf limitMoves(const MeshGraph& graph, const Positions& x, const Eigen::Matrix3Xf& normals, Positions& move,
+                           int threads)
+{
+  constexpr int most_rounds = 40; // a vertex held back can invert a face of its neighbours, but not for long
+  constexpr double all = 1.0 - 1e-6;
+  Eigen::VectorXf left = Eigen::VectorXf::Ones(graph.vertexCount());
+  Eigen::VectorXd part = Eigen::VectorXd::Ones(graph.faceCount());
+  // The vertices whose moves the last round made shorter: only the faces around them can allow less than they did.
+  std::vector<int> faces(graph.faceCount()), held;
+  std::iota(faces.begin(), faces.end(), 0);
+  for (int round = 0; round < most_rounds; ++round) {
+    parallelFor(faces.size(), threads, [&](Index i) {
+      const int f = faces[i];
+      const Vector3d normal = normals.col(f).cast<double>();
+      part[f] = graph.face_edges(0, f) < 0 || normal.isZero(0.0) ? 1.0 : partAllowed(graph, x, move, normal, f);
+    });
+    if (std::all_of(faces.begin(), faces.end(), [&](int f) { return part[f] >= all; }))
+      break;
+    held.clear();
+    for (const int f : faces)
+      if (part[f] < 1.0)
+        held.insert(held.end(), graph.faces.col(f).begin(), graph.faces.col(f).end());
+    sortUnique(held);
+    faces.clear();
+    parallelFor(held.size(), threads, [&](Index i) {
+      double least = 1.0;
+      for (const int f : facesAround(graph, held[i]))
+        least = std::min(least, part[f]);
+      move.col(held[i]) *= least;
+      left[held[i]] *= static_cast<float>(least);
+    });
+    for (const int v : held)
+      faces.insert(faces.end(), facesAround(graph, v).begin(), facesAround(graph, v).end());
+    sortUnique(faces);
+  }
+  return left;
+}
+
+std::vector<char> invertedFaces(const MeshGraph& graph, const Positions& x, int threads)
+{
+  const Eigen::VectorXd cosines = facing(graph, x, threads);
+  std::vector<char> inverted(graph.faceCount());
+  for (Index f = 0; f < graph.faceCount(); ++f)
+    inverted[f] = cosines[f] < 0.0 ? 1 : 0;
   return inverted;
 }
 
-void relaxInverted(const MeshGraph& graph, const std::vector<char>& free, Positions& x, int threads)
+void relaxInverted(const MeshGraph& graph, const Eigen::VectorXf& part, Positions& x, int threads)
 {
-  const std::vector<char> inverted = invertedFaces(graph, x, threads);
-  relaxWhere(graph, free, x, threads, [&](Index v) {
-    const IntRange faces = facesAround(graph, v);
-    return std::any_of(faces.begin(), faces.end(), [&](int f) { return inverted[f]; });
+  constexpr double inverted = -0.4; // from 90 degrees to here the way grows from nothing to all
+  const Eigen::VectorXd cosines = facing(graph, x, threads);
+  relaxBy(graph, x, threads, [&](Index v) {
+    double least = 1.0;
+    for (const int f : facesAround(graph, v))
+      least = std::min(least, cosines[f]);
+    return part[v] * ramp(least, 0.0, inverted);
   });
 }
 
-void relaxStuck(const MeshGraph& graph, const std::vector<char>& free, const Positions& move, Positions& x, int threads)
+void relaxStuck(const MeshGraph& graph, const Eigen::VectorXf& part, const Eigen::VectorXf& left, Positions& x,
+                int threads)
 {
-  relaxWhere(graph, free, x, threads, [&](Index v) { return move.col(v).squaredNorm() == 0.0; });
+  constexpr double hardly = 0.05; // of a move: what is left of it gains nothing
+  relaxBy(graph, x, threads, [&](Index v) { return part[v] * ramp(left[v], hardly, 0.0); });
 }
 
-Index repairInverted(const MeshGraph& graph, const Positions& start, const std::vector<char>& free, Positions& x,
+Index repairInverted(const MeshGraph& graph, const Positions& start, const Eigen::VectorXf& part, Positions& x,
                      int threads)
 {
   constexpr int relaxations = 3; // each reaches one ring farther; what is inverted over a wider part goes back
   const std::vector<char> before = invertedFaces(graph, start, threads);
   for (int round = 0; round < relaxations; ++round)
-    relaxInverted(graph, free, x, threads);
+    relaxInverted(graph, part, x, threads);
   std::vector<char> times(graph.vertexCount(), 0), touched(graph.vertexCount());
   for (bool again = true; again;) {
     again = false;

@@ -1,12 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <array>
 #include <fresco/core/mesh.h>
 #include <vector>
 namespace fresco::optimization {
 /// Vertex positions of the optimiser: origin in the middle of the mesh, mean edge length 1.
 using Positions = Eigen::Matrix3Xd;
+
+/// 0 up to `zero`, 1 from `one` on (which may be the smaller), linear between. A decision that falls at one value lets
+/// rounding choose between two surfaces; all decisions of the optimiser fall over a ramp.
+inline double ramp(double value, double zero, double one)
+{
+  return std::clamp((value - zero) / (one - zero), 0.0, 1.0);
+}
 
 /// Who touches whom in a mesh. Faces with a repeated index have no edges and touch nobody.
 struct MeshGraph {
@@ -74,6 +82,10 @@ inline Eigen::Vector3d areaVector(const MeshGraph& graph, const Positions& x, In
   const Eigen::Vector3d a = x.col(graph.faces(0, f));
   return (x.col(graph.faces(1, f)) - a).cross(x.col(graph.faces(2, f)) - a);
 }
+
+/// Twice an area, squared mean edge lengths; that of an equilateral triangle is 0.87. Directions of smaller faces turn too
+/// much with what moves their corners a little to decide anything.
+constexpr double small_area = 0.1;
 
 /// 3xF: areaVector() of every face, zero for degenerate ones.
 Eigen::Matrix3Xd areaVectors(const MeshGraph& graph, const Positions& x, int threads);

@@ -71,7 +71,7 @@ OptimizationProblem makeProblem(const TriangleMesh& mesh, const PointSet& points
   require(problem.data.size() > 0, "optimisation: no finite point lies within ", reach * problem.frame.unit, " (",
           reach, " mean edge lengths) of the mesh");
   problem.coverage = findCoverage(problem.graph, problem.x, problem.data,
-                                  pointsOfFaces(problem.data, problem.graph.faceCount()), threads);
+                                  sharePoints(problem.graph, problem.x, problem.data, threads), threads);
   return problem;
 }
 
@@ -83,7 +83,8 @@ void finish(const TriangleMesh& mesh, OptimizationProblem& problem, int threads,
   result.used_points = problem.data.size();
   result.left_out_points = problem.data.left_out;
   result.covered_vertices = std::count(covered.begin(), covered.end(), char{1});
-  result.restored_vertices = repairInverted(problem.graph, problem.start, covered, problem.x, threads);
+  result.restored_vertices =
+      repairInverted(problem.graph, problem.start, problem.coverage.nearness, problem.x, threads);
   result.mesh = movedMesh(mesh, problem, threads);
 }
 

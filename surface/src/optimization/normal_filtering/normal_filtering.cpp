@@ -65,44 +65,48 @@ NormalFilteringStep describe(const OptimizationProblem& problem, const Quadratic
   return step;
 }
 
-// One iteration. `noise` is that of the last one, and negative in the first; replaced.
-NormalFilteringStep improve(OptimizationProblem& problem, const NormalFilteringOptions& options, double& noise)
+// Makes `move` shorter where all of it would raise the energy, which is quadratic along it.
+void keepEnergyDown(const OptimizationProblem& problem, const QuadraticEnergy& energy, const NormalFilteringStep& step,
+                    Positions& move, int threads)
+{
+  const double half = evaluate(energy, problem.graph, problem.x, 0.5 * move, threads).sum() - step.before;
+  const double whole = step.after - step.before; // of a t + b t^2, as is `half`
+  const double linear = 4.0 * half - whole, square = whole - linear;
+  move *= linear < 0.0 && square > 0.0 ? std::min(1.0, -linear / square) : 0.0;
+}
+
+// One iteration, of which `part` is done: less where it is near the tolerance. `noise` is that of the last one, and
+// negative in the first. Both are replaced.
+NormalFilteringStep improve(OptimizationProblem& problem, const NormalFilteringOptions& options, double& part,
+                            double& noise)
 {
   constexpr int solver_rounds = 20; // of conjugate gradients: data change their faces before more would pay
   const int threads = options.threads;
   const Eigen::Matrix3Xd areas = areaVectors(problem.graph, problem.x, threads);
-  const FacePoints lists = pointsOfFaces(problem.data, problem.graph.faceCount());
+  const FacePoints lists = sharePoints(problem.graph, problem.x, problem.data, threads);
   NormalFilterOptions filter;
   filter.threads = threads;
   const double normal_weight = noise < 0.0 ? 0.0 : normalWeight(noise);
   const Eigen::Matrix3Xf normals =
       filterNormals(problem.graph, areas, dataNormals(problem, areas, lists, normal_weight, threads), filter);
-  const Eigen::VectorXf residuals = dataResiduals(problem, normals, threads);
-  noise = noiseOf(lists, residuals);
+  const Eigen::VectorXf residuals = dataResiduals(problem, lists, normals, threads);
+  noise = noiseOf(problem.data, lists, residuals);
   const QuadraticEnergy energy =
       makeEnergy(problem, lists, normals, residuals, weightsFor(problem, noise, options), threads);
   Positions move = solveMoves(energy, problem.graph, problem.x, solver_rounds, threads);
   keepNearStart(problem, move, threads);
-  limitMoves(problem.graph, problem.x, normals, move, threads);
+  const Eigen::VectorXf left = limitMoves(problem.graph, problem.x, normals, move, threads);
   NormalFilteringStep step = describe(problem, energy, move, threads);
-  for (; step.after > step.before && step.move > 0.0; step = describe(problem, energy, move, threads))
-    move *= 0.5;
-  problem.x += move;
-  relaxInverted(problem.graph, problem.coverage.vertex, problem.x, threads);
-  relaxStuck(problem.graph, problem.coverage.vertex, move, problem.x, threads);
+  if (step.after > step.before) {
+    keepEnergyDown(problem, energy, step, move, threads);
+    step = describe(problem, energy, move, threads);
+  }
+  part *= ramp(step.move, options.tolerance, 2.0 * options.tolerance + 1e-12);
+  problem.x += part * move;
+  const Eigen::VectorXf relaxed = static_cast<float>(part) * problem.coverage.nearness;
+  relaxInverted(problem.graph, relaxed, problem.x, threads);
+  relaxStuck(problem.graph, relaxed, left, problem.x, threads);
   return step;
-}
-
-// Data that contradict each other, because of noise as large as the things they show, have no surface to converge to:
-// further steps only cut it into facets.
-bool stagnates(const std::vector<NormalFilteringStep>& steps)
-{
-  constexpr double large_move = 0.05; // mean edge lengths, RMS: steps on fandisk are smaller from the fourth on
-  // Of the last step but one: with less the count ends before the steps do. On fandisk it is 0.4 to 0.75 while steps are
-  // large. The ratio to the step just before is not looked at: of steps that settle it is 0.75 to 1, as rounding has it.
-  constexpr double least_shrink = 0.81;
-  const std::size_t n = steps.size();
-  return n > 2 && steps[n - 1].move > large_move && steps[n - 1].move > least_shrink * steps[n - 3].move;
 }
 
 // Iterations over `problem`, then rounds of edge flips; fills what `finish` does not.
@@ -114,11 +118,18 @@ public:
 
   void iterate(const Progress& progress)
   {
-    for (int i = 0; i < options_.iterations && !result_.converged && !stagnating_; ++i) {
+    // The first steps find the surface. Those after them refine it, and wander where nothing settles: where data
+    // contradict each other they cut it into facets, and they magnify any rounding. So they grow shorter, to nothing
+    // after nine more. Denser meshes than data lose a little of their exactness by it.
+    constexpr int whole_steps = 5;
+    constexpr double shorter = 0.65, least_part = 0.02; // less cannot be seen
+    double part = 1.0;
+    for (int i = 0; i < options_.iterations && part > least_part; ++i) {
       report(progress, "optimize", 0.1 + 0.75 * i / options_.iterations);
-      step();
-      stagnating_ = stagnates(result_.steps);
+      step(part);
+      part *= i + 1 < whole_steps ? 1.0 : shorter;
     }
+    result_.converged = result_.steps.back().move <= 2.0 * options_.tolerance;
   }
 
   void flip(const Progress& progress)
@@ -131,24 +142,23 @@ public:
       result_.flipped_edges += flipped;
       if (flipped == 0)
         break;
-      if ((round + 1) % between == 0 && !stagnating_)
-        step();
+      double part = 1.0;
+      if ((round + 1) % between == 0)
+        step(part);
     }
   }
 
 private:
-  void step()
+  void step(double& part)
   {
     if (!result_.steps.empty())
       followFaces(problem_.graph, problem_.x, problem_.data, options_.threads);
-    result_.steps.push_back(improve(problem_, options_, result_.noise));
-    result_.converged = result_.steps.back().move <= options_.tolerance;
+    result_.steps.push_back(improve(problem_, options_, part, result_.noise));
   }
 
   OptimizationProblem& problem_;
   const NormalFilteringOptions& options_;
   NormalFilteringResult& result_;
-  bool stagnating_ = false;
 };
 } // namespace
 

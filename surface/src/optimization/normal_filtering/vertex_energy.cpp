@@ -54,11 +54,10 @@ Eigen::VectorXf misfitGains(const OptimizationProblem& problem, const FacePoints
     double sum = 0.0, count = 0.0;
     for (const int f : facesAround(problem.graph, v))
       for (int j = lists.begin[f]; j < lists.begin[f + 1]; ++j) {
-        const double e = residuals[lists.order[j]];
-        if (std::abs(e) > weights.robust)
-          continue;
-        sum += e;
-        ++count;
+        const double e = residuals[j];
+        const double share = lists.share[j] * ramp(std::abs(e), weights.robust, 0.5 * weights.robust);
+        sum += share * e;
+        count += share;
       }
     if (count > 0.0)
       gains[v] = std::clamp(sum * sum / (count * noise * noise * significant), 1.0, greatest_gain);
@@ -76,9 +75,9 @@ FaceTerm faceTerm(const OptimizationProblem& problem, const FacePoints& lists, c
   for (int j = lists.begin[f]; j < lists.begin[f + 1]; ++j) {
     const int i = lists.order[j];
     const Vector3d foot = footOn(problem.graph, problem.x, f, problem.data.points.col(i).cast<double>());
-    const double weight =
-        gain * problem.coverage.point_weight[i] * pointWeight(problem.data, i, residuals[i], term, weights.robust);
-    addDatum(term, foot, residuals[i], weight);
+    const double weight = gain * lists.share[j] * problem.coverage.point_weight[i] *
+                          pointWeight(problem.data, i, residuals[j], term, weights.robust);
+    addDatum(term, foot, residuals[j], weight);
   }
   return term;
 }
@@ -86,9 +85,9 @@ FaceTerm faceTerm(const OptimizationProblem& problem, const FacePoints& lists, c
 // Projection on the directions in which no face around v says where it should be: a plane, a crease's line, nothing.
 Matrix3d freeDirections(const OptimizationProblem& problem, const std::vector<FaceTerm>& faces, Index v)
 {
-  // A direction is free if the normals around have less than this share of their squares in it: two normals 16 degrees
-  // apart, weighted alike, are a crease.
-  constexpr double free_share = 0.02;
+  // A direction is free if the normals around have less than the first share of their squares in it, held from the
+  // second on: two normals 11 and 20 degrees apart, weighted alike.
+  constexpr double free_share = 0.01, held_share = 0.03;
   Matrix3d spread = Matrix3d::Zero();
   for (const int f : facesAround(problem.graph, v)) {
     const Vector3d n = faces[f].normal.cast<double>();
@@ -101,8 +100,8 @@ Matrix3d freeDirections(const OptimizationProblem& problem, const std::vector<Fa
   axes.computeDirect(spread / trace);
   Matrix3d directions = Matrix3d::Zero();
   for (int k = 0; k < 3; ++k)
-    if (axes.eigenvalues()[k] < free_share)
-      directions += axes.eigenvectors().col(k) * axes.eigenvectors().col(k).transpose();
+    directions += ramp(axes.eigenvalues()[k], held_share, free_share) * axes.eigenvectors().col(k) *
+                  axes.eigenvectors().col(k).transpose();
   return directions;
 }
 
@@ -112,11 +111,13 @@ VertexTerm vertexTerm(const OptimizationProblem& problem, const std::vector<Face
   constexpr double proximal = 1e-3; // keeps the system regular where nothing else holds a vertex; too little to be seen
   const Matrix3d directions = freeDirections(problem, faces, v);
   VertexTerm term;
-  term.tangential = (weights.tangential * directions + proximal * Matrix3d::Identity()).cast<float>();
+  // Where data end a vertex is held the more, the farther off they are.
+  const double nearness = problem.coverage.nearness[v], hold = proximal + (1.0 - nearness) / nearness;
+  term.tangential = (weights.tangential * directions + hold * Matrix3d::Identity()).cast<float>();
   if (problem.graph.border[v] || edgesAround(problem.graph, v).size() == 0)
     return term;
   const Vector3d middle = meanOfNeighbours(problem.graph, problem.x, v);
-  term.target = (directions * (middle - problem.x.col(v))).cast<float>();
+  term.target = (nearness * directions * (middle - problem.x.col(v))).cast<float>();
   return term;
 }
 
@@ -128,33 +129,34 @@ double robustDeviation(std::vector<float>& magnitudes)
 
 } // namespace
 
-Eigen::VectorXf dataResiduals(const OptimizationProblem& problem, const Eigen::Matrix3Xf& normals, int threads)
+Eigen::VectorXf dataResiduals(const OptimizationProblem& problem, const FacePoints& lists,
+                              const Eigen::Matrix3Xf& normals, int threads)
 {
-  const DataPoints& data = problem.data;
-  Eigen::VectorXf residuals(data.size());
-  parallelFor(data.size(), threads, [&](Index i) {
-    const int f = data.face[i];
-    const Vector3d p = data.points.col(i).cast<double>(), foot = footOn(problem.graph, problem.x, f, p);
-    Vector3d offset = p;
-    for (int k = 0; k < 3; ++k)
-      offset -= foot[k] * problem.x.col(problem.graph.faces(k, f));
-    residuals[i] = normals.col(f).cast<double>().dot(offset);
+  Eigen::VectorXf residuals(lists.order.size());
+  parallelFor(problem.graph.faceCount(), threads, [&](Index f) {
+    for (int j = lists.begin[f]; j < lists.begin[f + 1]; ++j) {
+      const Vector3d p = problem.data.points.col(lists.order[j]).cast<double>();
+      const Vector3d offset = offsetFrom(problem.graph, problem.x, f, footOn(problem.graph, problem.x, f, p), p);
+      residuals[j] = normals.col(f).cast<double>().dot(offset);
+    }
   });
   return residuals;
 }
 
-double noiseOf(const FacePoints& lists, const Eigen::VectorXf& residuals)
+double noiseOf(const DataPoints& data, const FacePoints& lists, const Eigen::VectorXf& residuals)
 {
   constexpr double least_pairs = 0.05; // of the data: enough of them for a median that holds for all
+  Eigen::VectorXf means = Eigen::VectorXf::Zero(data.size());
+  for (Index j = 0; j < residuals.size(); ++j)
+    means[lists.order[j]] += lists.share[j] * residuals[j];
   std::vector<float> magnitudes;
-  for (std::size_t f = 0; f + 1 < lists.begin.size(); ++f)
-    for (int j = lists.begin[f] + 1; j < lists.begin[f + 1]; j += 2)
-      magnitudes.push_back(std::abs(residuals[lists.order[j]] - residuals[lists.order[j - 1]]));
-  if (magnitudes.size() > least_pairs * residuals.size())
+  for (const int i : data.pairs)
+    magnitudes.push_back(std::abs(means[i] - means[i - 1]));
+  if (magnitudes.size() > least_pairs * data.size())
     return robustDeviation(magnitudes) / std::sqrt(2.0);
-  magnitudes.resize(residuals.size());
-  for (Index i = 0; i < residuals.size(); ++i)
-    magnitudes[i] = std::abs(residuals[i]);
+  magnitudes.assign(means.begin(), means.end());
+  for (float& magnitude : magnitudes)
+    magnitude = std::abs(magnitude);
   return robustDeviation(magnitudes);
 }
 
@@ -169,8 +171,8 @@ Eigen::Matrix3Xf dataNormals(const OptimizationProblem& problem, const Eigen::Ma
   parallelFor(problem.graph.faceCount(), threads, [&](Index f) {
     for (int j = lists.begin[f]; j < lists.begin[f + 1]; ++j) {
       const auto normal = data.normals.col(lists.order[j]);
-      if (normal.cast<double>().dot(areas.col(f)) > 0.0)
-        given.col(f) += problem.coverage.point_weight[lists.order[j]] * normal;
+      const float facing = ramp(normal.cast<double>().dot(areas.col(f)), 0.0, 0.1 * (areas.col(f).norm() + small_area));
+      given.col(f) += facing * lists.share[j] * problem.coverage.point_weight[lists.order[j]] * normal;
     }
     given.col(f) *= float_weight;
   });

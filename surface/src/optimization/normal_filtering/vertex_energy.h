@@ -10,14 +10,16 @@ struct TermWeights {
   double robust = 1;     ///< residual at which a datum has lost three quarters of its weight, mean edge lengths
 };
 
-/// Distance of each datum from its face along the face's target normal; mean edge lengths.
+/// Distance of each datum from each of its faces along the face's target normal, in the order of `lists`; mean edge
+/// lengths.
 /// @param normals 3xF
-Eigen::VectorXf dataResiduals(const OptimizationProblem& problem, const Eigen::Matrix3Xf& normals, int threads);
+Eigen::VectorXf dataResiduals(const OptimizationProblem& problem, const FacePoints& lists,
+                              const Eigen::Matrix3Xf& normals, int threads);
 
-/// Deviation of the data from the surface, from the differences between the residuals of data on the same face, so that
-/// what the mesh does not follow yet is not taken for noise; where few faces have several, from the residuals
-/// themselves.
-double noiseOf(const FacePoints& lists, const Eigen::VectorXf& residuals);
+/// Deviation of the data from the surface, from the differences between the residuals of data that began on the same
+/// face, so that what the mesh does not follow yet is not taken for noise; where few faces have several, from the
+/// residuals themselves.
+double noiseOf(const DataPoints& data, const FacePoints& lists, const Eigen::VectorXf& residuals);
 
 /// Mean normal of the data of each face that face its way, as long as the area that they stand for times
 /// `normal_weight`.

@@ -152,14 +152,18 @@ Positions solveMoves(const QuadraticEnergy& energy, const MeshGraph& graph, cons
   Positions direction = z;
   double rho = dot(residual, z, threads);
   const double enough = 1e-4 * rho; // a hundredth of the first residual: the next iteration has another energy
-  for (int round = 0; round < rounds && rho > enough; ++round) {
+  double part = 1.0;                // of a round that counts, so that no round comes or goes at once
+  for (int round = 0; round < rounds; ++round) {
+    part = std::min(part, ramp(rho, enough, 2.0 * enough));
+    if (!(part > 0.0))
+      break;
     multiply(system, direction, shares, product);
     const double curvature = dot(direction, product, threads);
     if (!(curvature > 0.0))
       break;
     const double step = rho / curvature;
     parallelFor(system.size(), threads, [&](Index v) {
-      move.col(v) += step * direction.col(v);
+      move.col(v) += part * step * direction.col(v);
       residual.col(v) -= step * product.col(v);
     });
     precondition(system, inverse, residual, z);
