@@ -36,6 +36,8 @@ std::vector<std::string> scanFiles(const std::vector<std::string>& words)
 {
   std::vector<std::string> files;
   for (const std::string& word : words) {
+    if (!std::filesystem::exists(word))
+      throw std::runtime_error(word + ": no such file");
     if (!std::filesystem::is_directory(word)) {
       files.push_back(word);
       continue;
@@ -82,7 +84,7 @@ Request parse(int argc, char** argv)
   if (request.folder.empty())
     throw UsageError("-o OUT_DIR is missing");
   std::vector<std::string> inputs = scanFiles(words);
-  request.scans = scansOf(inputs);
+  request.scans = scansOf(inputs, true);
   inputs.push_back(request.start_file);
   requireDistinct(
       {request.folder + "/registered.pcd", request.folder + "/poses.txt", request.folder + "/registration.json"},
@@ -139,6 +141,7 @@ std::string reportText(const Request& request, const ScanRegistrationResult& res
                              {"rms", pair.rms},
                              {"matches", pair.matches},
                              {"accepted", pair.accepted}});
+  json["warnings"] = registrationWarnings(result, request.options);
   json["groups"] = result.groups;
   json["rms"] = result.rms;
   json["voxel"] = result.voxel;
@@ -182,11 +185,8 @@ void run(int argc, char** argv)
   report(progress, "write", 0.9);
   writeOutputs([&] { write(request, scans, result); });
   report(progress, "done", 1.0);
-  for (std::size_t i = 0; i < result.scans.size(); ++i)
-    for (const auto& [what, problem] : {std::pair("", result.scans[i].problem),
-                                        std::pair("free space not used: ", result.scans[i].viewpoint_problem)})
-      if (!problem.empty())
-        inform(request.common.quiet, request.options.names[i] + ": " + what + problem);
+  for (const std::string& warning : registrationWarnings(result, request.options))
+    inform(request.common.quiet, "warning: " + warning);
   inform(request.common.quiet, concat(placed, " of ", scans.count, " scans placed, rms ", result.rms));
 }
 } // namespace

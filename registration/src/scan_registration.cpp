@@ -35,13 +35,20 @@ Eigen::Isometry3d workingToScan(const PreparedScan& scan)
   return Eigen::Isometry3d(Eigen::Translation3d(scan.center));
 }
 
-std::vector<PreparedScan> prepareAll(const ScanSource& scans, const Thinning& thinning, int threads,
+// All but those that cannot be read and duplicates.
+std::vector<PreparedScan> prepareAll(const ScanSource& scans, const ScanSurvey& survey,
+                                     const ScanRegistrationOptions& options, const Thinning& thinning,
                                      const Progress& progress)
 {
-  std::vector<PreparedScan> prepared;
+  std::vector<PreparedScan> prepared(scans.count);
   for (Index i = 0; i < scans.count; ++i) {
     report(progress, "prepare", 1.0 * i / scans.count);
-    prepared.push_back(prepareScan(scans.read(i), thinning, threads));
+    prepared[i].problem = survey.problems[i];
+    prepared[i].duplicate_of = survey.duplicates[i];
+    if (survey.duplicates[i] >= 0)
+      prepared[i].problem = "the same points as " + scanName(options, survey.duplicates[i]);
+    if (prepared[i].problem.empty())
+      prepared[i] = prepareScan(scans.read(i), thinning, options.threads);
   }
   return prepared;
 }
@@ -113,7 +120,8 @@ ScanRegistrationResult registerScans(const ScanSource& scans, const std::vector<
 {
   constexpr float distance_voxels = 20.f; // the reach of refinement, a fifth of the scans' range
   validate(scans, start, given);
-  const ScanSurvey survey = surveyScans(scans);
+  ScanSurvey survey = surveyScans(scans, given);
+  survey.duplicates = findDuplicates(survey, start);
   const double size = commonSize(survey.sizes, given);
   ScanRegistrationOptions options = given;
   if (!(options.voxel > 0.f))
@@ -121,7 +129,7 @@ ScanRegistrationResult registerScans(const ScanSource& scans, const std::vector<
   if (!(options.max_distance > 0.f))
     options.max_distance = distance_voxels * options.voxel;
   const Thinning thinning(options.voxel, size, survey.narrowness);
-  std::vector<PreparedScan> prepared = prepareAll(scans, thinning, options.threads, subProgress(progress, 0.0, 0.3));
+  std::vector<PreparedScan> prepared = prepareAll(scans, survey, options, thinning, subProgress(progress, 0.0, 0.3));
 
   const std::vector<ScanCluster> clusters = findClusters(prepared, start, options, subProgress(progress, 0.3, 0.6));
   std::vector<Placement> placements;

@@ -3,6 +3,7 @@
 #include "refinement/pose_uncertainty.h"
 #include <algorithm>
 #include <cmath>
+#include <fresco/core/require.h>
 #include <fresco/core/union_find.h>
 namespace fresco::registration {
 namespace {
@@ -56,6 +57,7 @@ public:
     result_.scans.resize(scans.size());
     for (std::size_t i = 0; i < scans.size(); ++i) {
       result_.scans[i].problem = scans[i].problem;
+      result_.scans[i].duplicate_of = scans[i].duplicate_of;
       result_.scans[i].viewpoint_problem = scans[i].viewpoint_problem;
     }
   }
@@ -67,6 +69,7 @@ private:
   bool started(Index i) const { return !start_.empty() && start_[i].has_value(); }
   void describeScans(const Placement& placement);
   void placeMain(const std::vector<Index>& group);
+  void placeDuplicates();
   void placeOther(const std::vector<Index>& group, const std::vector<Index>& main, bool same_frame);
 
   const std::vector<PreparedScan>& scans_;
@@ -118,6 +121,29 @@ void Description::placeOther(const std::vector<Index>& group, const std::vector<
   }
 }
 
+// Where the scan is that has the same points.
+void Description::placeDuplicates()
+{
+  const Index n = scans_.size();
+  for (Index i = 0; i < n; ++i) {
+    const Index original = scans_[i].duplicate_of;
+    if (original < 0)
+      continue;
+    const std::string problem = scan(i).problem;
+    scan(i) = scan(original);
+    scan(i).duplicate_of = original;
+    scan(i).problem = problem + (scan(i).placed ? ": placed on it" : ", which has no place");
+    result_.poses[i] = result_.poses[original];
+    if (scan(i).group < 0)
+      continue;
+    PairResult& pair = result_.pairs.emplace_back();
+    pair.a = std::min(i, original);
+    pair.b = std::max(i, original);
+    pair.overlap = 1.0;
+    pair.accepted = true;
+  }
+}
+
 ScanRegistrationResult Description::run(const std::vector<Placement>& placements)
 {
   for (const Placement& placement : placements) {
@@ -128,8 +154,6 @@ ScanRegistrationResult Description::run(const std::vector<Placement>& placements
     for (const Index i : placement.members)
       look_alike_[i] = placement.look_alike;
   }
-  std::sort(result_.pairs.begin(), result_.pairs.end(),
-            [](const PairResult& x, const PairResult& y) { return std::pair(x.a, x.b) < std::pair(y.a, y.b); });
   result_.rms = pooledRms(result_.pairs, -1);
   std::vector<Index> main;
   for (const Placement& placement : placements)
@@ -141,6 +165,9 @@ ScanRegistrationResult Description::run(const std::vector<Placement>& placements
       else
         placeOther(group, main, &placement == &placements.front());
     }
+  placeDuplicates();
+  std::sort(result_.pairs.begin(), result_.pairs.end(),
+            [](const PairResult& x, const PairResult& y) { return std::pair(x.a, x.b) < std::pair(y.a, y.b); });
   return std::move(result_);
 }
 } // namespace
@@ -152,3 +179,38 @@ ScanRegistrationResult describeRegistration(const std::vector<PreparedScan>& sca
   return Description(scans, start, options).run(placements);
 }
 } // namespace fresco::registration
+
+namespace fresco {
+namespace {
+// "a, b and 3 more".
+std::string listed(const std::vector<Index>& scans, const ScanRegistrationOptions& options)
+{
+  constexpr std::size_t most = 5; // names that still read as a line
+  std::string text;
+  for (std::size_t k = 0; k < std::min(most, scans.size()); ++k)
+    text += (k > 0 ? ", " : "") + scanName(options, scans[k]);
+  return scans.size() > most ? concat(text, " and ", scans.size() - most, " more") : text;
+}
+} // namespace
+
+std::vector<std::string> registrationWarnings(const ScanRegistrationResult& result,
+                                              const ScanRegistrationOptions& options)
+{
+  std::vector<std::string> warnings;
+  std::vector<std::vector<Index>> groups(result.groups);
+  for (std::size_t i = 0; i < result.scans.size(); ++i) {
+    const ScanResult& scan = result.scans[i];
+    if (!scan.problem.empty())
+      warnings.push_back(scanName(options, i) + ": " + scan.problem);
+    if (!scan.viewpoint_problem.empty())
+      warnings.push_back(scanName(options, i) + ": free space not used: " + scan.viewpoint_problem);
+    if (scan.group > 0)
+      groups[scan.group].push_back(i);
+  }
+  for (const std::vector<Index>& group : groups)
+    if (group.size() > 1)
+      warnings.push_back(concat("another group: ", group.size(),
+                                " scans hang together, but not with the placed ones: ", listed(group, options)));
+  return warnings;
+}
+} // namespace fresco

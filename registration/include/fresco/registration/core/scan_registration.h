@@ -54,6 +54,7 @@ struct ScanResult {
   bool placed = false;
   std::string problem;           ///< why it was not placed, or what is doubtful about its place
   std::string viewpoint_problem; ///< why what it saw through is not used; empty = it is
+  Index duplicate_of = -1;       ///< the scan that has the same points; -1 = none. Scans with a start pose are none
   Index group = -1;              ///< scans held together by accepted pairs; 0 is the group with poses; -1 = none
   Eigen::Matrix4d T_group_scan = Eigen::Matrix4d::Identity(); ///< within its group, whether placed or not
   double rms = 0.0;                                           ///< point-to-plane distance over its accepted pairs
@@ -73,10 +74,15 @@ struct ScanRegistrationResult {
   bool converged = false;
 };
 
+/// What a user should know of the result, a line each: scans that could not be read or placed or are doubtful, viewpoints
+/// that are not used, further groups.
+FRESCO_EXPORT std::vector<std::string> registrationWarnings(const ScanRegistrationResult& result,
+                                                            const ScanRegistrationOptions& options);
+
 /// The first scan of a group keeps its start pose. Without any, the first scan of the largest group is the world.
 /// @param scans one or more; each in its own frame. The viewpoint of a scan without `viewpoints` is its frame's origin.
 /// @param start world from scan, one per scan, off by up to max_distance; or empty. Scans without one are aligned
-/// globally.
+/// globally. A scan whose reading throws std::runtime_error is left out; ScanResult::problem says why.
 /// @throws std::invalid_argument if there is no scan, sizes differ, an attribute is malformed, an option is out of
 /// range or the scans differ in size so much that their units must differ
 FRESCO_EXPORT ScanRegistrationResult registerScans(const std::vector<PointSet>& scans,
