@@ -5,14 +5,21 @@
 #include <cmath>
 #include <fresco/core/require.h>
 #include <fresco/core/union_find.h>
+#include <map>
 namespace fresco::registration {
 namespace {
 using Groups = std::vector<std::vector<Index>>;
 
-// Members held together by accepted pairs, largest group first, each in rising order.
+// Members held together by accepted pairs or because none moves, largest group first after that, each in rising order.
 Groups acceptedGroups(const Placement& placement, Index scan_count)
 {
   UnionFind held(scan_count);
+  Index fixed = -1;
+  for (std::size_t m = 0; m < placement.fixed.size(); ++m)
+    if (placement.fixed[m]) {
+      fixed = fixed < 0 ? placement.members[m] : fixed;
+      held.join(fixed, placement.members[m]);
+    }
   for (const PairResult& pair : placement.pairs)
     if (pair.accepted)
       held.join(pair.a, pair.b);
@@ -20,7 +27,12 @@ Groups acceptedGroups(const Placement& placement, Index scan_count)
   for (const Index scan : placement.members)
     groups[held.root(scan)].push_back(scan);
   groups.erase(std::remove_if(groups.begin(), groups.end(), [](const auto& g) { return g.empty(); }), groups.end());
-  std::stable_sort(groups.begin(), groups.end(), [](const auto& a, const auto& b) { return a.size() > b.size(); });
+  const auto holdsFixed = [&](const std::vector<Index>& group) {
+    return std::find(group.begin(), group.end(), fixed) != group.end();
+  };
+  std::stable_sort(groups.begin(), groups.end(), [&](const auto& a, const auto& b) {
+    return holdsFixed(a) != holdsFixed(b) ? holdsFixed(a) : a.size() > b.size();
+  });
   return groups;
 }
 
@@ -48,21 +60,20 @@ Index contradictingScan(const std::vector<PairResult>& pairs, Index scan, const 
 
 class Description {
 public:
-  Description(const std::vector<PreparedScan>& scans, const std::vector<Pose>& start,
-              const ScanRegistrationOptions& options)
-      : scans_(scans), start_(start), options_(options), look_alike_(scans.size(), 0)
+  explicit Description(const RegistrationState& state)
+      : state_(state), scans_(state.scans), start_(state.start), options_(state.options), look_alike_(scans_.size(), 0)
   {
-    result_.voxel = options.voxel;
-    result_.poses.resize(scans.size());
-    result_.scans.resize(scans.size());
-    for (std::size_t i = 0; i < scans.size(); ++i) {
-      result_.scans[i].problem = scans[i].problem;
-      result_.scans[i].duplicate_of = scans[i].duplicate_of;
-      result_.scans[i].viewpoint_problem = scans[i].viewpoint_problem;
+    result_.voxel = options_.voxel;
+    result_.poses.resize(scans_.size());
+    result_.scans.resize(scans_.size());
+    for (std::size_t i = 0; i < scans_.size(); ++i) {
+      result_.scans[i].problem = scans_[i].problem;
+      result_.scans[i].duplicate_of = scans_[i].duplicate_of;
+      result_.scans[i].viewpoint_problem = scans_[i].viewpoint_problem;
     }
   }
 
-  ScanRegistrationResult run(const std::vector<Placement>& placements);
+  ScanRegistrationResult run();
 
 private:
   ScanResult& scan(Index i) { return result_.scans[i]; }
@@ -72,6 +83,9 @@ private:
   void placeDuplicates();
   void placeOther(const std::vector<Index>& group, const std::vector<Index>& main, bool same_frame);
 
+  void addTriedPairs();
+
+  const RegistrationState& state_;
   const std::vector<PreparedScan>& scans_;
   const std::vector<Pose>& start_;
   const ScanRegistrationOptions& options_;
@@ -88,8 +102,12 @@ void Description::describeScans(const Placement& placement)
     scan(i).rms = pooledRms(placement.pairs, i);
     const PoseUncertainty uncertainty =
         describeUncertainty(placement.joint.information[m], scan(i).rms, prepared, placement.poses[m].linear());
-    scan(i).translation_deviation = uncertainty.translation;
-    scan(i).rotation_deviation = uncertainty.rotation;
+    const Matrix6d& covariance = placement.joint.covariances[m];
+    const double free = uncertainty.free_motion ? options_.max_distance : 0.0; // anywhere within the reach
+    scan(i).rotation_deviation = std::max(free / prepared.size, std::sqrt(covariance.topLeftCorner<3, 3>().trace()));
+    scan(i).translation_deviation = std::max(free, std::sqrt(covariance.bottomRightCorner<3, 3>().trace()));
+    if (!placement.fixed.empty() && placement.fixed[m])
+      scan(i).T_group_scan = *start_[i]; // to the last bit
     scan(i).free_motion = uncertainty.free_motion;
   }
 }
@@ -141,11 +159,46 @@ void Description::placeDuplicates()
     pair.b = std::max(i, original);
     pair.overlap = 1.0;
     pair.accepted = true;
+    pair.information_point = scans_[original].center;
   }
 }
 
-ScanRegistrationResult Description::run(const std::vector<Placement>& placements)
+// Pairs that are not in one placement have the best pose of those found; the others of each pair are its alternatives.
+void Description::addTriedPairs()
 {
+  std::map<std::pair<Index, Index>, std::size_t> known;
+  for (std::size_t k = 0; k < result_.pairs.size(); ++k)
+    known.emplace(std::pair(result_.pairs[k].a, result_.pairs[k].b), k);
+  for (const PairAlignment& tried : state_.tried) {
+    const PreparedScan &a = scans_[tried.a], &b = scans_[tried.b];
+    const PairGeometry geometry(a, b);
+    const auto at = known.find({tried.a, tried.b});
+    const bool is_new = at == known.end();
+    if (is_new && tried.hypotheses.empty())
+      continue;
+    PairResult& pair = is_new ? result_.pairs.emplace_back() : result_.pairs[at->second];
+    const Eigen::Translation3d to_working(-b.center);
+    for (const VerifiedHypothesis& hypothesis : tried.hypotheses) {
+      const Eigen::Isometry3d T = Eigen::Translation3d(a.center) * hypothesis.T_a_b * to_working;
+      const Eigen::Isometry3d taken(Eigen::Translation3d(-a.center) * Eigen::Isometry3d(pair.T_a_b) *
+                                    Eigen::Translation3d(b.center));
+      if (is_new && &hypothesis == &tried.hypotheses.front()) {
+        pair.a = tried.a;
+        pair.b = tried.b;
+        pair.overlap = hypothesis.check.overlap;
+        pair.violation = hypothesis.check.violation;
+        pair.T_a_b = T.matrix();
+        pair.information_point = b.center;
+      } else if (is_new || poseDistance(taken, hypothesis.T_a_b, geometry.size) > geometry.grain) {
+        pair.alternatives.push_back({T.matrix(), hypothesis.check.overlap, hypothesis.check.violation});
+      }
+    }
+  }
+}
+
+ScanRegistrationResult Description::run()
+{
+  const std::vector<Placement>& placements = state_.placements;
   for (const Placement& placement : placements) {
     result_.pairs.insert(result_.pairs.end(), placement.pairs.begin(), placement.pairs.end());
     result_.iterations = std::max(result_.iterations, placement.joint.iterations);
@@ -165,6 +218,7 @@ ScanRegistrationResult Description::run(const std::vector<Placement>& placements
       else
         placeOther(group, main, &placement == &placements.front());
     }
+  addTriedPairs();
   placeDuplicates();
   std::sort(result_.pairs.begin(), result_.pairs.end(),
             [](const PairResult& x, const PairResult& y) { return std::pair(x.a, x.b) < std::pair(y.a, y.b); });
@@ -172,12 +226,7 @@ ScanRegistrationResult Description::run(const std::vector<Placement>& placements
 }
 } // namespace
 
-ScanRegistrationResult describeRegistration(const std::vector<PreparedScan>& scans,
-                                            const std::vector<Placement>& placements, const std::vector<Pose>& start,
-                                            const ScanRegistrationOptions& options)
-{
-  return Description(scans, start, options).run(placements);
-}
+ScanRegistrationResult describeRegistration(const RegistrationState& state) { return Description(state).run(); }
 } // namespace fresco::registration
 
 namespace fresco {

@@ -17,6 +17,7 @@ struct ScanRegistrationOptions {
   float min_overlap = 0.1f;    ///< share of a scan's points with a counterpart from which a pair is used, 0..1
   float max_violation = 0.04f; ///< share of a scan's points in space that the other saw through: above, a pair is wrong
   int max_iterations = 40;     ///< of the joint refinement, per resolution, >= 1
+  bool fixed = false;          ///< scans with a start pose keep it exactly; only the others are placed
   bool upright = false; ///< whether all scanners stood upright to 10 degrees, z upwards: fewer poses are possible
   int threads = 0;      ///< 0 = all cores; the result does not depend on it
   std::vector<std::string> names; ///< of the scans, for messages; empty = their numbers
@@ -33,14 +34,30 @@ struct ScanSource {
 /// What messages call a scan.
 FRESCO_EXPORT std::string scanName(const ScanRegistrationOptions& options, Index scan);
 
+/// A relative pose that explains two scans, but was not taken.
+struct AlternativePose {
+  Eigen::Matrix4d T_a_b = Eigen::Matrix4d::Identity(); ///< scan a from scan b
+  double overlap = 0.0;                                ///< as PairResult::overlap
+  double violation = 0.0;                              ///< as PairResult::violation
+};
+
 /// One pair of scans at the end.
 struct PairResult {
+  using Matrix6d = Eigen::Matrix<double, 6, 6>;
   Index a = 0, b = 0;     ///< a < b
   double overlap = 0.0;   ///< larger of the shares of points of one scan with a counterpart in the other, 0..1
   double violation = 0.0; ///< larger of the shares of comparable surfaces in space that the other saw through, 0..1
   double rms = 0.0;       ///< point-to-plane distance of the corresponding points, length
   Index matches = 0;      ///< corresponding points
   bool accepted = false;  ///< holds the two scans together
+  Eigen::Matrix4d T_a_b =
+      Eigen::Matrix4d::Identity(); ///< scan a from scan b: as placed in a common group, else the best
+  /// Inverse covariance of T_a_b from this pair alone: rotation (radian) of b about `information_point`, translation of that point;
+  /// axes of scan a. Zero without corresponding points.
+  Matrix6d information = Matrix6d::Zero();
+  Eigen::Vector3d information_point =
+      Eigen::Vector3d::Zero();               ///< in the frame of b: its viewpoint, or the middle of its points
+  std::vector<AlternativePose> alternatives; ///< other acceptable ones, best first
 };
 
 /// A motion of a scan that its surfaces leave free, such as along a corridor without features.
@@ -58,9 +75,9 @@ struct ScanResult {
   Index group = -1;              ///< scans held together by accepted pairs; 0 is the group with poses; -1 = none
   Eigen::Matrix4d T_group_scan = Eigen::Matrix4d::Identity(); ///< within its group, whether placed or not
   double rms = 0.0;                                           ///< point-to-plane distance over its accepted pairs
-  double translation_deviation = 0.0;                         ///< standard deviation in the least certain direction
-  double rotation_deviation = 0.0;                            ///< the same about the least certain axis, radian
-  std::optional<FreeMotion> free_motion;                      ///< degenerate: the pose is arbitrary along it
+  double translation_deviation = 0.0; ///< standard deviation (root of the mean squared error) of its viewpoint, length
+  double rotation_deviation = 0.0;    ///< the same of its rotation, radian
+  std::optional<FreeMotion> free_motion; ///< degenerate: the pose is arbitrary along it
 };
 
 struct ScanRegistrationResult {
@@ -79,7 +96,7 @@ struct ScanRegistrationResult {
 FRESCO_EXPORT std::vector<std::string> registrationWarnings(const ScanRegistrationResult& result,
                                                             const ScanRegistrationOptions& options);
 
-/// The first scan of a group keeps its start pose. Without any, the first scan of the largest group is the world.
+/// The first scan of a group keeps its start pose; with `fixed`, all scans that have one do, and no pair of two such is looked at. Without any, the first scan of the largest group is the world.
 /// @param scans one or more; each in its own frame. The viewpoint of a scan without `viewpoints` is its frame's origin.
 /// @param start world from scan, one per scan, off by up to max_distance; or empty. Scans without one are aligned
 /// globally. A scan whose reading throws std::runtime_error is left out; ScanResult::problem says why.
