@@ -254,8 +254,8 @@ void Refinement::keepGauge()
 
 CellSystems Refinement::systemsByCell(std::size_t pair) const
 {
-  // Of the scans' sizes: parts of a wall or pieces of furniture, whose errors depend on each other.
-  constexpr double cell_share = 0.5;
+  // Of the scans' sizes: a wall of a room. What a scanner misreads of it depends on itself all over.
+  constexpr double cell_share = 1.5;
   const double edge = cell_share * scans_[0]->size;
   const DirectedPair& directed = pairs_[pair];
   const LevelPair level = levelPair(directed);
