@@ -138,6 +138,7 @@ Json scanJson(const std::string& file, const ScanResult& scan, const Pose& pose)
   json["pose"] = pose ? rowsJson(*pose) : Json();
   json["pose_in_group"] = scan.group >= 0 ? rowsJson(scan.T_group_scan) : Json();
   json["problem"] = scan.problem;
+  json["duplicate_of"] = scan.duplicate_of;
   json["viewpoint_problem"] = scan.viewpoint_problem;
   json["rms"] = scan.rms;
   json["translation_deviation"] = scan.translation_deviation;

@@ -88,7 +88,7 @@ void CovarianceEstimator::invert()
       1);
 }
 
-// How much the equations of the cells begin .. end - 1 change the right-hand side, as if the solution had been found without them.
+// What changes the solution as leaving out the equations begin .. end - 1 would.
 CellPull CovarianceEstimator::pullOf(Index begin, Index end) const
 {
   CellPull result;

@@ -17,6 +17,7 @@ struct PairLink {
   PairJacobian jacobian;
 };
 
+/// Normal equations of a joint refinement at its end, cell by cell.
 struct JointSystem {
   const IsometryVector& poses;       ///< world from working frame
   const std::vector<Index>& holders; ///< per scan, the scan whose pose defines the frame of its group
@@ -29,10 +30,10 @@ struct JointSystem {
 
 using Covariances = std::vector<Matrix6d, Eigen::aligned_allocator<Matrix6d>>;
 
-/// Covariance of each pose: rotation (about the scan's centre, axes of the world) first. The cluster-robust estimate of
-/// Liang & Zeger 1986 in its jackknife form CR3 (Bell & McCaffrey 2002): errors of one cell may depend on each other in
-/// any way, among all pairs that see it; what counts is how much the solution changes without the cell. Relative to the holder of
-/// the group, or to the best fit of the whole group where that is larger. Zero for the holders of groups that are not fitted.
+/// Covariance of each pose: rotation (about the scan's centre, axes of the world) first. Cluster-robust, in the form of a
+/// jackknife over cells (Bell & McCaffrey 2002): errors of one cell may depend on each other in any way, among all pairs
+/// that see it. What counts is how much the solution changes without the cell. Relative to the holder of the group, or
+/// to the best fit of the whole group where that is larger; zero for the holders of groups that are not fitted.
 Covariances jointCovariances(const JointSystem& joint);
 
 /// Inverse covariance of the pose of b relative to a by the matches of this pair alone, in both directions.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "refinement/registration_result.h"
-#include "refinement/pose_uncertainty.h"
+#include "refinement/free_motion.h"
 #include <algorithm>
 #include <cmath>
 #include <fresco/core/require.h>
@@ -80,9 +80,8 @@ private:
   bool started(Index i) const { return !start_.empty() && start_[i].has_value(); }
   void describeScans(const Placement& placement);
   void placeMain(const std::vector<Index>& group);
-  void placeDuplicates();
   void placeOther(const std::vector<Index>& group, const std::vector<Index>& main, bool same_frame);
-
+  void placeDuplicates();
   void addTriedPairs();
 
   const RegistrationState& state_;
@@ -100,15 +99,18 @@ void Description::describeScans(const Placement& placement)
     const PreparedScan& prepared = scans_[i];
     scan(i).T_group_scan = (placement.poses[m] * Eigen::Translation3d(-prepared.center)).matrix();
     scan(i).rms = pooledRms(placement.pairs, i);
-    const PoseUncertainty uncertainty =
-        describeUncertainty(placement.joint.information[m], scan(i).rms, prepared, placement.poses[m].linear());
-    const Matrix6d& covariance = placement.joint.covariances[m];
-    const double free = uncertainty.free_motion ? options_.max_distance : 0.0; // anywhere within the reach
-    scan(i).rotation_deviation = std::max(free / prepared.size, std::sqrt(covariance.topLeftCorner<3, 3>().trace()));
-    scan(i).translation_deviation = std::max(free, std::sqrt(covariance.bottomRightCorner<3, 3>().trace()));
-    if (!placement.fixed.empty() && placement.fixed[m])
+    if (!placement.fixed.empty() && placement.fixed[m]) {
       scan(i).T_group_scan = *start_[i]; // to the last bit
-    scan(i).free_motion = uncertainty.free_motion;
+      continue;
+    }
+    scan(i).free_motion = findFreeMotion(placement.joint.information[m], prepared, placement.poses[m].linear());
+    const Matrix6d& covariance = placement.joint.covariances[m];
+    const auto deviation = [&](double variance, double reach) {
+      return scan(i).free_motion || !(std::sqrt(variance) < reach) ? reach : std::sqrt(variance);
+    };
+    scan(i).rotation_deviation =
+        deviation(covariance.topLeftCorner<3, 3>().trace(), options_.max_distance / prepared.size);
+    scan(i).translation_deviation = deviation(covariance.bottomRightCorner<3, 3>().trace(), options_.max_distance);
   }
 }
 
@@ -131,6 +133,8 @@ void Description::placeOther(const std::vector<Index>& group, const std::vector<
     } else if (same_frame && started(i)) {
       scan(i).placed = true;
       scan(i).problem = "overlaps none of the other placed scans enough: its start pose is kept unconfirmed";
+      scan(i).translation_deviation = options_.max_distance;
+      scan(i).rotation_deviation = options_.max_distance / scans_[i].size;
       result_.poses[i] = scan(i).T_group_scan;
     } else {
       scan(i).problem = look_alike_[i] ? "fits in several places that look alike, and nothing seen tells which is right"

@@ -50,14 +50,14 @@ struct PairResult {
   double rms = 0.0;       ///< point-to-plane distance of the corresponding points, length
   Index matches = 0;      ///< corresponding points
   bool accepted = false;  ///< holds the two scans together
-  Eigen::Matrix4d T_a_b =
-      Eigen::Matrix4d::Identity(); ///< scan a from scan b: as placed in a common group, else the best
-  /// Inverse covariance of T_a_b from this pair alone: rotation (radian) of b about `information_point`, translation of that point;
-  /// axes of scan a. Zero without corresponding points.
+  /// Scan a from scan b: as placed, if both were placed in one frame, else the best that was found.
+  Eigen::Matrix4d T_a_b = Eigen::Matrix4d::Identity();
+  /// Inverse covariance of T_a_b from this pair alone: rotation of b about `information_point` (radian), translation of
+  /// that point; axes of scan a. Zero without corresponding points.
   Matrix6d information = Matrix6d::Zero();
-  Eigen::Vector3d information_point =
-      Eigen::Vector3d::Zero();               ///< in the frame of b: its viewpoint, or the middle of its points
-  std::vector<AlternativePose> alternatives; ///< other acceptable ones, best first
+  /// In the frame of b: the position of its scanner, or the middle of its points.
+  Eigen::Vector3d information_point = Eigen::Vector3d::Zero();
+  std::vector<AlternativePose> alternatives; ///< others that were found acceptable, best first
 };
 
 /// A motion of a scan that its surfaces leave free, such as along a corridor without features.
@@ -75,8 +75,10 @@ struct ScanResult {
   Index group = -1;              ///< scans held together by accepted pairs; 0 is the group with poses; -1 = none
   Eigen::Matrix4d T_group_scan = Eigen::Matrix4d::Identity(); ///< within its group, whether placed or not
   double rms = 0.0;                                           ///< point-to-plane distance over its accepted pairs
-  double translation_deviation = 0.0; ///< standard deviation (root of the mean squared error) of its viewpoint, length
-  double rotation_deviation = 0.0;    ///< the same of its rotation, radian
+  /// Standard deviation of the scanner's position: root of the expected squared distance, length. Relative to the scan
+  /// that holds the frame, or to the best fit of the group where that is larger. Zero for fixed scans.
+  double translation_deviation = 0.0;
+  double rotation_deviation = 0.0;       ///< the same of the rotation, radian
   std::optional<FreeMotion> free_motion; ///< degenerate: the pose is arbitrary along it
 };
 
@@ -96,7 +98,8 @@ struct ScanRegistrationResult {
 FRESCO_EXPORT std::vector<std::string> registrationWarnings(const ScanRegistrationResult& result,
                                                             const ScanRegistrationOptions& options);
 
-/// The first scan of a group keeps its start pose; with `fixed`, all scans that have one do, and no pair of two such is looked at. Without any, the first scan of the largest group is the world.
+/// The first scan of a group keeps its start pose; with `fixed`, all scans that have one do, and no pair of two such is
+/// looked at. Without any, the first scan of the largest group is the world.
 /// @param scans one or more; each in its own frame. The viewpoint of a scan without `viewpoints` is its frame's origin.
 /// @param start world from scan, one per scan, off by up to max_distance; or empty. Scans without one are aligned
 /// globally. A scan whose reading throws std::runtime_error is left out; ScanResult::problem says why.
