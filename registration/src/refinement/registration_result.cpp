@@ -105,12 +105,14 @@ void Description::describeScans(const Placement& placement)
     }
     scan(i).free_motion = findFreeMotion(placement.joint.information[m], prepared, placement.poses[m].linear());
     const Matrix6d& covariance = placement.joint.covariances[m];
-    const auto deviation = [&](double variance, double reach) {
-      return scan(i).free_motion || !(std::sqrt(variance) < reach) ? reach : std::sqrt(variance);
+    const FreeMotion free = scan(i).free_motion.value_or(FreeMotion());
+    const auto deviation = [](double variance, const Eigen::Vector3d& free_direction, double reach) {
+      return !free_direction.isZero() || !(std::sqrt(variance) < reach) ? reach : std::sqrt(variance);
     };
+    scan(i).translation_deviation =
+        deviation(covariance.bottomRightCorner<3, 3>().trace(), free.translation, options_.max_distance);
     scan(i).rotation_deviation =
-        deviation(covariance.topLeftCorner<3, 3>().trace(), options_.max_distance / prepared.size);
-    scan(i).translation_deviation = deviation(covariance.bottomRightCorner<3, 3>().trace(), options_.max_distance);
+        deviation(covariance.topLeftCorner<3, 3>().trace(), free.rotation, options_.max_distance / prepared.size);
   }
 }
 
