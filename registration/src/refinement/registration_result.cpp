@@ -119,6 +119,10 @@ void Description::describeScans(const Placement& placement)
 void Description::placeMain(const std::vector<Index>& group)
 {
   for (const Index i : group) {
+    if (scan(i).free_motion && !started(i) && i != group.front()) {
+      scan(i).problem = "its surfaces leave a motion free, and nothing tells where along it the scan belongs";
+      continue;
+    }
     scan(i).placed = true;
     result_.poses[i] = scan(i).T_group_scan;
     if (scan(i).free_motion)
