@@ -36,6 +36,8 @@ std::vector<std::string> scanFiles(const std::vector<std::string>& words)
 {
   std::vector<std::string> files;
   for (const std::string& word : words) {
+    if (!std::filesystem::exists(word))
+      throw std::runtime_error(word + ": no such file");
     if (!std::filesystem::is_directory(word)) {
       files.push_back(word);
       continue;
@@ -67,6 +69,8 @@ Request parse(int argc, char** argv)
   args.option(
       "poses", request.start_file,
       "start poses, one a line as in poses.txt; `none` = unknown; or a file of scans, whose own poses are taken");
+  args.flag("fixed", request.options.fixed,
+            "scans with a start pose keep it exactly; only those with `none` are placed, against them");
   args.option("voxel", request.options.voxel, "finest thinning, unit of the points; 0 = from the data");
   args.option("max_distance", request.options.max_distance,
               "how far start poses may be off, unit of the points; 0 = 20 voxels");
@@ -79,10 +83,12 @@ Request parse(int argc, char** argv)
   request.common.declare(args);
   args.note("example: fresco_register scans/*.pcd -o registered");
   const std::vector<std::string> words = args.parse(argc, argv, 1, 100000);
+  if (request.options.fixed && request.start_file.empty())
+    throw UsageError("-fixed needs -poses START.txt");
   if (request.folder.empty())
     throw UsageError("-o OUT_DIR is missing");
   std::vector<std::string> inputs = scanFiles(words);
-  request.scans = scansOf(inputs);
+  request.scans = scansOf(inputs, true);
   inputs.push_back(request.start_file);
   requireDistinct(
       {request.folder + "/registered.pcd", request.folder + "/poses.txt", request.folder + "/registration.json"},
@@ -95,20 +101,44 @@ Request parse(int argc, char** argv)
 
 Json toJson(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 
-Json toJson(const Eigen::Matrix4d& T)
+// By rows.
+Json rowsJson(const Eigen::MatrixXd& matrix)
 {
   Json rows = Json::array();
-  for (int r = 0; r < 4; ++r)
-    rows.push_back({T(r, 0), T(r, 1), T(r, 2), T(r, 3)});
+  for (Index r = 0; r < matrix.rows(); ++r) {
+    Json& row = rows.emplace_back(Json::array());
+    for (Index c = 0; c < matrix.cols(); ++c)
+      row.push_back(matrix(r, c));
+  }
   return rows;
+}
+
+Json pairJson(const PairResult& pair)
+{
+  Json json = {{"a", pair.a},
+               {"b", pair.b},
+               {"overlap", pair.overlap},
+               {"violation", pair.violation},
+               {"rms", pair.rms},
+               {"matches", pair.matches},
+               {"accepted", pair.accepted},
+               {"pose", rowsJson(pair.T_a_b)},
+               {"information", pair.information.isZero() ? Json() : rowsJson(pair.information)},
+               {"information_point", toJson(pair.information_point)}};
+  json["alternatives"] = Json::array();
+  for (const AlternativePose& pose : pair.alternatives)
+    json["alternatives"].push_back(
+        {{"pose", rowsJson(pose.T_a_b)}, {"overlap", pose.overlap}, {"violation", pose.violation}});
+  return json;
 }
 
 Json scanJson(const std::string& file, const ScanResult& scan, const Pose& pose)
 {
   Json json = {{"file", file}, {"placed", scan.placed}, {"group", scan.group}};
-  json["pose"] = pose ? toJson(*pose) : Json();
-  json["pose_in_group"] = scan.group >= 0 ? toJson(scan.T_group_scan) : Json();
+  json["pose"] = pose ? rowsJson(*pose) : Json();
+  json["pose_in_group"] = scan.group >= 0 ? rowsJson(scan.T_group_scan) : Json();
   json["problem"] = scan.problem;
+  json["duplicate_of"] = scan.duplicate_of;
   json["viewpoint_problem"] = scan.viewpoint_problem;
   json["rms"] = scan.rms;
   json["translation_deviation"] = scan.translation_deviation;
@@ -132,13 +162,8 @@ std::string reportText(const Request& request, const ScanRegistrationResult& res
   }
   json["pairs"] = Json::array();
   for (const PairResult& pair : result.pairs)
-    json["pairs"].push_back({{"a", pair.a},
-                             {"b", pair.b},
-                             {"overlap", pair.overlap},
-                             {"violation", pair.violation},
-                             {"rms", pair.rms},
-                             {"matches", pair.matches},
-                             {"accepted", pair.accepted}});
+    json["pairs"].push_back(pairJson(pair));
+  json["warnings"] = registrationWarnings(result, request.options);
   json["groups"] = result.groups;
   json["rms"] = result.rms;
   json["voxel"] = result.voxel;
@@ -182,11 +207,8 @@ void run(int argc, char** argv)
   report(progress, "write", 0.9);
   writeOutputs([&] { write(request, scans, result); });
   report(progress, "done", 1.0);
-  for (std::size_t i = 0; i < result.scans.size(); ++i)
-    for (const auto& [what, problem] : {std::pair("", result.scans[i].problem),
-                                        std::pair("free space not used: ", result.scans[i].viewpoint_problem)})
-      if (!problem.empty())
-        inform(request.common.quiet, request.options.names[i] + ": " + what + problem);
+  for (const std::string& warning : registrationWarnings(result, request.options))
+    inform(request.common.quiet, "warning: " + warning);
   inform(request.common.quiet, concat(placed, " of ", scans.count, " scans placed, rms ", result.rms));
 }
 } // namespace

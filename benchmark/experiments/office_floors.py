@@ -54,6 +54,34 @@ def errors(found, truth):
     return off(fit([found[k] for k in keep], [truth[k] for k in keep]))
 
 
+def degrees_about(axis, angle):
+    """Rotation about a unit vector by degrees (Rodrigues)."""
+    K = np.array([[0, -axis[2], axis[1]], [axis[2], 0, -axis[0]], [-axis[1], axis[0], 0]])
+    return np.eye(3) + np.sin(np.radians(angle)) * K + (1 - np.cos(np.radians(angle))) * K @ K
+
+
+def write_disturbed(path, truth, seed):
+    """Start poses 2 cm and 0.5 degrees off the truth: what joint refinement makes of them, without the search."""
+    random = np.random.default_rng(seed)
+    with open(path, "w") as file:
+        for T in truth:
+            shift, axis = (v / np.linalg.norm(v) for v in random.normal(size=(2, 3)))
+            D = np.eye(4)
+            D[:3, :3], D[:3, 3] = degrees_about(axis, 0.5), 0.02 * shift
+            file.write(" ".join(repr(float(x)) for x in (T @ D).ravel()) + "\n")
+
+
+def deviation_ratios(report, found, truth):
+    """Errors over their deviations, relative to the first scan, which holds the frame; translations and rotations."""
+    frame = found[0][1] @ np.linalg.inv(truth[found[0][0]])
+    ratios = []
+    for k, T in found[1:]:
+        D, scan = np.linalg.inv(frame @ truth[k]) @ T, report["scans"][k]
+        ratios += [np.linalg.norm(D[:3, 3]) / max(scan["translation_deviation"], 1e-9),
+                   degrees(D[:3, :3]) / max(scan["rotation_deviation_deg"], 1e-9)]
+    return ratios
+
+
 def run(args, seed):
     rooms, stations = args.rooms or 6 + seed % 5, args.stations or 8 + 2 * (3 * seed % 5)
     folder = f"{args.work}/floor_{seed}_{rooms}_{stations}_{args.points}"
@@ -61,8 +89,11 @@ def run(args, seed):
         subprocess.run([args.bin + "/fresco_scan", "office", folder, "-quiet", "-no_images", "-edge", "0.4", "-seed",
                         str(seed), "-rooms", str(rooms), "-stations", str(stations), "-points",
                         str(args.points)], check=True)
-    start = time.time()
     command = [args.bin + "/fresco_register", folder + "/scans", "-o", folder + "/registered", "-quiet"]
+    if args.disturbed:
+        write_disturbed(folder + "/start.txt", read_poses(folder + "/poses.txt"), seed)
+        command += ["-poses", folder + "/start.txt"]
+    start = time.time()
     subprocess.run(command + args.register.split(), check=True)
     seconds = time.time() - start
     report = json.load(open(folder + "/registered/registration.json"))
@@ -71,8 +102,7 @@ def run(args, seed):
     shift, turn = errors([found[k] for k in placed], [truth[k] for k in placed])
     wrong = (shift > FALSE_DISTANCE) | (turn > FALSE_DEGREES)
     right = ~wrong
-    deviations = np.array([report["scans"][k]["translation_deviation"] for k in placed])
-    ratios = shift[1:] / np.maximum(deviations[1:], 1e-9)  # the first scan defines the frame
+    ratios = deviation_ratios(report, [(k, found[k]) for k in placed], truth)
     worst = 1000 * shift[right].max() if right.any() else 0
     sizes = np.bincount([s["group"] for s in report["scans"] if s["group"] >= 0])
     print(f"| {seed} | {len(found)} | {len(placed)} | {wrong.sum()} | {worst:.2f} | {turn[right].max():.3f} | "
@@ -88,6 +118,7 @@ def main():
     parser.add_argument("-rooms", type=int, default=0, help="0 = 6 to 10")
     parser.add_argument("-stations", type=int, default=0, help="0 = 8 to 16")
     parser.add_argument("-points", type=int, default=20000)
+    parser.add_argument("-disturbed", action="store_true", help="start near the true poses")
     parser.add_argument("-register", default="", help="options of fresco_register")
     args = parser.parse_args()
     first, last = map(int, re.fullmatch(r"(\d+)-(\d+)", args.seeds).groups())

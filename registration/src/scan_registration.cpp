@@ -26,6 +26,8 @@ void validate(const ScanSource& scans, const std::vector<Pose>& start, const Sca
           options.max_violation, " is not in 0..1");
   require(options.max_iterations >= 1, "registration: max_iterations ", options.max_iterations, " is below 1");
   require(options.names.empty() || names == count, "registration: ", count, " scans, ", names, " names");
+  const bool any_start = std::any_of(start.begin(), start.end(), [](const Pose& pose) { return pose.has_value(); });
+  require(!options.fixed || any_start, "registration: no scan has a start pose that could be fixed");
   for (const Pose& pose : start)
     require(!pose || pose->allFinite(), "registration: a start pose is not finite");
 }
@@ -35,13 +37,20 @@ Eigen::Isometry3d workingToScan(const PreparedScan& scan)
   return Eigen::Isometry3d(Eigen::Translation3d(scan.center));
 }
 
-std::vector<PreparedScan> prepareAll(const ScanSource& scans, const Thinning& thinning, int threads,
+// All but those that cannot be read and duplicates.
+std::vector<PreparedScan> prepareAll(const ScanSource& scans, const ScanSurvey& survey,
+                                     const ScanRegistrationOptions& options, const Thinning& thinning,
                                      const Progress& progress)
 {
-  std::vector<PreparedScan> prepared;
+  std::vector<PreparedScan> prepared(scans.count);
   for (Index i = 0; i < scans.count; ++i) {
     report(progress, "prepare", 1.0 * i / scans.count);
-    prepared.push_back(prepareScan(scans.read(i), thinning, threads));
+    prepared[i].problem = survey.problems[i];
+    prepared[i].duplicate_of = survey.duplicates[i];
+    if (survey.duplicates[i] >= 0)
+      prepared[i].problem = "the same points as " + scanName(options, survey.duplicates[i]);
+    if (prepared[i].problem.empty())
+      prepared[i] = prepareScan(scans.read(i), thinning, options.threads);
   }
   return prepared;
 }
@@ -61,22 +70,25 @@ ScanCluster startCluster(const std::vector<PreparedScan>& scans, const std::vect
 }
 
 // Start poses where all scans have one, else what global alignment finds.
-std::vector<ScanCluster> findClusters(std::vector<PreparedScan>& scans, const std::vector<Pose>& start,
-                                      const ScanRegistrationOptions& options, const Progress& progress)
+GlobalAlignment findClusters(std::vector<PreparedScan>& scans, const std::vector<Pose>& start,
+                             const ScanRegistrationOptions& options, const Progress& progress)
 {
   const ScanCluster known = startCluster(scans, start);
   const Index usable =
       std::count_if(scans.begin(), scans.end(), [](const PreparedScan& scan) { return scan.problem.empty(); });
   const Index started = known.scans.size();
-  if (started == usable)
-    return usable > 0 ? std::vector<ScanCluster>{known} : std::vector<ScanCluster>{};
-  return alignGlobally(scans, known, options, progress).graph.clusters;
+  if (started < usable)
+    return alignGlobally(scans, known, options, progress);
+  GlobalAlignment alignment;
+  if (usable > 0)
+    alignment.graph.clusters.push_back(known);
+  return alignment;
 }
 
 // Members in rising order; without start poses, the frame of the first scan becomes that of the cluster.
-Placement toPlacement(const ScanCluster& cluster, const std::vector<PreparedScan>& scans,
-                      const std::vector<Pose>& start)
+Placement toPlacement(const ScanCluster& cluster, const RegistrationState& state)
 {
+  const auto& [scans, start, options, placements, tried] = state;
   const auto hasStart = [&](Index i) { return !start.empty() && start[i].has_value(); };
   const bool started = std::any_of(cluster.scans.begin(), cluster.scans.end(), hasStart);
   std::vector<std::size_t> order(cluster.scans.size());
@@ -90,6 +102,8 @@ Placement toPlacement(const ScanCluster& cluster, const std::vector<PreparedScan
   for (const std::size_t k : order) {
     if (hasStart(cluster.scans[k]))
       placement.anchors.push_back(placement.members.size());
+    if (options.fixed && started)
+      placement.fixed.push_back(hasStart(cluster.scans[k]));
     placement.members.push_back(cluster.scans[k]);
     placement.poses.push_back(started ? cluster.poses[k] : T_first_frame * cluster.poses[k]);
   }
@@ -113,7 +127,8 @@ ScanRegistrationResult registerScans(const ScanSource& scans, const std::vector<
 {
   constexpr float distance_voxels = 20.f; // the reach of refinement, a fifth of the scans' range
   validate(scans, start, given);
-  const ScanSurvey survey = surveyScans(scans);
+  ScanSurvey survey = surveyScans(scans, given);
+  survey.duplicates = findDuplicates(survey, start);
   const double size = commonSize(survey.sizes, given);
   ScanRegistrationOptions options = given;
   if (!(options.voxel > 0.f))
@@ -121,17 +136,17 @@ ScanRegistrationResult registerScans(const ScanSource& scans, const std::vector<
   if (!(options.max_distance > 0.f))
     options.max_distance = distance_voxels * options.voxel;
   const Thinning thinning(options.voxel, size, survey.narrowness);
-  std::vector<PreparedScan> prepared = prepareAll(scans, thinning, options.threads, subProgress(progress, 0.0, 0.3));
+  std::vector<PreparedScan> prepared = prepareAll(scans, survey, options, thinning, subProgress(progress, 0.0, 0.3));
 
-  const std::vector<ScanCluster> clusters = findClusters(prepared, start, options, subProgress(progress, 0.3, 0.6));
-  std::vector<Placement> placements;
-  const double step = 1.0 / clusters.size();
-  for (const ScanCluster& cluster : clusters) {
-    const double done = placements.size() * step;
-    placements.push_back(toPlacement(cluster, prepared, start));
-    refinePlacement(prepared, options, placements.back(),
+  GlobalAlignment alignment = findClusters(prepared, start, options, subProgress(progress, 0.3, 0.6));
+  RegistrationState state{prepared, start, options, {}, std::move(alignment.pairs)};
+  const double step = 1.0 / alignment.graph.clusters.size();
+  for (const ScanCluster& cluster : alignment.graph.clusters) {
+    const double done = state.placements.size() * step;
+    state.placements.push_back(toPlacement(cluster, state));
+    refinePlacement(prepared, options, state.placements.back(),
                     subProgress(progress, 0.6 + 0.4 * done, 0.6 + 0.4 * (done + step)));
   }
-  return describeRegistration(prepared, placements, start, options);
+  return describeRegistration(state);
 }
 } // namespace fresco

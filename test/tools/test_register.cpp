@@ -44,6 +44,55 @@ TEST(RegisterTool, WritesPosesCloudAndReport)
   EXPECT_LT(test::relativeError(readPoses(folder + "/again/poses.txt"), scene).translation, 0.01);
 }
 
+// The good ones among them are placed, and what is wrong with the others is said on the terminal and in the report.
+TEST(RegisterTool, BrokenFilesAmongGoodOnesAreWarnings)
+{
+  const std::string folder = test::scratchFolder() + "_data";
+  makeFolder(folder + "/scans");
+  const auto scene = test::scanTwoRooms(20000);
+  for (const char* name : {"a", "c", "d"})
+    writePoints(folder + "/scans/" + name + ".pcd", scene.scans[*name == 'a' ? 0 : 1]); // c and d are one scan
+  writeFile(folder + "/scans/b.pcd", "");
+  writeFile(folder + "/scans/e.e57", "no E57 file");
+  ASSERT_EQ(run(folder + "/scans -o " + folder + "/out"), 0) << message();
+  const auto poses = readPoses(folder + "/out/poses.txt");
+  ASSERT_EQ(poses.size(), 5u);
+  EXPECT_TRUE(poses[0] && poses[2] && poses[3]);
+  EXPECT_FALSE(poses[1] || poses[4]);
+  for (const std::string& text : {message(), readFile(folder + "/out/registration.json")})
+    for (const char* part : {"b.pcd: left out", "e.e57: left out", "d.pcd: the same points as"})
+      EXPECT_NE(text.find(part), std::string::npos) << part;
+  EXPECT_EQ(run(folder + "/scans/b.pcd " + folder + "/scans/e.e57 -o " + folder + "/none"), 1);
+  EXPECT_FALSE(std::filesystem::exists(folder + "/none"));
+}
+
+TEST(RegisterTool, FixedPosesAreWrittenAsTheyWereRead)
+{
+  const std::string folder = test::scratchFolder() + "_data";
+  makeFolder(folder);
+  const auto scene = test::scanTwoRooms(20000);
+  std::string scans;
+  for (std::size_t i = 0; i < 3; ++i) {
+    writePoints(folder + "/scan_" + std::to_string(i) + ".pcd", scene.scans[i]);
+    scans += folder + "/scan_" + std::to_string(i) + ".pcd ";
+  }
+  const std::vector<Pose> start = {scene.truth[0].matrix(), Pose(), scene.truth[2].matrix()};
+  writePoses(folder + "/start.txt", start);
+  ASSERT_EQ(run(scans + "-o " + folder + "/out -poses " + folder + "/start.txt -fixed"), 0) << message();
+  const auto poses = readPoses(folder + "/out/poses.txt"), given = readPoses(folder + "/start.txt");
+  EXPECT_EQ(*poses[0], *given[0]);
+  EXPECT_EQ(*poses[2], *given[2]);
+  ASSERT_TRUE(poses[1].has_value());
+  EXPECT_LT(test::relativeError(poses, scene).translation, 0.01);
+  const auto report = nlohmann::json::parse(readFile(folder + "/out/registration.json"));
+  for (const auto& pair : report["pairs"]) {
+    EXPECT_TRUE(pair["a"] == 1 || pair["b"] == 1);
+    EXPECT_EQ(pair["pose"].size(), 4u);
+    EXPECT_EQ(pair["information"].size(), 6u);
+  }
+  EXPECT_EQ(run(scans + "-o " + folder + "/out -fixed"), 2);
+}
+
 TEST(RegisterTool, WrongUseAndBadInput)
 {
   const std::string folder = test::scratchFolder() + "_data";

@@ -32,7 +32,7 @@ std::vector<std::string> scanFiles(const std::string& folder)
 /// The scans in `files`, with the poses that the files themselves have.
 void takeScans(ModelInput& input, const std::vector<std::string>& files)
 {
-  input.scans = scansOf(files);
+  input.scans = scansOf(files, true);
   input.poses = posesOf(input.scans);
   if (std::none_of(input.poses.begin(), input.poses.end(), [](const Pose& pose) { return pose.has_value(); }))
     input.poses.clear();

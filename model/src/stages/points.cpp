@@ -82,11 +82,12 @@ std::vector<Pose> placeScans(const ModelInput& input, const ModelOptions& option
   std::vector<Pose> poses = result.poses;
   figures["registration"] = "found";
   figures["registration_rms"] = result.rms;
+  figures["warnings"] = registrationWarnings(result, registration);
   Index tie = 0;
   while (tie < count && !poses[tie])
     ++tie;
   if (tie == count)
-    throw std::runtime_error(input.folder + ": no scan could be placed");
+    throw std::runtime_error(registration.names[0] + ": " + result.scans[0].problem + "; no scan could be placed");
   if (!input.poses.empty() && input.poses[tie]) {
     const Eigen::Matrix4d T_world_group = *input.poses[tie] * poses[tie]->inverse();
     for (Pose& pose : poses)

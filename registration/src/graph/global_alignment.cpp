@@ -156,12 +156,15 @@ GlobalAlignment GlobalAligner::run(const Progress& progress)
   constexpr int most_rounds = 6;        // 24 partners of each scan: more than overlap with it
   describe(progress);
   std::vector<RankedPair> pairs = possiblePairs(scans_, known_);
+  std::vector<char> has_place(scans_.size(), 0);
+  for (const Index scan : known_.scans)
+    has_place[scan] = 1;
   const bool ranked = pairs.size() > all_pairs;
   if (ranked)
     rankPairs(pairs, scans_, features_, options_.threads);
   for (int round = 0; round < most_rounds; ++round) {
     report(progress, "align pairs", 0.3 + 0.7 * round / most_rounds);
-    alignPairs(ranked ? takeRound(pairs, scans_.size()) : pairs);
+    alignPairs(ranked ? takeRound(pairs, has_place) : pairs);
     correctViewpoints();
     sharePartialAliases(scans_, result_.pairs);
     result_.graph = buildScanGraph({scans_, result_.pairs, graphOptions()}, known_);

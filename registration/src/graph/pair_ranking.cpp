@@ -34,10 +34,12 @@ void rankPairs(std::vector<RankedPair>& pairs, const std::vector<PreparedScan>& 
   std::stable_sort(pairs.begin(), pairs.end(), [](const auto& x, const auto& y) { return x.votes > y.votes; });
 }
 
-std::vector<RankedPair> takeRound(std::vector<RankedPair>& pairs, Index scan_count)
+std::vector<RankedPair> takeRound(std::vector<RankedPair>& pairs, const std::vector<char>& known)
 {
   constexpr Index partners_a_round = 4; // of each scan: two to either side of a chain of scans
-  std::vector<Index> taken(scan_count, 0);
+  std::vector<Index> taken(known.size(), 0);
+  for (std::size_t i = 0; i < known.size(); ++i)
+    taken[i] = known[i] ? partners_a_round : 0;
   std::vector<RankedPair> round, rest;
   for (const RankedPair& pair : pairs) {
     Index &a = taken[pair.a], &b = taken[pair.b];

@@ -11,6 +11,7 @@ struct RankedPair {
 void rankPairs(std::vector<RankedPair>& pairs, const std::vector<PreparedScan>& scans,
                const std::vector<ScanFeatures>& features, int threads);
 
-/// The best pairs not yet tried, a few of each scan; they are taken out of `pairs`.
-std::vector<RankedPair> takeRound(std::vector<RankedPair>& pairs, Index scan_count);
+/// The best pairs not yet tried, a few of each scan but the known ones; they are taken out of `pairs`.
+/// @param known per scan, whether its place is known: how many look for places with it does not matter
+std::vector<RankedPair> takeRound(std::vector<RankedPair>& pairs, const std::vector<char>& known);
 } // namespace fresco::registration

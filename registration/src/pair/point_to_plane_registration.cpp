@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pair/pair_overlap.h"
+#include "refinement/free_motion.h"
 #include "refinement/joint_refinement.h"
-#include "refinement/pose_uncertainty.h"
 #include <algorithm>
 #include <cmath>
 #include <fresco/core/require.h>
@@ -33,8 +33,7 @@ void summarize(const JointResult& joint, const PreparedScan& source, PointToPlan
   if (result.matches == 0)
     return;
   result.rms = std::sqrt(squares / result.matches);
-  result.free_motion =
-      describeUncertainty(joint.information[1], result.rms, source, joint.poses[1].linear()).free_motion;
+  result.free_motion = findFreeMotion(joint.information[1], source, joint.poses[1].linear());
 }
 } // namespace
 

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <fresco/core/parallel.h>
 #include <fresco/core/union_find.h>
+#include <map>
 #include <numeric>
 namespace fresco::registration {
 namespace {
@@ -49,6 +50,10 @@ private:
   Eigen::VectorXd solve(const std::vector<PairSystem>& systems) const;
   double move(const Eigen::VectorXd& x);
   void keepGauge();
+  std::vector<Index> holders() const;
+  bool fixed(Index scan) const { return !options_.fixed.empty() && options_.fixed[scan]; }
+  CellSystems systemsByCell(std::size_t pair) const;
+  void findCovariances(JointResult& result) const;
   void finish(JointResult& result) const;
 
   const ScanPointers& scans_;
@@ -69,7 +74,7 @@ std::vector<char> Refinement::overlaps(float distance) const
       n * n, options_.threads,
       [&](Index k) {
         const DirectedPair pair{k / n, k % n, {}, 0.0};
-        if (pair.source == pair.target)
+        if (pair.source == pair.target || (fixed(pair.source) && fixed(pair.target)))
           return;
         OverlapTest test;
         test.distance = distance;
@@ -140,6 +145,8 @@ Eigen::VectorXd Refinement::solve(const std::vector<PairSystem>& systems) const
   std::vector<Eigen::Triplet<double>> entries;
   Eigen::VectorXd b = Eigen::VectorXd::Zero(n), scale(n);
   const auto add = [&](Index row, Index column, const Matrix6d& block) {
+    if (fixed(row) || fixed(column))
+      return;
     for (Index r = 0; r < 6; ++r)
       for (Index c = 0; c < 6; ++c)
         entries.emplace_back(6 * row + r, 6 * column + c, block(r, c) * scale[6 * row + r] * scale[6 * column + c]);
@@ -159,6 +166,9 @@ Eigen::VectorXd Refinement::solve(const std::vector<PairSystem>& systems) const
     b.segment<6>(6 * pair.target) -= M.M_target * systems[p].b;
     matches += systems[p].count;
   }
+  for (Index i = 0; i < scanCount(); ++i)
+    if (fixed(i))
+      b.segment<6>(6 * i).setZero();
   const double least = damping * std::max<double>(1.0, matches) / scanCount();
   for (Index k = 0; k < n; ++k)
     entries.emplace_back(k, k, least);
@@ -212,23 +222,79 @@ void Refinement::refineLevel()
   }
 }
 
-// Moves each connected group back so that its first anchor, or else its first scan, keeps its pose.
-void Refinement::keepGauge()
+// Per scan, the first anchor of its connected group, or else the group's first scan; a fixed scan holds itself.
+std::vector<Index> Refinement::holders() const
 {
   UnionFind groups(scanCount());
-  for (const DirectedPair& pair : pairs_)
-    groups.join(pair.source, pair.target);
   std::vector<Index> holder(scans_.size());
   std::iota(holder.begin(), holder.end(), Index(0));
+  for (const DirectedPair& pair : pairs_)
+    groups.join(pair.source, pair.target);
   for (auto anchor = options_.anchors.rbegin(); anchor != options_.anchors.rend(); ++anchor)
     holder[groups.root(*anchor)] = *anchor;
+  for (Index i = scanCount() - 1; i >= 0; --i)
+    if (fixed(i))
+      holder[groups.root(i)] = i;
+  for (Index i = scanCount() - 1; i >= 0; --i) // a root comes before the rest of its group
+    holder[i] = fixed(i) ? i : holder[groups.root(i)];
+  return holder;
+}
+
+// Moves each connected group back so that its holder keeps its pose.
+void Refinement::keepGauge()
+{
+  const std::vector<Index> held = holders();
   IsometryVector corrections(scans_.size());
-  for (Index i = 0; i < scanCount(); ++i) {
-    const Index held = holder[groups.root(i)];
-    corrections[i] = first_poses_[held] * poses_[held].inverse();
-  }
   for (Index i = 0; i < scanCount(); ++i)
-    poses_[i] = corrections[i] * poses_[i];
+    corrections[i] = first_poses_[held[i]] * poses_[held[i]].inverse();
+  for (Index i = 0; i < scanCount(); ++i)
+    if (!fixed(i))
+      poses_[i] = fixed(held[i]) ? poses_[i] : corrections[i] * poses_[i];
+}
+
+CellSystems Refinement::systemsByCell(std::size_t pair) const
+{
+  // Of the scans' sizes: a wall of a room. What a scanner misreads of it depends on itself all over.
+  constexpr double cell_share = 1.5;
+  const double edge = cell_share * scans_[0]->size;
+  const DirectedPair& directed = pairs_[pair];
+  const LevelPair level = levelPair(directed);
+  const Eigen::Isometry3d& T_world_target = poses_[directed.target];
+  std::map<std::array<std::int32_t, 3>, PairSystem> systems;
+  const Index n = directed.matches.size();
+  for (Index k = 0; k < n; ++k) {
+    if (directed.matches[k].target < 0)
+      continue;
+    const Eigen::Vector3d y = level.target.points.col(directed.matches[k].target).cast<double>();
+    const Eigen::Array3i cell = ((T_world_target * y - poses_[0].translation()).array() / edge).floor().cast<int>();
+    addMatch(level, directed, k, systems[{cell[0], cell[1], cell[2]}]);
+  }
+  CellSystems result;
+  for (const auto& [cell, system] : systems)
+    if (system.count > 0)
+      result.push_back({cell, static_cast<Index>(pair), system});
+  return result;
+}
+
+void Refinement::findCovariances(JointResult& result) const
+{
+  const std::vector<Index> held = holders();
+  JointSystem joint{poses_, held, {}, {}};
+  joint.fit = options_.fixed.empty();
+  joint.size = scans_[0]->size;
+  joint.threads = options_.threads;
+  std::vector<CellSystems> parts(pairs_.size());
+  parallelFor(
+      pairs_.size(), options_.threads, [&](Index p) { parts[p] = systemsByCell(p); }, 1);
+  for (std::size_t p = 0; p < pairs_.size(); ++p) {
+    const DirectedPair& pair = pairs_[p];
+    joint.links.push_back({pair.source, pair.target, PairJacobian(poses_[pair.target], relative(pair))});
+    joint.cells.insert(joint.cells.end(), parts[p].begin(), parts[p].end());
+  }
+  std::stable_sort(joint.cells.begin(), joint.cells.end(),
+                   [](const CellSystem& x, const CellSystem& y) { return x.cell < y.cell; });
+  result.covariances = jointCovariances(joint);
+  result.informations = pairInformations(joint);
 }
 
 void Refinement::finish(JointResult& result) const
@@ -244,6 +310,8 @@ void Refinement::finish(JointResult& result) const
     result.information[pair.source] += M.M_source * system.H * M.M_source.transpose();
     result.information[pair.target] += M.M_target * system.H * M.M_target.transpose();
   }
+  if (options_.covariances)
+    findCovariances(result);
   result.poses = poses_;
   result.iterations = iterations_;
   result.converged = converged_;

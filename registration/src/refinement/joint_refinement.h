@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+#include "refinement/joint_covariance.h"
 #include "refinement/rigid_motion.h"
 #include "scan/prepared_scan.h"
 #include <fresco/core/progress.h>
@@ -17,6 +18,8 @@ struct JointOptions {
   float min_motion = 0.f;    ///< a level ends once no scan moves further, length; 0 = voxel / 500
   std::vector<std::pair<Index, Index>> excluded; ///< pairs not to use
   std::vector<Index> anchors; ///< rising; the first in a connected group keeps its pose, else the group's first scan
+  std::vector<char> fixed;    ///< per scan, whether it does not move; pairs of two such are not used; empty = none
+  bool covariances = false;   ///< whether covariances and informations are found
   int threads = 0;
 };
 
@@ -32,6 +35,8 @@ struct JointResult {
   std::vector<JointPair> pairs; ///< both directions of each pair
   /// Per scan, all others held: rotation (about the scan's centre, axes of the world) first; weights of one match sum up.
   std::vector<Matrix6d, Eigen::aligned_allocator<Matrix6d>> information;
+  Covariances covariances;       ///< see jointCovariances(); empty unless asked for
+  PairInformations informations; ///< see pairInformations(); empty unless asked for
   int iterations = 0;
   bool converged = false;
 };

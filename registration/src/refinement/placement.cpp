@@ -12,41 +12,70 @@ JointOptions jointOptions(const ScanRegistrationOptions& options)
   joint.max_distance = options.max_distance;
   joint.min_overlap = 0.5 * options.min_overlap;
   joint.max_iterations = options.max_iterations;
+  joint.covariances = true;
   joint.threads = options.threads;
   return joint;
 }
 
-// Every pair of members that overlaps, checked at the refined poses.
+// Pairs of members, but for those that do not move.
+std::vector<std::pair<Index, Index>> memberPairs(const Placement& placement)
+{
+  std::vector<std::pair<Index, Index>> pairs;
+  const Index n = placement.members.size();
+  for (Index a = 0; a < n; ++a)
+    for (Index b = a + 1; b < n; ++b)
+      if (placement.fixed.empty() || !placement.fixed[a] || !placement.fixed[b])
+        pairs.emplace_back(a, b);
+  return pairs;
+}
+
+// Frame of the placement from that of the scan's file.
+Eigen::Isometry3d filePose(const std::vector<PreparedScan>& scans, const Placement& placement, Index member)
+{
+  return placement.poses[member] * Eigen::Translation3d(-scans[placement.members[member]].center);
+}
+
+// Of two members, at the refined poses.
+PairResult checkMembers(const std::vector<PreparedScan>& scans, const Placement& placement, Index a, Index b)
+{
+  PairResult pair;
+  pair.a = placement.members[a];
+  pair.b = placement.members[b];
+  const PreparedScan &first = scans[pair.a], &second = scans[pair.b];
+  const PairCheck check = checkPair(first, second, placement.poses[a].inverse() * placement.poses[b], check_level);
+  pair.overlap = check.overlap;
+  pair.violation = check.violation;
+  pair.T_a_b = (filePose(scans, placement, a).inverse() * filePose(scans, placement, b)).matrix();
+  pair.information_point = second.center;
+  return pair;
+}
+
+// Every pair of members that overlaps.
 std::vector<PairResult> checkPairs(const std::vector<PreparedScan>& scans, const ScanRegistrationOptions& options,
                                    const Placement& placement)
 {
-  const Index n = placement.members.size();
-  std::vector<PairResult> all(n * n);
+  const std::vector<std::pair<Index, Index>> pairs = memberPairs(placement);
+  std::vector<PairResult> all(pairs.size());
   parallelFor(
-      n * n, options.threads,
-      [&](Index k) {
-        const Index a = k / n, b = k % n;
-        if (a >= b)
-          return;
-        PairResult& pair = all[k];
-        pair.a = placement.members[a];
-        pair.b = placement.members[b];
-        const PreparedScan &first = scans[pair.a], &second = scans[pair.b];
-        const PairCheck check =
-            checkPair(first, second, placement.poses[a].inverse() * placement.poses[b], check_level);
-        pair.overlap = check.overlap;
-        pair.violation = check.violation;
-      },
-      1);
+      pairs.size(), options.threads,
+      [&](Index k) { all[k] = checkMembers(scans, placement, pairs[k].first, pairs[k].second); }, 1);
+  const auto find = [&](Index a, Index b) -> PairResult& {
+    const std::pair<Index, Index> wanted = std::minmax(a, b); // pairs are in order
+    return all[std::lower_bound(pairs.begin(), pairs.end(), wanted) - pairs.begin()];
+  };
   for (const JointPair& joint : placement.joint.pairs) {
-    const Index a = std::min(joint.source, joint.target), b = std::max(joint.source, joint.target);
-    PairResult& pair = all[a * n + b];
+    PairResult& pair = find(joint.source, joint.target);
     pair.rms += joint.matches * joint.rms * joint.rms;
     pair.matches += joint.matches;
   }
+  for (const PairInformation& joint : placement.joint.informations) {
+    Matrix6d R = Matrix6d::Zero(); // world from axes of a
+    R.topLeftCorner<3, 3>() = R.bottomRightCorner<3, 3>() = placement.poses[joint.a].linear();
+    find(joint.a, joint.b).information = R.transpose() * joint.information * R;
+  }
   std::vector<PairResult> kept;
   for (PairResult& pair : all) {
-    if (pair.a == pair.b || (pair.overlap < 0.5 * options.min_overlap && pair.violation <= options.max_violation))
+    if (pair.overlap < 0.5 * options.min_overlap && pair.violation <= options.max_violation)
       continue;
     pair.rms = std::sqrt(pair.rms / std::max<Index>(1, pair.matches));
     pair.accepted = pair.overlap >= options.min_overlap && pair.violation <= options.max_violation && pair.matches > 0;
@@ -70,6 +99,7 @@ void refinePlacement(const std::vector<PreparedScan>& scans, const ScanRegistrat
     members.push_back(&scans[i]);
   JointOptions joint = jointOptions(options);
   joint.anchors = placement.anchors;
+  joint.fixed = placement.fixed;
   const IsometryVector start = placement.poses;
   for (int round = 0; round < most_rounds; ++round) {
     placement.joint = refineJointly(members, start, joint, progress);

@@ -8,6 +8,7 @@ struct Placement {
   std::vector<Index> members;    ///< indices of the scans
   IsometryVector poses;          ///< frame from working frame, one per member
   std::vector<Index> anchors;    ///< indices into members of the scans with a start pose
+  std::vector<char> fixed;       ///< per member, whether it does not move; empty = none
   JointResult joint;             ///< of the last refinement, indices into members
   std::vector<PairResult> pairs; ///< overlapping pairs, indices of scans
   bool look_alike = false;       ///< see ScanCluster

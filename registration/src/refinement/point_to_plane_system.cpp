@@ -55,30 +55,34 @@ void findCutoff(float voxel, DirectedPair& pair)
   pair.cutoff = enough ? std::max(tukey * mad_to_sigma * median(residuals), 1e-3 * voxel) : 0.0;
 }
 
-PairSystem accumulate(const LevelPair& level, const SampleRange& range, const DirectedPair& pair)
+void addMatch(const LevelPair& level, const DirectedPair& pair, Index k, PairSystem& system)
 {
   // Of both neighbourhoods together: halves the weight, noisy surfaces say less.
   constexpr double plain_variation = 0.01;
   const ScanLevel &source = level.source, &target = level.target;
+  const Match& match = pair.matches[k];
+  const double u = match.target < 0 || pair.cutoff <= 0.0 ? 1.0 : std::abs(match.residual) / pair.cutoff;
+  if (u >= 1.0)
+    return;
+  const Index i = source.samples[k];
+  const Eigen::Vector3d x = (level.T_target_source * source.points.col(i)).cast<double>();
+  const Eigen::Vector3d n = target.normals.col(match.target).cast<double>();
+  const double variation = source.surface_variation[i] + target.surface_variation[match.target];
+  const double weight = (1.0 - u * u) * (1.0 - u * u) * plain_variation / (plain_variation + variation);
+  const double r = match.residual;
+  Vector6d J;
+  J << x.cross(n), n;
+  system.H.noalias() += weight * J * J.transpose();
+  system.b += weight * r * J;
+  system.squares += r * r;
+  ++system.count;
+}
+
+PairSystem accumulate(const LevelPair& level, const SampleRange& range, const DirectedPair& pair)
+{
   PairSystem system;
-  for (Index k = range.begin; k < range.end; ++k) {
-    const Match& match = pair.matches[k];
-    const double u = match.target < 0 || pair.cutoff <= 0.0 ? 1.0 : std::abs(match.residual) / pair.cutoff;
-    if (u >= 1.0)
-      continue;
-    const Index i = source.samples[k];
-    const Eigen::Vector3d x = (level.T_target_source * source.points.col(i)).cast<double>();
-    const Eigen::Vector3d n = target.normals.col(match.target).cast<double>();
-    const double variation = source.surface_variation[i] + target.surface_variation[match.target];
-    const double weight = (1.0 - u * u) * (1.0 - u * u) * plain_variation / (plain_variation + variation);
-    const double r = match.residual;
-    Vector6d J;
-    J << x.cross(n), n;
-    system.H.noalias() += weight * J * J.transpose();
-    system.b += weight * r * J;
-    system.squares += r * r;
-    ++system.count;
-  }
+  for (Index k = range.begin; k < range.end; ++k)
+    addMatch(level, pair, k, system);
   return system;
 }
 } // namespace fresco::registration

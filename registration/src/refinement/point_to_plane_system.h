@@ -56,7 +56,10 @@ void findMatches(const LevelPair& level, const SampleRange& range, float distanc
 /// @param voxel of the level, length
 void findCutoff(float voxel, DirectedPair& pair);
 
-/// Sum over the matches of a range. Weight w: Tukey's biweight (1 - (r / cutoff)^2)^2, times what rough surfaces are
+/// Adds match k of the pair to the system, unless its weight is zero. Weight w: Tukey's biweight (1 - (r / cutoff)^2)^2, times what rough surfaces are
 /// worth.
+void addMatch(const LevelPair& level, const DirectedPair& pair, Index k, PairSystem& system);
+
+/// Sum over the matches of a range.
 PairSystem accumulate(const LevelPair& level, const SampleRange& range, const DirectedPair& pair);
 } // namespace fresco::registration

@@ -1,11 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+#include "pair/pair_alignment.h"
 #include "refinement/placement.h"
 namespace fresco::registration {
+/// What was found, before it is described.
+struct RegistrationState {
+  const std::vector<PreparedScan>& scans;
+  const std::vector<Pose>& start;
+  const ScanRegistrationOptions& options;
+  std::vector<Placement> placements; ///< each in a frame of its own, the most important first
+  std::vector<PairAlignment> tried;  ///< pairs without start poses
+};
+
 /// What users get to know. Poses are those of the first placement: of its largest group, and of other scans that have a
 /// start pose which no scan of that group contradicts.
-/// @param placements each in a frame of its own, the most important first
-ScanRegistrationResult describeRegistration(const std::vector<PreparedScan>& scans,
-                                            const std::vector<Placement>& placements, const std::vector<Pose>& start,
-                                            const ScanRegistrationOptions& options);
+ScanRegistrationResult describeRegistration(const RegistrationState& state);
 } // namespace fresco::registration

@@ -40,6 +40,7 @@ using ScanAliases = std::vector<ScanAlias, Eigen::aligned_allocator<ScanAlias>>;
 /// What registration keeps of a scan.
 struct PreparedScan {
   std::string problem;                              ///< why it cannot be registered; empty = it can
+  Index duplicate_of = -1;                          ///< the scan that has the same points; -1 = none
   Eigen::Vector3d center = Eigen::Vector3d::Zero(); ///< scan = center + working
   bool viewpoint_given = false;                     ///< its file tells where it was seen from
   std::string viewpoint_problem;                    ///< why its free space is not used; empty = it is

@@ -2,21 +2,71 @@
 #include "scan/scan_survey.h"
 #include "scan/thinning.h"
 #include <algorithm>
+#include <cstring>
 #include <fresco/core/require.h>
 #include <fresco/core/statistics.h>
 namespace fresco::registration {
-ScanSurvey surveyScans(const ScanSource& scans)
+namespace {
+// FNV-1a (Fowler, Noll, Vo) over words of 32 bits.
+std::uint64_t hashOf(const PointSet& scan)
+{
+  std::uint64_t hash = 14695981039346656037ull;
+  const auto add = [&](const Points& values) {
+    for (Index i = 0; i < values.size(); ++i) {
+      std::uint32_t bits;
+      std::memcpy(&bits, values.data() + i, sizeof(bits));
+      hash = (hash ^ bits) * 1099511628211ull;
+    }
+  };
+  add(scan.points);
+  add(scan.origin.cast<float>());
+  return hash;
+}
+
+// Messages of readers begin with the name of the file.
+std::string withoutName(std::string message, const std::string& name)
+{
+  return message.rfind(name + ": ", 0) == 0 ? message.substr(name.size() + 2) : message;
+}
+} // namespace
+
+ScanSurvey surveyScans(const ScanSource& scans, const ScanRegistrationOptions& options)
 {
   ScanSurvey survey;
+  Index counted = 0;
   for (Index i = 0; i < scans.count; ++i) {
-    const PointSet scan = scans.read(i);
+    PointSet scan;
+    survey.problems.emplace_back();
+    try {
+      scan = scans.read(i);
+    } catch (const Cancelled&) {
+      throw;
+    } catch (const std::runtime_error& error) {
+      survey.problems.back() = "left out: " + withoutName(error.what(), scanName(options, i));
+    }
     validatePointSet(scan);
     survey.sizes.push_back(scanSize(scan));
-    survey.narrowness += narrowness(scan) / scans.count;
     const double size = survey.sizes.back();
+    survey.narrowness += narrowness(scan);
+    counted += scan.size() > 0 ? 1 : 0;
     survey.voxels.push_back(size > 0.0 ? fittingVoxel(scan, size / voxels_per_size) : 0.0);
+    survey.hashes.push_back(scan.size() > 0 ? hashOf(scan) : 0);
   }
+  survey.narrowness /= std::max<Index>(1, counted);
   return survey;
+}
+
+std::vector<Index> findDuplicates(const ScanSurvey& survey, const std::vector<Pose>& start)
+{
+  const Index n = survey.hashes.size();
+  const auto started = [&](Index i) { return !start.empty() && start[i].has_value(); };
+  std::vector<Index> duplicates(n, -1);
+  for (Index i = 0; i < n; ++i)
+    for (Index k = 0; k < n && !started(i); ++k)
+      if (k != i && survey.hashes[i] != 0 && survey.hashes[k] == survey.hashes[i] && (k < i || started(k)) &&
+          (duplicates[i] < 0 || (started(k) && !started(duplicates[i]))))
+        duplicates[i] = k;
+  return duplicates;
 }
 
 double commonSize(const std::vector<double>& sizes, const ScanRegistrationOptions& options)
@@ -39,7 +89,8 @@ float chooseVoxel(const ScanSurvey& survey, double size)
 {
   std::vector<double> voxels;
   for (const double voxel : survey.voxels)
-    voxels.push_back(std::max(voxel, size / voxels_per_size));
+    if (voxel > 0.0)
+      voxels.push_back(std::max(voxel, size / voxels_per_size));
   return median(voxels);
 }
 } // namespace fresco::registration

@@ -39,8 +39,9 @@ FRESCO_EXPORT bool holdsScans(const std::string& path);
 FRESCO_EXPORT std::vector<ScanInfo> readScanInfos(const std::string& path);
 
 /// The scans in files of points: one each, or as many as a file that holdsScans() has.
+/// @param keep_broken a file that cannot be listed counts as one scan, whose reading then throws
 /// @throws std::runtime_error as readScanInfos()
-FRESCO_EXPORT std::vector<ScanPath> scansOf(const std::vector<std::string>& files);
+FRESCO_EXPORT std::vector<ScanPath> scansOf(const std::vector<std::string>& files, bool keep_broken = false);
 
 /// World from scan as the files themselves say; nothing where they do not.
 FRESCO_EXPORT std::vector<Pose> posesOf(const std::vector<ScanPath>& scans);

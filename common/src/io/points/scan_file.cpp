@@ -40,11 +40,18 @@ std::vector<ScanInfo> readScanInfos(const std::string& path)
   return reader->scans();
 }
 
-std::vector<ScanPath> scansOf(const std::vector<std::string>& files)
+std::vector<ScanPath> scansOf(const std::vector<std::string>& files, bool keep_broken)
 {
   std::vector<ScanPath> scans;
   for (const std::string& file : files) {
-    const std::vector<ScanInfo> infos = holdsScans(file) ? readScanInfos(file) : std::vector<ScanInfo>(1);
+    std::vector<ScanInfo> infos(1);
+    try {
+      if (holdsScans(file))
+        infos = readScanInfos(file);
+    } catch (const std::runtime_error&) {
+      if (!keep_broken)
+        throw;
+    }
     if (infos.size() == 1 && !infos[0].has_pose)
       scans.push_back({file, -1});
     else

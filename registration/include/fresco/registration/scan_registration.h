@@ -30,6 +30,8 @@ public:
   float getMaxCorrespondenceDistance() const { return options_.max_distance; }
   void setMinOverlap(float share) { options_.min_overlap = share; }
   float getMinOverlap() const { return options_.min_overlap; }
+  void setFixed(bool fixed) { options_.fixed = fixed; }
+  bool getFixed() const { return options_.fixed; }
   void setUpright(bool upright) { options_.upright = upright; }
   bool getUpright() const { return options_.upright; }
   void setMaxViolation(float share) { options_.max_violation = share; }

@@ -17,6 +17,7 @@ struct ScanRegistrationOptions {
   float min_overlap = 0.1f;    ///< share of a scan's points with a counterpart from which a pair is used, 0..1
   float max_violation = 0.04f; ///< share of a scan's points in space that the other saw through: above, a pair is wrong
   int max_iterations = 40;     ///< of the joint refinement, per resolution, >= 1
+  bool fixed = false;          ///< scans with a start pose keep it exactly; only the others are placed
   bool upright = false; ///< whether all scanners stood upright to 10 degrees, z upwards: fewer poses are possible
   int threads = 0;      ///< 0 = all cores; the result does not depend on it
   std::vector<std::string> names; ///< of the scans, for messages; empty = their numbers
@@ -33,14 +34,30 @@ struct ScanSource {
 /// What messages call a scan.
 FRESCO_EXPORT std::string scanName(const ScanRegistrationOptions& options, Index scan);
 
+/// A relative pose that explains two scans, but was not taken.
+struct AlternativePose {
+  Eigen::Matrix4d T_a_b = Eigen::Matrix4d::Identity(); ///< scan a from scan b
+  double overlap = 0.0;                                ///< as PairResult::overlap
+  double violation = 0.0;                              ///< as PairResult::violation
+};
+
 /// One pair of scans at the end.
 struct PairResult {
+  using Matrix6d = Eigen::Matrix<double, 6, 6>;
   Index a = 0, b = 0;     ///< a < b
   double overlap = 0.0;   ///< larger of the shares of points of one scan with a counterpart in the other, 0..1
   double violation = 0.0; ///< larger of the shares of comparable surfaces in space that the other saw through, 0..1
   double rms = 0.0;       ///< point-to-plane distance of the corresponding points, length
   Index matches = 0;      ///< corresponding points
   bool accepted = false;  ///< holds the two scans together
+  /// Scan a from scan b: as placed, if both were placed in one frame, else the best that was found.
+  Eigen::Matrix4d T_a_b = Eigen::Matrix4d::Identity();
+  /// Inverse covariance of T_a_b from this pair alone: rotation of b about `information_point` (radian), translation of
+  /// that point; axes of scan a. Zero without corresponding points.
+  Matrix6d information = Matrix6d::Zero();
+  /// In the frame of b: the position of its scanner, or the middle of its points.
+  Eigen::Vector3d information_point = Eigen::Vector3d::Zero();
+  std::vector<AlternativePose> alternatives; ///< others that were found acceptable, best first
 };
 
 /// A motion of a scan that its surfaces leave free, such as along a corridor without features.
@@ -54,12 +71,15 @@ struct ScanResult {
   bool placed = false;
   std::string problem;           ///< why it was not placed, or what is doubtful about its place
   std::string viewpoint_problem; ///< why what it saw through is not used; empty = it is
+  Index duplicate_of = -1;       ///< the scan that has the same points; -1 = none. Scans with a start pose are none
   Index group = -1;              ///< scans held together by accepted pairs; 0 is the group with poses; -1 = none
   Eigen::Matrix4d T_group_scan = Eigen::Matrix4d::Identity(); ///< within its group, whether placed or not
   double rms = 0.0;                                           ///< point-to-plane distance over its accepted pairs
-  double translation_deviation = 0.0;                         ///< standard deviation in the least certain direction
-  double rotation_deviation = 0.0;                            ///< the same about the least certain axis, radian
-  std::optional<FreeMotion> free_motion;                      ///< degenerate: the pose is arbitrary along it
+  /// Standard deviation of the scanner's position: root of the expected squared distance, length. Relative to the scan
+  /// that holds the frame, or to the best fit of the group where that is larger. Zero for fixed scans.
+  double translation_deviation = 0.0;
+  double rotation_deviation = 0.0;       ///< the same of the rotation, radian
+  std::optional<FreeMotion> free_motion; ///< degenerate: the pose is arbitrary along it
 };
 
 struct ScanRegistrationResult {
@@ -73,10 +93,16 @@ struct ScanRegistrationResult {
   bool converged = false;
 };
 
-/// The first scan of a group keeps its start pose. Without any, the first scan of the largest group is the world.
+/// What a user should know of the result, a line each: scans that could not be read or placed or are doubtful, viewpoints
+/// that are not used, further groups.
+FRESCO_EXPORT std::vector<std::string> registrationWarnings(const ScanRegistrationResult& result,
+                                                            const ScanRegistrationOptions& options);
+
+/// The first scan of a group keeps its start pose; with `fixed`, all scans that have one do, and no pair of two such is
+/// looked at. Without any, the first scan of the largest group is the world.
 /// @param scans one or more; each in its own frame. The viewpoint of a scan without `viewpoints` is its frame's origin.
 /// @param start world from scan, one per scan, off by up to max_distance; or empty. Scans without one are aligned
-/// globally.
+/// globally. A scan whose reading throws std::runtime_error is left out; ScanResult::problem says why.
 /// @throws std::invalid_argument if there is no scan, sizes differ, an attribute is malformed, an option is out of
 /// range or the scans differ in size so much that their units must differ
 FRESCO_EXPORT ScanRegistrationResult registerScans(const std::vector<PointSet>& scans,

@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "refinement/joint_covariance.h"
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+#include <algorithm>
+#include <fresco/core/parallel.h>
+#include <map>
+namespace fresco::registration {
+namespace {
+using Block = Eigen::Matrix<double, 6, Eigen::Dynamic>;
+
+// The share of one cell: what its matches pull at the scans that see it.
+struct CellPull {
+  std::vector<Index> scans; // that can move
+  Eigen::VectorXd pull;     // 6 per scan
+};
+
+class CovarianceEstimator {
+public:
+  explicit CovarianceEstimator(const JointSystem& joint);
+
+  Covariances run() const;
+
+private:
+  bool held(Index scan) const { return joint_.holders[scan] == scan; }
+  Matrix6d scaled(const Matrix6d& M) const { return scale_.asDiagonal() * M; }
+  void add(const CellSystem& cell, const std::vector<Index>& at, Eigen::MatrixXd& H, Eigen::VectorXd& g) const;
+  void invert();
+  CellPull pullOf(Index begin, Index end) const;
+  Matrix6d groupMotion(Index scan) const;
+  Block fitRows(Index holder) const;
+  Matrix6d covarianceOf(Index scan, const std::vector<CellPull>& pulls) const;
+
+  const JointSystem& joint_;
+  Vector6d scale_; // motions are rotation times size and translation
+  Index count_, moving_ = 0;
+  std::vector<Index> slots_;                                 // per scan, its place among those that can move, or -1
+  Eigen::MatrixXd P_;                                        // inverse of their normal equations
+  std::vector<Block, Eigen::aligned_allocator<Block>> fits_; // per scan, of its group
+};
+
+CovarianceEstimator::CovarianceEstimator(const JointSystem& joint) : joint_(joint), count_(joint.poses.size())
+{
+  scale_ << Eigen::Vector3d::Constant(1.0 / joint.size), Eigen::Vector3d::Ones();
+  for (Index i = 0; i < count_; ++i)
+    slots_.push_back(held(i) ? -1 : moving_++);
+  invert();
+  fits_.resize(count_);
+  for (Index i = 0; i < count_ && joint.fit; ++i)
+    if (held(i))
+      fits_[i] = fitRows(i);
+}
+
+// Adds the normal equations of a cell to those of the scans at the positions `at`, -1 = left out.
+void CovarianceEstimator::add(const CellSystem& cell, const std::vector<Index>& at, Eigen::MatrixXd& H,
+                              Eigen::VectorXd& g) const
+{
+  const PairLink& link = joint_.links[cell.pair];
+  const std::array<Index, 2> position = {at[link.source], at[link.target]};
+  const std::array<Matrix6d, 2> M = {scaled(link.jacobian.M_source), scaled(link.jacobian.M_target)};
+  for (int r = 0; r < 2; ++r) {
+    if (position[r] < 0)
+      continue;
+    g.segment<6>(6 * position[r]) += M[r] * cell.system.b;
+    for (int c = 0; c < 2; ++c)
+      if (position[c] >= 0)
+        H.block<6, 6>(6 * position[r], 6 * position[c]) += M[r] * cell.system.H * M[c].transpose();
+  }
+}
+
+void CovarianceEstimator::invert()
+{
+  constexpr double damping = 1e-7; // of the mean information: only what no match determines is held by it
+  Eigen::MatrixXd H = Eigen::MatrixXd::Zero(6 * moving_, 6 * moving_);
+  Eigen::VectorXd g = Eigen::VectorXd::Zero(6 * moving_);
+  for (const CellSystem& cell : joint_.cells)
+    add(cell, slots_, H, g);
+  H.diagonal().array() += damping * std::max(1.0, H.trace() / std::max<Index>(1, H.rows()));
+  const Eigen::LLT<Eigen::MatrixXd> solver(H);
+  P_.resize(H.rows(), H.cols());
+  parallelFor(
+      moving_, joint_.threads,
+      [&](Index k) {
+        Eigen::MatrixXd unit = Eigen::MatrixXd::Zero(6 * moving_, 6);
+        unit.middleRows<6>(6 * k).setIdentity();
+        P_.middleCols<6>(6 * k) = solver.solve(unit);
+      },
+      1);
+}
+
+// What changes the solution as leaving out the equations begin .. end - 1 would.
+CellPull CovarianceEstimator::pullOf(Index begin, Index end) const
+{
+  CellPull result;
+  for (Index k = begin; k < end; ++k)
+    for (const Index scan : {joint_.links[joint_.cells[k].pair].source, joint_.links[joint_.cells[k].pair].target})
+      if (!held(scan))
+        result.scans.push_back(scan);
+  std::sort(result.scans.begin(), result.scans.end());
+  result.scans.erase(std::unique(result.scans.begin(), result.scans.end()), result.scans.end());
+  const Index n = result.scans.size();
+  std::vector<Index> at(count_, -1);
+  for (Index k = 0; k < n; ++k)
+    at[result.scans[k]] = k;
+  Eigen::MatrixXd H = Eigen::MatrixXd::Zero(6 * n, 6 * n), P(6 * n, 6 * n);
+  result.pull = Eigen::VectorXd::Zero(6 * n);
+  for (Index k = begin; k < end; ++k)
+    add(joint_.cells[k], at, H, result.pull);
+  for (Index r = 0; r < n; ++r)
+    for (Index c = 0; c < n; ++c)
+      P.block<6, 6>(6 * r, 6 * c) = P_.block<6, 6>(6 * slots_[result.scans[r]], 6 * slots_[result.scans[c]]);
+  const Eigen::MatrixXd A = Eigen::MatrixXd::Identity(6 * n, 6 * n) - H * P;
+  result.pull = A.partialPivLu().solve(result.pull).eval();
+  return result;
+}
+
+// Motion of a scan when its whole group moves, about its holder.
+Matrix6d CovarianceEstimator::groupMotion(Index scan) const
+{
+  Matrix6d G = Matrix6d::Identity();
+  G.bottomLeftCorner<3, 3>() =
+      -skew(joint_.poses[scan].translation() - joint_.poses[joint_.holders[scan]].translation()) / joint_.size;
+  return G;
+}
+
+// From motions of all scans to that of a group, by least squares.
+Block CovarianceEstimator::fitRows(Index holder) const
+{
+  Matrix6d sum = Matrix6d::Zero();
+  Block rows = Block::Zero(6, 6 * moving_);
+  for (Index i = 0; i < count_; ++i)
+    if (joint_.holders[i] == holder) {
+      const Matrix6d G = groupMotion(i);
+      sum += G.transpose() * G;
+      if (!held(i))
+        rows.middleCols<6>(6 * slots_[i]) = G.transpose();
+    }
+  return sum.ldlt().solve(rows * P_);
+}
+
+Matrix6d CovarianceEstimator::covarianceOf(Index scan, const std::vector<CellPull>& pulls) const
+{
+  const Block& fit = fits_[joint_.holders[scan]];
+  const Matrix6d G = groupMotion(scan);
+  Matrix6d to_holder = Matrix6d::Zero(), to_fit = Matrix6d::Zero();
+  for (const CellPull& cell : pulls) {
+    Vector6d own = Vector6d::Zero();
+    for (std::size_t k = 0; k < cell.scans.size() && !held(scan); ++k)
+      own += P_.block<6, 6>(6 * slots_[scan], 6 * slots_[cell.scans[k]]) * cell.pull.segment<6>(6 * k);
+    to_holder += own * own.transpose();
+    for (std::size_t k = 0; k < cell.scans.size() && joint_.fit; ++k)
+      own -= G * (fit.middleCols<6>(6 * slots_[cell.scans[k]]) * cell.pull.segment<6>(6 * k));
+    to_fit += own * own.transpose();
+  }
+  const Matrix6d& larger = to_holder.trace() > to_fit.trace() ? to_holder : to_fit;
+  return scale_.asDiagonal() * larger * scale_.asDiagonal();
+}
+
+Covariances CovarianceEstimator::run() const
+{
+  std::vector<Index> begins;
+  const Index n = joint_.cells.size();
+  for (Index k = 0; k < n; ++k)
+    if (k == 0 || joint_.cells[k].cell != joint_.cells[k - 1].cell)
+      begins.push_back(k);
+  begins.push_back(n);
+  std::vector<CellPull> pulls(begins.size() - 1);
+  parallelFor(pulls.size(), joint_.threads, [&](Index c) { pulls[c] = pullOf(begins[c], begins[c + 1]); });
+  Covariances covariances(count_);
+  parallelFor(
+      count_, joint_.threads, [&](Index i) { covariances[i] = covarianceOf(i, pulls); }, 1);
+  return covariances;
+}
+} // namespace
+
+Covariances jointCovariances(const JointSystem& joint) { return CovarianceEstimator(joint).run(); }
+
+PairInformations pairInformations(const JointSystem& joint)
+{
+  // Sums of one pair: of its cells' information, and of the squares of what they pull.
+  struct Sums {
+    Matrix6d H = Matrix6d::Zero(), squares = Matrix6d::Zero();
+    Vector6d pull = Vector6d::Zero(); // of the present cell
+    std::array<std::int32_t, 3> cell = {};
+    void close()
+    {
+      squares += pull * pull.transpose();
+      pull.setZero();
+    }
+  };
+  Vector6d scale; // balances rotations and translations
+  scale << Eigen::Vector3d::Constant(1.0 / joint.size), Eigen::Vector3d::Ones();
+  std::map<std::pair<Index, Index>, Sums> all;
+  for (const CellSystem& cell : joint.cells) {
+    const PairLink& link = joint.links[cell.pair];
+    Sums& sums = all[std::minmax(link.source, link.target)];
+    if (sums.cell != cell.cell)
+      sums.close();
+    sums.cell = cell.cell;
+    const Matrix6d M =
+        scale.asDiagonal() * (link.source > link.target ? link.jacobian.M_source : link.jacobian.M_target);
+    sums.H += M * cell.system.H * M.transpose();
+    sums.pull += M * cell.system.b;
+  }
+  PairInformations informations;
+  for (auto& [pair, sums] : all) {
+    sums.close();
+    Matrix6d H = sums.H;
+    H.diagonal().array() += 1e-9 * H.trace(); // directions without information say nothing of the variance
+    const double variance = H.ldlt().solve(sums.squares).trace() / 6.0; // mean over the six motions
+    const Vector6d back = scale.cwiseInverse();
+    if (variance > 0.0)
+      informations.push_back({pair.first, pair.second, back.asDiagonal() * sums.H * back.asDiagonal() / variance});
+  }
+  return informations;
+}
+} // namespace fresco::registration

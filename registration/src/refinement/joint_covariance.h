@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include "refinement/point_to_plane_system.h"
+#include <array>
+namespace fresco::registration {
+/// What the matches of one directed pair within one cell of the world say.
+struct CellSystem {
+  std::array<std::int32_t, 3> cell = {};
+  Index pair = 0;
+  PairSystem system;
+};
+using CellSystems = std::vector<CellSystem, Eigen::aligned_allocator<CellSystem>>;
+
+/// Two scans of a directed pair, and how its residuals depend on them.
+struct PairLink {
+  Index source = 0, target = 0;
+  PairJacobian jacobian;
+};
+
+/// Normal equations of a joint refinement at its end, cell by cell.
+struct JointSystem {
+  const IsometryVector& poses;       ///< world from working frame
+  const std::vector<Index>& holders; ///< per scan, the scan whose pose defines the frame of its group
+  std::vector<PairLink, Eigen::aligned_allocator<PairLink>> links; ///< per pair
+  CellSystems cells;                                               ///< ordered by (cell, pair)
+  bool fit = true; ///< whether groups as a whole may be anywhere: covariances count relative to their best fit as well
+  double size = 1.0; ///< length that makes rotations comparable with translations
+  int threads = 0;
+};
+
+using Covariances = std::vector<Matrix6d, Eigen::aligned_allocator<Matrix6d>>;
+
+/// Covariance of each pose: rotation (about the scan's centre, axes of the world) first. Cluster-robust, in the form of a
+/// jackknife over cells (Bell & McCaffrey 2002): errors of one cell may depend on each other in any way, among all pairs
+/// that see it. What counts is how much the solution changes without the cell. Relative to the holder of the group, or
+/// to the best fit of the whole group where that is larger; zero for the holders of groups that are not fitted.
+Covariances jointCovariances(const JointSystem& joint);
+
+/// Inverse covariance of the pose of b relative to a by the matches of this pair alone, in both directions.
+struct PairInformation {
+  Index a = 0, b = 0;                      ///< a < b
+  Matrix6d information = Matrix6d::Zero(); ///< rotation (about the centre of b, axes of the world) first
+};
+using PairInformations = std::vector<PairInformation, Eigen::aligned_allocator<PairInformation>>;
+
+/// Of each pair that has matches, ordered. The errors of one cell may depend on each other.
+PairInformations pairInformations(const JointSystem& joint);
+} // namespace fresco::registration
