@@ -14,7 +14,7 @@ namespace fresco {
 /// a labelling with few seams, after Lempitsky & Ivanov 2007 and Waechter, Moehrle & Goesele 2014.
 struct TextureOptions {
   double texel = 0; ///< side of a texel in mesh units, >= 0; 0 = as fine as the photographs show each part
-  int atlas = 0;    ///< side of each square atlas, 128..16384 pixels; 0 = one as small as possible, up to 8192 each
+  int atlas = 0;    ///< largest side of an atlas, 128..16384 pixels, more atlases beyond; 0 = 8192
   int border = 2;   ///< texels around each chart that continue its surface against bleeding, 1..16
   /// Weight of seams: length, in bounding-box diagonals, of seam that costs as much as one octave of resolution lost
   /// over a square of that side, >= 0; 0 = the best view of each face on its own.
