@@ -108,6 +108,11 @@ void requireOtherFiles(const std::string& out, const std::vector<TextureView>& v
 
 void requireSurface(const std::string& path, const TriangleMesh& mesh)
 {
+  try {
+    validateMesh(mesh);
+  } catch (const std::invalid_argument& error) {
+    throw std::runtime_error(path + ": " + error.what());
+  }
   if (mesh.faceCount() == 0 || !(surfaceArea(mesh) > 0))
     throw std::runtime_error(path + ": has no face of positive area");
 }

@@ -119,6 +119,16 @@ TEST(TextureTool, MasksBesideThePhotographs)
   }
 }
 
+TEST(TextureTool, AVertexThatIsNoPlaceIsNamed)
+{
+  const Files files;
+  TriangleMesh mesh = cube();
+  mesh.vertices(1, 5) = NAN;
+  writeMesh(files.mesh, mesh);
+  EXPECT_EQ(files.texture("model.obj"), 1);
+  EXPECT_TRUE(files.says("cube.ply") && files.says("vertex 5 is not finite")) << readFile(files.messages);
+}
+
 TEST(TextureTool, NoPhotographSeesTheMesh)
 {
   const Files files;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "input_checks.h"
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <fresco/core/parallel.h>
@@ -8,6 +9,7 @@
 #include <fresco/core/require.h>
 #include <fstream>
 #include <iomanip>
+#include <numeric>
 namespace fresco::texture {
 namespace {
 void validateView(const TextureView& view, std::size_t index)
@@ -112,6 +114,34 @@ void weld(TextureResult& result)
     result.warnings.push_back(concat("faces do not share their corners: ", before, " vertices stand at ", after,
                                      " places; they are taken as joined there"));
   mesh.faces = faces;
+}
+
+TexturedMesh withoutDuplicates(const TexturedMesh& model, TextureResult& result)
+{
+  const Faces faces = weldedFaces(model.mesh);
+  const auto key = [&](Index f) {
+    std::array<int, 3> corners{faces(0, f), faces(1, f), faces(2, f)};
+    std::rotate(corners.begin(), std::min_element(corners.begin(), corners.end()), corners.end());
+    return corners;
+  };
+  std::vector<Index> order(faces.cols()), kept;
+  std::iota(order.begin(), order.end(), 0);
+  std::sort(order.begin(), order.end(),
+            [&](Index a, Index b) { return std::make_pair(key(a), a) < std::make_pair(key(b), b); });
+  for (std::size_t i = 0; i < order.size(); ++i)
+    if (i == 0 || key(order[i]) != key(order[i - 1]))
+      kept.push_back(order[i]);
+  if (kept.size() == order.size())
+    return model;
+  result.warnings.push_back(concat(order.size() - kept.size(), " faces are there twice; the second ones are left out"));
+  std::sort(kept.begin(), kept.end());
+  TexturedMesh out = model;
+  out.mesh.faces = model.mesh.faces(Eigen::all, kept);
+  if (model.texcoord_faces.cols() > 0) {
+    out.texcoord_faces = model.texcoord_faces(Eigen::all, kept);
+    out.face_atlas = model.face_atlas(kept);
+  }
+  return out;
 }
 
 void warnOfLittleSeen(double seen, const std::vector<TextureView>& views, TextureResult& result)

@@ -133,6 +133,11 @@ Figures makeTexture(const Job& job, const Progress& progress)
       {"cameras", result.refined ? "refined" : "left as given"},
       {"disagreement_before_pixels", result.disagreement_before},
       {"disagreement_after_pixels", result.disagreement_after}};
+  for (std::size_t v = 0; v < result.fits.size(); ++v)
+    figures["photograph_fits"].push_back({{"photograph", views[v].path},
+                                          {"places", result.fits[v].matches},
+                                          {"median_pixels", result.fits[v].median},
+                                          {"nine_tenths_below_pixels", result.fits[v].upper}});
   figures.update(writeModel(result, files, options.quality));
   for (const auto& [phase, seconds] : result.seconds)
     figures["seconds"][phase] = seconds;
