@@ -185,7 +185,9 @@ TextureResult reconstruct(const TexturedMesh& given, const std::vector<TextureVi
   placeCameras({mesh, *rays, parts, photos}, options, subProgress(progress, 0.05, 0.25), result);
 
   const std::vector<Projector> projectors = projectorsOf(mesh, parts, result.cameras);
-  const std::vector<char> inside_out = insideOutFaces(result.model.mesh, *rays, projectors, result);
+  std::vector<char> inside_out;
+  if (sameUnits(mesh, views))
+    inside_out = insideOutFaces(result.model.mesh, *rays, projectors, result);
   for (TexturedMesh* m : {&model, &result.model})
     turnFaces(inside_out, *m);
   const std::vector<double> misfit = misfits(result);
