@@ -61,7 +61,7 @@ std::vector<MatchPhoto> prepare(PhotoStore& photos, Index count, int threads)
   constexpr Index most_pixels = 1 << 20;  // of a photograph that is searched: bounds the time
   constexpr Index least_pixels = 1 << 16; // coarser, half a pixel is too much of the photograph
   constexpr int levels = 4;               // the widest search becomes one of few pixels
-  constexpr int corner_cells = 200;       // per photograph: many times the unknowns of a camera
+  constexpr int corner_cells = 400; // per photograph: many times the unknowns of a camera where a fifth is matched
   constexpr double with_halvings = 4.0 / 3;
   const double share = 0.5 * photos.mostBytes() / (with_halvings * count);
   const Index pixels = std::clamp<double>(share, least_pixels, most_pixels);
@@ -150,18 +150,22 @@ void refineCameras(const RefinementInput& input, int threads, const Progress& pr
   std::vector<PhotoMatch> matches;
   MatchOptions options;
   options.threads = threads;
+  options.search =
+      searches[std::size(searches) - 1] * widestOf(state); // where cameras agree, nothing lies farther away
+  matches = matchPhotos(input.scene, prepared, state, options);
+  const bool agree = matches.size() >= least_matches && medianError(matches, initial) < agreement_pixels;
+  if (agree)
+    before = after = medianError(matches, initial);
   double done = 0;
   for (const double search : searches) {
+    if (agree)
+      break;
     report(progress, "camera refinement", done);
     options.search = search * widestOf(state);
     matches = matchPhotos(input.scene, prepared, state, options);
     if (matches.size() < least_matches)
       break;
     before = medianError(matches, initial);
-    if (done == 0 && before < agreement_pixels) {
-      after = before;
-      break;
-    }
     state = adjustCameras(thinned(matches, views), initial, priorFor(medianDistance(matches, initial)), threads);
     after = medianError(matches, state);
     done += 1.0 / std::size(searches);
