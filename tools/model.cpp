@@ -33,6 +33,7 @@ int main(int argc, char** argv)
     args.flag("no_optimize", options.optimize,
               "leave the vertices where the reconstruction puts them: rounded edges; always so for RGB-D", false);
     args.option("texel", options.texel, "side of a texel, metres; 0 = as fine as photographs, panoramas or points");
+    args.option("quality", options.quality, "JPEG quality of the texture's pictures, 1..100; 0 = PNG, without loss");
     args.option(
         "panorama_direction", options.panorama_direction,
         "where the middle of a panorama looks: from the x axis of its scan counter-clockwise, degrees, -360..360");

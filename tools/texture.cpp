@@ -14,7 +14,7 @@ namespace {
 using namespace fresco;
 
 struct ToolOptions {
-  int keep_out = 0;
+  int keep_out = 0, quality = 0;
   std::string cameras_out, points, uv = "new";
   PointTextureOptions from_points;
 };
@@ -57,9 +57,11 @@ void declare(Args& args, TextureOptions& options, ToolOptions& tool)
       "every Nth photograph (the Nth, 2Nth ...) is aligned with the others but not used, to judge by; 0 = none");
   args.option("cameras_out", tool.cameras_out, "folder for the cameras as used, a COLMAP text model; empty = none");
   args.option("texel", options.texel, "side of a texel in mesh units; 0 = as fine as the photographs show each part");
-  args.option("atlas", options.atlas, "side of each square atlas, 128..16384 pixels; 0 = one as small as possible");
+  args.option("atlas", options.atlas,
+              "largest side of an atlas, 128..16384 pixels; a larger texture has several; 0 = 8192");
   args.option("uv", tool.uv,
               "texture coordinates: new, or keep those of MESH (.obj, .glb) and the sizes of its images");
+  args.option("quality", tool.quality, "JPEG quality of the texture's pictures, 1..100; 0 = PNG, without loss");
   args.option("border", options.border, "texels around each chart against bleeding, 1..16");
   args.option(
       "smoothness", options.smoothness,
@@ -93,9 +95,9 @@ std::string maskPath(const std::string& model, std::size_t index, std::size_t co
 void requireOtherFiles(const std::string& out, const std::vector<TextureView>& views, std::vector<std::string> inputs)
 {
   const std::string stem = out.substr(0, out.size() - extension(out).size());
-  std::vector<std::string> outputs{stem + ".mtl", stem + ".png", maskPath(out, 0, 1)};
+  std::vector<std::string> outputs{stem + ".mtl", stem + ".png", stem + ".jpg", maskPath(out, 0, 1)};
   for (std::size_t i = 0; i < 10; ++i) // there are rarely more than two
-    outputs.insert(outputs.end(), {concat(stem, '_', i, ".png"), maskPath(out, i, 2)});
+    outputs.insert(outputs.end(), {concat(stem, '_', i, ".png"), concat(stem, '_', i, ".jpg"), maskPath(out, i, 2)});
   for (const TextureView& view : views) {
     inputs.push_back(view.path);
     if (!view.mask_path.empty())
@@ -106,6 +108,11 @@ void requireOtherFiles(const std::string& out, const std::vector<TextureView>& v
 
 void requireSurface(const std::string& path, const TriangleMesh& mesh)
 {
+  try {
+    validateMesh(mesh);
+  } catch (const std::invalid_argument& error) {
+    throw std::runtime_error(path + ": " + error.what());
+  }
   if (mesh.faceCount() == 0 || !(surfaceArea(mesh) > 0))
     throw std::runtime_error(path + ": has no face of positive area");
 }
@@ -130,9 +137,9 @@ TextureResult reconstruct(const std::string& path, const std::vector<TextureView
 
 /// The outputs of both ways.
 template <typename Result>
-void writeModel(const std::string& out, const Result& result)
+void writeModel(const std::string& out, const Result& result, int quality)
 {
-  writeTexturedMesh(out, result.model);
+  writeTexturedMesh(out, result.model, quality);
   for (std::size_t i = 0; i < result.masks.size(); ++i)
     writeImage(maskPath(out, i, result.masks.size()), result.masks[i]);
 }
@@ -168,7 +175,7 @@ void textureFromPoints(const std::vector<std::string>& files, const ToolOptions&
   const PointTextureResult result = reconstructPointTexture(mesh, points, options, printProgress(quiet));
   if (!(result.coverage > 0))
     throw std::runtime_error(tool.points + ": no part of " + files[0] + " is covered with points");
-  writeOutputs([&] { writeModel(files[1], result); });
+  writeOutputs([&] { writeModel(files[1], result, tool.quality); });
   inform(quiet, format("%s of %td points, scans: %td, seen %.1f %% of the surface",
                        result.look == PointLook::colors ? "colours" : "intensities", points.size(), result.gains.cols(),
                        100 * result.coverage));
@@ -233,7 +240,7 @@ void run(int argc, char** argv)
     throw std::runtime_error(
         concat(files[1], ": none of the ", views.size(), " photographs sees any part of ", files[0]));
   writeOutputs([&] {
-    writeModel(out, result);
+    writeModel(out, result, tool.quality);
     if (!tool.cameras_out.empty())
       writeColmap(tool.cameras_out, usedCameras(set, result));
   });

@@ -14,6 +14,7 @@ void validate(const ModelInput& input, const ModelOptions& options)
 {
   require(options.cell >= 0 && options.fuse >= 0, "model: a cell of ", options.cell, " m or ", options.fuse, " m");
   require(options.bilateral >= 0 && options.trim_levels >= 0 && options.texel >= 0, "model: an option is negative");
+  require(options.quality >= 0 && options.quality <= 100, "model: quality ", options.quality, " is not in 0..100");
   require(options.width >= 160 && options.height >= 120, "model: pictures of ", options.width, "x", options.height,
           " pixels are too small");
   if (options.use_poses && input.poses.empty())
@@ -37,7 +38,7 @@ std::vector<Stage> stagesOf(const Job& job)
       {"surface", concat(options.cell, " ", options.trim_levels), {files.surface}, step(makeSurface)},
       {"optimization", concat(options.optimize), {files.mesh}, step(makeOptimizedSurface)},
       {"texture",
-       concat(options.texel, " ", options.panorama_direction, " ", options.panorama_mirrored),
+       concat(options.texel, " ", options.quality, " ", options.panorama_direction, " ", options.panorama_mirrored),
        {files.model_obj, files.model_glb, files.viewer_glb},
        step(makeTexture)},
       {"pictures", concat(options.width, "x", options.height), pictureFiles(job), step(makePictures)}};

@@ -165,8 +165,8 @@ const camera = new THREE.PerspectiveCamera(60, 800 / 600, 0.1, 100), scene = new
 const { scene: model } = await new GLTFLoader().loadAsync('model.glb');
 model.position.sub(new THREE.Box3().setFromObject(model).getCenter(new THREE.Vector3()));
 scene.add(model);
-camera.up.set(0, 0, 1);
-camera.position.set(0, -3, 0);
+camera.up.set(0, 1, 0);
+camera.position.set(0, 0, 3);
 camera.lookAt(0, 0, 0);
 renderer.setAnimationLoop(() => renderer.render(scene, camera));
 </script></body></html>)");

@@ -48,7 +48,7 @@ TEST_P(TexturePacking, NoTexelIsTakenTwiceAndFewAreWasted)
 {
   constexpr int largest = 512;
   std::vector<Chart> charts = makeCharts(GetParam());
-  const Packing packing = packCharts(charts, 0, largest);
+  const Packing packing = packCharts(charts, largest);
   std::size_t owned = 0;
   for (const std::vector<int>& atlas : takenTexels(charts, packing))
     for (const int times : atlas) {
@@ -67,11 +67,11 @@ TEST_P(TexturePacking, NoTexelIsTakenTwiceAndFewAreWasted)
 // One atlas; two of which the second would be nearly empty at the largest size; several.
 INSTANTIATE_TEST_SUITE_P(Counts, TexturePacking, testing::Values(60, 250, 300, 900));
 
-TEST(TexturePackingOf, AGivenSideIsKept)
+TEST(TexturePackingOf, ALargestSideIsKept)
 {
   std::vector<Chart> charts = makeCharts(300);
-  const Packing packing = packCharts(charts, 160, 512);
-  EXPECT_EQ(packing.side, 160);
+  const Packing packing = packCharts(charts, 160);
+  EXPECT_LE(packing.side, 160);
   for (const std::vector<int>& atlas : takenTexels(charts, packing))
     EXPECT_LE(*std::max_element(atlas.begin(), atlas.end()), 1);
 }

@@ -189,9 +189,8 @@ TEST(TextureUnseen, WhatIsIgnoredIsSaid)
   const std::vector<std::string> without = reconstructTexture(cube(), {view}).warnings;
   ASSERT_EQ(without.size(), 1U); // one side of six
   EXPECT_NE(without[0].find("of the surface is seen"), std::string::npos);
-  const TextureResult many = reconstructTexture(cube(), std::vector<TextureView>(401, view));
-  ASSERT_EQ(many.warnings.size(), 2U);
-  EXPECT_NE(many.warnings[0].find("401 views"), std::string::npos);
+  const std::vector<TextureView> many(401, view); // as many as one likes are refined
+  EXPECT_EQ(reconstructTexture(cube(), many).warnings, without);
 }
 } // namespace
 } // namespace fresco::test

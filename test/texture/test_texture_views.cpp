@@ -108,6 +108,51 @@ TEST(TextureViews, NothingIsTakenFromWhatMasksHide)
   EXPECT_THROW(reconstructTexture(mesh, views), std::runtime_error);
 }
 
+/// One photograph is squeezed: no pose nor lens of its own makes it fit, since all share a camera.
+TEST(TextureViews, APhotographThatDoesNotFitIsNamed)
+{
+  const TriangleMesh mesh = cube();
+  std::vector<TextureView> views = photographsAround(mesh, detailed, 4, camera(400, 400, 520));
+  for (std::size_t v = 0; v < views.size(); ++v)
+    views[v].path = "photo " + std::to_string(v);
+  TextureResult result = reconstructTexture(mesh, views);
+  ASSERT_EQ(result.fits.size(), views.size());
+  for (const PhotographFit& fit : result.fits)
+    EXPECT_LT(fit.median, 0.5);
+  EXPECT_TRUE(result.warnings.empty());
+  CameraModel squeezed = views[3].camera;
+  squeezed.k1 = 0.3;
+  views[3].image = photograph(mesh, detailed, squeezed, views[3].T_camera_world).image;
+  result = reconstructTexture(mesh, views);
+  for (std::size_t v = 0; v < views.size(); ++v)
+    if (v != 3) {
+      EXPECT_GT(result.fits[3].median, 2 * result.fits[v].median) << v;
+    }
+  ASSERT_EQ(result.warnings.size(), 1U);
+  EXPECT_NE(result.warnings[0].find("photo 3 by"), std::string::npos) << result.warnings[0];
+}
+
+TEST(TextureViews, FacesInsideOutAreTurnedAndDuplicatesLeftOut)
+{
+  const TriangleMesh mesh = cube();
+  const auto views = photographsAround(mesh, waves);
+  EXPECT_TRUE(reconstructTexture(mesh, views).warnings.empty());
+  TriangleMesh bad = mesh;
+  bad.faces.conservativeResize(3, 14);
+  bad.faces.col(12) = mesh.faces.col(3);
+  bad.faces.col(13) << mesh.faces(1, 5), mesh.faces(2, 5), mesh.faces(0, 5);
+  for (const Index f : {0, 1, 6}) // a side, and half of one
+    std::swap(bad.faces(0, f), bad.faces(1, f));
+  const TextureResult result = reconstructTexture(bad, views);
+  ASSERT_EQ(result.warnings.size(), 2U);
+  EXPECT_NE(result.warnings[0].find("2 faces are there twice"), std::string::npos);
+  EXPECT_NE(result.warnings[1].find("3 of 12 faces are turned inside out"), std::string::npos);
+  ASSERT_EQ(result.model.mesh.faceCount(), 12);
+  EXPECT_GT(result.coverage, 0.999);
+  EXPECT_LT(colorError(result.model, waves).mean, 2.0);
+  EXPECT_GT(signedVolume(result.model.mesh), 7.99);
+}
+
 TEST(TextureViews, UnweldedMeshIsTexturedAsTheWeldedOne)
 {
   const TriangleMesh mesh = cube();

@@ -119,6 +119,17 @@ TEST(TextureTool, MasksBesideThePhotographs)
   }
 }
 
+TEST(TextureTool, AVertexThatIsNoPlaceIsNamed)
+{
+  const Files files;
+  writeFile(files.mesh,
+            "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+            "element face 1\nproperty list uchar int vertex_indices\nend_header\n"
+            "0 0 1\n1 nan 1\n0 1 1\n3 0 1 2\n");
+  EXPECT_EQ(files.texture("model.obj"), 1);
+  EXPECT_TRUE(files.says("cube.ply") && files.says("vertex 1 is not finite")) << readFile(files.messages);
+}
+
 TEST(TextureTool, NoPhotographSeesTheMesh)
 {
   const Files files;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "input_checks.h"
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <fresco/core/parallel.h>
@@ -8,6 +9,7 @@
 #include <fresco/core/require.h>
 #include <fstream>
 #include <iomanip>
+#include <numeric>
 namespace fresco::texture {
 namespace {
 void validateView(const TextureView& view, std::size_t index)
@@ -114,25 +116,78 @@ void weld(TextureResult& result)
   mesh.faces = faces;
 }
 
+TexturedMesh withoutDuplicates(const TexturedMesh& model, TextureResult& result)
+{
+  const Faces faces = weldedFaces(model.mesh);
+  const auto key = [&](Index f) {
+    std::array<int, 3> corners{faces(0, f), faces(1, f), faces(2, f)};
+    std::rotate(corners.begin(), std::min_element(corners.begin(), corners.end()), corners.end());
+    return corners;
+  };
+  std::vector<Index> order(faces.cols()), kept;
+  std::iota(order.begin(), order.end(), 0);
+  std::sort(order.begin(), order.end(),
+            [&](Index a, Index b) { return std::make_pair(key(a), a) < std::make_pair(key(b), b); });
+  for (std::size_t i = 0; i < order.size(); ++i)
+    if (i == 0 || key(order[i]) != key(order[i - 1]))
+      kept.push_back(order[i]);
+  if (kept.size() == order.size())
+    return model;
+  result.warnings.push_back(concat(order.size() - kept.size(), " faces are there twice; the second ones are left out"));
+  std::sort(kept.begin(), kept.end());
+  TexturedMesh out = model;
+  out.mesh.faces = model.mesh.faces(Eigen::all, kept);
+  if (model.texcoord_faces.cols() > 0) {
+    out.texcoord_faces = model.texcoord_faces(Eigen::all, kept);
+    out.face_atlas = model.face_atlas(kept);
+  }
+  return out;
+}
+
+namespace {
+constexpr double other_scale = 100; // of cameras and mesh: units rather than a far or a narrow view
+
+struct Boxes {
+  Eigen::AlignedBox3d cameras, surface;
+
+  /// Size of the surface by that of the cameras' places; 0 of a single camera.
+  double scale() const
+  {
+    const double size = cameras.diagonal().norm();
+    return size > 0 ? surface.diagonal().norm() / size : 0;
+  }
+};
+
+Boxes boxesOf(const TriangleMesh& mesh, const std::vector<TextureView>& views)
+{
+  Boxes out;
+  for (const TextureView& view : views)
+    out.cameras.extend(Eigen::Vector3d(view.T_camera_world.inverse().translation()));
+  for (Index i = 0; i < mesh.faces.size(); ++i)
+    out.surface.extend(mesh.origin + mesh.vertices.col(mesh.faces.data()[i]).cast<double>());
+  return out;
+}
+} // namespace
+
+bool sameUnits(const TriangleMesh& mesh, const std::vector<TextureView>& views)
+{
+  const double scale = views.empty() ? 0 : boxesOf(mesh, views).scale();
+  return scale == 0 || (scale < other_scale && scale > 1 / other_scale);
+}
+
 void warnOfLittleSeen(double seen, const std::vector<TextureView>& views, TextureResult& result)
 {
-  constexpr double little = 0.3;      // a room that is photographed from its middle is seen by half
-  constexpr double other_scale = 100; // of cameras and mesh: units rather than a far or a narrow view
+  constexpr double little = 0.3; // a room that is photographed from its middle is seen by half
   if (seen >= little || views.empty())
     return;
-  Eigen::AlignedBox3d cameras, surface;
-  for (const TextureView& view : views)
-    cameras.extend(Eigen::Vector3d(view.T_camera_world.inverse().translation()));
-  const TriangleMesh& mesh = result.model.mesh;
-  for (Index i = 0; i < mesh.faces.size(); ++i)
-    surface.extend(mesh.origin + mesh.vertices.col(mesh.faces.data()[i]).cast<double>());
-  const double scale = surface.diagonal().norm() / std::max(cameras.diagonal().norm(), 1e-12);
+  const Boxes boxes = boxesOf(result.model.mesh, views);
+  const double scale = boxes.scale();
   const char* cause = "do the cameras' poses belong to this mesh?";
-  if (scale > other_scale && views.size() > 1)
+  if (scale > other_scale)
     cause = "is the mesh in millimetres and are the cameras in metres?";
-  else if (scale < 1 / other_scale)
+  else if (scale > 0 && scale < 1 / other_scale)
     cause = "is the mesh in metres and are the cameras in millimetres?";
-  else if (surface.exteriorDistance(cameras.center()) == 0)
+  else if (boxes.surface.exteriorDistance(boxes.cameras.center()) == 0)
     cause = "are the mesh's faces turned to the cameras?";
   result.warnings.push_back(
       concat("only ", std::fixed, std::setprecision(1), 100 * seen, " % of the surface is seen: ", cause));

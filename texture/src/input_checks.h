@@ -8,6 +8,12 @@ void validate(const TriangleMesh& mesh, const std::vector<TextureView>& views, c
 /// Joins corners at equal places for the length of the work, and says so where neighbours shared hardly a vertex.
 void weld(TextureResult& result);
 
+/// The model without faces of the same corners in the same order, of which it warns; corners at equal places are the same.
+TexturedMesh withoutDuplicates(const TexturedMesh& model, TextureResult& result);
+
+/// Whether mesh and cameras may have one unit: the mesh is neither far larger nor far smaller than where the cameras stand.
+bool sameUnits(const TriangleMesh& mesh, const std::vector<TextureView>& views);
+
 /// Warns where little of the surface is seen, with the likely cause.
 /// @param seen share of the area, 0..1
 void warnOfLittleSeen(double seen, const std::vector<TextureView>& views, TextureResult& result);

@@ -10,6 +10,7 @@
 #include "painting/color_growth.h"
 #include "painting/outline_texels.h"
 #include "views/exposure.h"
+#include "views/face_orientation.h"
 #include "views/photo_consistency.h"
 #include "views/view_selection.h"
 #include "views/visible_surface.h"
@@ -164,12 +165,13 @@ void paintModel(const Job& job, ViewChoice& choice)
   fillGaps(charts, options.threads, atlases);
 }
 
-/// @param model of which texture coordinates are kept, if there are any
-TextureResult reconstruct(const TexturedMesh& model, const std::vector<TextureView>& views,
+/// @param given of which texture coordinates are kept, if there are any
+TextureResult reconstruct(const TexturedMesh& given, const std::vector<TextureView>& views,
                           const TextureOptions& options, const Progress& progress)
 {
-  const TriangleMesh& mesh = model.mesh;
   TextureResult result;
+  TexturedMesh model = withoutDuplicates(given, result);
+  const TriangleMesh& mesh = model.mesh;
   result.model = model;
   weld(result);
   Steps steps(progress, result);
@@ -183,10 +185,18 @@ TextureResult reconstruct(const TexturedMesh& model, const std::vector<TextureVi
   placeCameras({mesh, *rays, parts, photos}, options, subProgress(progress, 0.05, 0.25), result);
 
   const std::vector<Projector> projectors = projectorsOf(mesh, parts, result.cameras);
-  ViewList list{projectors, photos, {}, {}, poseUncertainty(result), lensNumbers(parts)};
+  std::vector<char> inside_out;
+  if (sameUnits(mesh, views))
+    inside_out = insideOutFaces(result.model.mesh, *rays, projectors, result);
+  for (TexturedMesh* m : {&model, &result.model})
+    turnFaces(inside_out, *m);
+  const std::vector<double> misfit = misfits(result);
+  warnOfMisfits(views, result);
+  ViewList list{projectors, photos, {}, {}, poseUncertainty(result), lensNumbers(parts), {}};
   for (const ViewPart& part : parts) {
     list.used.push_back(part.given->paint);
     list.owner.push_back(part.view);
+    list.misfits.push_back(misfit[part.view]);
   }
   const Job job{options, list, steps, result};
   ViewChoice choice = chooseViews(job, *rays, progress);

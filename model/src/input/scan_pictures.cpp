@@ -173,9 +173,11 @@ ScanPictures picturesOf(const std::vector<ScanPath>& scans)
 {
   ScanPictures out;
   for (std::size_t s = 0; s < scans.size(); ++s)
-    if (s == 0 || scans[s].file != scans[s - 1].file)
-      if (holdsScans(scans[s].file))
+    if ((s == 0 || scans[s].file != scans[s - 1].file) && holdsScans(scans[s].file))
+      try {
         addPictures(scans, s, out);
+      } catch (const std::runtime_error&) { // of a file that cannot be read: registration says so
+      }
   return out;
 }
 

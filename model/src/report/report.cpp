@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "report/report.h"
 #include "viewer/viewer.h"
+#include <algorithm>
 #include <fresco/core/require.h>
 #include <fresco/io/file.h>
 #include <fresco/io/json_text.h>
@@ -27,14 +28,14 @@ std::string shown(const Json& value)
   return value.is_string() ? value.get<std::string>() : jsonText(value, -1);
 }
 
-/// What describes the pictures is left out.
+/// What describes the pictures, or each photograph, is left out.
 ModelStage publicStage(const StageRecord& record)
 {
   ModelStage stage{record.name, record.seconds, record.cpu_seconds, record.peak_megabytes, record.resumed, {}, {}};
   if (record.figures.is_object())
     stage.warnings = record.figures.value("warnings", stage.warnings);
   for (const auto& [name, value] : record.figures.items())
-    if (name != "pictures" && name != "up")
+    if (name != "pictures" && name != "up" && name != "photograph_fits")
       stage.figures.emplace_back(name, shown(value));
   return stage;
 }
@@ -82,6 +83,27 @@ std::string stageTable(const Report& report)
   return html + "</table>\n";
 }
 
+/// How far each photograph is off from the others, the worst first; "" where that is not known.
+std::string fitTable(const Report& report)
+{
+  std::vector<Json> fits;
+  for (const StageRecord& stage : report.stages)
+    for (const Json& fit : stage.figures.value("photograph_fits", Json::array()))
+      fits.push_back(fit);
+  if (fits.empty())
+    return "";
+  std::stable_sort(fits.begin(), fits.end(), [](const Json& a, const Json& b) {
+    return a.value("median_pixels", 0.0) > b.value("median_pixels", 0.0);
+  });
+  std::string html = "<details><summary>How far photographs are off from each other</summary><table><tr><th>photograph"
+                     "<th>places<th>median, pixels<th>nine tenths below, pixels</tr>\n";
+  for (const Json& fit : fits)
+    html += "<tr><td>" + escapedHtml(fit.value("photograph", "")) + "<td>" + std::to_string(fit.value("places", 0)) +
+            "<td>" + fixed(fit.value("median_pixels", 0.0), 2) + "<td>" +
+            fixed(fit.value("nine_tenths_below_pixels", 0.0), 2) + "</tr>\n";
+  return html + "</table></details>\n";
+}
+
 std::string viewer(const Report& report, const ModelFiles& files)
 {
   ViewerOptions options;
@@ -105,7 +127,7 @@ std::string toHtml(const Report& report, const ModelFiles& files)
       escapedHtml(report.input) + " (" + escapedHtml(report.kind) + "). Time of this run: " + fixed(report.seconds, 1) +
       " s. Model: <code>model.glb</code>, <code>model.obj</code>; mesh: <code>mesh.ply</code>; poses: "
       "<code>poses.txt</code>.</p>\n" +
-      viewer(report, files) + stageTable(report);
+      viewer(report, files) + stageTable(report) + fitTable(report);
   for (const ReportPicture& picture : report.pictures)
     html += "<figure><img alt=\"" + escapedHtml(picture.title) + "\" src=\"data:image/png;base64," +
             base64(readFile(files.folder + "/" + picture.file)) + "\"><figcaption>" + escapedHtml(picture.title) +

@@ -106,12 +106,12 @@ std::vector<TextureView> viewsOf(const Job& job, const std::vector<Pose>& poses)
 
 /// Writes the model of a TextureResult or PointTextureResult. @return the figures that both have
 template <typename Result>
-Figures writeModel(const Result& result, const ModelFiles& files)
+Figures writeModel(const Result& result, const ModelFiles& files, int quality)
 {
   for (std::size_t i = 0; i < result.masks.size(); ++i)
     writeImage(files.mask(i, result.masks.size()), result.masks[i]);
-  writeTexturedMesh(files.model_glb, result.model);
-  writeTexturedMesh(files.model_obj, result.model);
+  writeTexturedMesh(files.model_glb, result.model, quality);
+  writeTexturedMesh(files.model_obj, result.model, quality);
   writeTexturedMesh(files.viewer_glb, result.model, 90); // smaller, since the report has it inside
   return {{"coverage", result.coverage},
           {"charts", result.charts},
@@ -131,7 +131,7 @@ Figures textureFromPoints(const Job& job, const TriangleMesh& mesh, const Progre
   texture.threads = job.options.threads;
   const PointTextureResult result = reconstructPointTexture(mesh, readPoints(job.files.points), texture, progress);
   Figures figures = {{"made_of", looks[int(result.look)]}};
-  figures.update(writeModel(result, job.files));
+  figures.update(writeModel(result, job.files, job.options.quality));
   if (result.look == PointLook::intensities)
     figures.update({{"range_exponent", result.range_exponent}, {"incidence_exponent", result.incidence_exponent}});
   return figures;
@@ -160,7 +160,12 @@ Figures textureFromViews(const Job& job, const TriangleMesh& mesh, const std::ve
       {"cameras", result.refined ? "refined" : "left as given"},
       {"disagreement_before_pixels", result.disagreement_before},
       {"disagreement_after_pixels", result.disagreement_after}};
-  figures.update(writeModel(result, job.files));
+  for (std::size_t v = 0; v < result.fits.size(); ++v)
+    figures["photograph_fits"].push_back({{"photograph", views[v].path},
+                                          {"places", result.fits[v].matches},
+                                          {"median_pixels", result.fits[v].median},
+                                          {"nine_tenths_below_pixels", result.fits[v].upper}});
+  figures.update(writeModel(result, job.files, job.options.quality));
   for (const auto& [phase, seconds] : result.seconds)
     figures["seconds"][phase] = seconds;
   return figures;

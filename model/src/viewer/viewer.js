@@ -64,7 +64,8 @@ const frescoViewer = (() => {
           if (primitive.mode === undefined || primitive.mode === 4) out.push({ primitive, matrix });
       for (const child of node.children || []) visit(child, matrix);
     };
-    for (const root of json.scenes[json.scene || 0].nodes) visit(root, identity());
+    const upright = [1, 0, 0, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 0, 0, 1]; // glTF is y-up, places and `up` are z-up
+    for (const root of json.scenes[json.scene || 0].nodes) visit(root, upright);
     return out;
   }
 

@@ -135,7 +135,7 @@ TEST(TexturedIo, GlbIsWhatTinygltfExpects)
     }
     const std::size_t count = gltf.accessors[primitive.indices].count;
     for (std::size_t i = 0; i < count; ++i, ++indices) {
-      const auto at = value<std::uint32_t>(gltf, primitive.indices, i);
+      const auto at = value<std::uint16_t>(gltf, primitive.indices, i);
       ASSERT_LT(at, accessor.count);
       const auto face = static_cast<Index>(indices / 3);
       const int k = indices % 3;
@@ -158,9 +158,62 @@ TEST(TexturedIo, GlbWithJpegImages)
   model.atlases[0] = Image(64, 64, 3, 90);
   writeTexturedMesh(path, model, 90);
   EXPECT_EQ(loadGlb(path).images[0].mimeType, "image/jpeg");
-  const TexturedMesh back = readTexturedMesh(path);
-  ASSERT_EQ(back.atlases[0].width, 64);
-  EXPECT_NEAR(back.atlases[0].data[100], 90, 2);
+  const std::string object = std::filesystem::path(path).replace_extension(".obj").string();
+  writeTexturedMesh(object, model, 90);
+  EXPECT_TRUE(std::filesystem::exists(std::filesystem::path(object).replace_extension(".jpg")));
+  for (const std::string& file : {path, object}) {
+    const TexturedMesh back = readTexturedMesh(file);
+    ASSERT_EQ(back.atlases[0].width, 64);
+    EXPECT_NEAR(back.atlases[0].data[100], 90, 2);
+  }
+}
+
+TEST(TexturedIo, GlbOfManyVerticesHasSeveralPrimitives)
+{
+  const std::string path = test::scratchFolder() + "/model.glb";
+  constexpr int side = 300; // 90,000 vertices, each in one place of a part
+  TexturedMesh model;
+  model.mesh.vertices.resize(3, side * side);
+  model.texcoords.resize(2, side * side);
+  for (int i = 0; i < side * side; ++i) {
+    model.mesh.vertices.col(i) << i % side, i / side, 0;
+    model.texcoords.col(i) = model.mesh.vertices.col(i).head<2>() / side;
+  }
+  const Index faces = Index{side - 1} * side - 1;
+  model.mesh.faces.resize(3, faces);
+  for (int f = 0; f < faces; ++f)
+    model.mesh.faces.col(f) << f, f + 1, f + side;
+  model.texcoord_faces = model.mesh.faces;
+  model.face_atlas.setZero(faces);
+  model.atlases.emplace_back(8, 8);
+  for (const int quality : {0, 50}) {
+    writeTexturedMesh(path, model, quality);
+    EXPECT_EQ(loadGlb(path).meshes[0].primitives.size(), 2U);
+    const TexturedMesh back = readTexturedMesh(path);
+    ASSERT_EQ(back.mesh.faceCount(), faces);
+    double farthest = 0, off = 0;
+    for (Index f = 0; f < faces; ++f)
+      for (int k = 0; k < 3; ++k) {
+        const Eigen::Vector3f p = back.mesh.vertices.col(back.mesh.faces(k, f));
+        const Eigen::Vector2f at = back.texcoords.col(back.texcoord_faces(k, f));
+        farthest = std::max<double>(farthest, (p - model.mesh.vertices.col(model.mesh.faces(k, f))).norm());
+        off = std::max<double>(off, (at - p.head<2>() / side).cwiseAbs().maxCoeff());
+      }
+    EXPECT_EQ(farthest, 0);
+    EXPECT_LT(off, quality > 0 ? 1e-5 : 1e-6);
+  }
+}
+
+TEST(TexturedIo, GlbIsYUp)
+{
+  const std::string path = test::scratchFolder() + "/model.glb";
+  TexturedMesh model = fullTexturedMesh(5, 1);
+  model.mesh.origin = Eigen::Vector3d(10, 20, 30);
+  writeTexturedMesh(path, model);
+  const tinygltf::Model gltf = loadGlb(path);
+  const Eigen::Matrix4d T = Eigen::Map<const Eigen::Matrix4d>(gltf.nodes[0].matrix.data());
+  const Eigen::Vector4d place = T * Eigen::Vector4d(1, 2, 3, 1);
+  EXPECT_EQ(place, Eigen::Vector4d(11, 33, -22, 1)); // 11 22 33 with z up
 }
 
 TEST(TexturedIo, GlbOfOthers)
@@ -197,7 +250,7 @@ TEST(TexturedIo, GlbOfOthers)
   gltf.meshes[0].primitives[0].indices = 1;
   gltf.nodes.resize(3);
   gltf.nodes[0].children = {1, 2};
-  gltf.nodes[0].rotation = {0, 0, std::sqrt(0.5), std::sqrt(0.5)}; // a quarter turn about z
+  gltf.nodes[0].rotation = {0, 0, std::sqrt(0.5), std::sqrt(0.5)}; // a quarter turn about z, which is forward
   gltf.nodes[1].mesh = 0;
   gltf.nodes[2].mesh = 0;
   gltf.nodes[2].translation = {5, 0, 0};
@@ -208,9 +261,9 @@ TEST(TexturedIo, GlbOfOthers)
   const TexturedMesh model = readTexturedMesh(path);
   ASSERT_EQ(model.mesh.faceCount(), 2);
   const auto corner = [&](int k, Index face) { return model.mesh.vertices.col(model.mesh.faces(k, face)); };
-  EXPECT_LT((corner(2, 0) - Eigen::Vector3f(0, 1, 0)).norm(), 1e-6f);
-  EXPECT_LT((corner(2, 1) - Eigen::Vector3f(0, 7, 0)).norm(), 1e-6f);
-  EXPECT_LT((corner(0, 1) - Eigen::Vector3f(-2, 5, 0)).norm(), 1e-6f);
+  EXPECT_LT((corner(2, 0) - Eigen::Vector3f(0, 0, 1)).norm(), 1e-6f);
+  EXPECT_LT((corner(2, 1) - Eigen::Vector3f(0, 0, 7)).norm(), 1e-6f);
+  EXPECT_LT((corner(0, 1) - Eigen::Vector3f(-2, 0, 5)).norm(), 1e-6f);
   EXPECT_EQ(model.face_atlas, Eigen::Vector2i(-1, -1));
   gltf.nodes[1].children = {0}; // a circle
   ASSERT_TRUE(tinygltf::TinyGLTF().WriteGltfSceneToFile(&gltf, path, true, true, false, true));

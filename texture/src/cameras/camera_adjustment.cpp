@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cameras/camera_adjustment.h"
-#include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 #include <Eigen/LU>
+#include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <cmath>
 #include <fresco/core/parallel.h>
 #include <fresco/core/rigid_motion.h>
 #include <fresco/core/statistics.h>
+#include <map>
 namespace fresco::texture {
 namespace {
 constexpr int shared_count = 11; // mount: 3 turn, 3 shift; focal, cx, cy, k1, k2
@@ -113,7 +114,8 @@ public:
     constexpr int passes = 3;
     CameraState state = stateOf(x_);
     for (int pass = 0; pass < passes; ++pass) {
-      scale_ = std::max(0.5, 1.5 * median(matchErrors(matches_, state)));
+      constexpr double least = 0.15; // pixels: what matching itself errs by
+      scale_ = std::max(least, 1.5 * median(matchErrors(matches_, state)));
       descend(state);
     }
     return state;
@@ -166,9 +168,11 @@ private:
   /// @return false, with nothing changed, if the step does not lower the cost
   bool tryStep(double damping, CameraState& state, double& cost)
   {
-    Eigen::MatrixXd H = H_;
+    Eigen::SparseMatrix<double> H = H_;
     H.diagonal() += damping * H_.diagonal();
-    const Eigen::VectorXd next = x_ - H.ldlt().solve(gradient_);
+    const Eigen::VectorXd next = x_ - Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>(H).solve(gradient_);
+    if (!next.allFinite())
+      return false;
     const CameraState next_state = stateOf(next);
     const double next_cost = costOf(next_state, next);
     if (!(next_cost < cost))
@@ -191,11 +195,28 @@ private:
   {
     std::vector<Row> rows(matches_.size());
     parallelFor(rows.size(), threads_, [&](Index i) { rows[i] = rowOf(matches_[i], state); });
-    H_ = sigma_.cwiseAbs2().cwiseInverse().asDiagonal();
+    Blocks blocks;
     gradient_ = x_.cwiseQuotient(sigma_.cwiseAbs2());
     for (std::size_t i = 0; i < rows.size(); ++i)
       if (rows[i].weight > 0)
-        addRow(matches_[i], rows[i]);
+        addRow(matches_[i], rows[i], blocks);
+    assemble(blocks);
+  }
+
+  /// Of the normal equations, by their first row and column: few pairs of photographs show the same places.
+  using Blocks = std::map<std::pair<int, int>, Eigen::MatrixXd>;
+
+  void assemble(const Blocks& blocks)
+  {
+    std::vector<Eigen::Triplet<double>> entries;
+    for (int i = 0; i < size(); ++i)
+      entries.emplace_back(i, i, 1 / (sigma_[i] * sigma_[i]));
+    for (const auto& [at, block] : blocks)
+      for (Index j = 0; j < block.cols(); ++j)
+        for (Index i = 0; i < block.rows(); ++i)
+          entries.emplace_back(at.first + i, at.second + j, block(i, j));
+    H_.resize(size(), size());
+    H_.setFromTriplets(entries.begin(), entries.end());
   }
 
   /// The corrections of a pose stand before those of the mount; both are small, so that their derivatives agree to
@@ -218,7 +239,7 @@ private:
     return row;
   }
 
-  void addRow(const PhotoMatch& match, const Row& row)
+  void addRow(const PhotoMatch& match, const Row& row, Blocks& blocks)
   {
     const int at[4] = {initial_.group[match.from] * shared_count, initial_.group[match.to] * shared_count,
                        poseAt(match.from), poseAt(match.to)};
@@ -230,8 +251,10 @@ private:
     const Eigen::Matrix<double, 2 * (shared_count + pose_count), 1> JTr = weighted * row.r;
     for (int i = 0; i < 4; ++i) {
       gradient_.segment(at[i], count[i]) += JTr.segment(column[i], count[i]);
-      for (int j = 0; j < 4; ++j)
-        H_.block(at[i], at[j], count[i], count[j]) += JTJ.block(column[i], column[j], count[i], count[j]);
+      for (int j = 0; j < 4; ++j) {
+        const auto entry = blocks.try_emplace({at[i], at[j]}, Eigen::MatrixXd::Zero(count[i], count[j])).first;
+        entry->second += JTJ.block(column[i], column[j], count[i], count[j]);
+      }
     }
   }
 
@@ -240,7 +263,7 @@ private:
   int groups_, poses_, threads_;
   double scale_ = 1; ///< pixels: errors beyond count less and less
   Eigen::VectorXd sigma_, x_, gradient_;
-  Eigen::MatrixXd H_;
+  Eigen::SparseMatrix<double> H_;
 };
 } // namespace
 

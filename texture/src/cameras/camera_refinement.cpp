@@ -2,9 +2,12 @@
 #include "cameras/camera_refinement.h"
 #include "cameras/camera_adjustment.h"
 #include <algorithm>
+#include <cmath>
 #include <fresco/core/parallel.h>
 #include <fresco/core/require.h>
 #include <fresco/core/statistics.h>
+#include <iomanip>
+#include <sstream>
 #include <tuple>
 namespace fresco::texture {
 namespace {
@@ -58,7 +61,7 @@ std::vector<MatchPhoto> prepare(PhotoStore& photos, Index count, int threads)
   constexpr Index most_pixels = 1 << 20;  // of a photograph that is searched: bounds the time
   constexpr Index least_pixels = 1 << 16; // coarser, half a pixel is too much of the photograph
   constexpr int levels = 4;               // the widest search becomes one of few pixels
-  constexpr int corner_cells = 200;       // per photograph: many times the unknowns of a camera
+  constexpr int corner_cells = 400; // per photograph: many times the unknowns of a camera where a fifth is matched
   constexpr double with_halvings = 4.0 / 3;
   const double share = 0.5 * photos.mostBytes() / (with_halvings * count);
   const Index pixels = std::clamp<double>(share, least_pixels, most_pixels);
@@ -116,6 +119,23 @@ int widestOf(const CameraState& state)
   return width;
 }
 
+/// Errors of the matches by what was given.
+void describeFits(const std::vector<PhotoMatch>& matches, const CameraState& state, TextureResult& result)
+{
+  const std::vector<double> errors = matchErrors(matches, state);
+  std::vector<std::vector<double>> of_view(result.cameras.size());
+  for (std::size_t i = 0; i < matches.size(); ++i)
+    for (const int view : {matches[i].from, matches[i].to})
+      of_view[state.pose[view]].push_back(errors[i]);
+  result.fits.resize(of_view.size());
+  for (std::size_t v = 0; v < of_view.size(); ++v) {
+    std::vector<double>& list = of_view[v];
+    std::sort(list.begin(), list.end());
+    if (!list.empty())
+      result.fits[v] = {static_cast<Index>(list.size()), list[list.size() / 2], list[list.size() * 9 / 10]};
+  }
+}
+
 /// Leaves the cameras as they are where they agree already or no correction makes them agree clearly better.
 void refineCameras(const RefinementInput& input, int threads, const Progress& progress, TextureResult& result)
 {
@@ -130,18 +150,22 @@ void refineCameras(const RefinementInput& input, int threads, const Progress& pr
   std::vector<PhotoMatch> matches;
   MatchOptions options;
   options.threads = threads;
+  options.search =
+      searches[std::size(searches) - 1] * widestOf(state); // where cameras agree, nothing lies farther away
+  matches = matchPhotos(input.scene, prepared, state, options);
+  const bool agree = matches.size() >= least_matches && medianError(matches, initial) < agreement_pixels;
+  if (agree)
+    before = after = medianError(matches, initial);
   double done = 0;
   for (const double search : searches) {
+    if (agree)
+      break;
     report(progress, "camera refinement", done);
     options.search = search * widestOf(state);
     matches = matchPhotos(input.scene, prepared, state, options);
     if (matches.size() < least_matches)
       break;
     before = medianError(matches, initial);
-    if (done == 0 && before < agreement_pixels) {
-      after = before;
-      break;
-    }
     state = adjustCameras(thinned(matches, views), initial, priorFor(medianDistance(matches, initial)), threads);
     after = medianError(matches, state);
     done += 1.0 / std::size(searches);
@@ -150,6 +174,8 @@ void refineCameras(const RefinementInput& input, int threads, const Progress& pr
   result.refined = matches.size() >= least_matches && after < least_gain * before;
   if (!result.refined)
     after = before;
+  if (matches.size() >= least_matches)
+    describeFits(matches, result.refined ? state : initial, result);
   for (std::size_t v = 0; v < views && result.refined; ++v) {
     PlacedCamera& camera = result.cameras[state.pose[v]];
     if (!input.views[v].ofPanorama())
@@ -163,7 +189,7 @@ void refineCameras(const RefinementInput& input, int threads, const Progress& pr
 void placeCameras(const RefinementInput& input, const TextureOptions& options, const Progress& progress,
                   TextureResult& result)
 {
-  constexpr std::size_t most_views = 400; // the normal equations are solved densely
+  constexpr std::size_t most_views = 4000; // each is compared with all others for those that show the same
   for (const ViewPart& part : input.views)
     if (part.view == Index(result.cameras.size()))
       result.cameras.push_back({part.given->camera, part.given->T_camera_world});
@@ -173,6 +199,34 @@ void placeCameras(const RefinementInput& input, const TextureOptions& options, c
         concat("cameras are taken as given: ", views, " views are more than the ", most_views, " that are refined"));
   else if (options.refine && views >= 2)
     refineCameras(input, options.threads, progress, result);
+}
+
+std::vector<double> misfits(const TextureResult& result)
+{
+  constexpr Index least_matches = 20; // for a median
+  constexpr double most = 4;          // octaves: what no other photograph shows is still painted
+  std::vector<double> out(result.cameras.size(), 0);
+  const double expected = std::max(agreement_pixels, result.disagreement_after);
+  for (std::size_t v = 0; v < result.fits.size(); ++v)
+    if (result.fits[v].matches >= least_matches)
+      out[v] = std::clamp(std::log2(result.fits[v].median / expected), 0.0, most);
+  return out;
+}
+
+void warnOfMisfits(const std::vector<TextureView>& views, TextureResult& result)
+{
+  constexpr int named = 5;
+  const std::vector<double> octaves = misfits(result);
+  std::ostringstream list;
+  list << std::fixed << std::setprecision(1);
+  int count = 0;
+  for (std::size_t v = 0; v < octaves.size(); ++v)
+    if (octaves[v] >= 1 && ++count <= named)
+      list << (count > 1 ? ", " : "") << (views[v].path.empty() ? concat("photograph ", v) : views[v].path) << " by "
+           << result.fits[v].median << " pixels";
+  if (count > 0)
+    result.warnings.push_back(concat("photographs that do not fit the others and are avoided: ", list.str(),
+                                     count > named ? concat(" and ", count - named, " more") : ""));
 }
 
 double poseUncertainty(const TextureResult& result)

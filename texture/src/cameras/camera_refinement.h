@@ -23,6 +23,14 @@ void placeCameras(const RefinementInput& input, const TextureOptions& options, c
 /// is not known.
 double poseUncertainty(const TextureResult& result);
 
+/// Octaves by which each view is to be trusted less, since it fits the others clearly worse than these fit each other; 0
+/// where that is not known.
+std::vector<double> misfits(const TextureResult& result);
+
+/// Warns of the views that are trusted less by an octave or more.
+/// @param views as given
+void warnOfMisfits(const std::vector<TextureView>& views, TextureResult& result);
+
 /// Whether the photographs are known to agree so well that texels may be made of several of them.
 bool photographsAgree(const TextureResult& result);
 } // namespace fresco::texture

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cameras/patch_search.h"
 #include "grid.h"
-#include <Eigen/LU>
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -141,6 +141,60 @@ float parabolaVertex(float before, float middle, float after)
   const float curvature = before - 2 * middle + after;
   return curvature < -1e-6f ? std::clamp(0.5f * (before - after) / curvature, -0.5f, 0.5f) : 0.f;
 }
+
+/// Grey levels around a place, with one pixel more to each side for their derivatives.
+class Surroundings {
+public:
+  Surroundings(const Image& image, const Eigen::Vector2f& place)
+  {
+    for (int j = 0; j < wide; ++j)
+      for (int i = 0; i < wide; ++i)
+        grey_[j * wide + i] = greyAt(image, place.x() + i - radius - 1, place.y() + j - radius - 1);
+  }
+
+  /// Of pixel (i, j) of the patch: derivatives in x and y, grey level.
+  Eigen::Vector3d at(int i, int j) const
+  {
+    const float* p = grey_.data() + (j + 1) * wide + i + 1;
+    return {0.5 * (p[1] - p[-1]), 0.5 * (p[wide] - p[-wide]), p[0]};
+  }
+
+private:
+  static constexpr int wide = side + 2;
+  std::array<float, wide * wide> grey_;
+};
+
+/// Moves the place to where the patch fits best under any gain and offset of grey levels, by Gauss-Newton steps: Lucas &
+/// Kanade 1981. @return false if that is not near where it began
+bool fitPlace(const Template& patch, const Image& image, Eigen::Vector2f& place)
+{
+  constexpr int most_steps = 10;
+  constexpr float enough = 0.01f, reach = 1; // pixels: far below the scatter of matches; the peak is in the next pixel
+  constexpr int spare = radius + 2;
+  const Eigen::Vector2f start = place;
+  for (int step = 0; step < most_steps; ++step) {
+    if (!((place - start).norm() <= reach && place.minCoeff() >= spare && place.x() < image.width - spare &&
+          place.y() < image.height - spare))
+      return false;
+    const Surroundings grey(image, place);
+    Eigen::Matrix4d H = Eigen::Matrix4d::Zero(); // shift, gain, offset
+    Eigen::Vector4d g = Eigen::Vector4d::Zero();
+    for (int j = 0; j < side; ++j)
+      for (int i = 0; i < side; ++i) {
+        const Eigen::Vector3d here = grey.at(i, j);
+        const Eigen::Vector4d J(here.x(), here.y(), -patch[j * side + i], -1);
+        H += J * J.transpose();
+        g += here.z() * J;
+      }
+    const Eigen::Vector4d x = H.ldlt().solve(-g);
+    if (!x.allFinite())
+      return false;
+    place += x.head<2>().cast<float>();
+    if (x.head<2>().norm() < enough)
+      break;
+  }
+  return (place - start).norm() <= reach;
+}
 } // namespace
 
 bool findPatch(const PatchQuery& query, Eigen::Vector2f& place)
@@ -174,6 +228,7 @@ bool findPatch(const PatchQuery& query, Eigen::Vector2f& place)
                                parabolaVertex(correlation(patch, image, peak.x, peak.y - 1), peak.value,
                                               correlation(patch, image, peak.x, peak.y + 1)));
   }
-  return true;
+  Template patch;
+  return takeTemplate(query, 0, patch) && fitPlace(patch, query.to.levels[0], place);
 }
 } // namespace fresco::texture

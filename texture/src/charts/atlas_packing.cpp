@@ -207,11 +207,11 @@ int smallestSquares(Packer& packer, int least, int largest)
 }
 } // namespace
 
-Packing packCharts(std::vector<Chart>& charts, int side, int largest)
+Packing packCharts(std::vector<Chart>& charts, int largest)
 {
   constexpr double most_blocks = 1024; // along a side
   const double owned = ownedTexels(charts);
-  const double guess = side > 0 ? side : std::min<double>(largest, std::sqrt(owned / 0.8));
+  const double guess = std::min<double>(largest, std::sqrt(owned / 0.8));
   int block = 1;
   while (guess / block > most_blocks)
     block *= 2;
@@ -220,12 +220,9 @@ Packing packCharts(std::vector<Chart>& charts, int side, int largest)
   int widest = 1;
   for (const Chart& chart : charts)
     widest = std::max({widest, (chart.width + block - 1) / block, (chart.height + block - 1) / block});
-  out.side = side;
-  if (side > 0)
-    packer.pack(side / block, side / block);
-  else if (owned <= 1.0 * largest * largest)
+  if (owned <= 1.0 * largest * largest)
     out.side = block * smallestSquare(packer, widest, owned / block / block);
-  if (side == 0 && (out.side == 0 || out.side > largest))
+  if (out.side == 0 || out.side > largest)
     out.side = block * smallestSquares(packer, widest, largest / block);
   out.atlases = std::max(1, packer.atlases());
   out.used = owned / (1.0 * out.side * out.side * out.atlases);

@@ -10,7 +10,7 @@ struct Packing {
 
 /// Gives each chart its place by its outline, not its box: small ones go into the gaps of large ones. Every chart must
 /// fit.
-/// @param side    texels; 0 = one atlas as small as possible, or several of `largest`
-/// @param largest texels
-Packing packCharts(std::vector<Chart>& charts, int side, int largest);
+/// One atlas as small as possible, or as few as possible of equal size.
+/// @param largest texels, side of an atlas
+Packing packCharts(std::vector<Chart>& charts, int largest);
 } // namespace fresco::texture

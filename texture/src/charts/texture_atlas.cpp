@@ -154,7 +154,7 @@ std::vector<Chart> makeAtlas(const PatchMesh& patches, const Eigen::VectorXf& re
   layout.largest = side - side / 16; // packing rounds up to its blocks
   layout.threads = options.threads;
   std::vector<Chart> charts = layOutCharts(patches, graph, density, layout);
-  const Packing packing = packCharts(charts, options.atlas, largest_atlas);
+  const Packing packing = packCharts(charts, side);
   fillTexcoords(charts, packing.side, result.model);
   result.model.atlases.assign(packing.atlases, Image(packing.side, packing.side, 3, 128));
   result.masks.assign(packing.atlases, Image(packing.side, packing.side, 1));

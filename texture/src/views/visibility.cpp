@@ -68,6 +68,7 @@ public:
       return seen;
     const std::shared_ptr<const Image> photo = input.views.photos.get(number);
     const DepthMap map = shownDepth(input, number, most_cells);
+    const float misfit = input.views.misfits.empty() ? 0.f : input.views.misfits[number];
     const float radius = limits_.margin / map.step;
     constexpr float rim_pixels = 2; // reach of cubic interpolation
     const float rim = rim_pixels / map.step;
@@ -78,7 +79,7 @@ public:
         const Visibility visibility = visibilityOf(patch, map, limits_.tolerance);
         if (visibility == Visibility::hidden)
           continue;
-        float penalty = borderPenalty(view_.camera(), patch.corners.rowwise().mean() * map.step);
+        float penalty = misfit + borderPenalty(view_.camera(), patch.corners.rowwise().mean() * map.step);
         if (visibility == Visibility::beside)
           penalty += limits_.pose_uncertainty * beside_penalty;
         if (isNearOutline(patch, nearest, radius, outline_))

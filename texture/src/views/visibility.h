@@ -64,7 +64,8 @@ struct ViewList {
   std::vector<int> owner; ///< number of what each is a part of: parts of one panorama share it
   double pose_uncertainty =
       1; ///< how far outlines are to be distrusted: 1 = by some pixels and centimetres, 0 = all is exact
-  std::vector<int> lenses; ///< of each view, see lensNumbers()
+  std::vector<int> lenses;     ///< of each view, see lensNumbers()
+  std::vector<double> misfits; ///< octaves by which each view is trusted less; empty: none
 };
 
 /// What visibility is judged by.

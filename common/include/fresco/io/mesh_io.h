@@ -16,14 +16,15 @@ FRESCO_EXPORT TriangleMesh readMesh(const std::string& path);
 /// PLY (binary), OBJ or legacy VTK (binary) by extension; whole or not at all.
 FRESCO_EXPORT void writeMesh(const std::string& path, const TriangleMesh& mesh);
 
-/// OBJ + MTL + PNG (`NAME.obj`, `NAME.mtl`, `NAME.png` or `NAME_0.png` ...) or binary glTF (`.glb`, images inside,
-/// unlit), by extension. The set of files is whole or absent; the .obj appears last.
-/// @param jpeg_quality of the images inside a .glb, 1..100; 0: PNG, without loss
+/// OBJ + MTL + PNG (`NAME.obj`, `NAME.mtl`, `NAME.png` or `NAME_0.png` ...; `.jpg` with `jpeg_quality`) or binary glTF
+/// (`.glb`, images inside, unlit, y-up by a node that turns), by extension. The set of files is whole or absent; the .obj appears last.
+/// @param jpeg_quality of the images, 1..100; 0: PNG, without loss
 /// @throws std::invalid_argument as validateTexturedMesh(), std::runtime_error "PATH: reason" if it cannot be written
 FRESCO_EXPORT void writeTexturedMesh(const std::string& path, const TexturedMesh& model, int jpeg_quality = 0);
 
 /// What writeTexturedMesh() writes, and OBJ + MTL and .glb of others. Faces whose material has no image, or whose
-/// corners have no texture coordinates, are without texture. From a .glb, vertices at the same place become one.
+/// corners have no texture coordinates, are without texture. From a .glb, vertices at the same place become one,
+/// and y-up becomes z-up.
 /// @throws std::runtime_error "PATH: reason" if the model or a file that it names is missing, truncated or malformed
 FRESCO_EXPORT TexturedMesh readTexturedMesh(const std::string& path);
 

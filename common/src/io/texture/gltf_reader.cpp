@@ -281,9 +281,11 @@ struct PlacedMesh {
 std::vector<PlacedMesh> collectMeshes(const tinygltf::Model& gltf, const tinygltf::Scene& scene)
 {
   std::vector<PlacedMesh> meshes;
+  Eigen::Affine3d T_model_scene = Eigen::Affine3d::Identity(); // z-up from y-up
+  T_model_scene.linear() << 1, 0, 0, 0, 0, -1, 0, 1, 0;
   std::vector<std::pair<int, Eigen::Affine3d>> open; // node and its parent's transform
   for (auto node = scene.nodes.rbegin(); node != scene.nodes.rend(); ++node)
-    open.emplace_back(*node, Eigen::Affine3d::Identity());
+    open.emplace_back(*node, T_model_scene);
   for (std::size_t visited = 0; !open.empty(); ++visited) {
     if (visited + open.size() > gltf.nodes.size() + 1)
       fail("the nodes of the scene are no tree");

@@ -16,7 +16,7 @@ struct Part {
   std::vector<Eigen::Vector3f> positions, normals;
   std::vector<Eigen::Vector2f> texcoords; ///< v points down
   std::vector<Color16> colors;            ///< linear RGBA
-  std::vector<std::uint32_t> indices;
+  std::vector<std::uint16_t> indices;
 };
 
 /// Linear light of an sRGB byte as 16 bit (IEC 61966-2-1).
@@ -27,34 +27,44 @@ std::uint16_t linearLight(std::uint8_t value)
   return std::lround(65535.0 * linear);
 }
 
-/// Makes the part of the faces with one atlas: each pair of vertex and texture coordinate gets one place in it.
+/// Cuts the faces with one atlas into parts, face after face: each pair of vertex and texture coordinate gets one place in
+/// a part.
 class PartBuilder {
 public:
   /// @param atlas -1: the faces without texture
   PartBuilder(const TexturedMesh& model, int atlas)
-      : model_(model), textured_(atlas >= 0), first_(model.mesh.vertexCount(), -1)
+      : model_(model), atlas_(atlas), textured_(atlas >= 0), first_(model.mesh.vertexCount(), -1)
   {
     for (int value = 0; value < 256; ++value)
       linear_[value] = linearLight(value);
-    for (Index f = 0; f < model.mesh.faceCount(); ++f)
-      for (int k = 0; k < 3 && model.face_atlas[f] == atlas; ++k)
-        part_.indices.push_back(place(model.mesh.faces(k, f), textured_ ? model.texcoord_faces(k, f) : -1));
   }
 
-  Part take() { return std::move(part_); }
+  /// The next part; without indices at the end.
+  Part next()
+  {
+    constexpr std::size_t most_places = 65535; // so that 16 bits hold an index; 65535 itself has a meaning of its own
+    part_ = {};
+    for (; face_ < model_.mesh.faceCount() && places_.size() + 3 <= most_places; ++face_)
+      for (int k = 0; k < 3 && model_.face_atlas[face_] == atlas_; ++k)
+        part_.indices.push_back(place(model_.mesh.faces(k, face_), textured_ ? model_.texcoord_faces(k, face_) : -1));
+    for (const Place& place : places_)
+      first_[place.vertex] = -1;
+    places_.clear();
+    return std::move(part_);
+  }
 
 private:
   struct Place {
-    int texcoord, next; ///< next place of the same vertex, -1: none
+    int vertex, texcoord, next; ///< next place of the same vertex, -1: none
   };
 
-  std::uint32_t place(int vertex, int texcoord)
+  std::uint16_t place(int vertex, int texcoord)
   {
     int& first = first_[vertex];
     for (int at = first; at >= 0; at = places_[at].next)
       if (places_[at].texcoord == texcoord)
         return at;
-    places_.push_back({texcoord, first});
+    places_.push_back({vertex, texcoord, first});
     first = places_.size() - 1;
     append(vertex, texcoord);
     return first;
@@ -74,12 +84,17 @@ private:
   }
 
   const TexturedMesh& model_;
+  int atlas_;
   bool textured_;
+  Index face_ = 0; ///< the first that is in no part yet
   std::vector<int> first_;
   std::vector<Place> places_;
   std::uint16_t linear_[256];
   Part part_;
 };
+
+/// Column by column, as Eigen and glTF have matrices: x y z becomes x z -y.
+const Eigen::Matrix3d R_gltf_model = (Eigen::Matrix3d() << 1, 0, 0, 0, 0, 1, 0, -1, 0).finished();
 
 class GltfBuilder {
 public:
@@ -94,7 +109,8 @@ public:
   /// @param atlas -1: the faces without texture
   void addPart(int atlas, int jpeg_quality)
   {
-    const Part part = PartBuilder(source_, atlas).take();
+    PartBuilder builder(source_, atlas);
+    Part part = builder.next();
     if (part.indices.empty())
       return;
     tinygltf::Material material;
@@ -109,7 +125,9 @@ public:
       material.extensions["KHR_materials_unlit"] = tinygltf::Value(tinygltf::Value::Object());
       gltf_.extensionsUsed = {"KHR_materials_unlit"};
     }
-    addPrimitive(part, material);
+    gltf_.materials.push_back(material);
+    for (; !part.indices.empty(); part = builder.next())
+      addPrimitive(part, jpeg_quality > 0);
   }
 
   const tinygltf::Model& finish()
@@ -117,8 +135,11 @@ public:
     require(!gltf_.meshes[0].primitives.empty(), "glTF: the model has no faces");
     tinygltf::Node node;
     node.mesh = 0;
-    if (const Eigen::Vector3d& origin = source_.mesh.origin; !origin.isZero(0))
-      node.translation = {origin.x(), origin.y(), origin.z()};
+    const Eigen::Vector3d at = R_gltf_model * source_.mesh.origin;
+    Eigen::Matrix4d T = Eigen::Matrix4d::Identity();
+    T.topLeftCorner<3, 3>() = R_gltf_model;
+    T.topRightCorner<3, 1>() = at;
+    node.matrix.assign(T.data(), T.data() + 16);
     gltf_.nodes.push_back(node);
     tinygltf::Scene scene;
     scene.nodes.push_back(0);
@@ -179,7 +200,19 @@ private:
     return gltf_.accessors.size() - 1;
   }
 
-  void addPrimitive(const Part& part, const tinygltf::Material& material)
+  /// @param values 0..1
+  int addFractions(const std::vector<Eigen::Vector2f>& values)
+  {
+    std::vector<Eigen::Matrix<std::uint16_t, 2, 1>> stored;
+    for (const Eigen::Vector2f& value : values)
+      stored.emplace_back((value.array() * 65535.f).round().cwiseMax(0.f).cwiseMin(65535.f).cast<std::uint16_t>());
+    const int accessor = addAccessor(stored, TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT, TINYGLTF_TYPE_VEC2);
+    gltf_.accessors[accessor].normalized = true;
+    return accessor;
+  }
+
+  /// @param coarse whether texture coordinates have 16 bits, a tenth of a texel in an atlas of 6,500
+  void addPrimitive(const Part& part, bool coarse)
   {
     tinygltf::Primitive primitive;
     primitive.mode = TINYGLTF_MODE_TRIANGLES;
@@ -193,7 +226,10 @@ private:
     const auto is_unit = [](const Eigen::Vector3f& normal) { return std::abs(normal.squaredNorm() - 1.f) < 1e-3f; };
     if (!part.normals.empty() && std::all_of(part.normals.begin(), part.normals.end(), is_unit))
       primitive.attributes["NORMAL"] = addAccessor(part.normals, TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_VEC3);
-    if (!part.texcoords.empty())
+    const auto is_fraction = [](const Eigen::Vector2f& at) { return at.minCoeff() >= 0 && at.maxCoeff() <= 1; };
+    if (!part.texcoords.empty() && coarse && std::all_of(part.texcoords.begin(), part.texcoords.end(), is_fraction))
+      primitive.attributes["TEXCOORD_0"] = addFractions(part.texcoords);
+    else if (!part.texcoords.empty())
       primitive.attributes["TEXCOORD_0"] =
           addAccessor(part.texcoords, TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_VEC2);
     if (!part.colors.empty()) {
@@ -201,8 +237,7 @@ private:
       gltf_.accessors[colors].normalized = true;
       primitive.attributes["COLOR_0"] = colors;
     }
-    primitive.indices = addAccessor(part.indices, TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT, TINYGLTF_TYPE_SCALAR);
-    gltf_.materials.push_back(material);
+    primitive.indices = addAccessor(part.indices, TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT, TINYGLTF_TYPE_SCALAR);
     primitive.material = gltf_.materials.size() - 1;
     gltf_.meshes[0].primitives.push_back(primitive);
   }

@@ -41,7 +41,7 @@ void writeTexturedMesh(const std::string& path, const TexturedMesh& model, int j
   if (isGlb(io::formatToWrite(path, FileKind::textured_mesh)))
     io::writeGlb(path, model, jpeg_quality);
   else
-    io::writeTexturedObj(path, model);
+    io::writeTexturedObj(path, model, jpeg_quality);
 }
 
 TexturedMesh readTexturedMesh(const std::string& path)

@@ -136,17 +136,18 @@ std::vector<std::string> entriesOf(std::string_view text, std::string_view keywo
 }
 } // namespace
 
-void writeTexturedObj(const std::string& path, const TexturedMesh& model)
+void writeTexturedObj(const std::string& path, const TexturedMesh& model, int jpeg_quality)
 {
+  const std::string kind = jpeg_quality > 0 ? ".jpg" : ".png";
   const fs::path folder = fs::path(path).parent_path();
   const std::string stem = fs::path(path).stem().string();
   std::vector<std::string> names;
   for (std::size_t i = 0; i < model.atlases.size(); ++i)
-    names.push_back(model.atlases.size() == 1 ? stem + ".png" : concat(stem, '_', i, ".png"));
+    names.push_back(model.atlases.size() == 1 ? stem + kind : concat(stem, '_', i, kind));
   OutputFile object(path), materials((folder / (stem + ".mtl")).string());
   std::vector<std::unique_ptr<OutputFile>> images;
   for (std::size_t i = 0; i < names.size(); ++i) {
-    const std::vector<std::uint8_t> bytes = encodeImage(model.atlases[i], ".png");
+    const std::vector<std::uint8_t> bytes = encodeImage(model.atlases[i], kind, jpeg_quality);
     images.push_back(std::make_unique<OutputFile>((folder / names[i]).string()));
     images.back()->write(bytes.data(), bytes.size());
   }

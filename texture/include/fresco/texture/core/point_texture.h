@@ -14,7 +14,7 @@ namespace fresco {
 /// Details in Numerical Weather Map Analysis".
 struct PointTextureOptions {
   double texel = 0;     ///< side of a texel in mesh units, >= 0; 0 = 1.4 texels from one point to the next
-  int atlas = 0;        ///< side of each square atlas, 128..16384 pixels; 0 = one as small as possible, up to 8192 each
+  int atlas = 0;        ///< largest side of an atlas, 128..16384 pixels, more atlases beyond; 0 = 8192
   int border = 2;       ///< texels around each chart that continue its surface against bleeding, 1..16
   double width = 0.45;  ///< deviation of the Gaussian in distances from one point to the next, 0.3..10
   int rounds = 2;       ///< corrections by what the points differ from the texture, 0..20: more are sharper and noisier

@@ -14,7 +14,7 @@ namespace fresco {
 /// a labelling with few seams, after Lempitsky & Ivanov 2007 and Waechter, Moehrle & Goesele 2014.
 struct TextureOptions {
   double texel = 0; ///< side of a texel in mesh units, >= 0; 0 = as fine as the photographs show each part
-  int atlas = 0;    ///< side of each square atlas, 128..16384 pixels; 0 = one as small as possible, up to 8192 each
+  int atlas = 0;    ///< largest side of an atlas, 128..16384 pixels, more atlases beyond; 0 = 8192
   int border = 2;   ///< texels around each chart that continue its surface against bleeding, 1..16
   /// Weight of seams: length, in bounding-box diagonals, of seam that costs as much as one octave of resolution lost
   /// over a square of that side, >= 0; 0 = the best view of each face on its own.
@@ -25,7 +25,7 @@ struct TextureOptions {
   /// How far a face may lie behind the surface seen, as a share of the photographs' typical distance, 0..0.5.
   double depth_tolerance = 0.01;
   /// Correct poses, focal length, lens and mount so that the photographs agree on the mesh. Not done, with a warning,
-  /// for more than 400 views.
+  /// for more than 4,000 views.
   bool refine = true;
   bool exposure = true;    ///< bring exposure and white balance of the photographs together
   bool consistency = true; ///< avoid photographs whose colour differs from what most show of the same surface
@@ -57,6 +57,13 @@ struct PlacedCamera {
   Eigen::Isometry3d T_camera_world = Eigen::Isometry3d::Identity();
 };
 
+/// How far a photograph is off from the others that show the same places, pixels.
+struct PhotographFit {
+  Index matches = 0; ///< places that were compared
+  double median = 0;
+  double upper = 0; ///< nine tenths of the places are off by less
+};
+
 struct TextureResult {
   TexturedMesh model;
   /// One per atlas, grey: 255 where no photograph saw the surface and the colour is inpainted.
@@ -73,8 +80,9 @@ struct TextureResult {
   /// 3xV, vignetting found: light that arrives at distance r from the principal point, in half diagonals of the image, is
   /// exp(a_1 r^2 + a_2 r^4 + a_3 r^6) of that in the middle; zeros where nothing is known. Colours are corrected by it.
   Points vignetting;
-  double disagreement_before = 0; ///< pixels, median, between photographs on the mesh; 0 where it was not measured
-  double disagreement_after = 0;  ///< with `cameras`; the same where these were left as given
+  double disagreement_before = 0;  ///< pixels, median, between photographs on the mesh; 0 where it was not measured
+  double disagreement_after = 0;   ///< with `cameras`; the same where these were left as given
+  std::vector<PhotographFit> fits; ///< of each view, with `cameras`; empty where it was not measured
   /// Whether `cameras` differ from what was given: not where photographs agree within half a pixel already, nor where no
   /// correction makes them agree clearly better.
   bool refined = false;
@@ -82,6 +90,8 @@ struct TextureResult {
   std::vector<std::pair<std::string, double>> seconds; ///< time of each step
 };
 
+/// Faces that are there twice are left out of the result, and faces that all photographs see from behind are turned, with
+/// a warning each.
 /// @param mesh  as validateMesh() wants it, with at least one face of positive area
 /// @throws std::invalid_argument if the mesh, an option or a view (pose, intrinsics) is out of range
 /// @throws std::runtime_error naming the photograph or mask that is missing, no image, or of another size than its camera

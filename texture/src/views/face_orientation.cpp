@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "views/face_orientation.h"
+#include "views/patch_mesh.h"
+#include <algorithm>
+#include <cmath>
+#include <fresco/core/parallel.h>
+#include <fresco/core/require.h>
+#include <fresco/core/union_find.h>
+namespace fresco::texture {
+namespace {
+/// Rays of a view that end on a surface, by the side of it.
+struct SideCounts {
+  double front = 0, back = 0;
+};
+
+/// Number of the surface of each face: its lowest face.
+std::vector<int> surfacesOf(const TriangleMesh& mesh)
+{
+  const Eigen::Matrix3Xi neighbors = faceNeighbors(mesh.faces);
+  const auto runs = [&](Index face, int from, int to) {
+    for (int k = 0; k < 3; ++k)
+      if (mesh.faces(k, face) == from && mesh.faces((k + 1) % 3, face) == to)
+        return true;
+    return false;
+  };
+  UnionFind joined(mesh.faceCount());
+  for (Index f = 0; f < mesh.faceCount(); ++f)
+    for (int k = 0; k < 3; ++k)
+      if (const int other = neighbors(k, f); other > f && runs(other, mesh.faces((k + 1) % 3, f), mesh.faces(k, f)))
+        joined.join(f, other);
+  std::vector<int> out(mesh.faceCount());
+  for (Index f = 0; f < mesh.faceCount(); ++f)
+    out[f] = joined.root(f);
+  return out;
+}
+
+/// Faces hit by a grid of rays, those from behind as -1 - face.
+std::vector<int> hitsOf(const RayScene& scene, const Projector& view, double rays)
+{
+  const CameraModel& camera = view.camera();
+  const double step = std::max(1.0, std::sqrt(1.0 * camera.width * camera.height / rays));
+  std::vector<int> hits;
+  for (double y = 0.5 * step; y < camera.height; y += step)
+    for (double x = 0.5 * step; x < camera.width; x += step) {
+      const Eigen::Vector3f ray = view.ray({x, y});
+      if (const RayHit hit = scene.intersect({view.center(), ray}); hit.face >= 0)
+        hits.push_back(hit.normal.dot(ray) < 0 ? hit.face : -1 - hit.face);
+    }
+  return hits;
+}
+
+/// By surface, in the slot of its number.
+std::vector<SideCounts> countSides(const std::vector<int>& surfaces, const RayScene& scene,
+                                   const std::vector<Projector>& views)
+{
+  constexpr double of_view = 50000, of_all = 4e6; // rays: 250 along a side, seconds
+  const double rays = std::min(of_view, of_all / std::max<double>(views.size(), 1));
+  std::vector<std::vector<int>> hits(views.size());
+  parallelFor(
+      views.size(), 0, [&](Index v) { hits[v] = hitsOf(scene, views[v], rays); }, 1);
+  std::vector<SideCounts> counts(surfaces.size());
+  for (const std::vector<int>& list : hits)
+    for (const int hit : list) {
+      SideCounts& count = counts[surfaces[hit < 0 ? -1 - hit : hit]];
+      ++(hit < 0 ? count.back : count.front);
+    }
+  return counts;
+}
+} // namespace
+
+std::vector<char> insideOutFaces(const TriangleMesh& mesh, const RayScene& scene, const std::vector<Projector>& views,
+                                 TextureResult& result)
+{
+  constexpr double least_rays = 3; // to be seen at all
+  constexpr double all = 0.98;     // of a surface: rays along its rim may pass by what stands before it
+  constexpr double much = 0.2;     // of what photographs see: a closed mesh shows nothing from behind
+  const std::vector<int> surfaces = surfacesOf(mesh);
+  const std::vector<SideCounts> counts = countSides(surfaces, scene, views);
+  std::vector<char> marked(surfaces.size(), 0);
+  double back = 0, seen = 0;
+  for (std::size_t f = 0; f < surfaces.size(); ++f) {
+    const SideCounts& count = counts[surfaces[f]];
+    const double rays = count.front + count.back;
+    marked[f] = rays >= least_rays && count.back >= all * rays;
+    if (surfaces[f] == static_cast<int>(f)) {
+      seen += rays;
+      back += marked[f] ? 0 : count.back;
+    }
+  }
+  const auto turned = std::count(marked.begin(), marked.end(), 1);
+  if (turned > 0)
+    result.warnings.push_back(
+        concat(turned, " of ", surfaces.size(),
+               " faces are turned inside out: photographs see them from behind alone; they are turned"));
+  if (back > much * seen)
+    result.warnings.push_back(
+        concat(std::lround(100 * back / seen),
+               " % of what the photographs see is seen from behind, which has no texture: are faces "
+               "turned inside out, or is the mesh not in the cameras' frame?"));
+  return turned > 0 ? marked : std::vector<char>();
+}
+
+void turnFaces(const std::vector<char>& marked, TexturedMesh& model)
+{
+  for (std::size_t f = 0; f < marked.size(); ++f)
+    if (marked[f]) {
+      std::swap(model.mesh.faces(1, f), model.mesh.faces(2, f));
+      if (model.texcoord_faces.cols() > 0)
+        std::swap(model.texcoord_faces(1, f), model.texcoord_faces(2, f));
+    }
+}
+} // namespace fresco::texture
