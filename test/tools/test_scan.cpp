@@ -8,6 +8,8 @@
 #include <fresco/io/mesh_io.h>
 #include <fresco/io/point_io.h>
 #include <fresco/io/pose_file.h>
+#include <fresco/io/scan_file.h>
+#include <fresco/io/scan_images.h>
 #include <map>
 using namespace fresco;
 using namespace fresco::simulation;
@@ -135,6 +137,36 @@ TEST(VirtualDataset, IsCompleteAndConsistent)
   EXPECT_EQ(truth.colors.cols(), truth.vertexCount());
   EXPECT_GT(truth.fields.at("returns").sum(), 3000.f);
   EXPECT_TRUE(fs::exists(out + "/exposures.txt"));
+}
+
+TEST(VirtualDataset, SurveyHoldsWhatTheFolderHolds)
+{
+  const std::string folder = test::scratchFolder(), out = folder + "/out", survey = out + "/survey.e57";
+  DatasetOptions options = small();
+  options.panoramas = options.survey = true;
+  options.panorama_height = 32;
+  writeDataset(boxFile(folder), out, options);
+  const auto infos = readScanInfos(survey);
+  const auto poses = readPoses(out + "/poses.txt");
+  const auto images = readScanImages(survey);
+  const CameraSet set = readColmap(out + "/cameras");
+  ASSERT_EQ(infos.size(), 2u);
+  ASSERT_EQ(images.size(), 2u + set.views.size());
+  for (int k = 0; k < 2; ++k) {
+    const PointSet scan = readPoints(out + "/scans/scan_0" + std::to_string(k) + ".pcd");
+    const PointSet packed = readPoints(ScanPath{survey, k});
+    EXPECT_EQ(packed.points, scan.points);
+    EXPECT_EQ(packed.colors, scan.colors);
+    EXPECT_TRUE(infos[k].T_file_scan.matrix().isApprox(*poses[k], 1e-9));
+    EXPECT_EQ(images[k].scan, k);
+    EXPECT_EQ(readScanImageBytes(survey, k), readFile(out + "/panoramas/scan_0" + std::to_string(k) + ".jpg"));
+  }
+  for (std::size_t v = 0; v < set.views.size(); ++v) {
+    const auto [camera, T_camera_file] = cameraOf(images[2 + v]);
+    EXPECT_NEAR(camera.fx, set.cameras[0].fx, 1e-9);
+    EXPECT_TRUE(T_camera_file.matrix().isApprox(set.views[v].T_camera_world.matrix(), 1e-9));
+    EXPECT_EQ(readScanImageBytes(survey, 2 + v), readFile(out + "/images/" + set.views[v].image));
+  }
 }
 
 TEST(VirtualDataset, PanoramasShowWhatTheLaserMet)
