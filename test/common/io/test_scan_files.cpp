@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "simulation/sensors/e57_writer.h"
 #include "common/io/las_writer.h"
 #include "common/io/test_io_data.h"
+#include "simulation/sensors/e57_writer.h"
 #include <fresco/io/point_io.h>
 #include <fresco/io/scan_file.h>
 #include <sstream>
