@@ -88,21 +88,20 @@ GlobalAlignment findClusters(std::vector<PreparedScan>& scans, const std::vector
 // Members in rising order; without start poses, the frame of the first scan becomes that of the cluster.
 Placement toPlacement(const ScanCluster& cluster, const RegistrationState& state)
 {
-  const auto& [scans, start, options, placements, tried] = state;
-  const auto hasStart = [&](Index i) { return !start.empty() && start[i].has_value(); };
+  const auto hasStart = [&](Index i) { return !state.start.empty() && state.start[i].has_value(); };
   const bool started = std::any_of(cluster.scans.begin(), cluster.scans.end(), hasStart);
   std::vector<std::size_t> order(cluster.scans.size());
   std::iota(order.begin(), order.end(), std::size_t(0));
   std::sort(order.begin(), order.end(),
             [&](std::size_t x, std::size_t y) { return cluster.scans[x] < cluster.scans[y]; });
   const Index first = cluster.scans[order[0]];
-  const Eigen::Isometry3d T_first_frame = workingToScan(scans[first]) * cluster.poses[order[0]].inverse();
+  const Eigen::Isometry3d T_first_frame = workingToScan(state.scans[first]) * cluster.poses[order[0]].inverse();
   Placement placement;
   placement.look_alike = cluster.look_alike;
   for (const std::size_t k : order) {
     if (hasStart(cluster.scans[k]))
       placement.anchors.push_back(placement.members.size());
-    if (options.fixed && started)
+    if (state.options.fixed && started)
       placement.fixed.push_back(hasStart(cluster.scans[k]));
     placement.members.push_back(cluster.scans[k]);
     placement.poses.push_back(started ? cluster.poses[k] : T_first_frame * cluster.poses[k]);

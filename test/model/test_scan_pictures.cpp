@@ -42,7 +42,7 @@ const Isometry3d T_file_image =
     Eigen::Translation3d(10, 1, 2) * Isometry3d(Eigen::AngleAxisd(0.7, Vector3d(1, 2, 3).normalized()));
 
 /// Two stations at x = 0 and 10 with a point each, and pictures.
-std::string survey(std::vector<e57::Image> images)
+std::string survey(const std::vector<e57::Image>& images)
 {
   const auto scan = [](const std::string& name, double x) {
     e57::Scan out{name, {}, 1, e57::poseXml(Isometry3d(Eigen::Translation3d(x, 0, 0)))};

@@ -18,18 +18,25 @@ TriangleMesh workingMesh(const MeshGraph& graph, const Positions& x)
   return mesh;
 }
 
+struct SearchedMesh {
+  const MeshGraph& graph;
+  const Positions& x;
+  const TriangleTree& tree;
+};
+
 // Queries whose answer looks the wrong way are repeated from a place one edge length along their normal, which lies
 // nearer to the side of a thin part that the point was seen on.
-void repeatFromOutside(const MeshGraph& graph, const Positions& x, const TriangleTree& tree,
-                       const Eigen::Matrix3Xd& queries, const Points& normals, std::vector<ClosestPoint>& found,
-                       double reach, int threads)
+void repeatFromOutside(const SearchedMesh& mesh, const Eigen::Matrix3Xd& queries, const Points& normals,
+                       std::vector<ClosestPoint>& found, double reach, int threads)
 {
+  const auto& graph = mesh.graph;
+  const auto& x = mesh.x;
   parallelFor(queries.cols(), threads, [&](Index i) {
     ClosestPoint& answer = found[i];
     const Vector3d normal = normals.col(i).cast<double>();
     if (answer.face < 0 || !normal.allFinite() || areaVector(graph, x, answer.face).dot(normal) >= 0.0)
       return;
-    answer = tree.closest(queries.col(i) + normal, reach);
+    answer = mesh.tree.closest(queries.col(i) + normal, reach);
     if (answer.face < 0 || areaVector(graph, x, answer.face).dot(normal) < 0.0)
       answer.face = -1;
   });
@@ -56,7 +63,7 @@ Assigned assignFaces(const MeshGraph& graph, const Positions& x, const PointSet&
         (set.points(Eigen::all, columns).cast<double>().colwise() + (set.origin - frame.center)) / frame.unit;
     std::vector<ClosestPoint> found = closestPoints(tree, queries, threads);
     if (set.hasNormals())
-      repeatFromOutside(graph, x, tree, queries, set.normals(Eigen::all, columns), found, reach, threads);
+      repeatFromOutside({graph, x, tree}, queries, set.normals(Eigen::all, columns), found, reach, threads);
     for (std::size_t i = 0; i < columns.size(); ++i)
       if (found[i].face >= 0 && found[i].distance <= reach && graph.face_edges(0, found[i].face) >= 0) {
         assigned.columns.push_back(columns[i]);

@@ -65,19 +65,25 @@ Eigen::VectorXf misfitGains(const OptimizationProblem& problem, const FacePoints
   return gains;
 }
 
-FaceTerm faceTerm(const OptimizationProblem& problem, const FacePoints& lists, const Eigen::VectorXf& residuals,
-                  const Eigen::VectorXf& gains, const TermWeights& weights, Index f, FaceTerm term)
+struct WeightedData {
+  const FacePoints& lists;
+  const Eigen::VectorXf &residuals, gains; // by entry of the lists; by vertex
+};
+
+FaceTerm faceTerm(const OptimizationProblem& problem, const WeightedData& data, const TermWeights& weights, Index f,
+                  FaceTerm term)
 {
+  const FacePoints& lists = data.lists;
   term.smoothness = weights.smoothness * smoothnessWeight(problem, f);
   double gain = 0.0;
   for (int k = 0; k < 3; ++k)
-    gain += gains[problem.graph.faces(k, f)] / 3.0;
+    gain += data.gains[problem.graph.faces(k, f)] / 3.0;
   for (int j = lists.begin[f]; j < lists.begin[f + 1]; ++j) {
     const int i = lists.order[j];
     const Vector3d foot = footOn(problem.graph, problem.x, f, problem.data.points.col(i).cast<double>());
     const double weight = gain * lists.share[j] * problem.coverage.point_weight[i] *
-                          pointWeight(problem.data, i, residuals[j], term, weights.robust);
-    addDatum(term, foot, residuals[j], weight);
+                          pointWeight(problem.data, i, data.residuals[j], term, weights.robust);
+    addDatum(term, foot, data.residuals[j], weight);
   }
   return term;
 }
@@ -182,7 +188,7 @@ Eigen::Matrix3Xf dataNormals(const OptimizationProblem& problem, const Eigen::Ma
 QuadraticEnergy makeEnergy(const OptimizationProblem& problem, const FacePoints& lists, const Eigen::Matrix3Xf& normals,
                            const Eigen::VectorXf& residuals, const TermWeights& weights, int threads)
 {
-  const Eigen::VectorXf gains = misfitGains(problem, lists, residuals, weights, threads);
+  const WeightedData data{lists, residuals, misfitGains(problem, lists, residuals, weights, threads)};
   QuadraticEnergy energy;
   energy.free = problem.coverage.vertex;
   energy.faces.resize(problem.graph.faceCount());
@@ -191,7 +197,7 @@ QuadraticEnergy makeEnergy(const OptimizationProblem& problem, const FacePoints&
     FaceTerm term;
     term.normal = normals.col(f);
     if (problem.graph.face_edges(0, f) >= 0)
-      energy.faces[f] = faceTerm(problem, lists, residuals, gains, weights, f, term);
+      energy.faces[f] = faceTerm(problem, data, weights, f, term);
   });
   parallelFor(problem.graph.vertexCount(), threads, [&](Index v) {
     if (energy.free[v])
