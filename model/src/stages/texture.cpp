@@ -58,7 +58,8 @@ std::vector<TextureView> scanPictureViews(const Job& job, const std::vector<Pose
       continue;
     makeFolder(job.files.pictures);
     const CameraPicture taken = readPicture(picture);
-    const std::string stem = concat(job.files.pictures, "/picture_", views.size() + 1);
+    const std::string of = std::filesystem::path(picture.file).stem().string();
+    const std::string stem = concat(job.files.pictures, "/", of, "_picture_", picture.number + 1);
     TextureView next;
     next.camera = taken.camera;
     next.T_camera_world = picture.T_camera_scan * Eigen::Isometry3d(*poses[picture.scan]).inverse();
