@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // fresco_model with each kind of input that scans come in.
+#include "simulation/sensors/e57_writer.h"
 #include "test_data.h"
 #include "tools/small_room.h"
 #include "tools/tool_runs.h"
+#include <fresco/core/constants.h>
+#include <fresco/io/file.h>
+#include <fresco/io/image_io.h>
 #include <nlohmann/json.hpp>
 namespace fresco::test {
 namespace {
@@ -97,6 +101,58 @@ TEST(ModelInputs, PanoramasTextureTheModel)
   EXPECT_EQ(textureFigures(report)["made_of"], "panoramas");
   EXPECT_EQ(textureFigures(report)["photographs_used"], 2);
   EXPECT_LT(paintError(folder), 10);
+}
+
+/// A station of a survey with its points and a panorama of three quarters of the directions around.
+void addStation(const std::string& folder, int number, const Eigen::Isometry3d& T_world_scan,
+                std::vector<simulation::e57::Scan>& scans, std::vector<simulation::e57::Image>& images)
+{
+  namespace e57 = simulation::e57;
+  const PointSet points = readPoints(folder + "/room/scans/scan_0" + std::to_string(number) + ".pcd");
+  scans.push_back({std::to_string(number), {}, std::size_t(points.size()), e57::poseXml(T_world_scan)});
+  for (int k = 0; k < 3; ++k) {
+    scans.back().fields.push_back({std::string("cartesian") + "XYZ"[k]});
+    const auto row = points.points.row(k);
+    scans.back().fields.back().reals.assign(row.begin(), row.end());
+  }
+  const double pixel = 2 * pi / 512;
+  Image image(384, 256);
+  for (int y = 0; y < 256; ++y)
+    for (int x = 0; x < 384; ++x) {
+      const double longitude = (192 - x - 0.5) * pixel, latitude = (128 - y - 0.5) * pixel;
+      const Eigen::Vector3d beam(std::cos(longitude) * std::cos(latitude), std::sin(longitude) * std::cos(latitude),
+                                 std::sin(latitude));
+      const auto color = wallColor(wallPoint(T_world_scan.translation(), T_world_scan.linear() * beam));
+      std::copy(color.data(), color.data() + 3, image.pixel(x, y));
+    }
+  const auto png = encodeImage(image, ".png");
+  images.push_back({"<sphericalRepresentation type=\"Structure\"><pngImage type=\"Blob\" PICTURE/>" +
+                        e57::element("imageWidth", 384) + e57::element("imageHeight", 256) +
+                        e57::element("pixelWidth", pixel) + e57::element("pixelHeight", pixel) +
+                        "</sphericalRepresentation>",
+                    {png.begin(), png.end()},
+                    "",
+                    e57::poseXml(T_world_scan)});
+}
+
+TEST(ModelInputs, PicturesInsideOfASurveyAreUsedWhereTheyShowSomething)
+{
+  const std::string folder = scansAlone();
+  const std::vector<Pose> poses = readPoses(folder + "/room/poses.txt");
+  std::vector<simulation::e57::Scan> scans;
+  std::vector<simulation::e57::Image> images;
+  for (int k = 0; k < 2; ++k)
+    addStation(folder, k, Eigen::Isometry3d(*poses[k]), scans, images);
+  fs::remove_all(folder + "/room");
+  writeFile(folder + "/survey.e57", simulation::e57::fileOf(scans, images));
+  const Outcome outcome = run(folder, "model survey.e57 out -use_poses -cell 0.1 -size 160x120");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const nlohmann::json report = nlohmann::json::parse(get(folder + "/out/report.json"));
+  EXPECT_EQ(report["kind"], "2 scans, 2 panoramas");
+  EXPECT_EQ(textureFigures(report)["masks"], 2);
+  EXPECT_LT(textureFigures(report)["coverage"], 0.999);
+  EXPECT_LT(paintError(folder), 25) << "what no panorama shows is inpainted, not black";
+  EXPECT_FALSE(fs::exists(folder + "/out/work/pictures"));
 }
 } // namespace
 } // namespace fresco::test

@@ -31,17 +31,6 @@ std::vector<Station> stationsOf(const std::vector<ScanPath>& scans, std::size_t 
   return stations;
 }
 
-/// Axes of pictures (see ScanImage) to those of cameras.
-Isometry3d cameraAxes(Projection projection)
-{
-  Isometry3d T_camera_image = Isometry3d::Identity();
-  if (projection == Projection::pinhole)
-    T_camera_image.linear().diagonal() << 1, -1, -1;
-  else
-    T_camera_image.linear() << 0, -1, 0, 0, 0, -1, 1, 0, 0;
-  return T_camera_image;
-}
-
 ScanPicture placed(const ScanImage& what, const std::vector<Station>& stations)
 {
   const Vector3d center = what.T_file_image->translation();
@@ -104,7 +93,8 @@ struct PartialPanorama {
 };
 
 /// Panorama of all directions from one of some; the nearest pixel is taken, of as many as the given one has.
-CameraPicture completed(const ScanImage& what, const Image& image)
+/// @param known mask of the image, or empty
+CameraPicture completed(const ScanImage& what, const Image& image, const Image& known)
 {
   const double covered = image.width * what.pixel_width;
   require(covered > 0 && covered < 2.02 * pi && what.pixel_height > 0, "covers ", covered, " radians around");
@@ -120,7 +110,7 @@ CameraPicture completed(const ScanImage& what, const Image& image)
       if (!(at.x() >= 0 && at.x() < image.width && at.y() >= 0 && at.y() < image.height))
         continue;
       std::copy_n(image.pixel(int(at.x()), int(at.y())), 3, out.image.pixel(x, y));
-      *out.mask.pixel(x, y) = 255;
+      *out.mask.pixel(x, y) = known.empty() ? 255 : *known.pixel(int(at.x()), int(at.y()));
     }
   return out;
 }
@@ -149,18 +139,8 @@ CameraPicture decoded(const ScanPicture& picture)
   const ScanImage& what = picture.what;
   Image image = decodeImage(readScanImageBytes(picture.file, picture.number));
   Image mask = what.has_mask ? maskOf(picture, image) : Image();
-  if (picture.isPanorama() && !isComplete(what, image)) {
-    CameraPicture out = completed(what, image);
-    if (what.has_mask) {
-      Image rgb(mask.width, mask.height);
-      for (std::size_t i = 0; i < rgb.data.size(); ++i)
-        rgb.data[i] = mask.data[i / 3];
-      const Image spread = completed(what, rgb).image;
-      for (std::size_t i = 0; i < out.mask.data.size(); ++i)
-        out.mask.data[i] = std::min(out.mask.data[i], spread.data[3 * i]);
-    }
-    return out;
-  }
+  if (picture.isPanorama() && !isComplete(what, image))
+    return completed(what, image, mask);
   const CameraModel camera =
       picture.isPanorama() ? sphericalCamera(image.width, image.height) : pinholeCamera(picture, image);
   return {camera, std::move(image), std::move(mask), true};

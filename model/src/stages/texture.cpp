@@ -101,7 +101,8 @@ std::vector<TextureView> viewsOf(const Job& job, const std::vector<Pose>& poses)
   for (const PictureFile& picture : input.pictures())
     masks[picture.file] = picture.mask;
   for (TextureView& view : views)
-    view.mask_path = masks[view.path];
+    if (const auto mask = masks.find(view.path); mask != masks.end()) // those in files of scans have theirs
+      view.mask_path = mask->second;
   return views;
 }
 

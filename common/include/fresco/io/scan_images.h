@@ -43,6 +43,9 @@ struct ScanCamera {
   Eigen::Isometry3d T_camera_file;
 };
 
+/// From the frame of a picture to that of a camera at its place.
+FRESCO_EXPORT Eigen::Isometry3d cameraAxes(ScanImage::Projection projection);
+
 /// @throws std::invalid_argument unless the picture is pinhole, has a pose, pixels and a focal length above 0
 FRESCO_EXPORT ScanCamera cameraOf(const ScanImage& image);
 } // namespace fresco

@@ -77,6 +77,16 @@ std::vector<ScanImage> readScanImages(const std::string& path)
 std::string readScanImageBytes(const std::string& path, Index image) { return io::e57::pictureBytes(path, image); }
 std::string readScanImageMask(const std::string& path, Index image) { return io::e57::maskBytes(path, image); }
 
+Eigen::Isometry3d cameraAxes(ScanImage::Projection projection)
+{
+  Eigen::Isometry3d T_camera_image = Eigen::Isometry3d::Identity();
+  if (projection == ScanImage::Projection::pinhole)
+    T_camera_image.linear().diagonal() << 1, -1, -1;
+  else
+    T_camera_image.linear() << 0, -1, 0, 0, 0, -1, 1, 0, 0;
+  return T_camera_image;
+}
+
 ScanCamera cameraOf(const ScanImage& image)
 {
   require(image.projection == ScanImage::Projection::pinhole && image.T_file_image, "picture '", image.name,
@@ -92,9 +102,7 @@ ScanCamera cameraOf(const ScanImage& image)
   camera.fy = image.focal_length / image.pixel_height;
   camera.cx = image.principal_x;
   camera.cy = image.principal_y;
-  Eigen::Isometry3d T_camera_image = Eigen::Isometry3d::Identity(); // y up and z backwards to y down and z forwards
-  T_camera_image.linear().diagonal() << 1, -1, -1;
-  result.T_camera_file = T_camera_image * image.T_file_image->inverse();
+  result.T_camera_file = cameraAxes(image.projection) * image.T_file_image->inverse();
   return result;
 }
 } // namespace fresco
