@@ -134,20 +134,22 @@ TEST(ScanFiles, WindowsTogetherAreTheScan)
 {
   for (const auto& [name, content] :
        {std::pair<std::string, std::string>{"a.ptx", ptxOf(farStations())}, {"a.e57", e57Of(farStations())}}) {
-    const ScanPath scan{stored(name, content), 1};
-    Points all(3, 0);
-    streamPoints(scan, 5, [&](const PointSet& window) {
-      EXPECT_LE(window.size(), 5);
-      const Index before = all.cols();
-      all.conservativeResize(3, before + window.size());
-      all.rightCols(window.size()) = window.points;
-      return true;
-    });
-    EXPECT_TRUE(test::sameValues(all, farStations()[1].points)) << name;
+    const std::string path = stored(name, content);
+    for (const Index station : {0, 1}) { // the first does not read on into the second
+      Points all(3, 0);
+      streamPoints(ScanPath{path, station}, 5, [&](const PointSet& window) {
+        EXPECT_LE(window.size(), 5);
+        const Index before = all.cols();
+        all.conservativeResize(3, before + window.size());
+        all.rightCols(window.size()) = window.points;
+        return true;
+      });
+      EXPECT_TRUE(test::sameValues(all, farStations()[station].points)) << name << ' ' << station;
+    }
     int calls = 0;
-    streamPoints(scan, 5, [&](const PointSet&) { return ++calls < 2; });
+    streamPoints(ScanPath{path, 1}, 5, [&](const PointSet&) { return ++calls < 2; });
     EXPECT_EQ(calls, 2);
-    EXPECT_THROW(streamPoints(scan, 0, [](const PointSet&) { return true; }), std::invalid_argument);
+    EXPECT_THROW(streamPoints(ScanPath{path, 1}, 0, [](const PointSet&) { return true; }), std::invalid_argument);
   }
 }
 

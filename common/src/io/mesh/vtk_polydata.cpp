@@ -18,6 +18,7 @@
 #include <vtkSTLWriter.h>
 #include <vtkSmartPointer.h>
 #include <vtkXMLPolyDataWriter.h>
+#include <vtksys/SystemTools.hxx>
 namespace fresco::io {
 namespace {
 /// Takes what VTK says instead of the terminal.
@@ -236,7 +237,8 @@ VtkContent readStl(const std::string& path)
 {
   const std::string content = readFile(path);
   constexpr std::size_t header = 84, triangle = 50; // bytes in a binary file; the header ends with the count
-  const bool is_text = std::all_of(content.begin(), content.end(), [](char c) { return c > 0; });
+  // The question that VTK's reader asks: what it takes for binary it gives the memory that the count asks for.
+  const bool is_text = vtksys::SystemTools::DetectFileType(path.c_str()) == vtksys::SystemTools::FileTypeText;
   if (!is_text && (content.size() < header ||
                    (content.size() - header) / triangle < loadScalar<std::uint32_t>(content.data() + header - 4)))
     throw std::runtime_error(path + ": truncated: the triangles do not fit into the file");

@@ -154,9 +154,15 @@ public:
   {
     std::string_view line;
     Index at = begin;
-    while (at < end && lines_->next(line) && (line.empty() || !isSingleWord(line)))
-      if (!line.empty())
-        storeLine(line, table.cell(at++, table.columns[0]));
+    while (at < end && lines_->next(line)) {
+      if (line.empty())
+        continue;
+      if (isSingleWord(line)) { // the next station
+        lines_->unread();
+        break;
+      }
+      storeLine(line, table.cell(at++, table.columns[0]));
+    }
     return at - begin;
   }
 
