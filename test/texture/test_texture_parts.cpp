@@ -38,7 +38,7 @@ struct BoardScene {
   {
     const std::vector<ViewPart> whole = partsOf(views);
     PhotoStore photos(whole, 1 << 24);
-    return findCandidates(parts, {RayScene(mesh), {projectors, photos, {1, 1}, {0, 1}, 0.2}, TextureOptions{}},
+    return findCandidates(parts, {RayScene(mesh), {projectors, photos, {1, 1}, {0, 1}, 0.2, {}, {}}, TextureOptions{}},
                           Progress{});
   }
 

@@ -120,6 +120,37 @@ TEST(TextureUnseen, AFloorUnderABoardLooksLikeTheFloor)
   EXPECT_LT(roughness(reconstructTexture(scene.mesh, scene.views, options), true), 0.3 * seen);
 }
 
+TEST(TextureUnseen, ColoursStayOnTheirSideOfACrease)
+{
+  // A floor and a wall, and a chest that hides where they meet.
+  TriangleMesh mesh;
+  mesh.vertices.resize(3, 6);
+  mesh.vertices << 0, 0, 2, 2, 0, 0, -1, 1, -1, 1, -1, 1, 0, 0, 0, 0, 2, 2;
+  mesh.faces.resize(3, 4);
+  mesh.faces << 0, 3, 0, 5, 2, 1, 1, 4, 3, 0, 5, 0;
+  const Index corner_faces = mesh.faceCount();
+  appendBox({0.05f, -0.8f, 0.05f}, {0.6f, 0.8f, 0.6f}, false, mesh);
+  const Eigen::Vector3d floor(60, 90, 200), wall(220, 200, 60), chest(150, 40, 40);
+  const auto paint = [&](const Eigen::Vector3d& p) { return p.z() < 1e-4 ? floor : p.x() < 1e-4 ? wall : chest; };
+  std::vector<TextureView> views;
+  for (const double y : {-0.5, 0.5})
+    views.push_back(photograph(mesh, paint, camera(320, 320, 300), lookAt({2.2, y, 1.8}, {0.3, 0, 0.3})));
+  TextureOptions options = withThreads(2);
+  options.refine = false;
+  const TextureResult result = reconstructTexture(mesh, views, options);
+  Index hidden = 0;
+  forPlaces(mesh, 2000, [&](Index f, const Eigen::Vector3d& weights) {
+    const Eigen::Vector3d p = pointAt(mesh, f, weights);
+    const double off = p.x() + p.z(); // from the crease; on it, reading the atlas mixes its sides
+    if (f >= corner_faces || std::abs(p.y()) > 0.6 || off > 0.4 || off < 0.02)
+      return;
+    ++hidden;
+    const Eigen::Vector3d difference = colorAt(result.model, f, weights) - (f < 2 ? floor : wall);
+    EXPECT_LT(difference.cwiseAbs().maxCoeff(), 8) << p.transpose();
+  });
+  EXPECT_GT(hidden, 100);
+}
+
 TEST(TextureUnseen, GapsTakeTheColourOfTheChartsBesideThem)
 {
   Chart chart;

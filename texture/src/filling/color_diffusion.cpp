@@ -1,32 +1,77 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "filling/color_diffusion.h"
+#include "filling/creases.h"
 #include <fresco/core/grouped.h>
 #include <fresco/core/parallel.h>
+#include <limits>
+#include <queue>
 #include <vector>
 namespace fresco::texture {
 namespace {
-/// Of each vertex those joined with it by an edge, as often as patches share the edge.
-Groups ringsOf(const PatchMesh& patches)
+/// What colours are continued along.
+struct Links {
+  Groups rings;                   ///< nodes next to each node, as often as patches share the edge
+  std::vector<float> weight;      ///< of each entry, 0..1
+  std::vector<float> over_crease; ///< by node, with which it takes the colours of its vertex's other nodes
+};
+
+/// N. Nodes hardly take colours from beyond a crease, unless nothing at all is seen on their side: then these are the
+/// best guess.
+std::vector<float> weightsOverCreases(const PatchMesh& patches, const SmoothCorners& corners,
+                                      const Points& patch_colors)
 {
-  const auto vertex = [&](Index i) { return patches.faces.data()[i / 2]; }; // two entries per corner of a patch
-  Groups rings = grouped(2 * patches.faces.size(), patches.vertices.cols(), vertex);
-  for (int& i : rings.list)
-    i = patches.faces((i / 2 + 1 + i % 2) % 3, i / 6);
-  return rings;
+  constexpr float hardly = 1e-3f; // a hundred smooth links in a row still join better
+  const std::vector<int> pieces = smoothPieces(patches);
+  std::vector<char> seen(patches.size(), 0); // by piece
+  for (Index i = 0; i < patches.size(); ++i)
+    if (patch_colors(0, i) >= 0)
+      seen[pieces[i]] = 1;
+  std::vector<float> weights(corners.size(), 1.f);
+  for (Index i = 0; i < patches.size(); ++i)
+    for (int k = 0; k < 3 && seen[pieces[i]]; ++k)
+      weights[corners.node(k, i)] = hardly;
+  return weights;
+}
+
+/// Nodes joined by an edge of a patch, and those of one vertex.
+Links linksOf(const SmoothCorners& corners, std::vector<float> over_crease)
+{
+  constexpr float least = 1e-3f;
+  constexpr float turned = 0.77f; // cosine of 40 degrees: what is turned more is another surface
+  std::vector<std::pair<int, int>> pairs;
+  pairs.reserve(corners.node.size() + corners.size() / 8);
+  for (Index i = 0; i < corners.node.cols(); ++i)
+    for (int k = 0; k < 3; ++k)
+      pairs.emplace_back(corners.node(k, i), corners.node((k + 1) % 3, i));
+  for (Index a = 0; a < corners.size(); ++a)
+    for (Index b = a + 1; b < corners.size() && corners.vertex[b] == corners.vertex[a]; ++b)
+      pairs.emplace_back(a, b);
+  const auto ends = [&](Index i) { return i % 2 ? std::pair(pairs[i / 2].second, pairs[i / 2].first) : pairs[i / 2]; };
+  Links links{
+      grouped(2 * pairs.size(), corners.size(), [&](Index i) { return ends(i).first; }), {}, std::move(over_crease)};
+  links.weight.reserve(links.rings.list.size());
+  for (int& i : links.rings.list) {
+    const auto [a, b] = ends(i);
+    const float cosine = corners.normals.col(a).dot(corners.normals.col(b));
+    const bool same_vertex = corners.vertex[a] == corners.vertex[b];
+    links.weight.push_back(same_vertex ? links.over_crease[a] : std::max(least, (cosine - turned) / (1 - turned)));
+    i = b;
+  }
+  return links;
 }
 
 struct Known {
-  Points value;            ///< 3xV
-  std::vector<char> fixed; ///< V: value is given, not continued
+  Points value;            ///< 3xN
+  std::vector<char> fixed; ///< N: value is given, not continued
 };
 
-Known seenVertices(const PatchMesh& patches, const Points& patch_colors)
+Known seenNodes(const PatchMesh& patches, const SmoothCorners& corners, const Points& patch_colors)
 {
-  Known known{Points::Zero(3, patches.vertices.cols()), std::vector<char>(patches.vertices.cols(), 0)};
-  Eigen::VectorXf weight = Eigen::VectorXf::Zero(patches.vertices.cols());
+  Known known{Points::Zero(3, corners.size()), std::vector<char>(corners.size(), 0)};
+  Eigen::VectorXf weight = Eigen::VectorXf::Zero(corners.size());
   for (Index i = 0; i < patches.size(); ++i)
     for (int k = 0; k < 3 && patch_colors(0, i) >= 0; ++k) {
-      const int v = patches.faces(k, i);
+      const int v = corners.node(k, i);
       known.value.col(v) += patches.areas[i] * patch_colors.col(i);
       weight[v] += patches.areas[i];
     }
@@ -38,68 +83,88 @@ Known seenVertices(const PatchMesh& patches, const Points& patch_colors)
   return known;
 }
 
-/// Breadth first from the known vertices: each takes the mean of its neighbours reached before it.
-/// @return the vertices reached, none of them fixed
-std::vector<int> spread(const Groups& rings, Known& known)
+/// Outwards from the known nodes, the shortest way first: each takes the mean of those reached before it.
+/// A link is as long as it hardly joins, so what is behind a crease is reached last.
+/// @return the nodes reached, none of them fixed
+std::vector<int> spread(const Links& links, const std::vector<int>& vertex, Known& known)
 {
+  constexpr float far = std::numeric_limits<float>::infinity();
+  using Reached = std::pair<float, int>; // way, node
+  std::priority_queue<Reached, std::vector<Reached>, std::greater<>> queue;
+  std::vector<float> way(known.fixed.size(), far);
+  for (std::size_t v = 0; v < way.size(); ++v)
+    if (known.fixed[v])
+      queue.emplace(way[v] = 0.f, v);
+  std::vector<char> done(way.size(), 0);
   std::vector<int> order;
-  std::vector<char> reached = known.fixed;
-  for (std::size_t v = 0; v < reached.size(); ++v)
-    if (reached[v])
-      order.push_back(v);
-  const std::size_t given = order.size();
-  std::vector<char> valued = known.fixed;
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    const int v = order[i];
+  while (!queue.empty()) {
+    const auto [length, v] = queue.top();
+    queue.pop();
+    if (done[v])
+      continue;
     Eigen::Vector3f sum = Eigen::Vector3f::Zero();
-    float count = 0;
-    for (Index r = rings.begin[v]; r < rings.begin[v + 1]; ++r) {
-      const int other = rings.list[r];
-      if (valued[other] && !known.fixed[v]) {
-        sum += known.value.col(other);
-        ++count;
-      }
-      if (!reached[other]) {
-        reached[other] = 1;
-        order.push_back(other);
+    float total = 0;
+    for (Index r = links.rings.begin[v]; r < links.rings.begin[v + 1]; ++r) {
+      const int other = links.rings.list[r];
+      if (done[other]) {
+        sum += links.weight[r] * known.value.col(other);
+        total += links.weight[r];
+      } else {
+        const float weight = vertex[other] == vertex[v] ? links.over_crease[other] : links.weight[r];
+        if (const float next = length + 1.f / weight; next < way[other])
+          queue.emplace(way[other] = next, other);
       }
     }
-    if (count > 0)
-      known.value.col(v) = sum / count;
-    valued[v] = 1;
+    done[v] = 1;
+    if (known.fixed[v])
+      continue;
+    known.value.col(v) = sum / total;
+    order.push_back(v);
   }
-  return {order.begin() + given, order.end()};
+  return order;
 }
 
-void smooth(const Groups& rings, const std::vector<int>& free, int threads, Points& value)
+void smooth(const Links& links, const std::vector<int>& free, int threads, Points& value)
 {
-  constexpr int rounds =
-      100; // takes the streaks of the breadth-first start away; a solution to the last digit is not needed
+  constexpr int rounds = 100; // takes the streaks of the outward start away; a solution to the last digit is not needed
   Points next = value;
   for (int round = 0; round < rounds; ++round) {
     parallelFor(free.size(), threads, [&](Index i) {
       const int v = free[i];
       Eigen::Vector3f sum = Eigen::Vector3f::Zero();
-      for (Index r = rings.begin[v]; r < rings.begin[v + 1]; ++r)
-        sum += value.col(rings.list[r]);
-      next.col(v) = sum / (rings.begin[v + 1] - rings.begin[v]);
+      float total = 0;
+      for (Index r = links.rings.begin[v]; r < links.rings.begin[v + 1]; ++r) {
+        sum += links.weight[r] * value.col(links.rings.list[r]);
+        total += links.weight[r];
+      }
+      next.col(v) = sum / total;
     });
     value.swap(next);
   }
+}
+
+/// 3xP, 3 per patch: of its corners.
+Points atCorners(const SmoothCorners& corners, const Points& value)
+{
+  Points out(3, corners.node.size());
+  for (Index c = 0; c < out.cols(); ++c)
+    out.col(c) = value.col(corners.node.data()[c]).cwiseMax(0.f).cwiseMin(255.f);
+  return out;
 }
 } // namespace
 
 Points diffuseColors(const PatchMesh& patches, const Points& patch_colors, int threads)
 {
   constexpr float mid_grey = 128.f;
-  Known known = seenVertices(patches, patch_colors);
+  const SmoothCorners corners = joinSmoothCorners(patches);
+  Known known = seenNodes(patches, corners, patch_colors);
   const bool colored = patches.colors.cols() > 0;
   Eigen::Vector3f mean = Eigen::Vector3f::Zero();
   float count = 0;
   for (Index v = 0; v < known.value.cols(); ++v)
     if (known.fixed[v]) {
       if (colored)
-        known.value.col(v) -= patches.colors.col(v);
+        known.value.col(v) -= patches.colors.col(corners.vertex[v]);
       mean += known.value.col(v);
       ++count;
     }
@@ -107,11 +172,11 @@ Points diffuseColors(const PatchMesh& patches, const Points& patch_colors, int t
   for (Index v = 0; v < known.value.cols(); ++v)
     if (!known.fixed[v])
       known.value.col(v) = mean;
-  const Groups rings = ringsOf(patches);
-  const std::vector<int> free = spread(rings, known);
-  smooth(rings, free, threads, known.value);
+  const Links links = linksOf(corners, weightsOverCreases(patches, corners, patch_colors));
+  smooth(links, spread(links, corners.vertex, known), threads, known.value);
   if (colored)
-    known.value += patches.colors;
-  return known.value.cwiseMax(0.f).cwiseMin(255.f);
+    for (Index v = 0; v < corners.size(); ++v)
+      known.value.col(v) += patches.colors.col(corners.vertex[v]);
+  return atCorners(corners, known.value);
 }
 } // namespace fresco::texture

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "filling/exemplar_inpainting.h"
+#include "filling/creases.h"
 #include "filling/exemplar_synthesis.h"
 #include "grid.h"
 #include <algorithm>
@@ -8,9 +9,10 @@
 #include <numeric>
 namespace fresco::texture {
 namespace {
-/// Texels of a chart that are unseen and joined.
+/// Texels of a chart that are unseen and joined, on one side of creases.
 struct Hole {
   std::size_t chart;
+  int piece;               ///< see smoothPieces()
   Eigen::AlignedBox2i box; ///< in the chart's texels
   std::vector<int> texels; ///< index into the chart's owners
 };
@@ -18,7 +20,9 @@ struct Hole {
 struct ChartTexels {
   const Chart& chart;
   const Image& mask;
+  const std::vector<int>& pieces; ///< of all patches
 
+  int pieceOf(std::size_t slot) const { return pieces[chart.texels.patches[slot]]; }
   bool isUnseen(int x, int y) const { return *mask.pixel(chart.x + x, chart.y + y) != 0; }
 };
 
@@ -26,23 +30,25 @@ std::vector<Hole> holesOf(const ChartTexels& texels, std::size_t number)
 {
   constexpr std::size_t least_texels = 300; // smaller holes have no room for a structure
   const int w = texels.chart.width, h = texels.chart.height;
-  std::vector<char> open(cellCount(w, h), 0); // unseen and of no hole yet
-  for (const TexelSpan& span : texels.chart.texels.spans)
-    for (int x = span.x; x < span.x + span.length; ++x)
-      open[cellAt(x, span.y, w)] = texels.isUnseen(x, span.y);
+  std::vector<int> open(cellCount(w, h), -1); // piece of texels that are unseen and of no hole yet
+  for (std::size_t s = 0; s < texels.chart.texels.patches.size(); ++s)
+    texels.chart.texels.forTexels(s, [&](int x, int y) {
+      if (texels.isUnseen(x, y))
+        open[cellAt(x, y, w)] = texels.pieceOf(s);
+    });
   std::vector<Hole> holes;
   for (int start = 0; start < w * h; ++start) {
-    if (!open[start])
+    if (open[start] < 0)
       continue;
-    Hole hole{number, {}, {start}};
-    open[start] = 0;
+    Hole hole{number, open[start], {}, {start}};
+    open[start] = -1;
     for (std::size_t k = 0; k < hole.texels.size(); ++k) {
       const int x = hole.texels[k] % w, y = hole.texels[k] / w;
       hole.box.extend(Eigen::Vector2i(x, y));
       for (int j = std::max(0, y - 1); j <= std::min(h - 1, y + 1); ++j)
         for (int i = std::max(0, x - 1); i <= std::min(w - 1, x + 1); ++i)
-          if (const int at = j * w + i; open[at]) {
-            open[at] = 0;
+          if (const int at = j * w + i; open[at] == hole.piece) {
+            open[at] = -1;
             hole.texels.push_back(at);
           }
     }
@@ -77,11 +83,12 @@ HolePicture pictureOf(const ChartTexels& texels, const Hole& hole, const Eigen::
     out.color[pixel] = Eigen::Vector3f(p[0], p[1], p[2]);
     out.state[pixel] = state;
   };
-  for (const TexelSpan& span : chart.texels.spans)
-    if (span.y >= box.min().y() && span.y <= box.max().y())
-      for (int x = std::max<int>(span.x, box.min().x()); x <= std::min(span.x + span.length - 1, box.max().x()); ++x)
-        if (!texels.isUnseen(x, span.y))
-          set(span.y * chart.width + x, HolePicture::known);
+  for (std::size_t s = 0; s < chart.texels.patches.size(); ++s)
+    if (texels.pieceOf(s) == hole.piece)
+      chart.texels.forTexels(s, [&](int x, int y) {
+        if (box.contains(Eigen::Vector2i(x, y)) && !texels.isUnseen(x, y))
+          set(y * chart.width + x, HolePicture::known);
+      });
   for (const int at : hole.texels)
     set(at, HolePicture::hole);
   return out;
@@ -156,7 +163,10 @@ bool fill(const ChartTexels& texels, const Hole& hole, Image& atlas)
 
 Index inpaintByExample(const PaintScene& scene, const std::vector<Image>& masks, std::vector<Image>& atlases)
 {
-  const auto texelsOf = [&](std::size_t c) { return ChartTexels{scene.charts[c], masks[scene.charts[c].atlas]}; };
+  const std::vector<int> pieces = smoothPieces(scene.patches);
+  const auto texelsOf = [&](std::size_t c) {
+    return ChartTexels{scene.charts[c], masks[scene.charts[c].atlas], pieces};
+  };
   std::vector<std::vector<Hole>> by_chart(scene.charts.size());
   const auto findHoles = [&](Index c) { by_chart[c] = holesOf(texelsOf(c), c); };
   parallelFor(scene.charts.size(), scene.threads, findHoles, 1);

@@ -200,9 +200,7 @@ void paintUnseen(const PaintScene& scene, const Points& colors, std::vector<Imag
   parallelFor(scene.patches.size(), scene.threads, [&](Index i) {
     if (scene.view[i] >= 0 || !scene.hasTexels(i))
       return;
-    Eigen::Matrix3f corners;
-    for (int k = 0; k < 3; ++k)
-      corners.col(k) = colors.col(scene.patches.faces(k, i));
+    const Eigen::Matrix3f corners = colors.middleCols<3>(3 * i);
     const PatchFrame frame(scene, i);
     frame.forTexels([&](const Eigen::Vector2f& center, int x, int y) {
       x += frame.chart.x;

@@ -58,7 +58,7 @@ void paintTexels(const PaintScene& scene, const PaintSources& sources,
 /// 3xP, mean colour of each seen patch's own texels; (-1,-1,-1) for unseen ones.
 Points patchColors(const PaintScene& scene, const std::vector<Image>& atlases);
 
-/// Fills the texels of the unseen patches from colours of the vertices and marks them in the masks.
-/// @param colors 3xV, 0..255
+/// Fills the texels of the unseen patches from colours of their corners and marks them in the masks.
+/// @param colors 3x3P, 0..255
 void paintUnseen(const PaintScene& scene, const Points& colors, std::vector<Image>& atlases, std::vector<Image>& masks);
 } // namespace fresco::texture
