@@ -74,13 +74,13 @@ HolePicture pictureOf(const ChartTexels& texels, const Hole& hole, const Eigen::
   HolePicture out;
   out.width = box.sizes().x() + 1;
   out.height = box.sizes().y() + 1;
-  out.color.resize(cellCount(out.width, out.height), Eigen::Vector3f::Zero());
+  out.color.resize(cellCount(out.width, out.height), Eigen::Vector4f::Zero());
   out.state.resize(out.color.size(), HolePicture::outside);
   const auto set = [&](int at, std::uint8_t state) { // texels of other holes are not even read: they are being written
     const int x = at % chart.width, y = at / chart.width;
     const std::uint8_t* p = atlas.pixel(chart.x + x, chart.y + y);
     const std::size_t pixel = out.at(x - box.min().x(), y - box.min().y());
-    out.color[pixel] = Eigen::Vector3f(p[0], p[1], p[2]);
+    out.color[pixel] = Eigen::Vector4f(p[0], p[1], p[2], 0);
     out.state[pixel] = state;
   };
   for (std::size_t s = 0; s < chart.texels.patches.size(); ++s)
@@ -116,22 +116,22 @@ void sumRows(std::vector<Eigen::Vector4f>& value, int width, int height)
 }
 
 /// The picture without its fine structure.
-std::vector<Eigen::Vector3f> smoothed(const HolePicture& picture)
+std::vector<Eigen::Vector4f> smoothed(const HolePicture& picture)
 {
   std::vector<Eigen::Vector4f> value;
   for (std::size_t i = 0; i < picture.color.size(); ++i)
-    value.push_back(picture.state[i] == HolePicture::outside ? Eigen::Vector4f::Zero()
-                                                             : Eigen::Vector4f(picture.color[i].homogeneous()));
+    value.push_back(picture.state[i] == HolePicture::outside
+                        ? Eigen::Vector4f::Zero()
+                        : Eigen::Vector4f(picture.color[i] + Eigen::Vector4f::UnitW()));
   for (int round = 0; round < 2; ++round) { // box over box: nearly a Gaussian
     sumRows(value, picture.width, picture.height);
     sumRows(value, picture.height, picture.width);
     for (Eigen::Vector4f& v : value)
       v = v.w() > 0.5f ? Eigen::Vector4f(v / v.w()) : Eigen::Vector4f::Zero();
   }
-  std::vector<Eigen::Vector3f> out;
-  for (const Eigen::Vector4f& v : value)
-    out.push_back(v.head<3>());
-  return out;
+  for (Eigen::Vector4f& v : value)
+    v.w() = 0;
+  return value;
 }
 
 bool fill(const ChartTexels& texels, const Hole& hole, Image& atlas)
@@ -144,10 +144,10 @@ bool fill(const ChartTexels& texels, const Hole& hole, Image& atlas)
   HolePicture picture = pictureOf(texels, hole, box, atlas);
   if (holeRadius(picture) < least_radius)
     return false;
-  const std::vector<Eigen::Vector3f> base = smoothed(picture);
+  const std::vector<Eigen::Vector4f> base = smoothed(picture);
   for (std::size_t i = 0; i < base.size(); ++i)
     picture.color[i] =
-        picture.state[i] == HolePicture::known ? Eigen::Vector3f(picture.color[i] - base[i]) : Eigen::Vector3f::Zero();
+        picture.state[i] == HolePicture::known ? Eigen::Vector4f(picture.color[i] - base[i]) : Eigen::Vector4f::Zero();
   if (!synthesizeHole(picture, hole.chart * 1000003 + hole.texels.front()))
     return false;
   for (const int at : hole.texels) {

@@ -35,12 +35,12 @@ HolePicture halved(const HolePicture& in)
   HolePicture out;
   out.width = in.width / 2;
   out.height = in.height / 2;
-  out.color.resize(cellCount(out.width, out.height), Eigen::Vector3f::Zero());
+  out.color.resize(cellCount(out.width, out.height), Eigen::Vector4f::Zero());
   out.state.resize(out.color.size(), HolePicture::outside);
   for (int y = 0; y < out.height; ++y)
     for (int x = 0; x < out.width; ++x) {
       int known = 0, hole = 0;
-      Eigen::Vector3f sum = Eigen::Vector3f::Zero();
+      Eigen::Vector4f sum = Eigen::Vector4f::Zero();
       for (int k = 0; k < 4; ++k) {
         const std::size_t i = in.at(2 * x + k % 2, 2 * y + k / 2);
         known += in.state[i] == HolePicture::known;
@@ -142,23 +142,22 @@ private:
   /// Mean squared difference over what of the target's window is in the picture; given up beyond `most`.
   float difference(const Pixel& target, const Pixel& source, float most) const
   {
-    float sum = 0;
+    Eigen::Array4f sum = Eigen::Array4f::Zero();
     int count = 0;
-    for (int j = -reach; j <= reach; ++j) {
-      const int y = target.y() + j;
-      if (y < 0 || y >= picture_.height)
-        continue;
-      for (int i = std::max(-reach, -target.x()); i <= std::min(reach, picture_.width - 1 - target.x()); ++i) {
-        const std::size_t at = picture_.at(target.x() + i, y);
-        if (picture_.state[at] == HolePicture::outside)
-          continue;
-        sum += (picture_.color[at] - picture_.color[picture_.at(source.x() + i, source.y() + j)]).squaredNorm();
-        ++count;
-      }
-      if (sum > most * (2 * reach + 1) * (2 * reach + 1))
+    const int left = std::max(-reach, -target.x()), right = std::min(reach, picture_.width - 1 - target.x());
+    for (int j = std::max(-reach, -target.y()); j <= std::min(reach, picture_.height - 1 - target.y()); ++j) {
+      const std::size_t first = picture_.at(target.x(), target.y() + j);
+      const Eigen::Vector4f *own = &picture_.color[first],
+                            *other = &picture_.color[picture_.at(source.x(), source.y() + j)];
+      for (int i = left; i <= right; ++i)
+        if (picture_.state[first + i] != HolePicture::outside) {
+          sum += (own[i] - other[i]).array().square();
+          ++count;
+        }
+      if (sum.sum() > most * (2 * reach + 1) * (2 * reach + 1))
         return std::numeric_limits<float>::infinity();
     }
-    return count > 0 ? sum / count : 0.f;
+    return count > 0 ? sum.sum() / count : 0.f;
   }
 
   void attempt(std::size_t t, const Pixel& source)
@@ -203,18 +202,22 @@ private:
       std::vector<float> errors = error_;
       scale = std::max(scale, rankedValue(errors, errors.size() * 3 / 4));
     }
-    std::vector<Eigen::Vector3f> result(targets_.size());
+    std::vector<float> weights;
+    for (const float error : error_)
+      weights.push_back(std::exp(-error / (2 * scale)) + 1e-6f);
+    std::vector<Eigen::Vector4f> result(targets_.size());
     for (std::size_t t = 0; t < targets_.size(); ++t)
-      result[t] = own_only ? picture_.color[picture_.at(match_[t].x(), match_[t].y())] : meanAt(targets_[t], scale);
+      result[t] = own_only ? picture_.color[picture_.at(match_[t].x(), match_[t].y())] : meanAt(targets_[t], weights);
     for (std::size_t t = 0; t < targets_.size(); ++t)
       if (const std::size_t at = picture_.at(targets_[t].x(), targets_[t].y()); picture_.state[at] == HolePicture::hole)
         picture_.color[at] = result[t];
   }
 
-  Eigen::Vector3f meanAt(const Pixel& p, float scale) const
+  /// @param weights of the targets' windows
+  Eigen::Vector4f meanAt(const Pixel& p, const std::vector<float>& weights) const
   {
-    Eigen::Vector3f sum = Eigen::Vector3f::Zero();
-    float weights = 0;
+    Eigen::Vector4f sum = Eigen::Vector4f::Zero();
+    float total = 0;
     for (int j = -reach; j <= reach; ++j)
       for (int i = -reach; i <= reach; ++i) {
         const int x = p.x() - i, y = p.y() - j;
@@ -223,11 +226,10 @@ private:
         const int slot = slot_[picture_.at(x, y)];
         if (slot < 0)
           continue;
-        const float weight = std::exp(-error_[slot] / (2 * scale)) + 1e-6f;
-        sum += weight * picture_.color[picture_.at(match_[slot].x() + i, match_[slot].y() + j)];
-        weights += weight;
+        sum += weights[slot] * picture_.color[picture_.at(match_[slot].x() + i, match_[slot].y() + j)];
+        total += weights[slot];
       }
-    return sum / weights;
+    return sum / total;
   }
 
   HolePicture& picture_;

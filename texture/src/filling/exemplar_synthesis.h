@@ -10,7 +10,7 @@ namespace fresco::texture {
 struct HolePicture {
   enum : std::uint8_t { outside = 0, known = 1, hole = 2 };
   int width = 0, height = 0;
-  std::vector<Eigen::Vector3f> color; ///< rows from the top
+  std::vector<Eigen::Vector4f> color; ///< rows from the top; the last of the four is 0: processors add four at once
   std::vector<std::uint8_t> state;    ///< what each pixel is; pixels outside are not looked at
 
   std::size_t at(int x, int y) const { return cellAt(x, y, width); }
