@@ -53,11 +53,13 @@ def join(lines: list[str]) -> str:
     """Paragraphs of a comment; those that are indented keep their lines."""
     text = ""
     for line in lines:
-        if not line.strip() or line.startswith("  ") and not line.lstrip().startswith("@"):
-            text += "\n" + line
+        if not line.strip():
+            text += "\n\n"
+        elif line.startswith("  ") and not line.lstrip().startswith("@"):
+            text += ("" if text.endswith("\n") else "\n") + line + "\n"
         else:
             text += ("" if not text or text.endswith("\n") else " ") + line.strip()
-    return text.strip("\n")
+    return re.sub(r"\n{3,}", "\n\n", text).strip("\n")
 
 
 def document(lines: list[str]) -> str:
@@ -144,9 +146,11 @@ class Reader:
                 for field in self.names_of(code):
                     struct.fields.append(Field(field, in_python(join(text))))
                 before = []
-            elif depth == 0 and re.match(r"  [\w:<>, ]+$", code):  # a declaration that goes on in the next line
+            elif depth == 0 and re.match(r"  [\w:<>, ]+=?$", code):  # a declaration that goes on in the next line
                 self.lines[at + 1] = code + " " + self.lines[at + 1].strip()
             else:
+                if depth == 0 and code.strip() and not re.search(r"[(){}]|^  (using|static|friend|explicit)\b", code):
+                    sys.exit(f"generate.py: cannot read a field of {name}: {line}")
                 depth += code.count("{") - code.count("}")
                 before = []
             at += 1

@@ -54,7 +54,12 @@ class Record:
         object.__setattr__(self, name, check(value))
 
     def __repr__(self) -> str:
-        return f"{type(self).__name__}({', '.join(f'{name}={_short(getattr(self, name))}' for name in self._checks)})"
+        shown = {name: getattr(self, name) for name in self._checks}
+        return f"{type(self).__name__}({', '.join(f'{name}={_short(shown[name])}' for name in shown if _told(shown[name]))})"
+
+
+def _told(value: Any) -> bool:
+    return getattr(value, "size", 1) > 0
 
 
 def _short(value: Any) -> str:

@@ -8,6 +8,8 @@ std::string typeName(py::handle value) { return py::str(py::type::of(value).attr
 /// numpy.asarray(), which copies no array and nothing that shows itself as one.
 py::array asArray(py::handle value, const std::string& name)
 {
+  if (py::isinstance<py::array>(value)) // also of a class of its own, such as numpy.memmap
+    return py::reinterpret_borrow<py::array>(value);
   const auto array = py::array::ensure(py::reinterpret_borrow<py::object>(value));
   if (!array) {
     PyErr_Clear();

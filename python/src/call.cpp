@@ -160,21 +160,27 @@ std::mutex& oneAtATime()
   return mutex;
 }
 
+namespace {
+/// An argument whose attribute `rows` must have some.
+template <typename T>
+Lent<T> lendFilled(const Call& call, const char* argument, const char* rows, void (*validate)(const T&))
+{
+  const py::object value = call[argument];
+  Convert<T>::check(value, argument);
+  if (py::len(value.attr(rows)) == 0)
+    throw py::value_error(concat(argument, ": no ", rows));
+  validate(*call.lend<T>(argument));
+  return call.lend<T>(argument);
+}
+} // namespace
+
 Lent<PointSet> lendPoints(const Call& call, const char* argument)
 {
-  const py::object set = call[argument];
-  Convert<PointSet>::check(set, argument);
-  if (py::len(set.attr("points")) == 0)
-    throw py::value_error(std::string(argument) + ": no points");
-  return call.lend<PointSet>(argument);
+  return lendFilled<PointSet>(call, argument, "points", validatePointSet);
 }
 
 Lent<TriangleMesh> lendMesh(const Call& call, const char* argument)
 {
-  const py::object mesh = call[argument];
-  Convert<TriangleMesh>::check(mesh, argument);
-  if (py::len(mesh.attr("vertices")) == 0)
-    throw py::value_error(std::string(argument) + ": no vertices");
-  return call.lend<TriangleMesh>(argument);
+  return lendFilled<TriangleMesh>(call, argument, "vertices", validateMesh);
 }
 } // namespace fresco::python

@@ -165,7 +165,8 @@ inline void addFunction(const py::module_& module, const Function& function, con
 /// Held while something works that the process has only one of: the outputs of a model, VTK's messages.
 std::mutex& oneAtATime();
 
-/// Points, or a mesh, that must not be empty. @throws py::value_error that names the argument
+/// Points, or a mesh, that must not be empty, with attributes that fit and faces in range.
+/// @throws py::value_error that names the argument, std::invalid_argument
 Lent<PointSet> lendPoints(const Call& call, const char* argument = "points");
 Lent<TriangleMesh> lendMesh(const Call& call, const char* argument = "mesh");
 } // namespace fresco::python

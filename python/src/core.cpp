@@ -31,7 +31,7 @@ void addCore(const py::module_& module)
   addFunction(module,
               {"transform_points",
                "transformPoints",
-               {{"points", "PointSet"}, {"T_target_source", "Doubles"}},
+               {{"points", "PointSet"}, {"T_target_source", "ArrayLike"}},
                "PointSet",
                "",
                false},

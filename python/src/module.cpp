@@ -34,12 +34,12 @@ void translate(std::exception_ptr thrown)
 /// The stubs of the module, _fresco.pyi.
 std::string stubText()
 {
-  return "# Made from the module: python3 -c 'import fresco; print(fresco._fresco._stubs())'\n"
+  return "# Made from the module by write_stubs.py.\n"
          "import os\n"
          "from collections.abc import Callable, Sequence\n"
          "from typing import Any, Optional, Union\n\n"
          "import numpy as np\n"
-         "from numpy.typing import NDArray\n\n"
+         "from numpy.typing import ArrayLike, NDArray\n\n"
          "from ._base import Record\n\n"
          "Floats = NDArray[np.float32]\nDoubles = NDArray[np.float64]\nInts = NDArray[np.int32]\n"
          "Indices = NDArray[np.int64]\nBytes = NDArray[np.uint8]\n"

@@ -13,7 +13,7 @@ void addRegistration(const py::module_& module)
       module,
       {"register_scans",
        "registerScans",
-       {{"scans", "Sequence[PointSet]"}, {"start", "Sequence[Optional[Doubles]]", "()"}},
+       {{"scans", "Sequence[PointSet]"}, {"start", "Sequence[Optional[ArrayLike]]", "()"}},
        "ScanRegistrationResult",
        "Poses are (4, 4) float64, None for a scan without one."},
       [](const Call& call) {
@@ -37,7 +37,7 @@ void addRegistration(const py::module_& module)
   addFunction(module,
               {"merge_scans",
                "mergeScans",
-               {{"scans", "Sequence[PointSet]"}, {"poses", "Sequence[Optional[Doubles]]"}, {"threads", "int", "0"}},
+               {{"scans", "Sequence[PointSet]"}, {"poses", "Sequence[Optional[ArrayLike]]"}, {"threads", "int", "0"}},
                "PointSet",
                "",
                false},

@@ -87,9 +87,9 @@ void addRendering(const py::module_& module)
   addRecord<Viewpoint>(module);
   const std::vector<Argument> arguments{{"model", "Union[TriangleMesh, TexturedMesh, PointSet]"},
                                         {"view", "Union[str, Viewpoint]", "'corner'"},
-                                        {"eye", "Optional[Doubles]", "None"},
-                                        {"look", "Optional[Doubles]", "None"},
-                                        {"up", "Optional[Doubles]", "None"},
+                                        {"eye", "Optional[ArrayLike]", "None"},
+                                        {"look", "Optional[ArrayLike]", "None"},
+                                        {"up", "Optional[ArrayLike]", "None"},
                                         {"angle", "Optional[float]", "None"},
                                         {"reference", "Optional[TriangleMesh]", "None"},
                                         {"room", "Optional[TriangleMesh]", "None"}};

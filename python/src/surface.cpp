@@ -89,7 +89,7 @@ void addFusion(const py::module_& module)
       module,
       {"fuse_depth_images",
        "fuseDepthImages",
-       {{"camera", "CameraModel"}, {"T_world_camera", "Sequence[Doubles]"}, {"depths", "Sequence[Floats]"}},
+       {{"camera", "CameraModel"}, {"T_world_camera", "Sequence[ArrayLike]"}, {"depths", "Sequence[Floats]"}},
        "DepthFusionResult",
        "`depths` are float32, (height, width) of the camera, along its axis in the unit of the poses; 0 or NaN = "
        "none."},
