@@ -1,5 +1,5 @@
-# Debian packages: cpack -G DEB in the build folder gives fresco (libraries, tools, manual) and libfresco-dev (headers,
-# CMake package). Configure with -DCMAKE_INSTALL_PREFIX=/usr, so that libraries go to Debian's folder for them.
+# Debian packages: cpack -G DEB in the build folder gives fresco (libraries, tools, manual), libfresco-dev (headers,
+# CMake package) and python3-fresco. Configure with -DCMAKE_INSTALL_PREFIX=/usr, so that libraries go to Debian's folder for them.
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME fresco)
 set(CPACK_PACKAGE_VENDOR "The fresco authors")
@@ -29,4 +29,16 @@ set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
     "fresco (= ${PROJECT_VERSION}-1), libpcl-dev (>= 1.13), libeigen3-dev (>= 3.4)")
 set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION "Headers and CMake package of fresco: PCL-compatible classes.")
+if(TARGET fresco_python) # what the module links, fresco links, too
+  list(APPEND CPACK_COMPONENTS_ALL python)
+  execute_process(COMMAND "${FRESCO_PYTHON}" -c "import sys; print('%d.%d' % sys.version_info[:2])"
+                  OUTPUT_VARIABLE python_version OUTPUT_STRIP_TRAILING_WHITESPACE)
+  string(REGEX REPLACE "^.*[.]" "" next_minor "${python_version}")
+  math(EXPR next_minor "${next_minor} + 1")
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-fresco)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "fresco (= ${PROJECT_VERSION}-1), python3 (>= ${python_version}), \
+python3 (<< 3.${next_minor}), python3-numpy")
+  set(CPACK_COMPONENT_PYTHON_DESCRIPTION "Python module of fresco: every stage from numpy arrays.")
+endif()
 include(CPack)

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "rendering/indoor_view.h"
-#include "rendering/picture.h"
+#include "rendering/requested_view.h"
 #include "support/scan_option.h"
 #include "support/tool.h"
 #include <Eigen/Geometry>
@@ -22,10 +21,9 @@ using namespace fresco;
 using namespace fresco::rendering;
 
 struct Request {
-  std::string model, output, reference, room, view = "corner";
+  std::string model, output, reference, room;
   std::vector<Shading> shadings{Shading::Gouraud};
-  std::optional<Eigen::Vector3d> eye, look, up;
-  std::optional<double> angle;
+  ViewRequest from;
   PictureOptions picture;
   CommonOptions common;
   ScanPath scan; ///< MODEL as a file of points
@@ -74,7 +72,7 @@ void setBackground(PictureOptions& picture, const std::vector<std::string>& word
 void declareView(Args& args, Request& request)
 {
   args.option(
-      "view", request.view,
+      "view", request.from.view,
       "where to look from: " + joined(viewNames()) +
           " (the whole model is in the picture), inside (a room, at eye height), above (a room, its ceiling and "
           "near walls left out)");
@@ -84,13 +82,13 @@ void declareView(Args& args, Request& request)
   const auto point = [&](const std::string& name, std::optional<Eigen::Vector3d>& value, const std::string& help) {
     args.values(name, "X Y Z", help, [&value, name](const auto& words) { value = vector(name, words); });
   };
-  point("eye", request.eye, "position of the eye, unit of the model; replaces -view");
-  point("look", request.look, "point in the middle of the picture, with -eye (default: middle of the model)");
-  point("up", request.up, "upright direction (default: 0 0 1; with -view inside and above: found from the model)");
+  point("eye", request.from.eye, "position of the eye, unit of the model; replaces -view");
+  point("look", request.from.look, "point in the middle of the picture, with -eye (default: middle of the model)");
+  point("up", request.from.up, "upright direction (default: 0 0 1; with -view inside and above: found from the model)");
   args.values("angle", "DEG", "vertical opening angle, 1..170 degrees (default: 30; with -view inside: 62)",
               [&](const auto& words) {
-                request.angle = Args::number("angle", words[0]);
-                if (!(*request.angle >= 1 && *request.angle <= 170))
+                request.from.angle = Args::number("angle", words[0]);
+                if (!(*request.from.angle >= 1 && *request.from.angle <= 170))
                   throw UsageError("option -angle: " + words[0] + " is out of range: 1..170");
               });
   args.flag("cull", request.picture.cull_back_faces,
@@ -120,16 +118,16 @@ void declareLook(Args& args, Request& request)
 
 void checkRequest(const Request& request, const Args& args)
 {
-  if (args.given("view") && request.eye)
+  if (args.given("view") && request.from.eye)
     throw UsageError("-view and -eye exclude each other");
-  if (request.look && !request.eye)
+  if (request.from.look && !request.from.eye)
     throw UsageError("-look needs -eye");
   const auto& names = viewNames();
-  const bool indoor = request.view == "inside" || request.view == "above";
+  const bool indoor = request.from.view == "inside" || request.from.view == "above";
   if (!indoor && !request.room.empty())
     throw UsageError("-room needs -view inside or above");
-  if (!indoor && std::find(names.begin(), names.end(), request.view) == names.end())
-    throw UsageError("-view: '" + request.view + "' is none of " + joined(names) + ", inside, above");
+  if (!indoor && std::find(names.begin(), names.end(), request.from.view) == names.end())
+    throw UsageError("-view: '" + request.from.view + "' is none of " + joined(names) + ", inside, above");
   const bool error = std::count(request.shadings.begin(), request.shadings.end(), Shading::Error) > 0;
   if (error == request.reference.empty())
     throw UsageError(error ? "error shading needs -reference" : "-reference is for error shading only");
@@ -185,63 +183,12 @@ const TriangleMesh* meshOf(const Model& model)
   return std::get_if<TriangleMesh>(&model);
 }
 
-Eigen::Vector3d middle(const Model& model)
-{
-  const auto* set = std::get_if<PointSet>(&model);
-  const Points& points = set ? set->points : meshOf(model)->vertices;
-  Eigen::AlignedBox3d box;
-  for (const Index i : finiteColumns(points))
-    box.extend(points.col(i).cast<double>());
-  require(!box.isEmpty(), "the model has no finite point");
-  return (set ? set->origin : meshOf(model)->origin) + box.center();
-}
-
-Viewpoint wholeModelView(const Request& request, const Model& model)
-{
-  Framing framing;
-  framing.up = request.up.value_or(framing.up);
-  framing.direction = viewDirection(request.view, framing.up);
-  framing.angle = request.angle.value_or(framing.angle);
-  framing.aspect = static_cast<double>(request.picture.width) / request.picture.height;
-  const auto* set = std::get_if<PointSet>(&model);
-  return set ? frameView(*set, framing) : frameView(*meshOf(model), framing);
-}
-
-Viewpoint indoorView(const Request& request, const Model& model)
+Viewpoint chooseView(const Request& request, const Model& model, const PictureOptions& options)
 {
   std::optional<TriangleMesh> room;
   if (!request.room.empty())
     room = readMesh(request.room);
-  const TriangleMesh* mesh = room ? &*room : meshOf(model);
-  require(mesh, "-view ", request.view, " needs a mesh with faces; -room names one");
-  IndoorOptions options;
-  options.up = request.up;
-  options.threads = request.common.threads;
-  options.aspect = static_cast<double>(request.picture.width) / request.picture.height;
-  Viewpoint view;
-  if (request.view == "above") {
-    view = aboveView(*mesh, options);
-  } else {
-    const std::optional<Viewpoint> inside = insideView(*mesh, options);
-    require(inside.has_value(), "no free space found inside the model: give -eye and -look");
-    view = *inside;
-  }
-  view.angle = request.angle.value_or(view.angle);
-  return view;
-}
-
-Viewpoint chooseView(const Request& request, const Model& model)
-{
-  if (request.view == "inside" || request.view == "above")
-    return indoorView(request, model);
-  if (!request.eye)
-    return wholeModelView(request, model);
-  Viewpoint view;
-  view.eye = *request.eye;
-  view.look = request.look ? *request.look : middle(model);
-  view.up = request.up.value_or(view.up);
-  view.angle = request.angle.value_or(view.angle);
-  return view;
+  return requestedView(request.from, {meshOf(model), std::get_if<PointSet>(&model)}, room ? &*room : nullptr, options);
 }
 
 Image draw(const Request& request, const Model& model, const PictureOptions& options)
@@ -278,8 +225,8 @@ void run(int argc, char** argv)
   std::vector<Image> pictures;
   try {
     PictureOptions options = request.picture;
-    options.cull_back_faces |= request.view == "above";
-    options.view = chooseView(request, model);
+    options.cull_back_faces |= request.from.view == "above";
+    options.view = chooseView(request, model, options);
     for (const Shading shading : request.shadings) {
       report(progress, "draw " + shadingNames()[static_cast<std::size_t>(shading)],
              0.2 + 0.7 * pictures.size() / request.shadings.size());

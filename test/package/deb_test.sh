@@ -47,10 +47,14 @@ fresco_reconstruct oriented.pcd mesh.ply -depth 6 -quiet
 fresco_compare mesh.ply mesh.ply >compare.txt
 fresco_snapshot mesh.ply mesh.png -size 320x240 -quiet'
 [ -s "$root/job/mesh.png" ]
+inside sh -c 'apt-get -q -y install --no-install-recommends /packages/python3-fresco_*.deb' >>"$root/job/install.log" 2>&1 ||
+  { tail -20 "$root/job/install.log" >&2; exit 1; }
+inside python3 -c 'import fresco; fresco.write_mesh("/job/python.ply", fresco.reconstruct(fresco.read_points("/job/oriented.pcd"), depth=6).mesh)'
+cmp "$root/job/mesh.ply" "$root/job/python.ply"
 
 inside sh -c 'apt-get -q -y install --no-install-recommends /packages/libfresco-dev_*.deb' >>"$root/job/install.log" 2>&1 ||
   { tail -20 "$root/job/install.log" >&2; exit 1; }
 [ -f "$root/usr/include/fresco/core/mesh.h" ]
-inside apt-get -q -y purge fresco libfresco-dev >>"$root/job/install.log" 2>&1
+inside apt-get -q -y purge fresco libfresco-dev python3-fresco >>"$root/job/install.log" 2>&1
 [ -z "$(list)" ] || { echo "left behind: $(list)" >&2; exit 1; }
 echo "packages: installed, ran $(cd "$root/job" && ls fresco_*.txt | wc -l) tools, removed"

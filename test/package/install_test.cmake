@@ -1,5 +1,5 @@
 # Installs the build tree, builds examples/ against the installed package alone and runs them.
-#   cmake -D BINARY_DIR=... -D SOURCE_DIR=... -D SCRATCH=... -D SOVERSION=0.1 [-D SANITIZE=...] -P install_test.cmake
+#   cmake -D BINARY_DIR=... -D SOURCE_DIR=... -D SCRATCH=... -D SOVERSION=0.1 [-D SANITIZE=...] [-D PYTHON=...] -P install_test.cmake
 function(run)
   execute_process(COMMAND ${ARGN} RESULT_VARIABLE status)
   if(NOT status EQUAL 0)
@@ -32,6 +32,16 @@ run("${CMAKE_COMMAND}" --build "${build}" --parallel 2)
 run("${CMAKE_COMMAND}" -E chdir "${build}" "${build}/pcl_pipeline" "${SCRATCH}/mesh.ply")
 expect_file("${SCRATCH}/mesh.ply")
 run("${prefix}/bin/fresco_compare" "${SCRATCH}/mesh.ply" "${SCRATCH}/mesh.ply") # installed tools find their libraries
+
+# The Python module finds its libraries in the installed tree.
+set(python_packages "${prefix}/lib/python3/dist-packages")
+if(PYTHON)
+  run("${CMAKE_COMMAND}" -E env "PYTHONPATH=${python_packages}" PYTHONDONTWRITEBYTECODE=1 "${PYTHON}" -c
+      "import sys, fresco; assert fresco.__file__.startswith(sys.argv[1]); fresco.snapshot(fresco.read_mesh(sys.argv[2]))"
+      "${python_packages}" "${SCRATCH}/mesh.ply")
+  expect_file("${python_packages}/fresco/_fresco.pyi")
+  expect_file("${python_packages}/fresco/py.typed")
+endif()
 
 # The other examples on a room of the virtual scanner.
 set(room "${SCRATCH}/room")
@@ -72,7 +82,7 @@ endforeach()
 # No program or library searches the current folder: what an empty entry of its search path means.
 find_program(readelf readelf REQUIRED)
 file(GLOB binaries "${BINARY_DIR}/bin/*" "${BINARY_DIR}/lib/*.so" "${BINARY_DIR}/lib/*/*.so" "${prefix}/bin/*"
-     "${prefix}/lib/*.so" "${prefix}/lib/*/*.so")
+     "${prefix}/lib/*.so" "${prefix}/lib/*/*.so" "${python_packages}/fresco/*.so")
 list(FILTER binaries EXCLUDE REGEX "\\.(py|sh|txt)$")
 file(STRINGS "${BINARY_DIR}/CMakeCache.txt" is_release REGEX "^CMAKE_BUILD_TYPE:.*=Release$")
 foreach(binary IN LISTS binaries)

@@ -17,6 +17,7 @@
 #include <set>
 #include <sys/file.h>
 #include <sys/stat.h>
+#include <thread>
 #include <unistd.h>
 namespace fresco {
 namespace {
@@ -112,7 +113,7 @@ struct Unfinished {
   std::timed_mutex mutex;
   std::set<std::string> paths;      ///< temporary files that are neither renamed nor removed yet
   std::vector<std::string> folders; ///< made by makeFolder(), parents first
-  bool grouped = false;             ///< an OutputGroup exists
+  std::thread::id grouped;          ///< the thread that has an OutputGroup; none: there is none
   std::vector<Stored> stored;       ///< of that group
 };
 
@@ -256,7 +257,7 @@ void OutputFile::commit()
     failToWrite(path_);
   {
     const Lock lock(unfinished().mutex);
-    if (unfinished().grouped) {
+    if (unfinished().grouped == std::this_thread::get_id()) {
       unfinished().stored.push_back({temporary_, path_, descriptor_});
       descriptor_ = -1;
       return;
@@ -270,8 +271,8 @@ void OutputFile::commit()
 OutputGroup::OutputGroup()
 {
   const Lock lock(unfinished().mutex);
-  require(!unfinished().grouped, "a group of outputs within another");
-  unfinished().grouped = true;
+  require(unfinished().grouped == std::thread::id(), "a group of outputs within another");
+  unfinished().grouped = std::this_thread::get_id();
 }
 
 OutputGroup::~OutputGroup()
@@ -283,7 +284,7 @@ OutputGroup::~OutputGroup()
     ::close(file.descriptor);
   }
   unfinished().stored.clear();
-  unfinished().grouped = false;
+  unfinished().grouped = {};
 }
 
 void OutputGroup::requireNoInputs() const

@@ -37,9 +37,9 @@ private:
   int descriptor_ = -1;
 };
 
-/// Outputs that belong together: while one exists, commit() of an OutputFile stores its file, and commit() of the
-/// group gives all of them their names at once. Destroyed without commit(): none of them remains. One at a time, and
-/// for one thread.
+/// Outputs that belong together: while one exists, commit() of an OutputFile of its thread stores the file, and commit()
+/// of the group gives all of them their names at once. Destroyed without commit(): none of them remains. One at a time;
+/// the files of other threads do not belong to it.
 class FRESCO_EXPORT OutputGroup {
 public:
   OutputGroup();
