@@ -143,7 +143,7 @@ Figures makePictures(const Job& job, const Progress& progress)
   const IndoorOptions indoor{uprightOf(input), static_cast<double>(options.width) / options.height, options.threads};
   const Viewpoint above = aboveView(model.mesh, indoor);
   const Viewpoint inside = insideView(model.mesh, indoor).value_or(above);
-  std::vector<Viewpoint> places = levelViews(input, up);
+  std::vector<Viewpoint> places = levelViews(job, up);
   if (places.empty())
     places = viewsFromScans(job, model.mesh, up);
   places = variedViews(places, 3);
