@@ -44,7 +44,7 @@ void run(int argc, char** argv)
               "least share of the sparse points on the surface and in sight of their cameras, above 0 and at most 1");
   args.option(
       "max_alias", options.max_alias,
-      "most support of a second place, of that of the best: above, the place is ambiguous, above 0 and at most 1");
+      "most that a second place may reach of the score of the best, else it is ambiguous; above 0 and at most 1");
   common.declare(args);
   args.note("Example: fresco_align room/cameras mesh.ply aligned");
   const auto files = args.parse(argc, argv, 3);

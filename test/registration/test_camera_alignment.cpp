@@ -37,7 +37,7 @@ PointSet scanned(const test::Boxes& boxes, bool colored)
 {
   PointSet all;
   for (const Vector3d& station : {Vector3d(1, 1.2, 1.7), Vector3d(3.6, 2.6, 1.6), Vector3d(2.2, 3.2, 1.8)}) {
-    PointSet scan = test::scanBoxes(boxes, Eigen::Isometry3d(Eigen::Translation3d(station)), 15000, 0.002, 5);
+    PointSet scan = test::scanBoxes(boxes, Eigen::Isometry3d(Eigen::Translation3d(station)), 8000, 0.002, 5);
     scan.points.colwise() += station.cast<float>();
     scan.viewpoints.resize(3, 0);
     all = all.size() == 0 ? scan : mergePoints(all, scan);
@@ -127,7 +127,13 @@ TEST(CameraAlignment, AnyScaleIsFoundWithHalfOfThePointsWrong)
     const CameraAlignmentResult found = alignCameras(photographs.set, photographs.points, scans);
     EXPECT_FALSE(found.already_aligned);
     expectFound(found, T);
-    EXPECT_NEAR(found.support, 0.5, 0.1);
+    EXPECT_NEAR(found.support, 0.45, 0.1); // a few right ones lie at edges and on surface that no scan saw
+    if (scale < 1)
+      continue;
+    CameraAlignmentOptions options;
+    options.threads = 1; // does not change the result
+    const auto again = alignCameras(photographs.set, photographs.points, scans, options);
+    EXPECT_EQ(again.T_scans_cameras.matrix(), found.T_scans_cameras.matrix());
   }
 }
 
@@ -156,7 +162,8 @@ TEST(CameraAlignment, AnotherRoomAndWrongPointsAreRefused)
   test::addFurniture(other, {0.3, 0.3, 0}, {2.7, 7.7, 0}, 10, 11);
   Photographed photographs = photographed(furnishedRoom(), 5, 0.2, 10);
   transformCameras(ownFrame(3, 5), photographs.set, photographs.points);
-  EXPECT_NE(refusal(photographs, scanned(other, false)), "");
+  const PointSet cameras_elsewhere = scanned(other, false);
+  EXPECT_NE(refusal(photographs, cameras_elsewhere), "");
   photographs = photographed(furnishedRoom(), 5, 1.0, 10);
   transformCameras(ownFrame(3, 6), photographs.set, photographs.points);
   EXPECT_NE(refusal(photographs, scanned(furnishedRoom(), false)).find("no place fits"), std::string::npos);
@@ -187,16 +194,4 @@ TEST(CameraAlignment, BadInputIsNamed)
   EXPECT_THROW(alignCameras(photographs.set, photographs.points, scans), std::invalid_argument);
 }
 
-TEST(CameraAlignment, ThreadsDoNotChangeTheResult)
-{
-  const PointSet scans = scanned(furnishedRoom(), false);
-  Photographed photographs = photographed(furnishedRoom(), 5, 0.3, 12);
-  transformCameras(ownFrame(1, 8), photographs.set, photographs.points);
-  CameraAlignmentOptions options;
-  options.threads = 1;
-  const auto one = alignCameras(photographs.set, photographs.points, scans, options);
-  options.threads = 3;
-  const auto three = alignCameras(photographs.set, photographs.points, scans, options);
-  EXPECT_EQ(one.T_scans_cameras.matrix(), three.T_scans_cameras.matrix());
-}
 } // namespace

@@ -23,7 +23,8 @@ struct Shot {
 
 std::vector<Shot> shots(const ModelInput& input)
 {
-  const std::string what = input.rgbd || !input.cameras.views.empty() || !input.unplaced.empty() ? "photograph" : "scan",
+  const std::string what =
+                        input.rgbd || !input.cameras.views.empty() || !input.unplaced.empty() ? "photograph" : "scan",
                     taken = what + " was taken";
   return {{"inside_texture", "From inside, textured", Shading::Texture, From::inside},
           {what + "_1_texture", "From where a " + taken + ", textured", Shading::Texture, From::place, 0},
