@@ -73,7 +73,7 @@ void StructureFromMotion::findFeatures(const Progress& progress) const
   writeFile(folder_ + "/photographs.txt", list);
   run({"feature_extractor", "--image_path", images_, "--image_list_path", folder_ + "/photographs.txt",
        "--SiftExtraction.use_gpu", "0", "--SiftExtraction.num_threads", std::to_string(threads_)},
-      "features", progress);
+      "photographs", progress);
 }
 
 void StructureFromMotion::matchFeatures(const Progress& progress) const
@@ -83,7 +83,7 @@ void StructureFromMotion::matchFeatures(const Progress& progress) const
   if (names_.size() > most_exhaustive)
     words = {"sequential_matcher", "--SequentialMatching.overlap", "20"};
   words.insert(words.end(), {"--SiftMatching.use_gpu", "0", "--SiftMatching.num_threads", std::to_string(threads_)});
-  run(words, "matches", progress);
+  run(words, "pairs of photographs", progress);
 }
 
 std::vector<std::string> StructureFromMotion::findCameras(const Progress& progress) const
@@ -93,7 +93,7 @@ std::vector<std::string> StructureFromMotion::findCameras(const Progress& progre
   fs::remove_all(model());
   makeFolder(found);
   run({"mapper", "--image_path", images_, "--output_path", found, "--Mapper.num_threads", std::to_string(threads_)},
-      "cameras", progress);
+      "photographs placed", progress);
   std::vector<std::pair<std::size_t, std::string>> models;
   for (const auto& entry : fs::directory_iterator(found))
     if (entry.is_directory())
