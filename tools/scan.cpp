@@ -35,6 +35,14 @@ void declare(Args& args, DatasetOptions& options, int& seed)
   args.option("intruder", options.intruder, "somebody stands in every Nth photograph, >= 0; 0 = in none");
   args.option("pose_noise", options.pose_noise, "deviation of the written cameras' positions, metres, 0..1");
   args.option("turn_noise", options.turn_noise, "deviation of the written cameras' directions, degrees, 0..10");
+  args.option("photographed", options.photographed, "share of the scene along x that photographs show, 0.05..1");
+  args.option("sparse", options.sparse, "points in cameras/points3D.txt as structure from motion finds them, >= 0");
+  args.option("sparse_noise", options.sparse_noise, "deviation of these from the surface, metres, 0..1");
+  args.option("sparse_outliers", options.sparse_outliers, "share of these that is wrong, 0..1");
+  args.option(
+      "own_frame", options.own_frame,
+      "cameras/ gets a frame and a scale (0.01..100) of its own, made by this seed; own_frame.txt tells which; 0 "
+      "= that of poses.txt");
   args.option("quality", options.jpeg_quality, "of the JPEG files, 1..100");
   args.flag("truth_images", options.truth_images, "also photographs without exposure differences and noise (PNG)");
   args.option("edge", options.max_edge, "longest side of a face of the rooms' truth, metres, 0.02..10");
@@ -42,7 +50,7 @@ void declare(Args& args, DatasetOptions& options, int& seed)
             readableExtensions(FileKind::mesh) +
             ").\n"
             "Writes scans/scan_NN.pcd, panoramas/scan_NN.jpg if asked for, images/view_NNN.jpg, cameras/ (COLMAP "
-            "text), truth.ply, exposures.txt, poses.txt, with -e57 survey.e57.\n"
+            "text), own_frame.txt, truth.ply, exposures.txt, poses.txt, with -e57 survey.e57.\n"
             "Example: fresco_scan conference_room room -stations 6 -noise 0.003 -images 1280x960");
 }
 } // namespace

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "photographs/structure_from_motion.h"
 #include "report/report.h"
 #include "stage_log.h"
 #include "stages/stages.h"
@@ -19,6 +20,8 @@ void validate(const ModelInput& input, const ModelOptions& options)
           " pixels are too small");
   if (options.use_poses && input.poses.empty())
     throw std::runtime_error(input.folder + "/poses.txt: no such file, but its poses are asked for");
+  if (!input.unplaced.empty())
+    requireStructureFromMotion(input.images);
   require(std::abs(options.panorama_direction) <= 360, "model: a panorama's direction of ", options.panorama_direction,
           " degrees");
 }
@@ -30,18 +33,27 @@ std::vector<Stage> stagesOf(const Job& job)
   const auto step = [&job](Figures (*make)(const Job&, const Progress&)) {
     return [&job, make](const Progress& progress) { return make(job, progress); };
   };
-  return {
-      {"points",
+  std::vector<Stage> stages;
+  const StructureFromMotion motion(input.images, input.unplaced, files.photographs, options.threads);
+  if (!input.unplaced.empty())
+    stages = {{"features", "", {motion.database()}, step(findFeatures)},
+              {"matches", "", {motion.database()}, step(matchFeatures)},
+              {"cameras", "", {motion.model() + "/points3D.txt"}, step(findCameras)}};
+  const auto add = [&](Stage stage) { stages.push_back(std::move(stage)); };
+  add({"points",
        concat(options.use_poses, " ", options.fuse, " ", options.fuse > 0 ? 0.0 : options.cell, " ", options.bilateral),
        {files.points, files.poses},
-       step(makePoints)},
-      {"surface", concat(options.cell, " ", options.trim_levels), {files.surface}, step(makeSurface)},
-      {"optimization", concat(options.optimize), {files.mesh}, step(makeOptimizedSurface)},
-      {"texture",
+       step(makePoints)});
+  if (input.alignsCameras())
+    add({"alignment", "", {files.cameras + "/images.txt"}, step(model::alignCameras)});
+  add({"surface", concat(options.cell, " ", options.trim_levels), {files.surface}, step(makeSurface)});
+  add({"optimization", concat(options.optimize), {files.mesh}, step(makeOptimizedSurface)});
+  add({"texture",
        concat(options.texel, " ", options.quality, " ", options.panorama_direction, " ", options.panorama_mirrored),
        {files.model_obj, files.model_glb, files.viewer_glb},
-       step(makeTexture)},
-      {"pictures", concat(options.width, "x", options.height), pictureFiles(job), step(makePictures)}};
+       step(makeTexture)});
+  add({"pictures", concat(options.width, "x", options.height), pictureFiles(job), step(makePictures)});
+  return stages;
 }
 } // namespace
 

@@ -7,7 +7,9 @@ struct ModelFiles {
   std::string folder;
   std::string work = folder + "/work", snapshots = folder + "/snapshots";
   std::string points = work + "/registered.ply", surface = work + "/surface.ply", viewer_glb = work + "/viewer.glb";
-  std::string pictures = work + "/pictures"; ///< unpacked from files of scans while they are needed
+  std::string pictures = work + "/pictures";       ///< unpacked from files of scans while they are needed
+  std::string photographs = work + "/photographs"; ///< what the program colmap finds
+  std::string cameras = work + "/cameras";         ///< of photographs, in the frame of the points
   std::string poses = folder + "/poses.txt", mesh = folder + "/mesh.ply";
   std::string model_obj = folder + "/model.obj", model_glb = folder + "/model.glb";
   std::string report_json = folder + "/report.json", report_html = folder + "/report.html";

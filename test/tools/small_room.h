@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include <cmath>
+#include <fresco/core/similarity.h>
 #include <fresco/io/colmap.h>
 #include <fresco/io/file.h>
 #include <fresco/io/image_io.h>
@@ -58,6 +59,33 @@ inline Image photographRoom(const CameraModel& camera, const Eigen::Isometry3d& 
       std::copy(color.data(), color.data() + 3, image.pixel(x, y));
     }
   return image;
+}
+
+/// Points of the walls as structure from motion finds them with the cameras of `set`, a fifth of them wrong.
+inline SparsePoints sparseRoom(const CameraSet& set, Index count)
+{
+  SparsePoints points;
+  for (Index i = 0; i < count; ++i) {
+    const int v = static_cast<int>(i) % static_cast<int>(set.views.size());
+    const CameraModel& camera = set.cameras[set.views[v].camera];
+    const Eigen::Vector2d pixel(std::fmod(0.754877666 * i, 1.0) * camera.width,
+                                std::fmod(0.569840296 * i, 1.0) * camera.height);
+    const Eigen::Vector3d eye = set.views[v].center(),
+                          place = wallPoint(eye, set.views[v].T_camera_world.linear().transpose() *
+                                                     unproject(camera, pixel));
+    SparsePoint point;
+    point.position = i % 5 == 0 ? Eigen::Vector3d(eye + 0.6 * (place - eye)) : place;
+    point.color = wallColor(place);
+    point.track = {{v, pixel}};
+    points.push_back(point);
+  }
+  return points;
+}
+
+/// A frame and a scale of its own.
+inline Similarity smallRoomsOwnFrame()
+{
+  return {0.02, Eigen::Quaterniond(0.3, -0.5, 0.7, 0.4).normalized().toRotationMatrix(), {0.3, -0.1, 0.7}};
 }
 
 /// Input folder of fresco_model: an empty box of a room, two scans with poses, four photographs.

@@ -50,6 +50,24 @@ double paintError(const std::string& folder)
   return sum / count;
 }
 
+TEST(ModelInputs, CamerasOfTheirOwnFrameAreAligned)
+{
+  const std::string folder = scratchFolder();
+  writeSmallRoom(folder + "/room", 20000);
+  CameraSet set = readColmap(folder + "/room/cameras");
+  SparsePoints points = sparseRoom(set, 2000);
+  transformCameras(smallRoomsOwnFrame(), set, points);
+  writeColmap(folder + "/room/cameras", set, points);
+  const nlohmann::json report = modelOf(folder);
+  EXPECT_EQ(report["kind"], "2 scans, 4 photographs");
+  const nlohmann::json& alignment = report["stages"][1];
+  EXPECT_EQ(alignment["name"], "alignment");
+  EXPECT_EQ(alignment["figures"]["frame"], "found");
+  EXPECT_NEAR(alignment["figures"]["scale"].get<double>(), 50, 0.2);
+  EXPECT_EQ(report["stages"][4]["figures"]["made_of"], "photographs");
+  EXPECT_LT(paintError(folder), 10);
+}
+
 TEST(ModelInputs, ScansAloneAreTexturedFromTheirPoints)
 {
   const std::string folder = scansAlone();

@@ -39,6 +39,12 @@ void takeScans(ModelInput& input, const std::vector<std::string>& files)
   input.inside = picturesOf(input.scans);
 }
 
+bool isPicture(const std::string& path)
+{
+  const std::string kind = extension(path);
+  return kind == ".jpg" || kind == ".jpeg" || kind == ".png" || kind == ".tif" || kind == ".tiff";
+}
+
 /// Those of `panoramas/`, each named as its scan.
 void readPanoramas(ModelInput& input)
 {
@@ -50,9 +56,8 @@ void readPanoramas(ModelInput& input)
     if (input.scans[s].scan < 0)
       numbers[fs::path(input.scans[s].file).stem().string()] = s;
   for (const auto& entry : fs::directory_iterator(folder)) {
-    const std::string path = entry.path().string(), kind = extension(path);
-    if (entry.path().filename().string()[0] == '.' ||
-        (kind != ".jpg" && kind != ".jpeg" && kind != ".png" && kind != ".tif" && kind != ".tiff"))
+    const std::string path = entry.path().string();
+    if (entry.path().filename().string()[0] == '.' || !isPicture(path))
       continue;
     const auto scan = numbers.find(entry.path().stem().string());
     if (scan == numbers.end())
@@ -63,13 +68,31 @@ void readPanoramas(ModelInput& input)
             [](const auto& a, const auto& b) { return a.file < b.file; });
 }
 
+/// Photographs in a folder and below, by name.
+std::vector<std::string> pictureNames(const std::string& folder)
+{
+  std::vector<std::string> names;
+  if (fs::is_directory(folder))
+    for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+      const std::string name = fs::relative(entry.path(), folder).string();
+      if (entry.is_regular_file() && entry.path().filename().string()[0] != '.' && isPicture(name) &&
+          name.rfind("masks/", 0) != 0)
+        names.push_back(name);
+    }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
 void readPhotographs(ModelInput& input)
 {
   const std::string cameras = input.folder + "/cameras";
   input.images = input.folder + "/images";
-  if (!fs::is_directory(cameras))
+  if (!fs::is_directory(cameras)) {
+    input.unplaced = pictureNames(input.images);
     return;
+  }
   input.cameras = readColmap(cameras);
+  input.sparse = readColmapPoints(cameras);
   for (const View& view : input.cameras.views)
     if (!fs::exists(input.images + "/" + view.image))
       throw std::runtime_error(input.images + "/" + view.image + ": no such photograph, but " + cameras + " names it");
@@ -87,7 +110,9 @@ std::vector<std::string> ModelInput::files() const
     if (!picture.mask.empty())
       all.push_back(picture.mask);
   }
-  for (const char* name : {"poses.txt", "cameras/cameras.txt", "cameras/images.txt", "camera-intrinsics.txt"})
+  for (const char* name :
+       {"poses.txt", "cameras/cameras.txt", "cameras/images.txt", "cameras/points3D.txt", "cameras/cameras.bin",
+        "cameras/images.bin", "cameras/points3D.bin", "camera-intrinsics.txt"})
     if (fs::exists(folder + "/" + name))
       all.push_back(folder + "/" + name);
   if (rgbd)
@@ -101,6 +126,8 @@ std::vector<PictureFile> ModelInput::pictures() const
   std::vector<PictureFile> all;
   for (const View& view : cameras.views)
     all.push_back({images + "/" + view.image, maskFileOf(images, view.image), &cameras.cameras[view.camera]});
+  for (const std::string& name : unplaced)
+    all.push_back({images + "/" + name, maskFileOf(images, name)});
   if (rgbd)
     for (const RgbdFrame& frame : rgbd->frames)
       all.push_back({frame.color, maskFileOf(folder, fs::path(frame.color).filename().string())});
@@ -158,6 +185,8 @@ std::string describe(const ModelInput& input)
     text += ", " + counted(panoramas, "panorama");
   if (photographs > 0)
     text += ", " + counted(photographs, "photograph");
+  if (!input.unplaced.empty())
+    text += ", " + counted(input.unplaced.size(), "photograph") + " without cameras";
   return input.hasPictures() ? text : text + ", no pictures: the texture comes from the points";
 }
 

@@ -23,7 +23,8 @@ struct Shot {
 
 std::vector<Shot> shots(const ModelInput& input)
 {
-  const std::string what = input.rgbd || !input.cameras.views.empty() ? "photograph" : "scan",
+  const std::string what =
+                        input.rgbd || !input.cameras.views.empty() || !input.unplaced.empty() ? "photograph" : "scan",
                     taken = what + " was taken";
   return {{"inside_texture", "From inside, textured", Shading::Texture, From::inside},
           {what + "_1_texture", "From where a " + taken + ", textured", Shading::Texture, From::place, 0},
@@ -68,14 +69,15 @@ std::vector<Viewpoint> viewsFromScans(const Job& job, const TriangleMesh& mesh, 
 }
 
 /// Views of the photographs that look about level; all of them where none does.
-std::vector<Viewpoint> levelViews(const ModelInput& input, const Eigen::Vector3d& up)
+std::vector<Viewpoint> levelViews(const Job& job, const Eigen::Vector3d& up)
 {
   std::vector<Viewpoint> all, level;
-  for (const View& view : input.cameras.views)
-    all.push_back(viewOf(input.cameras.cameras[view.camera], view.T_camera_world.inverse()));
-  if (input.rgbd)
-    for (const RgbdFrame& frame : input.rgbd->frames)
-      all.push_back(viewOf(input.rgbd->camera, frame.T_world_camera));
+  const CameraSet cameras = placedCameras(job);
+  for (const View& view : cameras.views)
+    all.push_back(viewOf(cameras.cameras[view.camera], view.T_camera_world.inverse()));
+  if (job.input.rgbd)
+    for (const RgbdFrame& frame : job.input.rgbd->frames)
+      all.push_back(viewOf(job.input.rgbd->camera, frame.T_world_camera));
   for (const Viewpoint& view : all)
     if (std::abs((view.look - view.eye).dot(up)) < 0.5) // 30 degrees up or down
       level.push_back(view);
@@ -142,7 +144,7 @@ Figures makePictures(const Job& job, const Progress& progress)
   const IndoorOptions indoor{uprightOf(input), static_cast<double>(options.width) / options.height, options.threads};
   const Viewpoint above = aboveView(model.mesh, indoor);
   const Viewpoint inside = insideView(model.mesh, indoor).value_or(above);
-  std::vector<Viewpoint> places = levelViews(input, up);
+  std::vector<Viewpoint> places = levelViews(job, up);
   if (places.empty())
     places = viewsFromScans(job, model.mesh, up);
   places = variedViews(places, 3);

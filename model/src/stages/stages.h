@@ -22,6 +22,18 @@ double finestCell(const Job& job);
 /// All scans or frames in one frame with normals: reads the input, writes `files.points` and `files.poses`.
 Figures makePoints(const Job& job, const Progress& progress);
 
+/// Cameras of photographs that have none, by the program colmap, in three steps that leave their files in
+/// `files.photographs`.
+Figures findFeatures(const Job& job, const Progress& progress);
+Figures matchFeatures(const Job& job, const Progress& progress);
+Figures findCameras(const Job& job, const Progress& progress);
+
+/// Brings the cameras of photographs into the frame of `files.points`, unless they stand in it: writes `files.cameras`.
+Figures alignCameras(const Job& job, const Progress& progress);
+
+/// The photographs' cameras in the frame of the points.
+CameraSet placedCameras(const Job& job);
+
 /// Surface of the points: reads `files.points`, writes `files.surface`. Unless it is to be closed, the surface in
 /// places that scans or frames saw through is left out.
 Figures makeSurface(const Job& job, const Progress& progress);

@@ -82,9 +82,10 @@ std::vector<TextureView> viewsOf(const Job& job, const std::vector<Pose>& poses)
   std::vector<TextureView> views = panoramaViews(job, poses);
   for (TextureView& view : scanPictureViews(job, poses))
     views.push_back(std::move(view));
-  for (const View& view : input.cameras.views) {
+  const CameraSet cameras = placedCameras(job);
+  for (const View& view : cameras.views) {
     TextureView next;
-    next.camera = input.cameras.cameras[view.camera];
+    next.camera = cameras.cameras[view.camera];
     next.T_camera_world = view.T_camera_world;
     next.path = input.images + "/" + view.image;
     views.push_back(std::move(next));
@@ -147,7 +148,7 @@ Figures textureFromViews(const Job& job, const TriangleMesh& mesh, const std::ve
   texture.texel = job.options.texel;
   texture.threads = job.options.threads;
   TextureResult result = reconstructTexture(mesh, views, texture, progress);
-  const std::size_t given = input.panoramas.size() + input.inside.pictures.size() + input.cameras.views.size();
+  const std::size_t given = input.panoramas.size() + input.inside.pictures.size() + placedCameras(job).views.size();
   if (views.size() < given)
     result.warnings.push_back(concat(given - views.size(), " pictures are not used: their scans have no place"));
   const auto isPanorama = [](const TextureView& view) { return view.camera.projection == CameraProjection::spherical; };

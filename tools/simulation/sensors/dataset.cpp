@@ -2,6 +2,7 @@
 #include "simulation/sensors/dataset.h"
 #include "simulation/scene/labels.h"
 #include "simulation/sensors/random.h"
+#include "simulation/sensors/sparse.h"
 #include "simulation/sensors/survey.h"
 #include "simulation/sensors/views.h"
 #include <filesystem>
@@ -36,6 +37,10 @@ void validate(const DatasetOptions& o)
   require(o.intruder >= 0, "intruder ", o.intruder, " is negative");
   require(o.pose_noise >= 0 && o.pose_noise <= 1, "pose noise ", o.pose_noise, " is not in 0..1");
   require(o.turn_noise >= 0 && o.turn_noise <= 10, "turn noise ", o.turn_noise, " is not in 0..10");
+  require(o.photographed >= 0.05 && o.photographed <= 1, "photographed ", o.photographed, " is not in 0.05..1");
+  require(o.sparse >= 0 && o.own_frame >= 0, "sparse ", o.sparse, " or own_frame ", o.own_frame, " is negative");
+  require(o.sparse_noise >= 0 && o.sparse_noise <= 1, "sparse noise ", o.sparse_noise, " is not in 0..1");
+  require(o.sparse_outliers >= 0 && o.sparse_outliers <= 1, "outliers ", o.sparse_outliers, " are not in 0..1");
   require(o.jpeg_quality >= 1 && o.jpeg_quality <= 100, "JPEG quality ", o.jpeg_quality, " is not in 1..100");
 }
 
@@ -184,6 +189,7 @@ void removeOld(const std::string& folder)
   namespace fs = std::filesystem;
   fs::remove(folder + "/poses.txt");
   fs::remove(folder + "/survey.e57");
+  fs::remove(folder + "/own_frame.txt");
   for (const char* file : {"cameras.txt", "images.txt", "points3D.txt"})
     fs::remove(folder + "/cameras/" + file);
   const std::pair<const char*, const char*> numbered_files[] = {
@@ -251,10 +257,14 @@ void writeDataset(const std::string& name, const std::string& folder, const Data
   CameraSet photographs;
   if (options.views > 0) {
     report(progress, "views", 0.45);
-    photographs = chooseViews(planning, pinhole(options), options.views);
+    const ScenePlaces part = partAlongX(samples, options.photographed);
+    photographs = chooseViews({scene, rays, part, options.seed, options.threads}, pinhole(options), options.views);
     writePhotographs(run, photographs, subProgress(progress, 0.5, 1.0));
+    SparsePoints sparse = sparsePoints(lit, photographs, options);
     photographs = misplaced(photographs, options);
-    writeColmap(folder + "/cameras", photographs);
+    if (options.own_frame > 0)
+      writeFile(folder + "/own_frame.txt", intoOwnFrame(photographs, sparse, options.own_frame));
+    writeColmap(folder + "/cameras", photographs, sparse);
   }
   if (options.survey)
     writeSurvey(folder, poses, photographs);

@@ -24,6 +24,11 @@ struct DatasetOptions {
   int intruder = 0;               ///< somebody stands in every Nth photograph, >= 0; 0 = in none
   double pose_noise = 0;          ///< deviation of the written cameras' positions, metres, 0..1
   double turn_noise = 0;          ///< deviation of their directions, degrees, 0..10
+  double photographed = 1;        ///< share of the scene along x that photographs show, 0.05..1
+  int sparse = 0;                 ///< points of the cameras' model as structure from motion finds, >= 0
+  double sparse_noise = 0.01;     ///< deviation of a point from the surface per axis, metres, 0..1
+  double sparse_outliers = 0.1;   ///< share of wrong points, 0..1
+  int own_frame = 0;              ///< > 0: seed of a frame and a scale of the cameras' own; 0 = that of the scans
   int jpeg_quality = 95;          ///< 1..100
   bool truth_images = false;      ///< also the photographs without exposure differences and noise, as PNG
   float max_edge = 0.1f;          ///< metres, longest side of the faces of rooms, 0.02..10
@@ -33,7 +38,7 @@ struct DatasetOptions {
 
 /// Writes the dataset of `scene` (conference_room, apartment, office, or a mesh file) into `folder`:
 /// scans/scan_NN.pcd, panoramas/scan_NN.jpg, images/view_NNN.jpg, truth_images/view_NNN.png, truth.ply (vertex colours; field `returns`: laser
-/// points on the faces around a vertex), exposures.txt, cameras/ (COLMAP text), survey.e57, poses.txt. Files appear whole;
+/// points on the faces around a vertex), exposures.txt, cameras/ (COLMAP text), own_frame.txt, survey.e57, poses.txt. Files appear whole;
 /// poses.txt comes last and is removed first, so a folder that has it is complete.
 /// @throws std::invalid_argument for an option out of range
 /// @throws std::runtime_error "PATH: reason" for a file that cannot be read or written, or a scene without free place

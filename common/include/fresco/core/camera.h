@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include <Eigen/Geometry>
+#include <cstdint>
 #include <fresco/core/export.h>
 #include <fresco/core/types.h>
 #include <string>
@@ -51,6 +52,21 @@ struct CameraSet {
   std::vector<CameraModel> cameras;
   std::vector<View> views;
 };
+
+/// Where a photograph shows a point.
+struct Observation {
+  int view = 0;          ///< index into CameraSet::views
+  Eigen::Vector2d pixel; ///< NaN = not known
+};
+
+/// A point that structure from motion found in several photographs.
+struct SparsePoint {
+  Eigen::Vector3d position = Eigen::Vector3d::Zero(); ///< in the frame of the views
+  Eigen::Matrix<std::uint8_t, 3, 1> color = Eigen::Matrix<std::uint8_t, 3, 1>::Zero();
+  double error = 0; ///< mean distance of its projections from the observations, pixels; negative = not known
+  std::vector<Observation> track;
+};
+using SparsePoints = std::vector<SparsePoint>;
 
 /// @throws std::invalid_argument unless the image has 1..1,000,000 pixels a side, the focal lengths are 1e-3..1e6 times as
 ///         long, the centre is within 1e6 of that, and distortion within 1e6: what no camera exceeds, and what can be

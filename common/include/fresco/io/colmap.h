@@ -9,7 +9,13 @@ namespace fresco {
 /// @throws std::runtime_error "PATH: reason" if missing, malformed, of another camera model or not finite
 FRESCO_EXPORT CameraSet readColmap(const std::string& folder);
 
-/// Text model (cameras.txt, images.txt, points3D.txt) into `folder`, which is created.
+/// The points of the same model, of points3D.txt or points3D.bin; none if there is no such file. Tracks name views of
+/// readColmap(); pixels are those of images.txt or images.bin.
+/// @throws std::runtime_error "PATH: reason" if malformed, truncated, not finite or naming an image that is not there
+FRESCO_EXPORT SparsePoints readColmapPoints(const std::string& folder);
+
+/// Text model (cameras.txt, images.txt, points3D.txt) into `folder`, which is created. Observations without a pixel are
+/// left out.
 /// @throws std::invalid_argument for a spherical camera, which COLMAP does not have
-FRESCO_EXPORT void writeColmap(const std::string& folder, const CameraSet& set);
+FRESCO_EXPORT void writeColmap(const std::string& folder, const CameraSet& set, const SparsePoints& points = {});
 } // namespace fresco

@@ -1,58 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "io/colmap/colmap_model.h"
+#include "io/colmap/byte_reader.h"
 #include "io/colmap/lens_models.h"
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <fresco/core/poses.h>
 #include <fresco/core/require.h>
 #include <fresco/io/file.h>
 #include <map>
 namespace fresco::io {
 namespace {
-[[noreturn]] void fail(const std::string& where, const std::string& reason)
-{
-  throw std::runtime_error(where + ": " + reason);
-}
-
-/// Little-endian reader that never reads beyond the end.
-class Bytes {
-public:
-  explicit Bytes(const std::string& path) : path_(path), data_(readFile(path)) {}
-
-  template <typename T>
-  T next()
-  {
-    if (data_.size() - at_ < sizeof(T))
-      fail(path_, "the file is truncated");
-    T value;
-    std::memcpy(&value, data_.data() + at_, sizeof(T));
-    at_ += sizeof(T);
-    return value;
-  }
-
-  std::string text()
-  {
-    const std::size_t end = data_.find('\0', at_);
-    if (end == std::string::npos)
-      fail(path_, "the file is truncated");
-    std::string word = data_.substr(at_, end - at_);
-    at_ = end + 1;
-    return word;
-  }
-
-  void skip(std::uint64_t count, std::size_t size)
-  {
-    if (count > (data_.size() - at_) / size)
-      fail(path_, "the file is truncated");
-    at_ += static_cast<std::size_t>(count) * size;
-  }
-
-private:
-  std::string path_, data_;
-  std::size_t at_ = 0;
-};
-
 template <typename Test>
 const LensModel* findModel(const Test& test)
 {
@@ -140,7 +97,7 @@ CameraSet joinEntries(const std::string& path, const std::vector<CameraEntry>& c
 
 std::vector<CameraEntry> readCamerasBinary(const std::string& path)
 {
-  Bytes bytes(path);
+  ByteReader bytes(path);
   std::vector<CameraEntry> cameras;
   for (auto left = bytes.next<std::uint64_t>(); left > 0; --left) {
     const auto id = bytes.next<std::uint32_t>();
@@ -157,9 +114,10 @@ std::vector<CameraEntry> readCamerasBinary(const std::string& path)
   return cameras;
 }
 
-std::vector<ImageEntry> readImagesBinary(const std::string& path)
+std::vector<ImageEntry> readImagesBinary(const std::string& path, bool with_pixels)
 {
-  Bytes bytes(path);
+  ByteReader bytes(path);
+  constexpr std::size_t feature_size = 2 * sizeof(double) + sizeof(std::uint64_t); // x, y, point
   std::vector<ImageEntry> images;
   for (auto left = bytes.next<std::uint64_t>(); left > 0; --left) {
     ImageEntry image;
@@ -171,8 +129,16 @@ std::vector<ImageEntry> readImagesBinary(const std::string& path)
       value = bytes.next<double>();
     image.camera = bytes.next<std::uint32_t>();
     image.name = bytes.text();
-    bytes.skip(bytes.next<std::uint64_t>(),
-               2 * sizeof(double) + sizeof(std::uint64_t)); // x, y, id of each feature point
+    const auto features = bytes.next<std::uint64_t>();
+    if (with_pixels)
+      bytes.requireLeft(features, feature_size);
+    for (std::uint64_t i = 0; with_pixels && i < features; ++i) {
+      const auto x = bytes.next<double>(), y = bytes.next<double>();
+      image.pixels.emplace_back(x, y);
+      bytes.next<std::uint64_t>(); // its point
+    }
+    if (!with_pixels)
+      bytes.skip(features, feature_size);
     image.T_camera_world = makePose(q, t, path);
     images.push_back(image);
   }

@@ -2,6 +2,9 @@
 #pragma once
 #include <cstdint>
 #include <fresco/core/camera.h>
+#include <fresco/core/require.h>
+#include <fresco/io/file.h>
+#include <sstream>
 #include <string>
 #include <vector>
 /// Parts that COLMAP's text and binary models share. `where` names file and place in errors.
@@ -15,7 +18,22 @@ struct ImageEntry {
   std::uint64_t id = 0, camera = 0;
   std::string name;
   Eigen::Isometry3d T_camera_world = Eigen::Isometry3d::Identity();
+  std::vector<Eigen::Vector2d> pixels; ///< of its feature points; empty unless asked for
 };
+
+/// use(line, where) for lines that are no comments; `where` names file and line.
+template <typename Use>
+void forEachLine(const std::string& path, const Use& use)
+{
+  std::istringstream lines(readFile(path));
+  std::string line;
+  for (int number = 1; std::getline(lines, line); ++number) {
+    if (!line.empty() && line.back() == '\r')
+      line.pop_back();
+    if (line.empty() || line[0] != '#')
+      use(line, concat(path, ": line ", number));
+  }
+}
 
 /// Number of parameters of a camera model by COLMAP's name; -1 if fresco does not read that model.
 int parameterCount(const std::string& model);
@@ -34,5 +52,6 @@ Eigen::Isometry3d makePose(const double (&q)[4], const double (&t)[3], const std
 CameraSet joinEntries(const std::string& path, const std::vector<CameraEntry>& cameras, std::vector<ImageEntry> images);
 
 std::vector<CameraEntry> readCamerasBinary(const std::string& path);
-std::vector<ImageEntry> readImagesBinary(const std::string& path);
+std::vector<ImageEntry> readImagesBinary(const std::string& path, bool with_pixels = false);
+std::vector<ImageEntry> readImagesText(const std::string& path, bool with_pixels = false);
 } // namespace fresco::io

@@ -27,9 +27,9 @@ struct ModelOptions {
 
 /// What one stage cost and what it found.
 struct ModelStage {
-  std::string name;          ///< points, surface, optimization, texture or pictures
-  double seconds = 0;        ///< wall clock
-  double cpu_seconds = 0;    ///< of all threads
+  std::string name;       ///< features, matches, cameras, points, alignment, surface, optimization, texture or pictures
+  double seconds = 0;     ///< wall clock
+  double cpu_seconds = 0; ///< of all threads
   double peak_megabytes = 0; ///< resident memory of the process, highest during the stage
   bool resumed = false;      ///< taken over from an earlier run
   /// Name and value, numbers with four digits, lists as JSON; report.json has them in full.
@@ -50,7 +50,7 @@ struct ModelReport {
 /// Stages hand over files, so a resumed run gives the same bytes as an undisturbed one. Every file is written whole or
 /// not at all. Written are model.obj with .mtl and .png, model.glb, model_mask.png, mesh.ply, poses.txt,
 /// snapshots/*.png, report.html, report.json, and in work/ what `resume` needs.
-/// @param input_folder  scans with or without photographs (scans/*.pcd, poses.txt, cameras/ as COLMAP model, images/,
+/// @param input_folder  scans with or without photographs (scans/*.pcd, poses.txt, cameras/ as COLMAP model, in a frame of its own if it has points, images/,
 ///                      panoramas/ named as the scans) or RGB-D frames (camera-intrinsics.txt, frame-*.{color.jpg,depth.png,pose.txt}); see docs/model.md
 /// @param output_folder made where it is missing
 /// @param progress      hears "STAGE: STEP" and the share of the stage

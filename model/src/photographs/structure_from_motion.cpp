@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "photographs/structure_from_motion.h"
+#include "photographs/program.h"
+#include <algorithm>
+#include <filesystem>
+#include <fresco/core/parallel.h>
+#include <fresco/core/require.h>
+#include <fresco/io/colmap.h>
+#include <fresco/io/file.h>
+#include <regex>
+#include <set>
+namespace fresco::model {
+namespace {
+namespace fs = std::filesystem;
+
+std::string joined(const std::vector<std::string>& names)
+{
+  constexpr std::size_t most = 8; // a line
+  std::string text;
+  for (std::size_t i = 0; i < std::min(most, names.size()); ++i)
+    text += (i > 0 ? ", " : "") + names[i];
+  return names.size() > most ? concat(text, " and ", names.size() - most, " more") : text;
+}
+} // namespace
+
+double shareToldBy(const std::string& line, std::size_t count)
+{
+  static const std::regex of(R"(\[(\d+)/(\d+)(?:, (\d+)/(\d+))?\])"), registered(R"(Registering image #\d+ \((\d+)\))");
+  std::smatch found;
+  if (std::regex_search(line, found, of)) {
+    const double k = std::stod(found[1]), n = std::stod(found[2]);
+    if (!found[3].matched)
+      return n > 0 ? k / n : -1;
+    const double k2 = std::stod(found[3]), n2 = std::stod(found[4]); // blocks of pairs, row by row
+    return n > 0 && n2 > 0 ? ((k - 1) * n2 + k2 - 1) / (n * n2) : -1;
+  }
+  if (std::regex_search(line, found, registered) && count > 0)
+    return std::min(1.0, std::stod(found[1]) / static_cast<double>(count));
+  return -1;
+}
+
+void requireStructureFromMotion(const std::string& images)
+{
+  if (findProgram("colmap").empty())
+    throw std::runtime_error(images + ": photographs without cameras need the program colmap; Debian's package colmap "
+                                      "has it (apt-get install colmap)");
+}
+
+StructureFromMotion::StructureFromMotion(std::string images, std::vector<std::string> names, std::string folder,
+                                         int threads)
+    : images_(std::move(images)), names_(std::move(names)), folder_(std::move(folder)), threads_(threadCount(threads))
+{}
+
+void StructureFromMotion::run(std::vector<std::string> words, const std::string& step, const Progress& progress) const
+{
+  requireStructureFromMotion(images_);
+  double share = 0;
+  words.insert(words.begin(), findProgram("colmap"));
+  words.insert(words.end(), {"--database_path", database()});
+  runProgram(
+      words, folder_ + "/log.txt",
+      [&](const std::string& line) { share = std::max(share, shareToldBy(line, names_.size())); },
+      [&] { report(progress, step, std::min(share, 0.999)); });
+}
+
+void StructureFromMotion::findFeatures(const Progress& progress) const
+{
+  fs::remove_all(folder_);
+  makeFolder(folder_);
+  std::string list;
+  for (const std::string& name : names_)
+    list += name + "\n";
+  writeFile(folder_ + "/photographs.txt", list);
+  run({"feature_extractor", "--image_path", images_, "--image_list_path", folder_ + "/photographs.txt",
+       "--SiftExtraction.use_gpu", "0", "--SiftExtraction.num_threads", std::to_string(threads_)},
+      "photographs", progress);
+}
+
+void StructureFromMotion::matchFeatures(const Progress& progress) const
+{
+  constexpr std::size_t most_exhaustive = 200; // 20,000 pairs: an hour or two; beyond, names tell what is near
+  std::vector<std::string> words{"exhaustive_matcher"};
+  if (names_.size() > most_exhaustive)
+    words = {"sequential_matcher", "--SequentialMatching.overlap", "20"};
+  words.insert(words.end(), {"--SiftMatching.use_gpu", "0", "--SiftMatching.num_threads", std::to_string(threads_)});
+  run(words, "pairs of photographs", progress);
+}
+
+std::vector<std::string> StructureFromMotion::findCameras(const Progress& progress) const
+{
+  const std::string found = folder_ + "/models";
+  fs::remove_all(found);
+  fs::remove_all(model());
+  makeFolder(found);
+  run({"mapper", "--image_path", images_, "--output_path", found, "--Mapper.num_threads", std::to_string(threads_)},
+      "photographs placed", progress);
+  std::vector<std::pair<std::size_t, std::string>> models;
+  for (const auto& entry : fs::directory_iterator(found))
+    if (entry.is_directory())
+      models.emplace_back(readColmap(entry.path().string()).views.size(), entry.path().string());
+  if (models.empty())
+    throw std::runtime_error(concat(images_, ": colmap could place none of the ", names_.size(),
+                                    " photographs: they overlap too little, or show too little (its lines: ", folder_,
+                                    "/log.txt)"));
+  std::sort(models.begin(), models.end(), [](const auto& a, const auto& b) {
+    return a.first > b.first || (a.first == b.first && a.second < b.second);
+  });
+  const CameraSet set = readColmap(models[0].second);
+  writeColmap(model(), set, readColmapPoints(models[0].second));
+  std::vector<std::string> warnings;
+  if (models.size() > 1) {
+    std::string sizes;
+    for (std::size_t m = 1; m < models.size(); ++m)
+      sizes += concat(m > 1 ? ", " : "", models[m].first);
+    warnings.push_back(concat("photographs fall into ", models.size(), " groups without overlap; the largest, of ",
+                              models[0].first, ", is used; others: ", sizes));
+  }
+  std::set<std::string> placed;
+  for (const View& view : set.views)
+    placed.insert(view.image);
+  std::vector<std::string> without;
+  std::copy_if(names_.begin(), names_.end(), std::back_inserter(without),
+               [&](const std::string& name) { return placed.count(name) == 0; });
+  if (!without.empty())
+    warnings.push_back(concat(without.size(), " of ", names_.size(), " photographs have no place: ", joined(without)));
+  return warnings;
+}
+} // namespace fresco::model

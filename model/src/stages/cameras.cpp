@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "photographs/structure_from_motion.h"
+#include "stages/stages.h"
+#include <Eigen/Geometry>
+#include <fresco/core/constants.h>
+#include <fresco/io/colmap.h>
+#include <fresco/io/point_io.h>
+#include <fresco/registration/core/camera_alignment.h>
+namespace fresco::model {
+namespace {
+StructureFromMotion structureFromMotion(const Job& job)
+{
+  return {job.input.images, job.input.unplaced, job.files.photographs, job.options.threads};
+}
+} // namespace
+
+Figures findFeatures(const Job& job, const Progress& progress)
+{
+  structureFromMotion(job).findFeatures(progress);
+  return {{"photographs", job.input.unplaced.size()}};
+}
+
+Figures matchFeatures(const Job& job, const Progress& progress)
+{
+  structureFromMotion(job).matchFeatures(progress);
+  return Figures::object();
+}
+
+Figures findCameras(const Job& job, const Progress& progress)
+{
+  const StructureFromMotion motion = structureFromMotion(job);
+  const std::vector<std::string> warnings = motion.findCameras(progress);
+  return {{"photographs", job.input.unplaced.size()},
+          {"photographs_with_cameras", readColmap(motion.model()).views.size()},
+          {"warnings", warnings}};
+}
+
+Figures alignCameras(const Job& job, const Progress& progress)
+{
+  const bool found = !job.input.unplaced.empty();
+  const std::string folder = found ? structureFromMotion(job).model() : job.input.folder + "/cameras";
+  CameraSet set = found ? readColmap(folder) : job.input.cameras;
+  SparsePoints points = found ? readColmapPoints(folder) : job.input.sparse;
+  Figures figures;
+  if (!found && points.size() < fewest_sparse_points) {
+    figures = {
+        {"frame", "taken as that of the scans"},
+        {"warnings", {"the cameras' model has too few points to tell its frame: it is taken as that of the scans"}}};
+    writeColmap(job.files.cameras, set, points);
+    return figures;
+  }
+  CameraAlignmentOptions options;
+  options.threads = job.options.threads;
+  CameraAlignmentResult result;
+  try {
+    result = fresco::alignCameras(set, points, readPoints(job.files.points), options, progress);
+  } catch (const Cancelled&) {
+    throw;
+  } catch (const std::runtime_error& error) {
+    throw std::runtime_error(folder + ": " + error.what());
+  }
+  const Similarity& T = result.T_scans_cameras;
+  transformCameras(T, set, points);
+  writeColmap(job.files.cameras, set, points);
+  return {{"frame", result.already_aligned ? "that of the scans already" : "found"},
+          {"photographs", set.views.size()},
+          {"scale", T.scale},
+          {"turned_degrees", Eigen::AngleAxisd(T.R).angle() * degrees_per_radian},
+          {"support", result.support},
+          {"blocked", result.blocked},
+          {"next_best", result.alias},
+          {"rms", result.rms}};
+}
+
+CameraSet placedCameras(const Job& job)
+{
+  return job.input.alignsCameras() ? readColmap(job.files.cameras) : job.input.cameras;
+}
+} // namespace fresco::model

@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "input/model_input.h"
+#include "photographs/program.h"
+#include "photographs/structure_from_motion.h"
+#include "test_data.h"
+#include "tools/small_room.h"
+#include <chrono>
+#include <fstream>
+namespace fresco::model {
+namespace {
+using Lines = std::vector<std::string>;
+
+Lines linesOf(const Lines& command, const std::string& log)
+{
+  Lines lines;
+  runProgram(
+      command, log, [&](const std::string& line) { lines.push_back(line); }, [] {});
+  return lines;
+}
+
+TEST(Program, WordsReachItAsTheyAreAndLinesAreHeard)
+{
+  const std::string log = test::scratchFolder() + "/log.txt", word = "two words' \"and\" $HOME; *";
+  EXPECT_EQ(linesOf({"/usr/bin/printf", "%s\\n%s", word, "last"}, log), (Lines{word, "last"}));
+  EXPECT_EQ(readFile(log), word + "\nlast\n");
+}
+
+TEST(Program, FailureTellsTheLastLines)
+{
+  const std::string log = test::scratchFolder() + "/log.txt";
+  try {
+    linesOf({"/bin/sh", "-c", "echo far; echo b; echo c; echo it broke >&2; exit 3"}, log);
+    FAIL();
+  } catch (const std::runtime_error& error) {
+    EXPECT_NE(std::string(error.what()).find("ended with 3"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("it broke"), std::string::npos) << error.what();
+    EXPECT_EQ(std::string(error.what()).find("far"), std::string::npos) << error.what();
+  }
+  EXPECT_THROW(linesOf({"/nowhere/program"}, log), std::runtime_error);
+  EXPECT_THROW(linesOf({"/bin/sh", "-c", "kill -9 $$"}, log), std::runtime_error);
+}
+
+TEST(Program, StoppingKillsItAndWhatItStarted)
+{
+  const std::string folder = test::scratchFolder();
+  const auto start = std::chrono::steady_clock::now();
+  int asked = 0;
+  const auto stop = [&] {
+    if (++asked > 3)
+      throw Cancelled();
+  };
+  EXPECT_THROW(runProgram(
+                   {"/bin/sh", "-c", "(sleep 2; echo alive > '" + folder + "/child') & sleep 60"}, folder + "/log.txt",
+                   [](const std::string&) {}, stop),
+               Cancelled);
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(2));
+  EXPECT_TRUE(findProgram("no such program").empty());
+  EXPECT_EQ(linesOf({"/bin/sleep", "2.5"}, folder + "/log.txt"), Lines{});
+  EXPECT_FALSE(std::filesystem::exists(folder + "/child"));
+}
+
+TEST(StructureFromMotion, ProgressIsReadFromTheLines)
+{
+  EXPECT_DOUBLE_EQ(shareToldBy("Processed file [3/12]", 12), 0.25);
+  EXPECT_DOUBLE_EQ(shareToldBy("Matching block [2/2, 1/2] in 3.2s", 100), 0.5);
+  EXPECT_DOUBLE_EQ(shareToldBy("Registering image #7 (5)", 10), 0.5);
+  EXPECT_DOUBLE_EQ(shareToldBy("  => Image sees 12 / 34 points", 10), -1);
+}
+
+TEST(StructureFromMotion, WithoutTheProgramThePackageIsNamed)
+{
+  const std::string path = std::getenv("PATH");
+  setenv("PATH", "/nowhere", 1);
+  try {
+    requireStructureFromMotion("images");
+    ADD_FAILURE();
+  } catch (const std::runtime_error& error) {
+    EXPECT_NE(std::string(error.what()).find("package colmap"), std::string::npos) << error.what();
+  }
+  setenv("PATH", path.c_str(), 1);
+}
+
+TEST(ModelInput, ImagesWithoutCamerasAreToBePlaced)
+{
+  const std::string folder = test::scratchFolder();
+  test::writeSmallRoom(folder, 500);
+  std::filesystem::remove_all(folder + "/cameras");
+  const ModelInput input = readModelInput(folder);
+  EXPECT_EQ(input.unplaced, (Lines{"view_0.png", "view_1.png", "view_2.png", "view_3.png"}));
+  EXPECT_TRUE(input.alignsCameras());
+  EXPECT_EQ(describe(input), "2 scans, 4 photographs without cameras");
+}
+
+/// Blots of all sizes, so that features are found on every wall.
+Image blotted(const CameraModel& camera, const Eigen::Isometry3d& T_camera_world)
+{
+  Image image = test::photographRoom(camera, T_camera_world);
+  const Eigen::Isometry3d T_world_camera = T_camera_world.inverse();
+  for (int y = 0; y < camera.height; ++y)
+    for (int x = 0; x < camera.width; ++x) {
+      const Eigen::Vector3d at = test::wallPoint(T_world_camera.translation(),
+                                                 T_world_camera.linear() * unproject(camera, {x + 0.5, y + 0.5}));
+      double value = 0;
+      for (const double size : {0.31, 0.13, 0.057}) {
+        const Eigen::Vector3d cell = (at / size).array().floor();
+        const Eigen::Vector3d within = at / size - cell - Eigen::Vector3d::Constant(0.5);
+        const double chance = std::sin(cell.dot(Eigen::Vector3d(12.9898, 78.233, 37.719))) * 43758.5453;
+        value += (chance - std::floor(chance) - 0.5) * std::exp(-8 * within.squaredNorm());
+      }
+      for (int c = 0; c < 3; ++c)
+        image.pixel(x, y)[c] = static_cast<std::uint8_t>(std::clamp(128 + 150 * value, 0.0, 255.0));
+    }
+  return image;
+}
+
+TEST(StructureFromMotion, PhotographsOfARoomArePlaced)
+{
+  if (findProgram("colmap").empty()) {
+    std::cout << "*** SKIPPED: the program colmap is not installed ***\n";
+    GTEST_SKIP();
+  }
+  const std::string folder = test::scratchFolder() + "/with space 'and quote";
+  makeFolder(folder + "/images");
+  CameraModel camera;
+  camera.width = 480, camera.height = 360, camera.fx = camera.fy = 432, camera.cx = 240, camera.cy = 180;
+  Lines names;
+  std::vector<Eigen::Isometry3d> truth;
+  for (int i = 0; i < 8; ++i) {
+    Eigen::Matrix3d R;
+    const double angle = 0.6 + 0.05 * i;
+    R << std::sin(angle), -std::cos(angle), 0, 0, 0, -1, std::cos(angle), std::sin(angle), 0;
+    Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
+    T.linear() = R;
+    T.translation() = -R * Eigen::Vector3d(0.6 + 0.16 * i, 0.9 - 0.1 * (i % 3), 1.1 + 0.12 * (i % 2));
+    truth.push_back(T);
+    names.push_back("photograph " + std::to_string(i) + ".png");
+    writeImage(folder + "/images/" + names.back(), blotted(camera, T));
+  }
+  const StructureFromMotion motion(folder + "/images", names, folder + "/work", 2);
+  motion.findFeatures({});
+  motion.matchFeatures({});
+  EXPECT_EQ(motion.findCameras({}), Lines());
+  const CameraSet found = readColmap(motion.model());
+  ASSERT_EQ(found.views.size(), truth.size());
+  EXPECT_GT(readColmapPoints(motion.model()).size(), 100u);
+  for (std::size_t v = 2; v < truth.size(); ++v) { // directions between cameras: a frame and a scale apart
+    const auto turn = [](const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) {
+      return Eigen::AngleAxisd(a.linear() * b.linear().transpose()).angle();
+    };
+    EXPECT_NEAR(turn(found.views[v].T_camera_world, found.views[0].T_camera_world), turn(truth[v], truth[0]), 0.01);
+    const double whole = (truth[7].inverse().translation() - truth[0].inverse().translation()).norm(),
+                 part = (truth[v].inverse().translation() - truth[0].inverse().translation()).norm();
+    EXPECT_NEAR((found.views[v].center() - found.views[0].center()).norm() /
+                    (found.views[7].center() - found.views[0].center()).norm(),
+                part / whole, 0.03);
+  }
+}
+} // namespace
+} // namespace fresco::model
