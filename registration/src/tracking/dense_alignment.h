@@ -23,6 +23,9 @@ struct DenseAlignment {
   double gray_rms = 0;  ///< robust, of the intensity residuals, grey levels
 };
 
+/// Whether the frames see the same place: chance gives an agreement of a third.
+inline bool isAligned(const DenseAlignment& found) { return found.overlap >= 0.3 && found.agreement >= 0.6; }
+
 /// Dense alignment of a frame with a reference frame: minimises
 ///   sum w (n . (T q - p) / s)^2 + sum w (I_current(T^-1 p) - a I_reference(p))^2
 /// over the pose T, coarse to fine, by inverse compositional Gauss-Newton steps (Baker, Matthews 2004) with the weights

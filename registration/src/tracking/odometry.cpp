@@ -1,14 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tracking/odometry.h"
+#include "tracking/loop_closure.h"
 #include <algorithm>
 namespace fresco::tracking {
 namespace {
 constexpr double least_depth_share = 0.05; // of the pixels: less holds no pose
-
-bool isTracked(const DenseAlignment& found)
-{
-  return found.overlap >= 0.3 && found.agreement >= 0.6;
-}
 
 bool isFar(const DenseAlignment& found)
 {
@@ -28,11 +24,23 @@ void Odometry::add(Index frame, RgbdPyramid pyramid)
       const Eigen::Isometry3d velocity = velocity_;
       makeKeyFrame(frame, std::move(pyramid));
       velocity_ = velocity;
-      map_.edges.push_back({from, current_, found.T_reference_current, found.information, found.overlap, found.rms});
+      map_.edges.push_back(edgeOf(from, current_, found));
     }
     return;
   }
   makeKeyFrame(frame, std::move(pyramid));
+  relocalize();
+}
+
+void Odometry::relocalize()
+{
+  constexpr std::size_t tried = 10;
+  for (const Index a : mostAlike(map_.key_frames, map_.key_frames[current_].pyramid, tried))
+    if (a < current_)
+      if (const KeyFrameEdges edges = alignByFeatures(map_, a, current_); !edges.empty()) {
+        map_.edges.insert(map_.edges.end(), edges.begin(), edges.end());
+        return;
+      }
 }
 
 bool Odometry::track(Index frame, const RgbdPyramid& pyramid)
@@ -40,9 +48,9 @@ bool Odometry::track(Index frame, const RgbdPyramid& pyramid)
   AlignmentOptions options;
   options.threads = threads_;
   last_ = alignDense(reference_, pyramid, map_.cameras, T_key_last_ * velocity_, options);
-  if (!isTracked(last_))
+  if (!isAligned(last_))
     last_ = alignDense(reference_, pyramid, map_.cameras, T_key_last_, options);
-  if (!isTracked(last_))
+  if (!isAligned(last_))
     return false;
   velocity_ = T_key_last_.inverse() * last_.T_reference_current;
   T_key_last_ = last_.T_reference_current;

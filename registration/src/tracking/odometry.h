@@ -3,8 +3,8 @@
 #include "tracking/tracking_map.h"
 namespace fresco::tracking {
 /// Frame after frame: each is aligned with the last key frame; where too little of that is left in sight, the frame
-/// becomes one. A frame that cannot be aligned is looked for at the key frames that look most like it; if that fails, it
-/// starts a new submap.
+/// becomes one. A frame that cannot be aligned becomes a key frame, too, and is joined to the key frame that looks like
+/// it; if there is none, it starts a new submap.
 class Odometry {
 public:
   Odometry(TrackingMap& map, int threads) : map_(map), threads_(threads) {}
@@ -14,7 +14,7 @@ public:
 
 private:
   bool track(Index frame, const RgbdPyramid& pyramid);
-  bool relocalize(Index frame, const RgbdPyramid& pyramid);
+  void relocalize();
   void makeKeyFrame(Index frame, RgbdPyramid pyramid);
 
   TrackingMap& map_;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+#include "graph/pose_graph.h"
 #include "tracking/dense_alignment.h"
 #include "tracking/image_features.h"
-#include <optional>
 namespace fresco::tracking {
 using registration::IsometryVector;
 
@@ -12,14 +12,9 @@ struct KeyFrame {
   ImageFeatures features;
 };
 
-/// Two key frames and their measured relative pose.
-struct KeyFrameEdge {
-  Index a = 0, b = 0; ///< a < b
-  Eigen::Isometry3d T_a_b = Eigen::Isometry3d::Identity();
-  Matrix6d information = Matrix6d::Identity(); ///< as DenseAlignment::information, about a
-  double weight = 1;
-  double rms = 0;
-};
+/// Two key frames and their measured relative pose; PoseEdge::information is that of a dense alignment.
+using KeyFrameEdge = registration::PoseEdge;
+using KeyFrameEdges = registration::PoseEdges;
 
 /// Where a frame was tracked.
 struct FramePlace {
@@ -30,7 +25,17 @@ struct FramePlace {
 struct TrackingMap {
   RgbdCameras cameras;
   std::vector<KeyFrame> key_frames;
-  std::vector<KeyFrameEdge, Eigen::aligned_allocator<KeyFrameEdge>> edges;
+  KeyFrameEdges edges;
   std::vector<FramePlace, Eigen::aligned_allocator<FramePlace>> frames;
 };
+
+/// The edge that a dense alignment of key frame `b` with key frame `a` gives.
+KeyFrameEdge edgeOf(Index a, Index b, const DenseAlignment& found);
+
+/// Aligns two key frames densely, each with the other, from a guess. Two edges if both succeed and agree, else none.
+/// @param guess its pose is the guess
+/// @param coarsest level of the pyramids to begin at
+KeyFrameEdges alignBothWays(const TrackingMap& map, const KeyFrameEdge& guess, int coarsest);
+KeyFrameEdges alignBothWays(const TrackingMap& map, const KeyFrameEdge& guess, int coarsest,
+                            const ReferenceFrame& reference_a);
 } // namespace fresco::tracking
