@@ -19,16 +19,18 @@ struct Request {
 Request parse(int argc, char** argv)
 {
   Request request;
-  Args args("fresco_track RGBD_DIR -o OUT_DIR [options]",
-            "Finds where a hand-held RGB-D camera was at each frame of a video.\n"
-            "RGBD_DIR holds camera-intrinsics.txt (3x3, of the depth images) and frame-*.{color.jpg,depth.png}; depths "
-            "are 16 bit, millimetres.\n"
-            "Writes poses.txt: world from camera, a line a frame in the order of the numbers, `none` where it was lost.");
+  Args args(
+      "fresco_track RGBD_DIR -o OUT_DIR [options]",
+      "Finds where a hand-held RGB-D camera was at each frame of a video.\n"
+      "RGBD_DIR holds camera-intrinsics.txt (3x3, of the depth images) and frame-*.{color.jpg,depth.png}; depths "
+      "are 16 bit, millimetres.\n"
+      "Writes poses.txt: world from camera, a line a frame in the order of the numbers, `none` where it was lost.");
   args.option("o", request.folder, "folder of the output, created; required");
   args.option("nearest", request.options.nearest, "depths below are not used, metres, > 0");
   args.option("farthest", request.options.farthest, "depths beyond are not used, metres, > 0");
   args.flag("registered", request.options.calibrate_color,
-            "colour images are registered to the depth images: do not look for the colour camera's own calibration", false);
+            "colour images are registered to the depth images: do not look for the colour camera's own calibration",
+            false);
   args.option("rounds", request.options.refinement_rounds, "alignments of all key frames that overlap, 0..10");
   request.common.declare(args);
   request.input = args.parse(argc, argv, 1)[0];
@@ -57,7 +59,8 @@ void run(int argc, char** argv)
   writeOutputs([&] { writePoses(request.folder + "/poses.txt", result.poses); });
   for (const std::string& warning : result.warnings)
     inform(request.common.quiet, "warning: " + warning);
-  const auto placed = std::count_if(result.poses.begin(), result.poses.end(), [](const Pose& p) { return p.has_value(); });
+  const auto placed =
+      std::count_if(result.poses.begin(), result.poses.end(), [](const Pose& p) { return p.has_value(); });
   inform(request.common.quiet, concat(placed, " of ", video.count, " frames placed, ", result.key_frames.size(),
                                       " key frames, ", result.loop_closures, " loop closures"));
 }

@@ -22,6 +22,12 @@ double finestCell(const Job& job);
 /// All scans or frames in one frame with normals: reads the input, writes `files.points` and `files.poses`.
 Figures makePoints(const Job& job, const Progress& progress);
 
+/// RGB-D frames that have a pose, with it: as given, or as tracking found it (reads `files.poses`).
+std::vector<RgbdFrame> placedFrames(const Job& job);
+
+/// Poses of RGB-D frames without any, one a frame; adds figures and warnings.
+std::vector<Pose> trackFrames(const Job& job, Figures& figures, const Progress& progress);
+
 /// Surface of the points: reads `files.points`, writes `files.surface`. Unless it is to be closed, the surface in
 /// places that scans or frames saw through is left out.
 Figures makeSurface(const Job& job, const Progress& progress);

@@ -14,18 +14,18 @@ struct ReferenceArrays {
 struct CurrentArrays {
   const float *depth, *gray; ///< rows from the top; 0 = no depth; gray may be null
   int width, height, gray_width, gray_height;
-  float fx, fy, cx, cy;      ///< of the depth image, pixel centres at integers
-  float gfx, gfy, gcx, gcy;  ///< of the intensities
-  float tx, ty, tz;          ///< colour camera from depth camera
+  float fx, fy, cx, cy;     ///< of the depth image, pixel centres at integers
+  float gfx, gfy, gcx, gcy; ///< of the intensities
+  float tx, ty, tz;         ///< colour camera from depth camera
 };
 
 /// Where the alignment is.
 struct Linearization {
-  float R[9], t[3];           ///< current from reference, rows
-  float gate;                 ///< difference of depths from which another surface is seen, share of the depth
-  float gain;                 ///< current intensity / reference intensity
-  float depth_scale;          ///< 1 / variance of the depth residuals, which are in units of their expected deviation
-  float gray_scale;           ///< 1 / variance of the intensity residuals
+  float R[9], t[3];  ///< current from reference, rows
+  float gate;        ///< difference of depths from which another surface is seen, share of the depth
+  float gain;        ///< current intensity / reference intensity
+  float depth_scale; ///< 1 / variance of the depth residuals, which are in units of their expected deviation
+  float gray_scale;  ///< 1 / variance of the intensity residuals
 };
 
 /// Sums over a range of points.
@@ -39,8 +39,8 @@ struct AlignmentSums {
 
 /// Robust normal equations of both residuals; weights of a t distribution with 5 degrees of freedom.
 struct AlignmentKernels {
-  void (*accumulate)(const ReferenceArrays& reference, std::size_t begin, std::size_t end,
-                     const CurrentArrays& current, const Linearization& at, AlignmentSums& sums);
+  void (*accumulate)(const ReferenceArrays& reference, std::size_t begin, std::size_t end, const CurrentArrays& current,
+                     const Linearization& at, AlignmentSums& sums);
 };
 
 const AlignmentKernels& alignmentKernels();         ///< the fastest ones that this processor runs

@@ -31,8 +31,8 @@ struct Equations {
 
   void add(const Float8* p, const Float8* d, const Float8& w, const Float8& r)
   {
-    const Float8 J[6] = {p[1] * d[2] - p[2] * d[1], p[2] * d[0] - p[0] * d[2], p[0] * d[1] - p[1] * d[0],
-                         d[0], d[1], d[2]};
+    const Float8 J[6] = {
+        p[1] * d[2] - p[2] * d[1], p[2] * d[0] - p[0] * d[2], p[0] * d[1] - p[1] * d[0], d[0], d[1], d[2]};
     int k = 0;
     for (int i = 0; i < 6; ++i) {
       const Float8 wJ = w * J[i];

@@ -8,7 +8,7 @@
 namespace fresco::tracking {
 namespace {
 constexpr int level = 1;      // a quarter of the pixels: the reach of the steps is larger
-constexpr double scale = 10; // grey levels: residuals of a colour camera that is about right
+constexpr double scale = 10;  // grey levels: residuals of a colour camera that is about right
 constexpr int parameters = 5; // log of the focal length, centre (in image widths), offset to the right and downwards
 using Parameters = Eigen::Matrix<double, parameters, 1>;
 using Normal = Eigen::Matrix<double, parameters, parameters>;

@@ -12,9 +12,23 @@ CurrentArrays arraysOf(const RgbdLevel& level, const RgbdCameras& cameras)
 {
   const Pinhole K = halved(cameras.depth, level.depth_halvings), C = halved(cameras.color, level.gray_halvings);
   const Eigen::Vector3f& t = cameras.color_from_depth;
-  return {level.depth.data.data(), level.gray.width > 0 ? level.gray.data.data() : nullptr,
-          level.depth.width, level.depth.height, level.gray.width, level.gray.height,
-          K.fx, K.fy, K.cx, K.cy, C.fx, C.fy, C.cx, C.cy, t.x(), t.y(), t.z()};
+  return {level.depth.data.data(),
+          level.gray.width > 0 ? level.gray.data.data() : nullptr,
+          level.depth.width,
+          level.depth.height,
+          level.gray.width,
+          level.gray.height,
+          K.fx,
+          K.fy,
+          K.cx,
+          K.cy,
+          C.fx,
+          C.fy,
+          C.cx,
+          C.cy,
+          t.x(),
+          t.y(),
+          t.z()};
 }
 
 /// What the iterations estimate besides the pose.
@@ -32,8 +46,9 @@ Sums sumsAt(const ReferenceLevel& reference, const CurrentArrays& current, const
     alignmentKernels().accumulate(reference.arrays(), begin, end, current, at, sums);
     return Sums(Eigen::Map<const Eigen::Matrix<float, AlignmentSums::count, 1>>(sums.values).cast<double>());
   };
-  return parallelReduce(reference.padded(), threads, Sums(Sums::Zero()), map,
-                        [](const Sums& a, const Sums& b) { return Sums(a + b); }, chunk);
+  return parallelReduce(
+      reference.padded(), threads, Sums(Sums::Zero()), map, [](const Sums& a, const Sums& b) { return Sums(a + b); },
+      chunk);
 }
 
 Linearization linearize(const Eigen::Isometry3d& T_reference_current, const Scales& scales, float gate)
@@ -95,7 +110,7 @@ DenseAlignment alignDense(const ReferenceFrame& reference, const RgbdPyramid& cu
   const int levels = static_cast<int>(std::min(reference.size(), current.levels.size()));
   for (int l = std::min(options.coarsest, levels - 1); l >= std::min(options.finest, levels - 1); --l) {
     const CurrentArrays arrays = arraysOf(current.levels[l], cameras);
-    const float gate = l == 0 ? 0.05f : l == 1 ? 0.1f : 0.2f; // of the depth
+    const float gate = l == 0 ? 0.05f : l == 1 ? 0.1f : 0.2f;          // of the depth
     const double still = 0.02 * reference[l].median_depth / arrays.fx; // metres: a fiftieth of a pixel
     for (int k = 0; k < options.iterations; ++k) {
       sums = sumsAt(reference[l], arrays, linearize(result.T_reference_current, scales, gate), options.threads);

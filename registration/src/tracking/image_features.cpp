@@ -18,7 +18,8 @@ cv::Mat grayImage(const Plane& plane)
 
 /// The surface that a pixel of the colour image shows: its depth is searched for where the surface would be seen by the
 /// depth camera.
-SmoothDepth surfaceAt(const RgbdLevel& level, const RgbdCameras& cameras, const cv::Point2f& pixel, Eigen::Vector3f& point)
+SmoothDepth surfaceAt(const RgbdLevel& level, const RgbdCameras& cameras, const cv::Point2f& pixel,
+                      Eigen::Vector3f& point)
 {
   constexpr int radius = 1, rounds = 4; // the offset of the cameras is small against the depth: each round a digit
   const Pinhole K = halved(cameras.depth, level.depth_halvings), C = halved(cameras.color, level.gray_halvings);

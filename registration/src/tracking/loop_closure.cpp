@@ -5,8 +5,8 @@
 #include <fresco/core/parallel.h>
 namespace fresco::tracking {
 namespace {
-constexpr Index fewest_votes = 12;  // features that agree on a pose: unrelated images reach some 6
-constexpr std::size_t tried = 24;   // key frames that are compared with each by features
+constexpr Index fewest_votes = 12; // features that agree on a pose: unrelated images reach some 6
+constexpr std::size_t tried = 24;  // key frames that are compared with each by features
 
 /// Correlation of two coarse images, -1..1.
 double likeness(const RgbdPyramid& a, const RgbdPyramid& b)

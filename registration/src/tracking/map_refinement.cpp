@@ -106,7 +106,7 @@ IsometryVector chainPoses(const TrackingMap& map)
   for (Index root = 0; root < count; ++root) {
     if (known[root])
       continue;
-  using Step = std::pair<std::pair<Index, Index>, Eigen::Isometry3d>; // (distance in time, key frame), pose
+    using Step = std::pair<std::pair<Index, Index>, Eigen::Isometry3d>; // (distance in time, key frame), pose
     const auto later = [](const Step& x, const Step& y) { return x.first > y.first; };
     std::priority_queue<Step, std::vector<Step>, decltype(later)> queue(later);
     queue.push({{0, root}, Eigen::Isometry3d::Identity()});

@@ -15,9 +15,12 @@ bool isFar(const DenseAlignment& found)
 
 void Odometry::add(Index frame, RgbdPyramid pyramid)
 {
+  constexpr Index longest_gap = 5; // frames: after more the motion before says nothing
   if (pyramid.depth_share < least_depth_share)
     return;
-  if (current_ >= 0 && track(frame, pyramid)) {
+  const bool follows = current_ >= 0 && frame - last_frame_ <= longest_gap;
+  last_frame_ = frame;
+  if (follows && track(frame, pyramid)) {
     if (isFar(last_)) {
       const Index from = current_;
       const DenseAlignment found = last_;

@@ -22,6 +22,6 @@ private:
   ReferenceFrame reference_; ///< of the last key frame
   Eigen::Isometry3d T_key_last_ = Eigen::Isometry3d::Identity(), velocity_ = Eigen::Isometry3d::Identity();
   DenseAlignment last_;
-  Index current_ = -1; ///< key frame
+  Index current_ = -1, last_frame_ = -1; ///< key frame; frame of the video
 };
 } // namespace fresco::tracking

@@ -9,7 +9,7 @@ public:
   ReferenceLevel() = default;
   ReferenceLevel(const RgbdLevel& level, const RgbdCameras& cameras);
 
-  Index size() const { return size_; }       ///< without padding
+  Index size() const { return size_; } ///< without padding
   Index padded() const { return padded_; }
   ReferenceArrays arrays() const;
   Eigen::Vector3f point(Index i) const { return {row(0)[i], row(1)[i], row(2)[i]}; }

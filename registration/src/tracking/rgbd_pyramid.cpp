@@ -105,7 +105,10 @@ RgbdPyramid makePyramid(const RgbdImage& image, const DepthRules& rules)
       next.gray = halfGray(last.gray);
     pyramid.levels.push_back(std::move(next));
   }
-  pyramid.contrast = deviation(pyramid.levels.back().gray);
+  constexpr double least_contrast = 2; // grey levels: a covered lens; there is nothing but noise
+  if (deviation(pyramid.levels.back().gray) < least_contrast)
+    for (RgbdLevel& any : pyramid.levels)
+      any.gray = {};
   return pyramid;
 }
 } // namespace fresco::tracking

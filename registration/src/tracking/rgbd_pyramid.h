@@ -32,15 +32,15 @@ using Plane = Plane2d<float>;
 /// One resolution of a frame.
 struct RgbdLevel {
   Plane depth; ///< metres, 0 = none
-  Plane gray;  ///< 0..255; empty if there is no colour image
+  Plane gray;  ///< 0..255; empty if there is no colour image, or hardly any contrast in it
   int depth_halvings = 0, gray_halvings = 0; ///< of the images as they were taken
 };
 
 /// A frame at several resolutions, fine to coarse; the finest is at most 400 pixels wide.
 struct RgbdPyramid {
   std::vector<RgbdLevel> levels;
+  std::string problem;    ///< why the frame could not be read; empty = it was
   double depth_share = 0; ///< share of the pixels that have a depth, 0..1
-  double contrast = 0;    ///< deviation of the intensities, grey levels
 };
 
 struct DepthRules {

@@ -2,6 +2,7 @@
 #include "simulation/sensors/dataset.h"
 #include "simulation/scene/labels.h"
 #include "simulation/sensors/random.h"
+#include "simulation/sensors/rgbd_walk.h"
 #include "simulation/sensors/survey.h"
 #include "simulation/sensors/views.h"
 #include <filesystem>
@@ -36,6 +37,9 @@ void validate(const DatasetOptions& o)
   require(o.intruder >= 0, "intruder ", o.intruder, " is negative");
   require(o.pose_noise >= 0 && o.pose_noise <= 1, "pose noise ", o.pose_noise, " is not in 0..1");
   require(o.turn_noise >= 0 && o.turn_noise <= 10, "turn noise ", o.turn_noise, " is not in 0..10");
+  require(o.rgbd_frames >= 0 && o.rgbd_frames <= 100000, "RGB-D frames ", o.rgbd_frames, " is not in 0..100000");
+  require(o.rgbd_width >= 16 && o.rgbd_width <= 20000 && o.rgbd_height >= 16 && o.rgbd_height <= 20000,
+          "RGB-D image size ", o.rgbd_width, "x", o.rgbd_height, " is not in 16..20000");
   require(o.jpeg_quality >= 1 && o.jpeg_quality <= 100, "JPEG quality ", o.jpeg_quality, " is not in 1..100");
 }
 
@@ -186,6 +190,13 @@ void removeOld(const std::string& folder)
   fs::remove(folder + "/survey.e57");
   for (const char* file : {"cameras.txt", "images.txt", "points3D.txt"})
     fs::remove(folder + "/cameras/" + file);
+  std::vector<fs::path> frames;
+  if (fs::is_directory(folder + "/rgbd"))
+    for (const auto& entry : fs::directory_iterator(folder + "/rgbd"))
+      if (entry.is_regular_file() && isNumbered(entry.path().stem(), "frame-"))
+        frames.push_back(entry.path());
+  for (const fs::path& path : frames)
+    fs::remove(path);
   const std::pair<const char*, const char*> numbered_files[] = {
       {"scans", "scan_"}, {"panoramas", "scan_"}, {"images", "view_"}, {"truth_images", "view_"}};
   for (const auto& [sub, prefix] : numbered_files) {
@@ -255,6 +266,11 @@ void writeDataset(const std::string& name, const std::string& folder, const Data
     writePhotographs(run, photographs, subProgress(progress, 0.5, 1.0));
     photographs = misplaced(photographs, options);
     writeColmap(folder + "/cameras", photographs);
+  }
+  if (options.rgbd_frames > 0) {
+    const RgbdWalkOptions walk{options.rgbd_frames,  options.rgbd_width, options.rgbd_height,
+                               options.jpeg_quality, options.seed,       options.threads};
+    writeRgbdWalk(lit, folder + "/rgbd", planWalk(planning, walk.frames), walk, subProgress(progress, 0.5, 1.0));
   }
   if (options.survey)
     writeSurvey(folder, poses, photographs);

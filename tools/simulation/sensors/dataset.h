@@ -9,24 +9,26 @@ namespace fresco::simulation {
 struct DatasetOptions {
   int stations = 6; ///< laser scans, >= 1
   LaserOptions laser;
-  int rooms = 8;                  ///< of the scene office, 4..32
-  int views = 60;                 ///< photographs, >= 1; 0 = none
-  int width = 1280, height = 960; ///< pixels of a photograph, 16..20000
-  bool panoramas = false;         ///< one from each station, JPEG
-  int panorama_height = 2048;     ///< pixels, 8..10000; twice as wide
-  bool survey = false;            ///< also all of it as one file, survey.e57
-  bool labels = false;            ///< scans have a field `label`, see PointLabel
-  double focal = 0.9;             ///< focal length / width, > 0.1
-  float exposure_spread = 0.2f;   ///< brightness of photographs is 1 +- this, 0..0.9
-  float sensor_noise = 0.6f;      ///< deviation, grey levels of 0..255, >= 0
-  float vignetting = 1.f;         ///< light in the photographs' corners / in their middle, 0.1..1
-  float blur = 0.f;               ///< deviation of the photographs' blur, pixels, 0..20
-  int intruder = 0;               ///< somebody stands in every Nth photograph, >= 0; 0 = in none
-  double pose_noise = 0;          ///< deviation of the written cameras' positions, metres, 0..1
-  double turn_noise = 0;          ///< deviation of their directions, degrees, 0..10
-  int jpeg_quality = 95;          ///< 1..100
-  bool truth_images = false;      ///< also the photographs without exposure differences and noise, as PNG
-  float max_edge = 0.1f;          ///< metres, longest side of the faces of rooms, 0.02..10
+  int rooms = 8;                           ///< of the scene office, 4..32
+  int views = 60;                          ///< photographs, >= 1; 0 = none
+  int width = 1280, height = 960;          ///< pixels of a photograph, 16..20000
+  bool panoramas = false;                  ///< one from each station, JPEG
+  int panorama_height = 2048;              ///< pixels, 8..10000; twice as wide
+  bool survey = false;                     ///< also all of it as one file, survey.e57
+  bool labels = false;                     ///< scans have a field `label`, see PointLabel
+  double focal = 0.9;                      ///< focal length / width, > 0.1
+  float exposure_spread = 0.2f;            ///< brightness of photographs is 1 +- this, 0..0.9
+  float sensor_noise = 0.6f;               ///< deviation, grey levels of 0..255, >= 0
+  float vignetting = 1.f;                  ///< light in the photographs' corners / in their middle, 0.1..1
+  float blur = 0.f;                        ///< deviation of the photographs' blur, pixels, 0..20
+  int intruder = 0;                        ///< somebody stands in every Nth photograph, >= 0; 0 = in none
+  double pose_noise = 0;                   ///< deviation of the written cameras' positions, metres, 0..1
+  double turn_noise = 0;                   ///< deviation of their directions, degrees, 0..10
+  int jpeg_quality = 95;                   ///< 1..100
+  int rgbd_frames = 0;                     ///< of an RGB-D camera carried around, in rgbd/; 0..100000
+  int rgbd_width = 640, rgbd_height = 480; ///< pixels, 16..20000
+  bool truth_images = false;               ///< also the photographs without exposure differences and noise, as PNG
+  float max_edge = 0.1f;                   ///< metres, longest side of the faces of rooms, 0.02..10
   std::uint64_t seed = 1;
   int threads = 0; ///< 0 = all cores; the result does not depend on it
 };
