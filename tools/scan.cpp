@@ -44,13 +44,18 @@ void declare(Args& args, DatasetOptions& options, int& seed)
       "cameras/ gets a frame and a scale (0.01..100) of its own, made by this seed; own_frame.txt tells which; 0 "
       "= that of poses.txt");
   args.option("quality", options.jpeg_quality, "of the JPEG files, 1..100");
+  args.option(
+      "rgbd", options.rgbd_frames,
+      "frames of an RGB-D camera that is carried around, 0..100000, as rgbd/frame-NNNNNN.{color.jpg,depth.png}; "
+      "rgbd/poses.txt is the truth");
+  args.size("rgbd_size", options.rgbd_width, options.rgbd_height, "size of these images, pixels, 16..20000 each");
   args.flag("truth_images", options.truth_images, "also photographs without exposure differences and noise (PNG)");
   args.option("edge", options.max_edge, "longest side of a face of the rooms' truth, metres, 0.02..10");
   args.note("SCENE is conference_room, apartment (two rooms and a door), office (rooms at corridors) or a mesh file (" +
             readableExtensions(FileKind::mesh) +
             ").\n"
             "Writes scans/scan_NN.pcd, panoramas/scan_NN.jpg if asked for, images/view_NNN.jpg, cameras/ (COLMAP "
-            "text), own_frame.txt, truth.ply, exposures.txt, poses.txt, with -e57 survey.e57.\n"
+            "text), own_frame.txt, truth.ply, exposures.txt, poses.txt, with -e57 survey.e57, with -rgbd rgbd/.\n"
             "Example: fresco_scan conference_room room -stations 6 -noise 0.003 -images 1280x960");
 }
 } // namespace

@@ -150,8 +150,9 @@ ModelInput readModelInput(const std::string& folder)
     throw std::runtime_error(folder + ": no such folder");
   if (isRgbdFolder(folder)) {
     input.rgbd = readRgbdFolder(folder);
-    for (const RgbdFrame& frame : input.rgbd->frames)
-      input.poses.emplace_back(frame.T_world_camera.matrix());
+    if (input.rgbd->has_poses)
+      for (const RgbdFrame& frame : input.rgbd->frames)
+        input.poses.emplace_back(frame.T_world_camera.matrix());
     return input;
   }
   if (!fs::is_directory(folder + "/scans"))
@@ -174,7 +175,7 @@ std::string describe(const ModelInput& input)
     return concat(count, " ", what, count == 1 ? "" : "s");
   };
   if (input.rgbd)
-    return counted(input.rgbd->frames.size(), "RGB-D frame");
+    return counted(input.rgbd->frames.size(), "RGB-D frame") + (input.rgbd->has_poses ? "" : " without poses");
   const auto& inside = input.inside.pictures;
   const std::size_t panoramas_inside =
       std::count_if(inside.begin(), inside.end(), [](const ScanPicture& picture) { return picture.isPanorama(); });

@@ -2,6 +2,7 @@
 #pragma once
 #include <fresco/core/camera.h>
 #include <fresco/core/image.h>
+#include <fresco/io/rgbd_folder.h>
 #include <fresco/surface/core/depth_fusion.h>
 #include <string>
 #include <vector>
@@ -15,13 +16,11 @@ struct RgbdFrame {
 struct RgbdFolder {
   CameraModel camera; ///< of the depth images; pixel centres at +0.5
   std::vector<RgbdFrame> frames;
+  bool has_poses = true;  ///< else no frame has one: they are to be tracked
+  Index without_pose = 0; ///< frames that were left out since they have no file of a pose, but others do
 };
 
-/// Whether `camera-intrinsics.txt` lies in the folder.
-bool isRgbdFolder(const std::string& folder);
-
-/// `camera-intrinsics.txt` (3x3) and `frame-*.{color.jpg or color.png, depth.png, pose.txt}` (4x4, world from camera).
-/// Frames whose pose is not finite (lost tracking) are left out.
+/// listRgbdFolder() with the poses of the frames. Frames whose pose is not finite (lost tracking) are left out.
 /// @throws std::runtime_error naming the file that is missing or malformed
 RgbdFolder readRgbdFolder(const std::string& folder);
 

@@ -71,12 +71,13 @@ std::vector<Viewpoint> viewsFromScans(const Job& job, const TriangleMesh& mesh, 
 /// Views of the photographs that look about level; all of them where none does.
 std::vector<Viewpoint> levelViews(const Job& job, const Eigen::Vector3d& up)
 {
+  const ModelInput& input = job.input;
   std::vector<Viewpoint> all, level;
   const CameraSet cameras = placedCameras(job);
   for (const View& view : cameras.views)
     all.push_back(viewOf(cameras.cameras[view.camera], view.T_camera_world.inverse()));
   if (job.input.rgbd)
-    for (const RgbdFrame& frame : job.input.rgbd->frames)
+    for (const RgbdFrame& frame : placedFrames(job))
       all.push_back(viewOf(job.input.rgbd->camera, frame.T_world_camera));
   for (const Viewpoint& view : all)
     if (std::abs((view.look - view.eye).dot(up)) < 0.5) // 30 degrees up or down
@@ -106,12 +107,12 @@ std::vector<Viewpoint> variedViews(const std::vector<Viewpoint>& views, std::siz
 
 /// Upright direction: that of the frame for scans; for RGB-D frames, whose world may be tilted,
 /// the mean of the cameras'.
-std::optional<Eigen::Vector3d> uprightOf(const ModelInput& input)
+std::optional<Eigen::Vector3d> uprightOf(const Job& job)
 {
-  if (!input.rgbd)
+  if (!job.input.rgbd)
     return Eigen::Vector3d::UnitZ();
   Eigen::Vector3d up = Eigen::Vector3d::Zero();
-  for (const RgbdFrame& frame : input.rgbd->frames)
+  for (const RgbdFrame& frame : placedFrames(job))
     up -= frame.T_world_camera.linear().col(1);
   return up.norm() > 0 ? std::optional<Eigen::Vector3d>(up.normalized()) : std::nullopt;
 }
@@ -140,8 +141,8 @@ Figures makePictures(const Job& job, const Progress& progress)
 {
   const auto& [input, files, options] = job;
   const TexturedMesh model = readTexturedMesh(files.model_obj);
-  const Eigen::Vector3d up = uprightOf(input).value_or(Eigen::Vector3d::UnitZ());
-  const IndoorOptions indoor{uprightOf(input), static_cast<double>(options.width) / options.height, options.threads};
+  const Eigen::Vector3d up = uprightOf(job).value_or(Eigen::Vector3d::UnitZ());
+  const IndoorOptions indoor{uprightOf(job), static_cast<double>(options.width) / options.height, options.threads};
   const Viewpoint above = aboveView(model.mesh, indoor);
   const Viewpoint inside = insideView(model.mesh, indoor).value_or(above);
   std::vector<Viewpoint> places = levelViews(job, up);

@@ -142,7 +142,16 @@ std::pair<double, double> rmsMoves(const std::vector<Eigen::Isometry3d>& from, c
 Figures pointsFromFrames(const Job& job, const Progress& progress)
 {
   const auto& [input, files, options] = job;
-  const RgbdFolder& rgbd = *input.rgbd;
+  Figures figures;
+  std::vector<Pose> poses = input.poses; // of all frames; those of `rgbd` have one
+  RgbdFolder rgbd = *input.rgbd;
+  if (!rgbd.has_poses) {
+    poses = trackFrames(job, figures, subProgress(progress, 0.0, 0.3));
+    writePoses(files.poses, poses);
+    rgbd.frames = placedFrames(job);
+  }
+  if (rgbd.without_pose > 0)
+    figures["warnings"].push_back(concat(rgbd.without_pose, " frames without pose.txt are left out: others have one"));
   DepthFrames frames;
   frames.camera = rgbd.camera;
   for (const RgbdFrame& frame : rgbd.frames)
@@ -153,22 +162,27 @@ Figures pointsFromFrames(const Job& job, const Progress& progress)
   fusion.cell = options.fuse > 0 ? options.fuse : finestCell(job);
   fusion.refine_poses = !options.use_poses;
   fusion.threads = options.threads;
-  const DepthFusionResult fused = fuseDepthImages(frames, fusion, subProgress(progress, 0.0, 0.8));
+  const DepthFusionResult fused =
+      fuseDepthImages(frames, fusion, subProgress(progress, rgbd.has_poses ? 0.0 : 0.3, 0.8));
   if (fused.points.size() < 100)
     throw std::runtime_error(input.folder + ": hardly any depth in the frames");
   const PointSet points = smoothed(fused.points, options, subProgress(progress, 0.8, 1.0));
   writePoints(files.points, points);
-  std::vector<Pose> poses;
-  for (const Eigen::Isometry3d& T : fused.T_world_camera)
-    poses.emplace_back(T.matrix());
+  std::size_t next = 0;
+  for (Pose& pose : poses)
+    if (pose)
+      pose = fused.T_world_camera.at(next++).matrix();
   writePoses(files.poses, poses);
   const auto [shift, turn] = rmsMoves(frames.T_world_camera, fused.T_world_camera);
-  return {{"registration", options.use_poses ? "given poses" : "given poses, refined"},
-          {"frames", rgbd.frames.size()},
-          {"poses_moved_metres", shift},
-          {"poses_turned_degrees", turn},
-          {"fusion_cell", fusion.cell},
-          {"points", points.size()}};
+  figures.update({{"registration", !rgbd.has_poses     ? "tracked, refined"
+                                   : options.use_poses ? "given poses"
+                                                       : "given poses, refined"},
+                  {"frames", rgbd.frames.size()},
+                  {"poses_moved_metres", shift},
+                  {"poses_turned_degrees", turn},
+                  {"fusion_cell", fusion.cell},
+                  {"points", points.size()}});
+  return figures;
 }
 } // namespace
 

@@ -33,6 +33,11 @@ Figures alignCameras(const Job& job, const Progress& progress);
 
 /// The photographs' cameras in the frame of the points.
 CameraSet placedCameras(const Job& job);
+/// RGB-D frames that have a pose, with it: as given, or as tracking found it (reads `files.poses`).
+std::vector<RgbdFrame> placedFrames(const Job& job);
+
+/// Poses of RGB-D frames without any, one a frame; adds figures and warnings.
+std::vector<Pose> trackFrames(const Job& job, Figures& figures, const Progress& progress);
 
 /// Surface of the points: reads `files.points`, writes `files.surface`. Unless it is to be closed, the surface in
 /// places that scans or frames saw through is left out.

@@ -36,7 +36,8 @@ FreeSpace askAllViews(const Points& places, const Job& job, double cell)
   const std::vector<Pose> poses = readPoses(files.poses);
   if (input.rgbd)
     for (std::size_t f = 0; f < input.rgbd->frames.size(); ++f)
-      space.ask(readImage16(input.rgbd->frames[f].depth), input.rgbd->camera, Eigen::Isometry3d(*poses.at(f)));
+      if (poses.at(f))
+        space.ask(readImage16(input.rgbd->frames[f].depth), input.rgbd->camera, Eigen::Isometry3d(*poses[f]));
   for (std::size_t s = 0; s < input.scans.size(); ++s)
     if (poses.at(s)) {
       const PointSet scan = readPoints(input.scans[s]);

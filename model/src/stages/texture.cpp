@@ -92,6 +92,8 @@ std::vector<TextureView> viewsOf(const Job& job, const std::vector<Pose>& poses)
   }
   if (input.rgbd)
     for (std::size_t f = 0; f < input.rgbd->frames.size(); ++f) {
+      if (!poses.at(f))
+        continue;
       TextureView next;
       next.camera = input.rgbd->camera;
       next.T_camera_world = Eigen::Isometry3d(*poses.at(f)).inverse();

@@ -43,7 +43,8 @@ double PoseGraph::energy(const IsometryVector& poses) const
   const double c = options_.tolerance * options_.tolerance;
   double sum = 0.0;
   for (const PoseEdge& edge : edges_) {
-    const double squared = error(poses, edge).squaredNorm();
+    const Vector6d e = error(poses, edge);
+    const double squared = e.dot(edge.information * e);
     sum += edge.weight * c * squared / (c + squared);
   }
   return sum;
@@ -61,21 +62,22 @@ Eigen::VectorXd PoseGraph::step(const IsometryVector& poses, double damping) con
         entries.emplace_back(6 * row + r, 6 * column + k, block(r, k));
   };
   for (const PoseEdge& edge : edges_) {
-    const Vector6d e = error(poses, edge);
-    const double falloff = c / (c + e.squaredNorm()), weight = edge.weight * falloff * falloff;
+    const Vector6d e = error(poses, edge), We = edge.information * e;
+    const double falloff = c / (c + e.dot(We)), weight = edge.weight * falloff * falloff;
     const Eigen::Isometry3d T = poses[edge.b].inverse() * poses[edge.a];
     // The error moves with b and against a motion of a carried over to the frame of b.
     Matrix6d J = Matrix6d::Zero();
     J.topLeftCorner<3, 3>() = J.bottomRightCorner<3, 3>() = -T.linear();
     J.bottomLeftCorner<3, 3>() = -skew(T.translation()) * T.linear() / options_.size;
-    add(edge.a, edge.a, weight * J.transpose() * J);
-    add(edge.a, edge.b, weight * J.transpose());
-    add(edge.b, edge.a, weight * J);
-    add(edge.b, edge.b, weight * Matrix6d::Identity());
-    g.segment<6>(6 * edge.a) += weight * J.transpose() * e;
-    g.segment<6>(6 * edge.b) += weight * e;
-    diagonal.segment<6>(6 * edge.a) += weight * J.colwise().squaredNorm().transpose();
-    diagonal.segment<6>(6 * edge.b).array() += weight;
+    const Matrix6d WJ = edge.information * J, JtWJ = J.transpose() * WJ;
+    add(edge.a, edge.a, weight * JtWJ);
+    add(edge.a, edge.b, weight * WJ.transpose());
+    add(edge.b, edge.a, weight * WJ);
+    add(edge.b, edge.b, weight * edge.information);
+    g.segment<6>(6 * edge.a) += weight * J.transpose() * We;
+    g.segment<6>(6 * edge.b) += weight * We;
+    diagonal.segment<6>(6 * edge.a) += weight * JtWJ.diagonal();
+    diagonal.segment<6>(6 * edge.b) += weight * edge.information.diagonal();
   }
   for (Index k = 0; k < n; ++k)
     entries.emplace_back(k, k, damping * diagonal[k] + 1e-12);

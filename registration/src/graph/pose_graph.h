@@ -8,6 +8,8 @@ struct PoseEdge {
   Index a = 0, b = 0; ///< indices of poses
   Eigen::Isometry3d T_a_b = Eigen::Isometry3d::Identity();
   double weight = 1.0; ///< > 0
+  /// Of the error's parts: rotation times PoseGraphOptions::size and translation, in the frame of b; positive semidefinite.
+  Matrix6d information = Matrix6d::Identity();
 };
 using PoseEdges = std::vector<PoseEdge, Eigen::aligned_allocator<PoseEdge>>;
 

@@ -3,6 +3,7 @@
 #include "simulation/scene/labels.h"
 #include "simulation/sensors/random.h"
 #include "simulation/sensors/sparse.h"
+#include "simulation/sensors/rgbd_walk.h"
 #include "simulation/sensors/survey.h"
 #include "simulation/sensors/views.h"
 #include <filesystem>
@@ -41,6 +42,9 @@ void validate(const DatasetOptions& o)
   require(o.sparse >= 0 && o.own_frame >= 0, "sparse ", o.sparse, " or own_frame ", o.own_frame, " is negative");
   require(o.sparse_noise >= 0 && o.sparse_noise <= 1, "sparse noise ", o.sparse_noise, " is not in 0..1");
   require(o.sparse_outliers >= 0 && o.sparse_outliers <= 1, "outliers ", o.sparse_outliers, " are not in 0..1");
+  require(o.rgbd_frames >= 0 && o.rgbd_frames <= 100000, "RGB-D frames ", o.rgbd_frames, " is not in 0..100000");
+  require(o.rgbd_width >= 16 && o.rgbd_width <= 20000 && o.rgbd_height >= 16 && o.rgbd_height <= 20000,
+          "RGB-D image size ", o.rgbd_width, "x", o.rgbd_height, " is not in 16..20000");
   require(o.jpeg_quality >= 1 && o.jpeg_quality <= 100, "JPEG quality ", o.jpeg_quality, " is not in 1..100");
 }
 
@@ -192,6 +196,13 @@ void removeOld(const std::string& folder)
   fs::remove(folder + "/own_frame.txt");
   for (const char* file : {"cameras.txt", "images.txt", "points3D.txt"})
     fs::remove(folder + "/cameras/" + file);
+  std::vector<fs::path> frames;
+  if (fs::is_directory(folder + "/rgbd"))
+    for (const auto& entry : fs::directory_iterator(folder + "/rgbd"))
+      if (entry.is_regular_file() && isNumbered(entry.path().stem(), "frame-"))
+        frames.push_back(entry.path());
+  for (const fs::path& path : frames)
+    fs::remove(path);
   const std::pair<const char*, const char*> numbered_files[] = {
       {"scans", "scan_"}, {"panoramas", "scan_"}, {"images", "view_"}, {"truth_images", "view_"}};
   for (const auto& [sub, prefix] : numbered_files) {
@@ -265,6 +276,11 @@ void writeDataset(const std::string& name, const std::string& folder, const Data
     if (options.own_frame > 0)
       writeFile(folder + "/own_frame.txt", intoOwnFrame(photographs, sparse, options.own_frame));
     writeColmap(folder + "/cameras", photographs, sparse);
+  }
+  if (options.rgbd_frames > 0) {
+    const RgbdWalkOptions walk{options.rgbd_frames,  options.rgbd_width, options.rgbd_height,
+                               options.jpeg_quality, options.seed,       options.threads};
+    writeRgbdWalk(lit, folder + "/rgbd", planWalk(planning, walk.frames), walk, subProgress(progress, 0.5, 1.0));
   }
   if (options.survey)
     writeSurvey(folder, poses, photographs);

@@ -30,8 +30,10 @@ struct DatasetOptions {
   double sparse_outliers = 0.1;   ///< share of wrong points, 0..1
   int own_frame = 0;              ///< > 0: seed of a frame and a scale of the cameras' own; 0 = that of the scans
   int jpeg_quality = 95;          ///< 1..100
-  bool truth_images = false;      ///< also the photographs without exposure differences and noise, as PNG
-  float max_edge = 0.1f;          ///< metres, longest side of the faces of rooms, 0.02..10
+  int rgbd_frames = 0;            ///< of an RGB-D camera carried around, in rgbd/; 0..100000
+  int rgbd_width = 640, rgbd_height = 480; ///< pixels, 16..20000
+  bool truth_images = false;               ///< also the photographs without exposure differences and noise, as PNG
+  float max_edge = 0.1f;                   ///< metres, longest side of the faces of rooms, 0.02..10
   std::uint64_t seed = 1;
   int threads = 0; ///< 0 = all cores; the result does not depend on it
 };
