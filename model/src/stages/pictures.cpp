@@ -71,7 +71,6 @@ std::vector<Viewpoint> viewsFromScans(const Job& job, const TriangleMesh& mesh, 
 /// Views of the photographs that look about level; all of them where none does.
 std::vector<Viewpoint> levelViews(const Job& job, const Eigen::Vector3d& up)
 {
-  const ModelInput& input = job.input;
   std::vector<Viewpoint> all, level;
   const CameraSet cameras = placedCameras(job);
   for (const View& view : cameras.views)
