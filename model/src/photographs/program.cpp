@@ -147,8 +147,8 @@ void runProgram(const std::vector<std::string>& command, const std::string& log,
     takeLines(text, use);
     stop();
   }
-  text += "\n";
-  takeLines(text, use);
+  if (!text.empty()) // a last line without an end
+    use(text);
   int status = 0;
   while (!child.ended(status)) { // it has closed its output, and ends soon
     stop();
