@@ -76,6 +76,7 @@ void addMeshes(const py::module_& module)
               [](const Call& call) {
                 const auto path = call.value<std::string>("path");
                 const auto model = call.lend<TexturedMesh>("model");
+                require(model->mesh.vertexCount() > 0, "model: no vertices");
                 const int quality = call.value<int>("jpeg_quality");
                 Call::access([&] { writeTexturedMesh(path, *model, quality); });
                 return py::none();

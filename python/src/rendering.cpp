@@ -32,25 +32,20 @@ ViewRequest viewRequest(const Call& call)
   return request;
 }
 
-/// The view asked for, and what goes with it.
-void chooseView(const Call& call, const Subject& subject, const TriangleMesh* room, PictureOptions& options)
-{
-  const ViewRequest request = viewRequest(call);
-  options.cull_back_faces |= request.view == "above";
-  if (py::isinstance(call["view"], recordClass<Viewpoint>()))
-    options.view = call.value<Viewpoint>("view");
-  else
-    options.view = requestedView(request, subject, room, options);
-}
-
-/// render(options) with the view chosen, by one thread at a time.
+/// render(options) with the view asked for, by one thread at a time.
 template <typename Render>
 py::object draw(const Call& call, const Subject& subject, const Render& render)
 {
   auto options = call.options<PictureOptions>();
+  const ViewRequest request = viewRequest(call);
+  options.cull_back_faces |= request.view == "above";
+  const bool placed = py::isinstance(call["view"], recordClass<Viewpoint>());
+  if (placed)
+    options.view = call.value<Viewpoint>("view");
   const Lent<std::optional<TriangleMesh>> room = call.lend<std::optional<TriangleMesh>>("room");
-  chooseView(call, subject, *room ? &**room : nullptr, options);
   return call.run([&](const Progress&) {
+    if (!placed)
+      options.view = requestedView(request, subject, *room ? &**room : nullptr, options);
     const std::lock_guard<std::mutex> lock(oneAtATime());
     return render(options);
   });

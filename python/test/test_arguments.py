@@ -61,6 +61,15 @@ def test_empty_sets_and_other_things_are_named_by_every_stage(name, tmp_path):
         function(**{**required, "points": FLOATS})
 
 
+def test_empty_models_are_named(tmp_path):
+    for call in (lambda: fresco.write_mesh(tmp_path / "a.ply", fresco.TriangleMesh()),
+                 lambda: fresco.write_textured_mesh(tmp_path / "a.obj", fresco.TexturedMesh()),
+                 lambda: fresco.snapshot(fresco.PointSet()), lambda: fresco.write_image(tmp_path / "a.png", None)):
+        with pytest.raises(ValueError, match="^(mesh|model|image): no "):
+            call()
+    assert not list(tmp_path.iterdir())
+
+
 def test_attributes_of_unequal_length_are_refused():
     points = fresco.PointSet(FLOATS, normals=FLOATS[:2])
     with pytest.raises(ValueError, match="4 points, 2 normals"):
