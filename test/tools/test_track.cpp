@@ -6,7 +6,7 @@
 #include <opencv2/imgcodecs.hpp>
 namespace fresco::test {
 namespace {
-constexpr int frames = 24;
+constexpr int frames = 40;
 
 /// A video whose numbers have no leading zeros, so that the order of names is not that of numbers.
 std::string videoFolder()
@@ -29,7 +29,7 @@ TEST(ToolTrack, WritesAPoseAFrameInTheOrderOfTheNumbers)
   const std::string folder = videoFolder();
   const Outcome outcome = run(folder, "track video -o out");
   ASSERT_EQ(outcome.status, 0) << outcome.err;
-  EXPECT_NE(outcome.err.find("24 of 24 frames placed"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("40 of 40 frames placed"), std::string::npos) << outcome.err;
   EXPECT_LT(worstError(readPoses(folder + "/out/poses.txt"), swingPoses(frames)), 0.02);
 }
 
