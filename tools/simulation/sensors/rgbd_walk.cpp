@@ -107,8 +107,8 @@ std::vector<Vector3d> walked(const std::vector<Vector3d>& path, int frames, doub
   std::size_t leg = 0;
   double along = 0;
   for (int f = 0; f < frames; ++f) {
-    while (leg + 1 < path.size() && along > (path[leg + 1] - path[leg]).norm())
-      along -= (path[leg + 1] - path[leg++]).norm();
+    for (; leg + 1 < path.size() && along > (path[leg + 1] - path[leg]).norm(); ++leg)
+      along -= (path[leg + 1] - path[leg]).norm();
     const Vector3d way = leg + 1 < path.size() ? Vector3d(path[leg + 1] - path[leg]) : Vector3d(Vector3d::Zero());
     points.push_back(path[std::min(leg, path.size() - 1)] +
                      (way.norm() > 0 ? Vector3d(along * way.normalized()) : Vector3d(Vector3d::Zero())));
