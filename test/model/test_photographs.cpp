@@ -6,6 +6,7 @@
 #include "tools/small_room.h"
 #include <chrono>
 #include <fstream>
+#include <map>
 namespace fresco::model {
 namespace {
 using Lines = std::vector<std::string>;
@@ -124,6 +125,7 @@ TEST(StructureFromMotion, PhotographsOfARoomArePlaced)
   CameraModel camera;
   camera.width = 480, camera.height = 360, camera.fx = camera.fy = 432, camera.cx = 240, camera.cy = 180;
   Lines names;
+  std::map<std::string, Eigen::Isometry3d> truth; // by name
   for (int i = 0; i < 8; ++i) {
     Eigen::Matrix3d R;
     const double angle = 0.6 + 0.05 * i;
@@ -132,6 +134,7 @@ TEST(StructureFromMotion, PhotographsOfARoomArePlaced)
     T.linear() = R;
     T.translation() = -R * Eigen::Vector3d(0.6 + 0.16 * i, 0.9 - 0.1 * (i % 3), 1.1 + 0.12 * (i % 2));
     names.push_back("photograph " + std::to_string(i) + ".png");
+    truth[names.back()] = T;
     writeImage(folder + "/images/" + names.back(), blotted(camera, T));
   }
   const StructureFromMotion motion(folder + "/images", names, folder + "/work", 2);
@@ -141,6 +144,19 @@ TEST(StructureFromMotion, PhotographsOfARoomArePlaced)
   const CameraSet found = readColmap(motion.model());
   ASSERT_EQ(found.views.size(), names.size());
   EXPECT_GT(readColmapPoints(motion.model()).size(), 100u);
+  const auto turn = [](const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) {
+    return Eigen::AngleAxisd(a.linear() * b.linear().transpose()).angle();
+  };
+  const auto way = [](const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) {
+    return (a.inverse().translation() - b.inverse().translation()).norm();
+  };
+  const View &first = found.views.front(), &last = found.views.back();
+  const double scale = way(last.T_camera_world, first.T_camera_world) / way(truth.at(last.image), truth.at(first.image));
+  for (const View& view : found.views) { // a frame and a scale apart
+    const Eigen::Isometry3d &a = truth.at(view.image), &b = truth.at(first.image);
+    EXPECT_NEAR(turn(view.T_camera_world, first.T_camera_world), turn(a, b), 0.01) << view.image;
+    EXPECT_NEAR(way(view.T_camera_world, first.T_camera_world), scale * way(a, b), 0.05 * scale) << view.image;
+  }
 }
 } // namespace
 } // namespace fresco::model
