@@ -188,6 +188,9 @@ Viewpoint chooseView(const Request& request, const Model& model, const PictureOp
   std::optional<TriangleMesh> room;
   if (!request.room.empty())
     room = readMesh(request.room);
+  const bool indoor = request.from.view == "inside" || request.from.view == "above";
+  require(request.from.eye || !indoor || room || meshOf(model), "-view ", request.from.view,
+          " needs a mesh with faces; -room names one");
   return requestedView(request.from, {meshOf(model), std::get_if<PointSet>(&model)}, room ? &*room : nullptr, options);
 }
 

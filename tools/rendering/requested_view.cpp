@@ -29,7 +29,7 @@ Viewpoint wholeModelView(const ViewRequest& request, const Subject& subject, con
 
 Viewpoint indoorView(const ViewRequest& request, const TriangleMesh* room, const PictureOptions& picture)
 {
-  require(room, "view ", request.view, " needs a mesh with faces: that of the room");
+  require(room, "view ", request.view, " needs a mesh with faces; room names one");
   IndoorOptions options;
   options.up = request.up;
   options.threads = picture.threads;
@@ -39,7 +39,7 @@ Viewpoint indoorView(const ViewRequest& request, const TriangleMesh* room, const
     view = aboveView(*room, options);
   } else {
     const std::optional<Viewpoint> inside = insideView(*room, options);
-    require(inside.has_value(), "no free space found inside the model: say where to look from and to");
+    require(inside.has_value(), "no free space found inside the model: give eye and look");
     view = *inside;
   }
   view.angle = request.angle.value_or(view.angle);
