@@ -151,7 +151,8 @@ TEST(StructureFromMotion, PhotographsOfARoomArePlaced)
     return (a.inverse().translation() - b.inverse().translation()).norm();
   };
   const View &first = found.views.front(), &last = found.views.back();
-  const double scale = way(last.T_camera_world, first.T_camera_world) / way(truth.at(last.image), truth.at(first.image));
+  const double scale =
+      way(last.T_camera_world, first.T_camera_world) / way(truth.at(last.image), truth.at(first.image));
   for (const View& view : found.views) { // a frame and a scale apart
     const Eigen::Isometry3d &a = truth.at(view.image), &b = truth.at(first.image);
     EXPECT_NEAR(turn(view.T_camera_world, first.T_camera_world), turn(a, b), 0.01) << view.image;

@@ -20,12 +20,12 @@ public:
     for (int box = 0; box < 4; ++box)
       for (int axis = 0; axis < 3; ++axis)
         for (int side = 0; side < 2; ++side) {
-          const double plane = (side ? high[box] : low[box])[axis];
+          const double plane = (side ? high_[box] : low_[box])[axis];
           const double s = (plane - from[axis]) / along[axis];
           const Eigen::Vector3d at = from + s * along;
           const int u = (axis + 1) % 3, v = (axis + 2) % 3;
-          if (s > 1e-6 && s < hit.depth && at[u] >= low[box][u] && at[u] <= high[box][u] && at[v] >= low[box][v] &&
-              at[v] <= high[box][v])
+          if (s > 1e-6 && s < hit.depth && at[u] >= low_[box][u] && at[u] <= high_[box][u] && at[v] >= low_[box][v] &&
+              at[v] <= high_[box][v])
             hit = {s, pattern(at[u], at[v], 6 * box + 2 * axis + side)};
         }
     return hit;
@@ -69,8 +69,8 @@ private:
   }
 
   unsigned seed_;
-  const Eigen::Vector3d low[4] = {{0, 0, 0}, {3.2, 0.2, 0}, {3.9, 2.2, 0}, {2.0, 3.2, 0}};
-  const Eigen::Vector3d high[4] = {{5, 4, 2.6}, {4.2, 1.0, 0.9}, {4.8, 3.0, 1.6}, {3.0, 3.9, 0.7}};
+  const Eigen::Vector3d low_[4] = {{0, 0, 0}, {3.2, 0.2, 0}, {3.9, 2.2, 0}, {2.0, 3.2, 0}};
+  const Eigen::Vector3d high_[4] = {{5, 4, 2.6}, {4.2, 1.0, 0.9}, {4.8, 3.0, 1.6}, {3.0, 3.9, 0.7}};
 };
 
 inline CameraModel smallCamera(double focal = 140)

@@ -2,8 +2,8 @@
 #include "simulation/sensors/dataset.h"
 #include "simulation/scene/labels.h"
 #include "simulation/sensors/random.h"
-#include "simulation/sensors/sparse.h"
 #include "simulation/sensors/rgbd_walk.h"
+#include "simulation/sensors/sparse.h"
 #include "simulation/sensors/survey.h"
 #include "simulation/sensors/views.h"
 #include <filesystem>
