@@ -13,11 +13,16 @@ from ._fresco import PointSet, TriangleMesh
 MOST_LOST = 1e-6
 
 
+def _shareable(values: ArrayLike, dtype: Any) -> NDArray[Any]:
+    """Of that type, contiguous and not read-only: the array itself, or a copy."""
+    return np.require(values, dtype, ["C", "W"])
+
+
 def _split(points: ArrayLike) -> tuple[NDArray[np.float32], NDArray[np.float64]]:
     """Coordinates as float32 and the origin that they are relative to: zero where float32 is enough."""
     given = np.asarray(points)
     if given.dtype == np.float32:
-        return np.ascontiguousarray(given), np.zeros(3)
+        return _shareable(given, np.float32), np.zeros(3)
     exact = np.asarray(given, np.float64)
     finite = exact[np.isfinite(exact).all(axis=1)] if exact.ndim == 2 else exact
     origin = np.zeros(3)
@@ -33,7 +38,7 @@ def _bytes(colors: ArrayLike) -> NDArray[np.uint8]:
     """Colours 0..255 from such, or from 0..1."""
     given = np.asarray(colors)
     if given.dtype == np.uint8:
-        return np.ascontiguousarray(given)
+        return _shareable(given, np.uint8)
     if given.dtype.kind == "f":
         return np.clip(np.round(given * 255), 0, 255).astype(np.uint8)
     return np.ascontiguousarray(given.astype(np.uint8))
@@ -49,12 +54,12 @@ def from_arrays(points: ArrayLike, faces: ArrayLike | None = None, *, normals: A
     vertices, origin = _split(points)
     shared: dict[str, Any] = {"origin": origin, **others}
     if normals is not None:
-        shared["normals"] = np.ascontiguousarray(normals, np.float32)
+        shared["normals"] = _shareable(normals, np.float32)
     if colors is not None:
         shared["colors"] = _bytes(colors)
     if faces is None:
         return PointSet(vertices, **shared)
-    return TriangleMesh(vertices, np.ascontiguousarray(faces, np.int32), **shared)
+    return TriangleMesh(vertices, _shareable(faces, np.int32), **shared)
 
 
 def from_open3d(geometry: Any) -> Union[PointSet, TriangleMesh]:

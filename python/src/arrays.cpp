@@ -46,6 +46,13 @@ py::array checkedArray(py::handle value, const std::string& name, const py::dtyp
   return array;
 }
 
+py::array sharedArray(const py::array& array, const std::string& name)
+{
+  if (array.size() > 0 && !array.writeable())
+    throw py::value_error(concat(name, ": read-only: numpy.array(", name, ") is a copy that can be written"));
+  return array;
+}
+
 py::array toArray(std::vector<Index>&& values)
 {
   auto owned = std::make_unique<std::vector<Index>>(std::move(values));

@@ -45,6 +45,9 @@ private:
 /// @throws py::type_error if it is no array of that type, py::value_error if its shape is another or it is not contiguous
 py::array checkedArray(py::handle value, const std::string& name, const py::dtype& type, Index width);
 
+/// The array, which a set will share with its caller. @throws py::value_error if it is read-only
+py::array sharedArray(const py::array& array, const std::string& name);
+
 /// An array that owns `matrix`, without a copy: a row per column.
 template <typename Matrix>
 py::array toArray(Matrix&& matrix)

@@ -248,7 +248,7 @@ struct Convert<Eigen::Matrix<Scalar, rows, columns>,
   static py::object toPython(Matrix matrix) { return toArray(std::move(matrix)); }
   static py::object check(const py::object& value, const std::string& name)
   {
-    return checkedArray(value, name, py::dtype::of<Scalar>(), columns == 1 ? 1 : rows);
+    return sharedArray(checkedArray(value, name, py::dtype::of<Scalar>(), columns == 1 ? 1 : rows), name);
   }
   static void fill(Matrix& out, py::handle value, const std::string& name, Lender& lender)
   {
