@@ -31,6 +31,20 @@ public:
       visit(chart.texels.spans[s]);
   }
 
+  /// visit(k, pixel) for the places of a row, k = 0..count-1.
+  template <typename Visit>
+  void forPixels(const PatchMap::Row& row, const Visit& visit) const
+  {
+    constexpr int most = 64; // at a time: rows of patches are hardly longer
+    float u[most], v[most];
+    for (int done = 0; done < row.count; done += most) {
+      const int count = std::min(most, row.count - done);
+      map.pixels({row.start + Eigen::Vector2f(row.step * done, 0.f), row.step, count}, u, v);
+      for (int k = 0; k < count; ++k)
+        visit(done + k, Eigen::Vector2f(u[k], v[k]));
+    }
+  }
+
   std::size_t texels() const ///< number
   {
     std::size_t sum = 0;

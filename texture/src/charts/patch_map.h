@@ -23,6 +23,14 @@ public:
                 lens_(1, 2)};
   }
 
+  struct Row {
+    Eigen::Vector2f start; ///< place of the first
+    float step = 1;        ///< texels to the right
+    int count;
+  };
+  /// u[i], v[i] = pixel(x + i step, y), i = 0..count-1.
+  void pixels(const Row& row, float* __restrict u, float* __restrict v) const;
+
   /// Of the surface, along the camera's axis.
   float inverseDepth(float x, float y) const { return 1 / (camera_(2, 0) * x + camera_(2, 1) * y + camera_(2, 2)); }
 

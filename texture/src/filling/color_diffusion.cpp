@@ -8,6 +8,8 @@
 #include <vector>
 namespace fresco::texture {
 namespace {
+constexpr float least_weight = 1e-3f; // over creases: a hundred smooth links in a row still join better
+
 /// What colours are continued along.
 struct Links {
   Groups rings;                   ///< nodes next to each node, as often as patches share the edge
@@ -20,7 +22,6 @@ struct Links {
 std::vector<float> weightsOverCreases(const PatchMesh& patches, const SmoothCorners& corners,
                                       const Points& patch_colors)
 {
-  constexpr float hardly = 1e-3f; // a hundred smooth links in a row still join better
   const std::vector<int> pieces = smoothPieces(patches);
   std::vector<char> seen(patches.size(), 0); // by piece
   for (Index i = 0; i < patches.size(); ++i)
@@ -29,15 +30,13 @@ std::vector<float> weightsOverCreases(const PatchMesh& patches, const SmoothCorn
   std::vector<float> weights(corners.size(), 1.f);
   for (Index i = 0; i < patches.size(); ++i)
     for (int k = 0; k < 3 && seen[pieces[i]]; ++k)
-      weights[corners.node(k, i)] = hardly;
+      weights[corners.node(k, i)] = least_weight;
   return weights;
 }
 
 /// Nodes joined by an edge of a patch, and those of one vertex.
 Links linksOf(const SmoothCorners& corners, std::vector<float> over_crease)
 {
-  constexpr float least = 1e-3f;
-  constexpr float turned = 0.77f; // cosine of 40 degrees: what is turned more is another surface
   std::vector<std::pair<int, int>> pairs;
   pairs.reserve(corners.node.size() + corners.size() / 8);
   for (Index i = 0; i < corners.node.cols(); ++i)
@@ -54,7 +53,8 @@ Links linksOf(const SmoothCorners& corners, std::vector<float> over_crease)
     const auto [a, b] = ends(i);
     const float cosine = corners.normals.col(a).dot(corners.normals.col(b));
     const bool same_vertex = corners.vertex[a] == corners.vertex[b];
-    links.weight.push_back(same_vertex ? links.over_crease[a] : std::max(least, (cosine - turned) / (1 - turned)));
+    links.weight.push_back(same_vertex ? links.over_crease[a]
+                                       : std::max(least_weight, (cosine - crease_cosine) / (1 - crease_cosine)));
     i = b;
   }
   return links;

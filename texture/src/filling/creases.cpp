@@ -8,11 +8,10 @@ namespace {
 template <typename Visit>
 void forSmoothEdges(const PatchMesh& patches, const Visit& visit)
 {
-  constexpr float crease = 0.77f; // cosine of 40 degrees: normals of patches on scanned planes differ by less
   for (Index i = 0; i < patches.size(); ++i)
     for (int side = 0; side < 3; ++side)
       if (const int other = patches.neighbors(side, i);
-          other > i && patches.normals.col(i).dot(patches.normals.col(other)) > crease)
+          other > i && patches.normals.col(i).dot(patches.normals.col(other)) > crease_cosine)
         visit(i, side, other);
 }
 

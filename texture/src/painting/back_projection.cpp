@@ -91,32 +91,40 @@ private:
   /// Work space: changes of a patch's texels.
   struct Sums {
     std::vector<Eigen::Vector4f> values;
-    float weight = 0; ///< factor of the view in work
+    std::vector<TexelSpan> inside; ///< of each span, what lies in the patch
+    float weight = 0;              ///< factor of the view in work
   };
 
   /// Adds one view's residual to each texel of the patch.
   void addView(const PatchFrame& frame, const Eigen::Vector3f& least, const PhotoResidual& residual, Sums& sums) const
   {
     std::size_t next = 0;
-    const auto add = [&](const Eigen::Vector2f& at) {
-      const Eigen::Vector2f pixel = frame.map.pixel(at.x(), at.y());
+    const auto add = [&](const Eigen::Vector2f& pixel) {
       sums.values[next++] += sums.weight * residual.at(pixel.x(), pixel.y());
     };
+    std::size_t number = 0;
     frame.forSpans([&](const TexelSpan& span) {
-      const TexelSpan own = frame.insideOf(span, 0.f);
+      const TexelSpan& own = sums.inside[number++];
       const auto addBeyond = [&](int begin, int end) { // what lies beyond may be another surface
         for (int x = begin; x < end; ++x) {
           const Eigen::Vector2f at = frame.place(x, span.y);
           const Eigen::Vector3f inside = frame.map.weights(at.x(), at.y()).cwiseMax(least);
-          add(frame.map.place(inside / inside.sum()));
+          const Eigen::Vector2f nearest = frame.map.place(inside / inside.sum());
+          add(frame.map.pixel(nearest.x(), nearest.y()));
         }
       };
       addBeyond(span.x, own.x);
-      Eigen::Vector2f at = frame.place(own.x, span.y);
-      for (int i = 0; i < own.length; ++i, ++at.x())
-        add(at);
+      frame.forPixels({frame.place(own.x, span.y), 1, own.length},
+                      [&](int, const Eigen::Vector2f& pixel) { add(pixel); });
       addBeyond(own.x + own.length, span.x + span.length);
     });
+  }
+
+  static void start(const PatchFrame& frame, Sums& sums)
+  {
+    sums.values.assign(frame.texels(), Eigen::Vector4f::Zero());
+    sums.inside.clear();
+    frame.forSpans([&](const TexelSpan& span) { sums.inside.push_back(frame.insideOf(span, 0.f)); });
   }
 
   void correct(Index patch, const Range& views, Sums& sums)
@@ -133,7 +141,7 @@ private:
       if (!(weights_[c] > 0) || view < views.first || view >= views.last || !frame.map.look(sources_.views[view]))
         continue;
       if (sums.values.empty())
-        sums.values.assign(frame.texels(), Eigen::Vector4f::Zero());
+        start(frame, sums);
       sums.weight = gain * weights_[c];
       addView(frame, least, residuals_[view], sums);
     }

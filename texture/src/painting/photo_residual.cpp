@@ -4,8 +4,11 @@
 #include "grid.h"
 #include <algorithm>
 #include <cmath>
+#include <fresco/core/simd.h>
 namespace fresco::texture {
 namespace {
+constexpr float nearly_pixel = 1.2f; // width of a box that is taken as one pixel, which touches four at most
+
 /// Adds a texel's value to the pixels under its box, by the area of each in it.
 class Canvas {
 public:
@@ -36,8 +39,6 @@ public:
   }
 
 private:
-  static constexpr float nearly_pixel = 1.2f; // taken as one pixel, which touches four at most
-
   void addLarge(const Eigen::Vector2f& low, const Eigen::Vector2f& high, const Eigen::Vector4f& value)
   {
     const Eigen::Vector4f share = value * per_size_.prod();
@@ -55,29 +56,73 @@ private:
   bool small_;
 };
 
+/// In registers. Written to memory number by number, they would be waited for when read as one.
+Eigen::Vector4f vectorOf(float a, float b, float c, float d)
+{
+  const simd::Float4 all = {a, b, c, d};
+  Eigen::Vector4f out;
+  simd::store(all, out.data());
+  return out;
+}
+
+/// Box in the photograph, pixels, of so many texels of a row: as wide as their bilinear interpolation by its deviation.
+/// @param steps of one texel, see PatchMap::steps()
+Eigen::Vector2f boxOf(const Eigen::Matrix2f& steps, int texels)
+{
+  return (2 * steps.rowwise().squaredNorm() + (texels * texels - 1) * steps.col(0).cwiseAbs2()).cwiseSqrt();
+}
+
+/// How many texels of a row can be drawn as one, since together they are no wider than a pixel.
+int texelsPerPixel(const Eigen::Matrix2f& steps)
+{
+  constexpr int most = 4;
+  int texels = 1;
+  while (texels < most && boxOf(steps, texels + 1).maxCoeff() <= nearly_pixel)
+    ++texels;
+  return texels;
+}
+
 /// Adds a patch's colours, each texel times the area it covers in the photograph, and the areas.
 void draw(const Prediction& p, Index patch, PhotoResidual& sums)
 {
-  constexpr float largest_texel = 4;          // pixels: beyond, the photograph shows more than the texture can hold
-  constexpr float lookup_width = 1.41421356f; // box of the same deviation as the triangle of linear interpolation
+  constexpr float largest_box = 6; // pixels: beyond, the photograph shows more than the texture can hold
   PatchFrame frame(p.scene, patch);
+  const Image& atlas = p.atlases[frame.chart.atlas];
+  frame.forSpans([&](const TexelSpan& span) { // the rows lie far apart in memory
+    __builtin_prefetch(atlas.pixel(frame.chart.x + span.x, frame.chart.y + span.y));
+  });
   if (!frame.map.look(p.view))
     return;
   const Eigen::Vector2f middle = frame.map.place(Eigen::Vector3f::Constant(1.f / 3));
   const Eigen::Matrix2f steps = frame.map.steps(middle.x(), middle.y());
-  const Eigen::Vector2f size = lookup_width * steps.rowwise().norm();
-  if (!(size.maxCoeff() <= lookup_width * largest_texel && size.minCoeff() > 0))
+  const Eigen::Vector2f texel = boxOf(steps, 1);
+  if (!(texel.maxCoeff() <= largest_box && texel.minCoeff() > 0))
     return;
   constexpr float edge = 1e-3f, least = 0.05f;
-  Canvas canvas(sums, size.cwiseMax(least));
+  const int together = texelsPerPixel(steps);
+  Canvas canvas(sums, boxOf(steps, together).cwiseMax(least));
   const float area = std::abs(steps.determinant());
-  const Image& atlas = p.atlases[frame.chart.atlas];
   frame.forSpans([&](const TexelSpan& span) {
     const TexelSpan own = frame.insideOf(span, edge);
     const std::uint8_t* c = atlas.pixel(frame.chart.x + own.x, frame.chart.y + own.y);
-    Eigen::Vector2f place = frame.place(own.x, own.y);
-    for (int i = 0; i < own.length; ++i, c += 3, ++place.x())
-      canvas.add(frame.map.pixel(place.x(), place.y()), area * Eigen::Vector4f(c[0], c[1], c[2], 1.f));
+    const auto add = [&](const Eigen::Vector2f& pixel, int texels) {
+      int red = 0, green = 0, blue = 0;
+      for (const std::uint8_t* end = c + 3 * texels; c < end; c += 3) {
+        red += c[0];
+        green += c[1];
+        blue += c[2];
+      }
+      canvas.add(pixel, area * vectorOf(red, green, blue, texels));
+    };
+    const int whole = own.length / together, left = own.length % together;
+    const auto middleOf = [&](int first, int texels) {
+      return Eigen::Vector2f(frame.place(own.x + first, own.y) + Eigen::Vector2f(0.5f * (texels - 1), 0.f));
+    };
+    frame.forPixels({middleOf(0, together), float(together), whole},
+                    [&](int, const Eigen::Vector2f& pixel) { add(pixel, together); });
+    if (left > 0)
+      frame.forPixels({middleOf(whole * together, left), 1, 1},
+                      [&](int, const Eigen::Vector2f& pixel) { add(pixel, left); });
   });
 }
 
