@@ -6,6 +6,8 @@
 #include <functional>
 namespace fresco::core {
 namespace {
+constexpr const char* no_coordinates = "no coordinates x y z";
+
 template <typename Body>
 void forEachRow(const PointTable& table, const Body& body)
 {
@@ -28,7 +30,7 @@ Eigen::Vector3d originOf(const PointTable& table)
 {
   const auto xyz = findTriple(table, xyz_names);
   if (!xyz)
-    throw std::runtime_error("no coordinates x y z");
+    throw std::runtime_error(no_coordinates);
   if (std::all_of(xyz->begin(), xyz->end(), [](const Column& column) { return column.type == Scalar::float32; }))
     return Eigen::Vector3d::Zero();
   const CoordinateBounds bounds = coordinateBounds(table, *xyz);
@@ -130,10 +132,14 @@ private:
 };
 } // namespace
 
-PointSet tableToPoints(const PointTable& table)
+PointSet tableToPoints(const PointTable& table) { return tableToPoints(table, originOf(table)); }
+
+PointSet tableToPoints(const PointTable& table, const Eigen::Vector3d& origin)
 {
+  if (!findTriple(table, xyz_names))
+    throw std::runtime_error(no_coordinates);
   PointSet set;
-  set.origin = originOf(table);
+  set.origin = origin;
   set.points = tripleValues(table, xyz_names, set.origin);
   set.normals = tripleValues(table, normal_names);
   set.colors = readColors(table);

@@ -3,6 +3,7 @@
 #include "poisson/density.h"
 #include "poisson/isosurface/isosurface.h"
 #include "poisson/noise.h"
+#include "poisson/occupied_cells.h"
 #include "poisson/small_components.h"
 #include "poisson/solver/base_solver.h"
 #include "poisson/solver/constraints.h"
@@ -109,21 +110,11 @@ Eigen::VectorXf vertexSupport(const Density& density, const IsoSurface& surface,
   return support;
 }
 
-/// What is still needed of the points after they have been sampled.
-struct Source {
-  Eigen::Vector3d origin;
-  bool colors, intensities;
-};
-
-Source sourceOf(const PointSet& points)
-{
-  return {points.origin, points.colors.cols() > 0, points.intensities.size() > 0};
-}
-
-TriangleMesh toMesh(const Source& source, const Cube& cube, IsoSurface&& surface, int threads)
+TriangleMesh toMesh(const Samples& samples, IsoSurface&& surface, int threads)
 {
   TriangleMesh mesh;
-  mesh.origin = source.origin;
+  const Cube& cube = samples.cube;
+  mesh.origin = samples.origin;
   mesh.faces = std::move(surface.faces);
   mesh.vertices = std::move(surface.vertices);
   parallelFor(mesh.vertices.cols(), threads, [&](Index v) {
@@ -132,11 +123,11 @@ TriangleMesh toMesh(const Source& source, const Cube& cube, IsoSurface&& surface
   return mesh;
 }
 
-void addAttributes(const Source& source, const Eigen::Matrix4Xf& attributes, TriangleMesh& mesh)
+void addAttributes(const Samples& samples, const Eigen::Matrix4Xf& attributes, TriangleMesh& mesh)
 {
-  if (source.colors)
+  if (samples.has_colors)
     mesh.colors = (attributes.topRows<3>().array() + 0.5f).max(0.f).min(255.f).cast<std::uint8_t>();
-  if (source.intensities)
+  if (samples.has_intensities)
     mesh.fields["intensity"] = attributes.row(3).transpose();
 }
 
@@ -149,8 +140,7 @@ float trimDepth(Eigen::VectorXf support, int depth, const VolumetricOptions& opt
   return std::max(options.trim, std::min<float>(upper_quartile, depth) - options.trim_levels);
 }
 
-VolumetricResult reconstruct(Samples&& samples, const Source& source, const VolumetricOptions& options,
-                             const Progress& progress)
+VolumetricResult reconstruct(Samples&& samples, const VolumetricOptions& options, const Progress& progress)
 {
   VolumetricResult result;
   result.used_points = samples.used_points;
@@ -179,10 +169,10 @@ VolumetricResult reconstruct(Samples&& samples, const Source& source, const Volu
   Eigen::Matrix4Xf attributes;
   if (!samples.attributes.empty())
     attributes = vertexAttributes(tree, samples, surface, options.threads);
-  result.mesh = toMesh(source, samples.cube, std::move(surface), options.threads);
+  result.mesh = toMesh(samples, std::move(surface), options.threads);
   result.mesh.fields["support"] = support;
   if (attributes.cols() > 0)
-    addAttributes(source, attributes, result.mesh);
+    addAttributes(samples, attributes, result.mesh);
   const float trim = trimDepth(support, result.depth, options);
   if (trim > 0) {
     result.trim_depth = trim;
@@ -223,28 +213,44 @@ VolumetricResult reconstructVolumetric(const PointSet& points, const VolumetricO
 {
   validate(points, options);
   report(progress, "sort points", 0.0);
-  return reconstruct(gatherSamples(points, options), sourceOf(points), options, progress);
+  return reconstruct(gatherSamples(points, options), options, progress);
 }
 
 VolumetricResult reconstructVolumetric(PointSet&& points, const VolumetricOptions& options, const Progress& progress)
 {
   validate(points, options);
   report(progress, "sort points", 0.0);
-  const Source source = sourceOf(points);
   Samples samples = gatherSamples(points, options);
   points = PointSet();
-  return reconstruct(std::move(samples), source, options, progress);
+  return reconstruct(std::move(samples), options, progress);
+}
+
+VolumetricResult reconstructVolumetric(std::unique_ptr<PointStream> points, const VolumetricOptions& options,
+                                       const Progress& progress)
+{
+  validateVolumetricOptions(options);
+  report(progress, "sort points", 0.0);
+  Samples samples = gatherSamples(*points, options);
+  points.reset();
+  return reconstruct(std::move(samples), options, progress);
+}
+
+std::size_t estimateMemory(const PointStream& points, const VolumetricOptions& options)
+{
+  validateVolumetricOptions(options);
+  const Extent extent = findExtent(points, options);
+  const Array<std::uint64_t> codes = findCells(points, extent, options.threads).codes(options.threads);
+  const int depth = extent.cube.depth;
+  std::size_t bricks = 0;
+  for (const Index n : countBricks(codes, depth, std::min(options.min_depth, depth)))
+    bricks += n;
+  constexpr std::size_t bytes_per_brick = 2000, bytes_per_sample = 150;
+  return bricks * bytes_per_brick + codes.size() * bytes_per_sample;
 }
 
 std::size_t estimateMemory(const PointSet& points, const VolumetricOptions& options)
 {
   validate(points, options);
-  const Samples samples = gatherSamples(points, options);
-  const int depth = samples.cube.depth;
-  std::size_t bricks = 0;
-  for (const Index n : countBricks(samples.codes, depth, std::min(options.min_depth, depth)))
-    bricks += n;
-  constexpr std::size_t bytes_per_brick = 2000, bytes_per_sample = 150, bytes_per_point = 40;
-  return bricks * bytes_per_brick + samples.codes.size() * bytes_per_sample + points.size() * bytes_per_point;
+  return estimateMemory(WholeSet(points), options);
 }
 } // namespace fresco
