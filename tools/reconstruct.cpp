@@ -62,6 +62,12 @@ Request parse(int argc, char** argv)
   scan.declare(args);
   request.common.declare(args);
   std::vector<std::string> files = args.parse(argc, argv, 2, std::numeric_limits<std::size_t>::max());
+  o.threads = request.common.threads;
+  try {
+    validateVolumetricOptions(o);
+  } catch (const std::invalid_argument& error) {
+    throw UsageError(error.what());
+  }
   request.output = files.back();
   files.pop_back();
   files = pointFilesIn(files);
@@ -70,12 +76,6 @@ Request parse(int argc, char** argv)
   for (const std::string& file : files)
     request.inputs.push_back(scan.of(file));
   requireDistinct({request.output}, files);
-  o.threads = request.common.threads;
-  try {
-    validateVolumetricOptions(o);
-  } catch (const std::invalid_argument& error) {
-    throw UsageError(error.what());
-  }
   return request;
 }
 

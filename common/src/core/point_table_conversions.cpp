@@ -14,11 +14,25 @@ void forEachRow(const PointTable& table, const Body& body)
   parallelFor(table.rows, 0, body, rows_per_task);
 }
 
+bool areFloatsInARow(const std::array<Column, 3>& columns)
+{
+  for (std::size_t i = 0; i < 3; ++i)
+    if (columns[i].type != Scalar::float32 || columns[i].offset != columns[0].offset + i * sizeof(float))
+      return false;
+  return true;
+}
+
 /// 3xN less `origin`, 3x0 unless all three columns are there.
 Points tripleValues(const PointTable& table, NameTriple names, const Eigen::Vector3d& origin = Eigen::Vector3d::Zero())
 {
   const auto columns = findTriple(table, names);
   Points values(3, columns ? table.rows : 0);
+  if (columns && origin.isZero(0) && areFloatsInARow(*columns)) {
+    forEachRow(table, [&](Index row) {
+      std::memcpy(values.col(row).data(), table.cell(row, (*columns)[0]), 3 * sizeof(float));
+    });
+    return values;
+  }
   for (int axis = 0; columns && axis < 3; ++axis)
     forEachValue(table, (*columns)[axis], 0,
                  [&](Index row, auto value) { values(axis, row) = static_cast<double>(value) - origin[axis]; });

@@ -81,7 +81,7 @@ void CellSums::addCell(const CellPoints& cell, std::uint32_t number)
   for (Index k = cell.begin; k < cell.end; ++k) {
     const Index i = cell.points.point(k);
     const Whole weight = std::max<Whole>(whole(unit * extent_.weights.of(set, i)), 1);
-    const Eigen::Vector3d within = toCells(set, i, extent_.cube) - corner;
+    const Eigen::Vector3d within = toCells(set, i, extent_) - corner;
     const Eigen::Vector3d normal = set.normals.col(i).cast<double>().normalized();
     sums.weight += weight;
     for (int axis = 0; axis < 3; ++axis) {

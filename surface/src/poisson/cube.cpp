@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "poisson/cube.h"
 #include "poisson/exact_sum.h"
-#include "poisson/octree/select.h"
 #include "poisson/point_sketch.h"
 #include <algorithm>
 #include <cmath>
@@ -28,13 +27,15 @@ struct Totals {
   }
 };
 
-Totals totalsOf(const PointSet& set, const Array<std::uint32_t>& points, const Extent& extent, int threads)
+/// Of the usable points of a window.
+Totals totalsOf(const PointSet& set, const Extent& extent, int threads)
 {
   const auto map = [&](Index begin, Index end) {
     Totals totals;
-    totals.usable = end - begin;
-    for (Index k = begin; k < end; ++k) {
-      const Index i = points[k];
+    for (Index i = begin; i < end; ++i) {
+      if (!extent.isUsable(set, i))
+        continue;
+      ++totals.usable;
       totals.box.extend(set.points.col(i).cast<double>());
       if (extent.weights.source != Weights::Source::none)
         totals.weight.add(extent.weights.given(set, i));
@@ -47,8 +48,8 @@ Totals totalsOf(const PointSet& set, const Array<std::uint32_t>& points, const E
     a.add(b);
     return a;
   };
-  constexpr Index chunk = 1 << 16; // a sum of weights is as large as a thousand of them
-  return parallelReduce(points.size(), threads, Totals(), map, join, chunk);
+  constexpr Index chunk = 1 << 14; // a sum of weights takes as much as two hundred points
+  return parallelReduce(set.size(), threads, Totals(), map, join, chunk);
 }
 
 /// What a window says of itself.
@@ -74,11 +75,10 @@ Totals readTotals(const PointStream& points, const VolumetricOptions& options, E
       return;
     lookAt(set, options, extent);
     extent.all += set.size();
-    const Array<std::uint32_t> usable =
-        selectIndices(set.size(), threads, [&](Index i) { return extent.isUsable(set, i); });
-    totals.add(totalsOf(set, usable, extent, threads));
+    totals.add(totalsOf(set, extent, threads));
     if (sketch)
-      sketch->add(set, usable, threads);
+      sketch->add(
+          set, [&](Index i) { return extent.isUsable(set, i); }, threads);
   });
   return totals;
 }
@@ -154,6 +154,7 @@ Extent findExtent(const PointStream& points, const VolumetricOptions& options)
   if (extent.weights.source != Weights::Source::none)
     extent.weights.scale = static_cast<double>(totals.usable) / totals.weight.value();
   extent.cube = fitCube(totals.box, options);
+  extent.cells_per_unit = 1.0 / extent.cube.cell();
   return extent;
 }
 } // namespace fresco::poisson

@@ -22,6 +22,7 @@ struct Extent {
   Eigen::AlignedBox3d allowed = Eigen::AlignedBox3d(Eigen::Vector3d::Constant(-std::numeric_limits<double>::infinity()),
                                                     Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity()));
   Cube cube;
+  double cells_per_unit = 1.0; ///< finest cells of the cube
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();
   bool colors = false, intensities = false;
   float largest_intensity = 0.f; ///< absolute

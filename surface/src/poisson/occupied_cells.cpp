@@ -60,6 +60,8 @@ Array<OccupiedBrick> unite(const Array<OccupiedBrick>& a, const Array<OccupiedBr
 
 void OccupiedCells::add(const SortedPoints& points, int threads)
 {
+  if (points.size() == 0)
+    return;
   const Array<std::uint32_t> runs = runBegins(points.size(), threads, [&](Index k) { return points.code(k) >> 6; });
   Array<OccupiedBrick> bricks(runs.size() - 1);
   parallelFor(bricks.size(), threads, [&](Index b) {
@@ -70,10 +72,10 @@ void OccupiedCells::add(const SortedPoints& points, int threads)
   bricks_ = bricks_.empty() ? std::move(bricks) : unite(bricks_, bricks, threads);
 }
 
-OccupiedCells findCells(const PointStream& points, const Extent& extent, int threads)
+OccupiedCells findCells(SortedStream& points, int threads)
 {
   OccupiedCells cells;
-  forEachPiece(points, extent, threads, [&](const SortedPoints& sorted) { cells.add(sorted, threads); });
+  points.forEachPiece([&](const SortedPoints& sorted) { cells.add(sorted, threads); });
   return cells;
 }
 

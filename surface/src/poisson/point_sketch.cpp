@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "poisson/point_sketch.h"
-#include "poisson/octree/select.h"
 #include <algorithm>
 #include <cstring>
+#include <fresco/core/parallel.h>
 #include <tuple>
 namespace fresco::poisson {
 namespace {
@@ -24,15 +24,22 @@ std::uint64_t hashOf(const Eigen::Vector3f& position)
 }
 } // namespace
 
-void PointSketch::add(const PointSet& set, const Array<std::uint32_t>& points, int threads)
+void PointSketch::add(const PointSet& set, const std::function<bool(Index)>& takes, int threads)
 {
-  constexpr Index piece = 1 << 18; // so that few entries come at a time that do not stay
-  for (Index begin = 0; begin < Index(points.size()); begin += piece) {
-    const Index count = std::min<Index>(piece, points.size() - begin);
-    const auto position = [&](Index i) -> Eigen::Vector3f { return set.points.col(points[begin + i]); };
-    for (const std::uint32_t i :
-         selectIndices(count, threads, [&](Index i) { return hashOf(position(i)) <= highest_; }))
-      entries_.push_back({hashOf(position(i)), position(i)});
+  constexpr Index piece = 1 << 18, chunk = 1 << 14; // piece by piece, so that few come that do not stay
+  std::vector<std::vector<Entry>> found(piece / chunk);
+  for (Index first = 0; first < set.size(); first += piece) {
+    const auto look = [&](Index begin, Index end) {
+      std::vector<Entry>& entries = found[begin / chunk];
+      entries.clear();
+      for (Index i = first + begin; i < first + end; ++i)
+        if (const std::uint64_t hash = hashOf(set.points.col(i)); hash <= highest_ && takes(i))
+          entries.push_back({hash, set.points.col(i)});
+    };
+    const Index count = std::min(piece, set.size() - first);
+    parallelRanges(count, threads, look, chunk);
+    for (Index begin = 0; begin < count; begin += chunk)
+      entries_.insert(entries_.end(), found[begin / chunk].begin(), found[begin / chunk].end());
     if (entries_.size() > 2 * most_entries)
       keepLowest();
   }

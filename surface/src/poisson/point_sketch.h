@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include <cstdint>
-#include <fresco/core/array.h>
 #include <fresco/core/point_set.h>
+#include <functional>
 #include <vector>
 namespace fresco::poisson {
 /// A sample of a stream of points that does not depend on their order: those whose positions have the lowest hash
 /// values. Few points are all in it.
 class PointSketch {
 public:
-  /// @param points of the set that are added
-  void add(const PointSet& set, const Array<std::uint32_t>& points, int threads);
+  /// Adds the points i with takes(i).
+  void add(const PointSet& set, const std::function<bool(Index)>& takes, int threads);
 
   /// Coordinates on one axis, in no order.
   std::vector<float> coordinates(int axis) const;

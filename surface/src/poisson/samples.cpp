@@ -14,8 +14,9 @@ Samples gatherSamples(const PointSet& set, const VolumetricOptions& options)
 Samples gatherSamples(const PointStream& points, const VolumetricOptions& options)
 {
   const Extent extent = findExtent(points, options);
-  CellSums sums(findCells(points, extent, options.threads), extent, options.threads);
-  forEachPiece(points, extent, options.threads, [&](const SortedPoints& sorted) { sums.add(sorted, options.threads); });
+  SortedStream sorted(points, extent, options.threads);
+  CellSums sums(findCells(sorted, options.threads), extent, options.threads);
+  sorted.forEachPiece([&](const SortedPoints& piece) { sums.add(piece, options.threads); });
   return sums.takeSamples(options.threads);
 }
 
@@ -31,6 +32,13 @@ SampleLevel finestLevel(const Samples& samples, int threads)
     level.samples[i] = {s.position, s.area, s.noise, s.depth};
   });
   return level;
+}
+
+Array<Eigen::Vector3f> normalsOf(const Samples& samples, int threads)
+{
+  Array<Eigen::Vector3f> normals(samples.samples.size());
+  parallelFor(normals.size(), threads, [&](Index i) { normals[i] = samples.samples[i].normal; });
+  return normals;
 }
 
 SampleLevel coarsen(const SampleLevel& fine, int threads)

@@ -72,6 +72,7 @@ struct SampleLevel {
 };
 
 SampleLevel finestLevel(const Samples& samples, int threads);
+Array<Eigen::Vector3f> normalsOf(const Samples& samples, int threads);
 SampleLevel coarsen(const SampleLevel& fine, int threads);
 
 /// First sample of each brick of `level` among sorted codes of a depth no coarser than the level's, and their count at

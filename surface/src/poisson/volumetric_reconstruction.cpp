@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fresco/core/parallel.h>
+#include <fresco/core/release.h>
 #include <fresco/core/require.h>
 #include <fresco/core/statistics.h>
 #include <fresco/surface/core/mesh_trimming.h>
@@ -29,11 +30,11 @@ void validate(const PointSet& points, const VolumetricOptions& options)
 }
 
 /// samples joined in the cells of each depth, by depth
-std::vector<SampleLevel> sampleLevels(const Samples& samples, int threads)
+std::vector<SampleLevel> sampleLevels(SampleLevel&& finest, int threads)
 {
-  std::vector<SampleLevel> levels(samples.cube.depth + 1);
-  levels.back() = finestLevel(samples, threads);
-  for (int d = samples.cube.depth; d > 2; --d)
+  std::vector<SampleLevel> levels(finest.depth + 1);
+  levels.back() = std::move(finest);
+  for (int d = levels.back().depth; d > 2; --d)
     levels[d - 1] = coarsen(levels[d], threads);
   return levels;
 }
@@ -81,7 +82,7 @@ Solution solve(const Octree& tree, Constraints& constraints, const std::vector<S
 
 /// Mean of chi over the samples, weighted by their area (Kazhdan, Bolitho & Hoppe 2006, sections 4.4 and 4.5), kept
 /// below the margin that closeBoundary() gives the cube's boundary, so that the level set stays in the cube.
-float levelSetValue(const Octree& tree, const NodeField& chi, const Samples& samples, int threads)
+float levelSetValue(const Octree& tree, const NodeField& chi, const SampleLevel& samples, int threads)
 {
   const BrickLevel& level = tree.levels.back();
   const Array<std::uint32_t> begin = sampleRanges(level, samples.codes, tree.depth, threads);
@@ -89,7 +90,7 @@ float levelSetValue(const Octree& tree, const NodeField& chi, const Samples& sam
     Eigen::Array2d sum(0, 0);
     const Eigen::Vector3f origin = level.origin(b);
     for (std::uint32_t i = begin[b]; i < begin[b + 1]; ++i) {
-      const Sample& s = samples.samples[i];
+      const CoarseSample& s = samples.samples[i];
       const double value = HatWeights::inBrick(s.position - origin).interpolate(chi.brick(b));
       sum += Eigen::Array2d(s.area * value, s.area);
     }
@@ -157,18 +158,24 @@ VolumetricResult reconstruct(Samples&& samples, const VolumetricOptions& options
   estimateDensity(tree, density, options.samples_per_node, samples, options.threads);
   estimateNoise(samples, options.threads);
   report(progress, "normal field", 0.25);
-  Constraints constraints = splatNormals(tree, samples, options.threads);
-  const Solution solution = solve(tree, constraints, sampleLevels(samples, options.threads), options, progress);
+  Array<Eigen::Vector3f> normals = normalsOf(samples, options.threads);
+  const std::vector<SampleLevel> levels = sampleLevels(finestLevel(samples, options.threads), options.threads);
+  releaseMemory(samples.samples);
+  releaseMemory(samples.codes);
+  Constraints constraints = splatNormals(tree, levels.back(), normals, options.threads);
+  releaseMemory(normals);
+  const Solution solution = solve(tree, constraints, levels, options, progress);
   result.residual = solution.residual;
   report(progress, "surface", 0.7);
-  const LevelSet level_set{&tree, &solution.chi, levelSetValue(tree, solution.chi.back(), samples, options.threads)};
+  const LevelSet level_set{&tree, &solution.chi,
+                           levelSetValue(tree, solution.chi.back(), levels.back(), options.threads)};
   IsoSurface surface = extractIsoSurface(level_set, options.threads);
-  removeSmallComponents(surface);
+  removeSmallComponents(surface, options.threads);
   report(progress, "attributes", 0.9);
   const Eigen::VectorXf support = vertexSupport(density, surface, options.samples_per_node, options.threads);
   Eigen::Matrix4Xf attributes;
   if (!samples.attributes.empty())
-    attributes = vertexAttributes(tree, samples, surface, options.threads);
+    attributes = vertexAttributes(tree, {levels.back(), samples.attributes}, surface, options.threads);
   result.mesh = toMesh(samples, std::move(surface), options.threads);
   result.mesh.fields["support"] = support;
   if (attributes.cols() > 0)
@@ -239,10 +246,11 @@ std::size_t estimateMemory(const PointStream& points, const VolumetricOptions& o
 {
   validateVolumetricOptions(options);
   const Extent extent = findExtent(points, options);
-  const Array<std::uint64_t> codes = findCells(points, extent, options.threads).codes(options.threads);
+  SortedStream sorted(points, extent, options.threads);
+  const Array<std::uint64_t> codes = findCells(sorted, options.threads).codes(options.threads);
   const int depth = extent.cube.depth;
   std::size_t bricks = 0;
-  for (const Index n : countBricks(codes, depth, std::min(options.min_depth, depth)))
+  for (const Index n : countBricks(codes, depth, std::min(options.min_depth, depth), options.threads))
     bricks += n;
   constexpr std::size_t bytes_per_brick = 2000, bytes_per_sample = 150;
   return bricks * bytes_per_brick + codes.size() * bytes_per_sample;

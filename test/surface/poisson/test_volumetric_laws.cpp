@@ -27,7 +27,7 @@ TEST(VolumetricLaws, UnscreenedSolutionIsTheIndicatorFunction)
   const Octree tree = buildOctree(samples.codes, 6, 5, 1);
   const Density density(tree, samples, 1);
   estimateDensity(tree, density, 1.f, samples, 1);
-  const Constraints constraints = splatNormals(tree, samples, 1);
+  const Constraints constraints = splatNormals(tree, finestLevel(samples, 1), normalsOf(samples, 1), 1);
   std::vector<SampleLevel> levels(7);
   levels[6] = finestLevel(samples, 1);
   for (std::size_t d = 6; d > 2; --d)

@@ -5,8 +5,8 @@
 #include <fresco/io/scan_file.h>
 #include <memory>
 namespace fresco {
-/// Points that PointFiles hands over at a time: some 100 MB.
-inline constexpr Index points_per_window = Index{1} << 22;
+/// Points that are handed over at a time: 50 MB.
+inline constexpr Index points_per_window = Index{1} << 21;
 
 /// The points of files as one cloud, in windows, with the attributes that all of them have, without viewpoints. Rows of
 /// binary PLY without lists and of binary PCD are read window by window. Other files are read whole, one at a time; a

@@ -135,11 +135,13 @@ public:
   {
     PointSet set;
     for (const Source& source : sources_) {
-      const Index count = source.rows ? source.rows->size() : 1, step = source.rows ? window_ : 1;
-      for (Index begin = 0; begin < count; begin += step) {
+      const Index count = source.rows ? source.rows->size() : 1;
+      const Index windows = source.rows ? (count + window_ - 1) / window_ : 1; // of about the same size
+      for (Index w = 0; w < windows; ++w) {
         io::namingFile(source.path.name(), [&] {
           if (source.rows)
-            return RowWindow(*source.rows, attributes_, origin_).read(begin, std::min(begin + step, count), set);
+            return RowWindow(*source.rows, attributes_, origin_)
+                .read(count * w / windows, count * (w + 1) / windows, set);
           set = io::tableToPoints(io::readTable(source.path), origin_);
           attributes_.drop(set);
         });
@@ -223,6 +225,8 @@ std::vector<std::string> pointFilesIn(const std::vector<std::string>& words)
 {
   std::vector<std::string> files;
   for (const std::string& word : words) {
+    if (!std::filesystem::exists(word))
+      throw std::runtime_error(word + ": no such file");
     if (!std::filesystem::is_directory(word)) {
       files.push_back(word);
       continue;
