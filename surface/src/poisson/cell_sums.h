@@ -2,8 +2,42 @@
 #pragma once
 #include "poisson/occupied_cells.h"
 namespace fresco::poisson {
-/// Sums over the points of each occupied cell, in whole numbers: neither the order of the points nor how they are divided
-/// into pieces matters.
+/// Sums over the points of a cell, in whole numbers. Weights are multiples of 2^-28: those of 2^34 points, 1 on average,
+/// fit into 63 bits. A position is 2^-28 of a cell exact, a thousandth of what float keeps of it.
+struct CellSum {
+  using Whole = std::int64_t;
+  Whole weight, position[3], normal[3];
+};
+
+struct AttributeSum {
+  CellSum::Whole color[3], intensity;
+};
+
+/// How points are added up and what their mean is.
+class PointSums {
+public:
+  explicit PointSums(const Extent& extent);
+
+  /// Adds the points begin .. end - 1, which lie in one cell.
+  void add(const SortedPoints& points, Index begin, Index end, CellSum& sum) const;
+  void addAttributes(const SortedPoints& points, Index begin, Index end, AttributeSum& sum) const;
+  Sample sampleOf(std::uint64_t code, const CellSum& sum) const;
+  Attributes attributesOf(const AttributeSum& sum, CellSum::Whole weight) const;
+
+  bool hasAttributes() const { return extent_.colors || extent_.intensities; }
+  /// Without samples yet.
+  Samples emptySamples(Array<std::uint64_t> codes) const;
+
+private:
+  CellSum::Whole weightOf(const PointSet& set, Index i) const;
+  Extent extent_;
+  double intensity_unit_; ///< power of two, at least the largest intensity
+};
+
+/// Samples of points that are one piece.
+Samples samplesOf(const SortedPoints& points, const Extent& extent, int threads);
+
+/// Sums of each occupied cell: neither the order of the points nor how they are divided into pieces matters.
 class CellSums {
 public:
   CellSums(OccupiedCells cells, const Extent& extent, int threads);
@@ -13,27 +47,10 @@ public:
   Samples takeSamples(int threads);
 
 private:
-  using Whole = std::int64_t;
-  /// Weights are multiples of 2^-28: the weights of 2^34 points, 1 on average, fit into 63 bits, and a position is 2^-28
-  /// of a cell exact, a thousandth of what float keeps of it.
-  struct Sums {
-    Whole weight, position[3], normal[3];
-  };
-  struct AttributeSums {
-    Whole color[3], intensity;
-  };
-  struct CellPoints;
-
-  void addCell(const CellPoints& cell, std::uint32_t number);
-  void addAttributes(const PointSet& set, Index i, Whole weight, AttributeSums& sums) const;
-  Sample sampleOf(std::uint64_t code, const Sums& sums) const;
-  Attributes attributesOf(const AttributeSums& sums, Whole weight) const;
-
   OccupiedCells cells_;
   Array<std::uint32_t> first_; ///< see OccupiedCells::firstCells()
-  Extent extent_;
-  double intensity_unit_; ///< power of two, at least the largest intensity
-  std::vector<Array<Sums>> sums_;
-  std::vector<Array<AttributeSums>> attribute_sums_; ///< empty if the points have neither colour nor intensity
+  PointSums points_;
+  std::vector<Array<CellSum>> sums_;
+  std::vector<Array<AttributeSum>> attribute_sums_; ///< empty if the points have neither colour nor intensity
 };
 } // namespace fresco::poisson

@@ -69,12 +69,13 @@ Totals readTotals(const PointStream& points, const VolumetricOptions& options, E
 {
   const int threads = options.threads;
   Totals totals;
-  extent.all = 0;
+  extent.all = extent.windows = 0;
   points.read([&](const PointSet& set) {
     if (set.size() == 0)
       return;
     lookAt(set, options, extent);
     extent.all += set.size();
+    ++extent.windows;
     totals.add(totalsOf(set, extent, threads));
     if (sketch)
       sketch->add(

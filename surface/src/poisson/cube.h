@@ -16,8 +16,9 @@ struct Weights {
 
 /// What the points of a stream have in common.
 struct Extent {
-  Index all = 0;    ///< points
-  Index usable = 0; ///< that are finite, have a normal and a weight, and are no far outliers
+  Index windows = 0; ///< with points
+  Index all = 0;     ///< points
+  Index usable = 0;  ///< that are finite, have a normal and a weight, and are no far outliers
   Weights weights;
   Eigen::AlignedBox3d allowed = Eigen::AlignedBox3d(Eigen::Vector3d::Constant(-std::numeric_limits<double>::infinity()),
                                                     Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity()));

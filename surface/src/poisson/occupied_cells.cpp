@@ -72,10 +72,10 @@ void OccupiedCells::add(const SortedPoints& points, int threads)
   bricks_ = bricks_.empty() ? std::move(bricks) : unite(bricks_, bricks, threads);
 }
 
-OccupiedCells findCells(SortedStream& points, int threads)
+OccupiedCells findCells(const PointStream& points, const Extent& extent, int threads)
 {
   OccupiedCells cells;
-  points.forEachPiece([&](const SortedPoints& sorted) { cells.add(sorted, threads); });
+  forEachPiece(points, extent, threads, [&](const SortedPoints& sorted) { cells.add(sorted, threads); });
   return cells;
 }
 

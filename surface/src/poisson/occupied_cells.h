@@ -24,7 +24,7 @@ private:
   Array<OccupiedBrick> bricks_;
 };
 
-OccupiedCells findCells(SortedStream& points, int threads);
+OccupiedCells findCells(const PointStream& points, const Extent& extent, int threads);
 
 /// Bricks of either list; the cells of both where both have one.
 Array<OccupiedBrick> unite(const Array<OccupiedBrick>& a, const Array<OccupiedBrick>& b, int threads);

@@ -14,9 +14,14 @@ Samples gatherSamples(const PointSet& set, const VolumetricOptions& options)
 Samples gatherSamples(const PointStream& points, const VolumetricOptions& options)
 {
   const Extent extent = findExtent(points, options);
-  SortedStream sorted(points, extent, options.threads);
-  CellSums sums(findCells(sorted, options.threads), extent, options.threads);
-  sorted.forEachPiece([&](const SortedPoints& piece) { sums.add(piece, options.threads); });
+  if (isOnePiece(extent)) {
+    Samples samples;
+    forEachPiece(points, extent, options.threads,
+                 [&](const SortedPoints& piece) { samples = samplesOf(piece, extent, options.threads); });
+    return samples;
+  }
+  CellSums sums(findCells(points, extent, options.threads), extent, options.threads);
+  forEachPiece(points, extent, options.threads, [&](const SortedPoints& piece) { sums.add(piece, options.threads); });
   return sums.takeSamples(options.threads);
 }
 

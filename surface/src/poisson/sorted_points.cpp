@@ -21,41 +21,34 @@ std::uint64_t cellCode(const Eigen::Vector3f& cell, int depth)
 }
 } // namespace
 
-SortedPoints::SortedPoints(const PointSet& set, Index begin, int depth, const Keys& keys)
-    : set_(set), begin_(begin), index_bits_(indexBits(depth)), keys_(keys)
-{}
-
-/// Unusable points get a code behind all others.
-SortedPoints::Keys SortedStream::sortedKeys(const PointSet& set, Index begin, Index end) const
+/// Unusable points get a code behind all others, and are cut off.
+SortedPoints::SortedPoints(const PointSet& set, Index begin, Index end, const Extent& extent, int threads)
+    : set_(set), begin_(begin), index_bits_(indexBits(extent.cube.depth)), keys_(end - begin)
 {
-  const int depth = extent_.cube.depth, index_bits = indexBits(depth);
+  const int depth = extent.cube.depth;
   const std::uint64_t unusable = std::uint64_t(1) << 3 * depth;
-  SortedPoints::Keys keys(end - begin);
-  const Index usable = parallelSum(end - begin, threads_, Index(0), [&](Index k) {
-    const bool takes_part = extent_.isUsable(set, begin + k);
-    keys[k] = k;
-    keys[k] |= (takes_part ? cellCode(toCells(set, begin + k, extent_).cast<float>(), depth) : unusable) << index_bits;
+  const Index usable = parallelSum(end - begin, threads, Index(0), [&](Index k) {
+    const bool takes_part = extent.isUsable(set, begin + k);
+    const std::uint64_t code = takes_part ? cellCode(toCells(set, begin + k, extent).cast<float>(), depth) : unusable;
+    keys_[k] = code << index_bits_ | std::uint64_t(k);
     return takes_part ? 1 : 0;
   });
-  sortBits(keys, index_bits, 3 * depth + (usable < end - begin ? 1 : 0), threads_);
-  keys.resize(usable);
-  return keys;
+  sortBits(keys_, index_bits_, 3 * depth + (usable < end - begin ? 1 : 0), threads);
+  keys_.resize(usable);
 }
 
-void SortedStream::forEachPiece(const std::function<void(const SortedPoints&)>& receive)
+void forEachPiece(const PointStream& points, const Extent& extent, int threads,
+                  const std::function<void(const SortedPoints&)>& receive)
 {
-  const Index most = Index(1) << indexBits(extent_.cube.depth);
-  SortedPoints::Keys keys = std::move(only_);
-  Index pieces = 0;
-  points_.read([&](const PointSet& set) {
-    for (Index begin = 0; begin < set.size(); begin += most) {
-      if (keys.empty() || pieces > 0)
-        keys = sortedKeys(set, begin, std::min(begin + most, set.size()));
-      ++pieces;
-      receive(SortedPoints(set, begin, extent_.cube.depth, keys));
-    }
+  const Index most = Index(1) << indexBits(extent.cube.depth);
+  points.read([&](const PointSet& set) {
+    for (Index begin = 0; begin < set.size(); begin += most)
+      receive(SortedPoints(set, begin, std::min(begin + most, set.size()), extent, threads));
   });
-  if (pieces == 1)
-    only_ = std::move(keys);
+}
+
+bool isOnePiece(const Extent& extent)
+{
+  return extent.windows == 1 && extent.all <= Index(1) << indexBits(extent.cube.depth);
 }
 } // namespace fresco::poisson

@@ -13,10 +13,8 @@ inline Eigen::Vector3d toCells(const PointSet& set, Index i, const Extent& exten
 /// and the number of the point share 64 bits.
 class SortedPoints {
 public:
-  using Keys = Array<std::uint64_t>;
-
-  /// @param begin number of the first point of the piece
-  SortedPoints(const PointSet& set, Index begin, int depth, const Keys& keys);
+  /// Of the points begin .. end - 1.
+  SortedPoints(const PointSet& set, Index begin, Index end, const Extent& extent, int threads);
 
   const PointSet& set() const { return set_; }
   Index size() const { return keys_.size(); }
@@ -27,24 +25,13 @@ private:
   const PointSet& set_;
   Index begin_;
   int index_bits_;
-  const Keys& keys_;
+  Array<std::uint64_t> keys_;
 };
 
-/// A stream whose points come in sorted pieces.
-class SortedStream {
-public:
-  SortedStream(const PointStream& points, const Extent& extent, int threads)
-      : points_(points), extent_(extent), threads_(threads)
-  {}
+/// Hands all points of a stream over in sorted pieces.
+void forEachPiece(const PointStream& points, const Extent& extent, int threads,
+                  const std::function<void(const SortedPoints&)>& receive);
 
-  const Extent& extent() const { return extent_; }
-  void forEachPiece(const std::function<void(const SortedPoints&)>& receive);
-
-private:
-  SortedPoints::Keys sortedKeys(const PointSet& set, Index begin, Index end) const;
-  const PointStream& points_;
-  const Extent& extent_;
-  int threads_;
-  SortedPoints::Keys only_; ///< of the only piece, once it has been sorted
-};
+/// Whether that is one piece.
+bool isOnePiece(const Extent& extent);
 } // namespace fresco::poisson

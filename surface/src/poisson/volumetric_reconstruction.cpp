@@ -246,8 +246,7 @@ std::size_t estimateMemory(const PointStream& points, const VolumetricOptions& o
 {
   validateVolumetricOptions(options);
   const Extent extent = findExtent(points, options);
-  SortedStream sorted(points, extent, options.threads);
-  const Array<std::uint64_t> codes = findCells(sorted, options.threads).codes(options.threads);
+  const Array<std::uint64_t> codes = findCells(points, extent, options.threads).codes(options.threads);
   const int depth = extent.cube.depth;
   std::size_t bricks = 0;
   for (const Index n : countBricks(codes, depth, std::min(options.min_depth, depth), options.threads))

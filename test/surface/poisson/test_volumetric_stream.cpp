@@ -4,6 +4,7 @@
 #include "poisson/point_sketch.h"
 #include "surface/poisson/volumetric_shapes.h"
 #include <algorithm>
+#include <gtest/gtest.h>
 #include <map>
 #include <numeric>
 #include <random>
