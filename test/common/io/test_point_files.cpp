@@ -128,8 +128,9 @@ TEST_F(PointFiles, FoldersStandForTheirFiles)
   std::filesystem::create_directories(path("in/deeper"));
   const std::string b = write("in/b.pcd", fullPointSet(9)), a = write("in/a.ply", fullPointSet(9));
   writeFile(path("in/poses.txt"), "1 0 0 0\n");
-  EXPECT_EQ(pointFilesIn({path("in"), "x.ply"}), (std::vector<std::string>{a, b, "x.ply"}));
+  EXPECT_EQ(pointFilesIn({path("in"), b}), (std::vector<std::string>{a, b, b}));
   EXPECT_THROW(pointFilesIn({path("in/deeper")}), std::runtime_error);
+  EXPECT_THROW(pointFilesIn({path("none.ply")}), std::runtime_error);
 }
 
 TEST_F(PointFiles, MoreRowsThanAnIntCounts)

@@ -96,7 +96,8 @@ TEST(VolumetricStream, OutliersOfALargeCloudDoNotDependOnTheOrder)
 
 TEST(VolumetricStream, StreamsWithoutUsablePointsAreRefused)
 {
-  EXPECT_THROW(reconstructVolumetric(std::make_unique<Windows>(PointSet(), 10, 1), atDepth(4)), std::invalid_argument);
+  const PointSet none;
+  EXPECT_THROW(reconstructVolumetric(std::make_unique<Windows>(none, 10, 1), atDepth(4)), std::invalid_argument);
   PointSet points = sphere(100);
   points.normals.resize(3, 0);
   EXPECT_THROW(reconstructVolumetric(std::make_unique<Windows>(points, 10, 1), atDepth(4)), std::invalid_argument);
