@@ -159,7 +159,7 @@ VolumetricResult reconstruct(Samples&& samples, const VolumetricOptions& options
   estimateNoise(samples, options.threads);
   report(progress, "normal field", 0.25);
   Array<Eigen::Vector3f> normals = normalsOf(samples, options.threads);
-  const std::vector<SampleLevel> levels = sampleLevels(finestLevel(samples, options.threads), options.threads);
+  std::vector<SampleLevel> levels = sampleLevels(finestLevel(samples, options.threads), options.threads);
   releaseMemory(samples.samples);
   releaseMemory(samples.codes);
   Constraints constraints = splatNormals(tree, levels.back(), normals, options.threads);
@@ -169,6 +169,8 @@ VolumetricResult reconstruct(Samples&& samples, const VolumetricOptions& options
   report(progress, "surface", 0.7);
   const LevelSet level_set{&tree, &solution.chi,
                            levelSetValue(tree, solution.chi.back(), levels.back(), options.threads)};
+  if (samples.attributes.empty())
+    levels.clear(); // the vertices need them for their attributes only
   IsoSurface surface = extractIsoSurface(level_set, options.threads);
   removeSmallComponents(surface, options.threads);
   report(progress, "attributes", 0.9);
