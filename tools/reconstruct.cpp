@@ -5,14 +5,15 @@
 #include <fresco/core/require.h>
 #include <fresco/io/formats.h>
 #include <fresco/io/mesh_io.h>
-#include <fresco/io/point_io.h>
+#include <fresco/io/point_files.h>
 #include <fresco/surface/core/volumetric_reconstruction.h>
 #include <iostream>
+#include <limits>
 namespace {
 using namespace fresco;
 
 struct Request {
-  ScanPath input;
+  std::vector<ScanPath> inputs;
   std::string output;
   VolumetricOptions options;
   CommonOptions common;
@@ -24,11 +25,15 @@ Request parse(int argc, char** argv)
   Request request;
   VolumetricOptions& o = request.options;
   Args args(
-      "fresco_reconstruct IN OUT [options]",
+      "fresco_reconstruct IN... OUT [options]",
       "Volumetric surface reconstruction (screened Poisson over an octree) of points with normals.\n"
       "IN: " +
           readableExtensions(FileKind::points) +
-          ", with normals that point to the free side.\nOUT: " + writableExtensions(FileKind::mesh) +
+          ", with normals that point to the free side; a folder stands for the files of\npoints in it. "
+          "Several are taken as one cloud. Binary .ply and .pcd are read in windows, several times, and may be larger\n"
+          "than memory. Other files are read whole: a single one once, several one after the other, several "
+          "times.\nOUT: " +
+          writableExtensions(FileKind::mesh) +
           ", a mesh, closed\n"
           "and manifold unless trimmed, with colours and intensity where IN has them and the field `support`: the\n"
           "octree depth that the data sustain at the vertex.");
@@ -56,27 +61,37 @@ Request parse(int argc, char** argv)
   fresco::ScanOption scan;
   scan.declare(args);
   request.common.declare(args);
-  const std::vector<std::string> files = args.parse(argc, argv, 2);
-  request.input = scan.of(files[0]);
-  request.output = files[1];
-  requireDistinct({request.output}, {files[0]});
+  std::vector<std::string> files = args.parse(argc, argv, 2, std::numeric_limits<std::size_t>::max());
   o.threads = request.common.threads;
   try {
     validateVolumetricOptions(o);
   } catch (const std::invalid_argument& error) {
     throw UsageError(error.what());
   }
+  request.output = files.back();
+  files.pop_back();
+  files = pointFilesIn(files);
+  if (scan.number > 0 && files.size() > 1)
+    throw UsageError("-scan chooses a scan of one file");
+  for (const std::string& file : files)
+    request.inputs.push_back(scan.of(file));
+  requireDistinct({request.output}, files);
   return request;
+}
+
+/// What errors that concern all points name.
+std::string nameOf(const std::vector<ScanPath>& inputs)
+{
+  return inputs.size() == 1 ? inputs[0].file : concat(inputs[0].file, " and ", inputs.size() - 1, " more");
 }
 
 std::string percent(Index part, Index whole) { return concat(std::round(1000.0 * part / whole) / 10, " %"); }
 
 void run(const Request& request)
 {
-  PointSet points = readPoints(request.input);
-  const Index count = points.size();
+  std::unique_ptr<PointStream> points = openPointFiles(request.inputs);
   if (request.estimate) {
-    std::cout << std::ceil(estimateMemory(points, request.options) / 1e6) << '\n';
+    std::cout << std::ceil(estimateMemory(*points, request.options) / 1e6) << '\n';
     return;
   }
   const VolumetricResult result =
@@ -85,7 +100,7 @@ void run(const Request& request)
   inform(request.common.quiet,
          concat(result.mesh.vertexCount(), " vertices, ", result.mesh.faceCount(), " faces; depth ", result.depth,
                 ", cell ", result.cell_size, "; ", result.used_points, " points used, ", result.left_out_points,
-                " left out (", percent(result.left_out_points, count), ")"));
+                " left out (", percent(result.left_out_points, result.used_points + result.left_out_points), ")"));
 }
 } // namespace
 
@@ -96,7 +111,7 @@ int main(int argc, char** argv)
     try {
       run(request);
     } catch (const std::invalid_argument& error) {
-      throw std::runtime_error(request.input.file + ": " + error.what());
+      throw std::runtime_error(nameOf(request.inputs) + ": " + error.what());
     }
   });
 }

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "support/tool.h"
 #include <algorithm>
-#include <filesystem>
 #include <fresco/core/constants.h>
 #include <fresco/core/require.h>
 #include <fresco/io/file.h>
 #include <fresco/io/formats.h>
 #include <fresco/io/json_text.h>
+#include <fresco/io/point_files.h>
 #include <fresco/io/point_io.h>
 #include <fresco/io/pose_file.h>
 #include <fresco/io/scan_file.h>
@@ -23,36 +23,6 @@ struct Request {
   ScanRegistrationOptions options;
   CommonOptions common;
 };
-
-/// In a folder of scans, text files are notes or poses, and .stl files hold no scans.
-bool isPointFile(const std::filesystem::path& path)
-{
-  const std::string ending = extension(path.string());
-  return isReadable(path.string(), FileKind::points) && ending != ".txt" && ending != ".stl";
-}
-
-// Folders are replaced by the point files in them, in the order of their names.
-std::vector<std::string> scanFiles(const std::vector<std::string>& words)
-{
-  std::vector<std::string> files;
-  for (const std::string& word : words) {
-    if (!std::filesystem::exists(word))
-      throw std::runtime_error(word + ": no such file");
-    if (!std::filesystem::is_directory(word)) {
-      files.push_back(word);
-      continue;
-    }
-    std::vector<std::string> inside;
-    for (const auto& entry : std::filesystem::directory_iterator(word))
-      if (entry.is_regular_file() && isPointFile(entry.path()))
-        inside.push_back(entry.path().string());
-    if (inside.empty())
-      throw std::runtime_error(word + ": no scan in this folder");
-    std::sort(inside.begin(), inside.end());
-    files.insert(files.end(), inside.begin(), inside.end());
-  }
-  return files;
-}
 
 Request parse(int argc, char** argv)
 {
@@ -87,7 +57,7 @@ Request parse(int argc, char** argv)
     throw UsageError("-fixed needs -poses START.txt");
   if (request.folder.empty())
     throw UsageError("-o OUT_DIR is missing");
-  std::vector<std::string> inputs = scanFiles(words);
+  std::vector<std::string> inputs = pointFilesIn(words);
   request.scans = scansOf(inputs, true);
   inputs.push_back(request.start_file);
   requireDistinct(

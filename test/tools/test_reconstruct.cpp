@@ -88,6 +88,28 @@ TEST_F(ReconstructTool, EstimatePrintsMegabytesAndWritesNothing)
   EXPECT_GT(std::stod(readFile(path("log.out"))), 2 * coarse);
 }
 
+TEST_F(ReconstructTool, SeveralFilesAreOneCloudInAnyOrder)
+{
+  std::filesystem::create_directories(path("parts"));
+  const PointSet whole = readPoints(path("in.ply"));
+  std::vector<Index> part[3];
+  for (Index i = 0; i < whole.size(); ++i)
+    part[i * 7 % 3].push_back(i);
+  writePoints(path("parts/a.ply"), selectPoints(whole, part[0]));
+  writePoints(path("parts/b.pcd"), selectPoints(whole, part[1]));
+  writePoints(path("parts/c.xyz"), selectPoints(whole, part[2]));
+  const auto bytes = [&](const std::string& inputs) {
+    EXPECT_EQ(run(inputs, "out.ply", "-depth 6"), 0) << readFile(path("log.err"));
+    return readFile(path("out.ply"));
+  };
+  const std::string expected = bytes("in.ply");
+  EXPECT_EQ(bytes("parts"), expected);
+  EXPECT_EQ(bytes("parts/c.xyz " + path("parts/a.ply") + " " + path("parts/b.pcd")), expected);
+  EXPECT_NE(readFile(path("log.err")).find("8000 points used"), std::string::npos);
+  EXPECT_EQ(run("parts", "parts/a.ply", "-depth 6"), 2); // an input
+  EXPECT_EQ(run("parts", "out.ply", "-scan 1"), 2);
+}
+
 TEST_F(ReconstructTool, OptionsOutOfRangeAreWrongUsage)
 {
   for (const char* wrong :

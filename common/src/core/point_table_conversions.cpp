@@ -6,10 +6,20 @@
 #include <functional>
 namespace fresco::core {
 namespace {
+constexpr const char* no_coordinates = "no coordinates x y z";
+
 template <typename Body>
 void forEachRow(const PointTable& table, const Body& body)
 {
   parallelFor(table.rows, 0, body, rows_per_task);
+}
+
+bool areFloatsInARow(const std::array<Column, 3>& columns)
+{
+  for (std::size_t i = 0; i < 3; ++i)
+    if (columns[i].type != Scalar::float32 || columns[i].offset != columns[0].offset + i * sizeof(float))
+      return false;
+  return true;
 }
 
 /// 3xN less `origin`, 3x0 unless all three columns are there.
@@ -17,6 +27,12 @@ Points tripleValues(const PointTable& table, NameTriple names, const Eigen::Vect
 {
   const auto columns = findTriple(table, names);
   Points values(3, columns ? table.rows : 0);
+  if (columns && origin.isZero(0) && areFloatsInARow(*columns)) {
+    forEachRow(table, [&](Index row) {
+      std::memcpy(values.col(row).data(), table.cell(row, (*columns)[0]), 3 * sizeof(float));
+    });
+    return values;
+  }
   for (int axis = 0; columns && axis < 3; ++axis)
     forEachValue(table, (*columns)[axis], 0,
                  [&](Index row, auto value) { values(axis, row) = static_cast<double>(value) - origin[axis]; });
@@ -28,7 +44,7 @@ Eigen::Vector3d originOf(const PointTable& table)
 {
   const auto xyz = findTriple(table, xyz_names);
   if (!xyz)
-    throw std::runtime_error("no coordinates x y z");
+    throw std::runtime_error(no_coordinates);
   if (std::all_of(xyz->begin(), xyz->end(), [](const Column& column) { return column.type == Scalar::float32; }))
     return Eigen::Vector3d::Zero();
   const CoordinateBounds bounds = coordinateBounds(table, *xyz);
@@ -130,10 +146,14 @@ private:
 };
 } // namespace
 
-PointSet tableToPoints(const PointTable& table)
+PointSet tableToPoints(const PointTable& table) { return tableToPoints(table, originOf(table)); }
+
+PointSet tableToPoints(const PointTable& table, const Eigen::Vector3d& origin)
 {
+  if (!findTriple(table, xyz_names))
+    throw std::runtime_error(no_coordinates);
   PointSet set;
-  set.origin = originOf(table);
+  set.origin = origin;
   set.points = tripleValues(table, xyz_names, set.origin);
   set.normals = tripleValues(table, normal_names);
   set.colors = readColors(table);

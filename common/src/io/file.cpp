@@ -41,6 +41,14 @@ std::optional<std::pair<dev_t, ino_t>> identityOf(const std::string& path)
 }
 } // namespace
 
+void io::rememberInput(const std::string& path)
+{
+  if (const auto identity = identityOf(path)) {
+    const std::lock_guard<std::mutex> lock(inputs().mutex);
+    inputs().known.insert(*identity);
+  }
+}
+
 bool io::wasRead(const std::string& path)
 {
   const auto identity = identityOf(path);
@@ -77,10 +85,7 @@ std::string readFile(const std::string& path)
   content.resize(done);
   if (content.empty())
     fail(path, "the file is empty");
-  if (const auto identity = identityOf(path)) {
-    const std::lock_guard<std::mutex> lock(inputs().mutex);
-    inputs().known.insert(*identity);
-  }
+  io::rememberInput(path);
   return content;
 }
 

@@ -5,10 +5,13 @@
 #include <fresco/core/textured_mesh.h>
 #include <fresco/io/formats.h>
 #include <memory>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 namespace fresco::io {
 class ScanReader;
+struct RowLayout;
 
 /// A format of files: what it is called, how its names end, and who reads and writes it (nullptr: nobody).
 struct Format {
@@ -19,6 +22,9 @@ struct Format {
   TriangleMesh (*read_mesh)(const std::string& path) = nullptr;
   void (*write_mesh)(const std::string& path, const TriangleMesh& mesh) = nullptr;
   bool textured = false; ///< also read and written with texture, by texture_io.cpp, which links the image libraries
+
+  /// For formats whose files may be plain rows: where they begin, from the begin of a file; see RowLayout.
+  std::optional<RowLayout> (*row_layout)(std::string_view begin) = nullptr;
 
   /// For formats of several scans, or larger than memory; read_points then reads all scans as one cloud.
   std::unique_ptr<ScanReader> (*open_scans)(const std::string& path) = nullptr;

@@ -8,6 +8,7 @@
 #include "io/points/las.h"
 #include "io/points/parse_file.h"
 #include "io/points/pcd.h"
+#include "io/points/row_file.h"
 #include "io/points/text_scans.h"
 #include "io/points/xyz.h"
 #include <algorithm>
@@ -81,6 +82,12 @@ TriangleMesh readObjMesh(const std::string& path)
 PointTable readXyz(const std::string& path) { return parseFile(path, parseXyz); }
 void writeXyzPoints(const std::string& path, const PointTable& points, bool) { writeXyz(path, points); }
 
+Format withRows(Format format, std::optional<RowLayout> (*row_layout)(std::string_view))
+{
+  format.row_layout = row_layout;
+  return format;
+}
+
 template <auto open>
 PointTable readScans(const std::string& path)
 {
@@ -101,8 +108,8 @@ const std::vector<Format>& formats()
 {
   static const std::vector<Format> all = {
       // name, extensions, points: reads, writes; mesh: reads, writes; with texture
-      {"PCD", {".pcd"}, readPcd, writePcd},
-      {"PLY", {".ply"}, readPlyPoints, writePlyPoints, readPlyMesh, writePlyMesh},
+      withRows({"PCD", {".pcd"}, readPcd, writePcd}, pcdRows),
+      withRows({"PLY", {".ply"}, readPlyPoints, writePlyPoints, readPlyMesh, writePlyMesh}, plyRows),
       {"legacy VTK", {".vtk"}, readVtkPoints, nullptr, readVtkMesh, writeVtkMesh},
       {"VTK XML", {".vtp"}, nullptr, nullptr, nullptr, writeVtpMesh},
       {"STL", {".stl"}, readStlPoints, nullptr, readStlMesh, writeStlMesh},

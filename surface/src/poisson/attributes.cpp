@@ -10,18 +10,18 @@ using Channels = Eigen::Matrix<float, 5, 1>; ///< weight, weight times attribute
 constexpr int channel_count = Channels::RowsAtCompileTime;
 using Fields = std::array<NodeField, channel_count>;
 
-Channels channelsOf(const Samples& samples, std::uint32_t i)
+Channels channelsOf(const AttributedSamples& samples, std::uint32_t i)
 {
   Channels c;
   c << 1.f, samples.attributes[i];
-  return c * samples.samples[i].area;
+  return c * samples.level.samples[i].area;
 }
 
 class Transfer {
 public:
-  Transfer(const Octree& tree, const Samples& samples, int threads)
-      : tree_(tree), samples_(samples), begin_(sampleRanges(tree.levels.back(), samples.codes, tree.depth, threads)),
-        fields_(tree.levels.size())
+  Transfer(const Octree& tree, const AttributedSamples& samples, int threads)
+      : tree_(tree), samples_(samples),
+        begin_(sampleRanges(tree.levels.back(), samples.level.codes, tree.depth, threads)), fields_(tree.levels.size())
   {
     for (int d = tree.depth - 1; d >= 2; --d)
       makeFields(d, threads);
@@ -57,7 +57,7 @@ private:
   {
     const BrickLevel& level = tree_.levels[d];
     Fields& fields = fields_[d];
-    const Array<std::uint32_t> begin = sampleRanges(level, samples_.codes, tree_.depth, threads);
+    const Array<std::uint32_t> begin = sampleRanges(level, samples_.level.codes, tree_.depth, threads);
     for (int c = 0; c < channel_count; ++c) {
       fields[c] = NodeField(level.size(), threads);
       if (d < tree_.depth - 1) {
@@ -66,7 +66,7 @@ private:
       }
       splatBricks(level, begin, fields[c], threads, [&](SplatBlock<1>& block, int b) {
         for (std::uint32_t i = begin[b]; i < begin[b + 1]; ++i) {
-          const HatWeights w(toBrick(samples_.samples[i].position, d, b));
+          const HatWeights w(toBrick(samples_.level.samples[i].position, d, b));
           const float value = channelsOf(samples_, i)[c];
           for (int k = 0; k < 8; ++k)
             block.at(w.x + (k & 1), w.y + (k >> 1 & 1), w.z + (k >> 2)) += value * w.value[k];
@@ -84,7 +84,7 @@ private:
       if (n < 0)
         continue;
       for (std::uint32_t i = begin_[n]; i < begin_[n + 1]; ++i) {
-        const Eigen::Vector3f p = toBrick(samples_.samples[i].position, tree_.depth, brick);
+        const Eigen::Vector3f p = toBrick(samples_.level.samples[i].position, tree_.depth, brick);
         if (p.minCoeff() <= -1.f || p.maxCoeff() >= brick_nodes)
           continue;
         const HatWeights w(p);
@@ -117,13 +117,14 @@ private:
   }
 
   const Octree& tree_;
-  const Samples& samples_;
+  const AttributedSamples& samples_;
   Array<std::uint32_t> begin_;
   std::vector<Fields> fields_; ///< by depth, coarser than the finest
 };
 } // namespace
 
-Eigen::Matrix4Xf vertexAttributes(const Octree& tree, const Samples& samples, const IsoSurface& surface, int threads)
+Eigen::Matrix4Xf vertexAttributes(const Octree& tree, const AttributedSamples& samples, const IsoSurface& surface,
+                                  int threads)
 {
   Eigen::Matrix4Xf result(4, surface.vertices.cols());
   const Transfer transfer(tree, samples, threads);

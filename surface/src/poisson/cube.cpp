@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "poisson/cube.h"
-#include "poisson/octree/select.h"
+#include "poisson/exact_sum.h"
+#include "poisson/point_sketch.h"
 #include <algorithm>
 #include <cmath>
 #include <fresco/core/parallel.h>
@@ -10,58 +11,93 @@ namespace fresco::poisson {
 namespace {
 using Box = Eigen::AlignedBox3d;
 
-bool isUsable(const PointSet& set, const Weights& weights, Index i)
+/// What joining in any order makes the same.
+struct Totals {
+  Index usable = 0;
+  Box box;
+  ExactSum weight; ///< where points have weights
+  float largest_intensity = 0.f;
+
+  void add(const Totals& other)
+  {
+    usable += other.usable;
+    box.extend(other.box);
+    weight.add(other.weight);
+    largest_intensity = std::max(largest_intensity, other.largest_intensity);
+  }
+};
+
+/// Of the usable points of a window.
+Totals totalsOf(const PointSet& set, const Extent& extent, int threads)
 {
-  const float length = set.normals.col(i).squaredNorm();
-  return set.points.col(i).allFinite() && std::isfinite(length) && length > 1e-20f && weights.of(set, i) > 0;
+  const auto map = [&](Index begin, Index end) {
+    Totals totals;
+    for (Index i = begin; i < end; ++i) {
+      if (!extent.isUsable(set, i))
+        continue;
+      ++totals.usable;
+      totals.box.extend(set.points.col(i).cast<double>());
+      if (extent.weights.source != Weights::Source::none)
+        totals.weight.add(extent.weights.given(set, i));
+      if (extent.intensities && std::isfinite(set.intensities[i]))
+        totals.largest_intensity = std::max(totals.largest_intensity, std::abs(set.intensities[i]));
+    }
+    return totals;
+  };
+  const auto join = [](Totals a, const Totals& b) {
+    a.add(b);
+    return a;
+  };
+  constexpr Index chunk = 1 << 14; // a sum of weights takes as much as two hundred points
+  return parallelReduce(set.size(), threads, Totals(), map, join, chunk);
 }
 
-/// Box of the points, or of a sample of them, without the lowest and highest of each axis.
-Box innerBox(const PointSet& set, const Array<std::uint32_t>& points)
+/// What a window says of itself.
+void lookAt(const PointSet& set, const VolumetricOptions& options, Extent& extent)
 {
-  constexpr std::size_t quantile_points = 1 << 17; // enough for 131 points beyond the quantile
-  constexpr double outlier_share = 0.001;          // beams that return from far beyond a window or a mirror are rarer
-  constexpr Index few_outliers = 4;                // where there are too few points for the share
-  const std::size_t stride = (points.size() + quantile_points - 1) / quantile_points;
-  std::vector<float> values;
-  Box box;
+  validatePointSet(set);
+  require(set.hasNormals(), "volumetric reconstruction: the points have no normals");
+  extent.origin = set.origin;
+  extent.colors = set.colors.cols() > 0;
+  extent.intensities = set.intensities.size() > 0;
+  if (options.confidence)
+    extent.weights.source = set.confidences.size() > 0 ? Weights::Source::confidences : Weights::Source::normal_lengths;
+}
+
+/// Reads the points that `extent` lets through. @param sketch receives them, too, unless nullptr
+Totals readTotals(const PointStream& points, const VolumetricOptions& options, Extent& extent, PointSketch* sketch)
+{
+  const int threads = options.threads;
+  Totals totals;
+  extent.all = extent.windows = 0;
+  points.read([&](const PointSet& set) {
+    if (set.size() == 0)
+      return;
+    lookAt(set, options, extent);
+    extent.all += set.size();
+    ++extent.windows;
+    totals.add(totalsOf(set, extent, threads));
+    if (sketch)
+      sketch->add(
+          set, [&](Index i) { return extent.isUsable(set, i); }, threads);
+  });
+  return totals;
+}
+
+/// Box of a sample of the points, without the lowest and highest of each axis.
+Box innerBox(const PointSketch& sketch)
+{
+  constexpr double outlier_share = 0.001; // beams that return from far beyond a window or a mirror are rarer
+  constexpr Index few_outliers = 4;       // where there are too few points for the share
   Eigen::Vector3d lower, upper;
   for (int axis = 0; axis < 3; ++axis) {
-    values.clear();
-    for (std::size_t k = 0; k < points.size(); k += stride)
-      values.push_back(set.points(axis, points[k]));
+    std::vector<float> values = sketch.coordinates(axis);
     const Index n = values.size();
     const Index drop = std::min(std::max(few_outliers, static_cast<Index>(outlier_share * n)), n / 16);
     lower[axis] = rankedValue(values, drop);
     upper[axis] = rankedValue(values, n - 1 - drop);
   }
   return Box(lower, upper);
-}
-
-Box boxOf(const PointSet& set, const Array<std::uint32_t>& points, int threads)
-{
-  const auto map = [&](Index begin, Index end) {
-    Box box;
-    for (Index k = begin; k < end; ++k)
-      box.extend(set.points.col(points[k]).cast<double>());
-    return box;
-  };
-  const auto join = [](const Box& a, const Box& b) { return a.merged(b); };
-  return parallelReduce(points.size(), threads, Box(), map, join);
-}
-
-/// An outlier is farther off the others than they extend.
-/// @return box of the points that are left
-Box dropOutliers(const PointSet& set, Array<std::uint32_t>& points, int threads)
-{
-  const Box inner = innerBox(set, points), box = boxOf(set, points, threads);
-  const double margin = inner.sizes().maxCoeff();
-  const Box allowed(inner.min().array() - margin, inner.max().array() + margin);
-  if (!(margin > 0) || allowed.contains(box))
-    return box;
-  const auto outside = [&](Index i) { return !allowed.contains(set.points.col(i).cast<double>()); };
-  points.erase(std::remove_if(points.begin(), points.end(), outside), points.end());
-  return boxOf(set, points, threads);
 }
 
 Cube fitCube(const Box& box, const VolumetricOptions& options)
@@ -79,44 +115,47 @@ Cube fitCube(const Box& box, const VolumetricOptions& options)
   return cube;
 }
 
-Weights chooseWeights(const PointSet& set, const VolumetricOptions& options)
+void requireEnough(const Extent& extent, Index usable)
 {
-  Weights weights;
-  if (options.confidence)
-    weights.source = set.confidences.size() > 0 ? Weights::Source::confidences : Weights::Source::normal_lengths;
-  return weights;
+  constexpr Index least_points = 4;             // fewer enclose no volume
+  constexpr Index most_points = Index(1) << 34; // their sums fit, see CellSums
+  require(usable >= least_points, "volumetric reconstruction: ", usable, " of ", extent.all,
+          " points are usable (finite, with a normal that is finite and not zero); at least ", least_points,
+          " are needed");
+  require(usable <= most_points, "volumetric reconstruction: ", usable, " points are more than 2^34");
 }
 } // namespace
 
-double Weights::of(const PointSet& set, Index i) const
+float Weights::given(const PointSet& set, Index i) const
 {
   if (source == Source::none)
-    return 1.0;
-  const double w = source == Source::confidences ? set.confidences[i] : set.normals.col(i).norm();
-  return std::isfinite(w) ? scale * w : 0.0;
+    return 1.f;
+  const float w = source == Source::confidences ? set.confidences[i] : set.normals.col(i).norm();
+  return std::isfinite(w) ? w : 0.f;
 }
 
-Usable usablePoints(const PointSet& set, const VolumetricOptions& options)
+Extent findExtent(const PointStream& points, const VolumetricOptions& options)
 {
-  Usable usable;
-  usable.weights = chooseWeights(set, options);
-  usable.points = selectIndices(set.size(), options.threads, [&](Index i) { return isUsable(set, usable.weights, i); });
-  const auto enough = [&] {
-    constexpr std::size_t least_points = 4; // fewer enclose no volume
-    require(usable.points.size() >= least_points, "volumetric reconstruction: ", usable.points.size(), " of ",
-            set.size(), " points are usable (finite, with a normal that is finite and not zero); at least ",
-            least_points, " are needed");
-  };
-  enough();
-  const Box box = dropOutliers(set, usable.points, options.threads);
-  enough();
-  require(box.sizes().maxCoeff() > 1e-30, "volumetric reconstruction: all ", usable.points.size(),
+  Extent extent;
+  PointSketch sketch;
+  Totals totals = readTotals(points, options, extent, &sketch);
+  requireEnough(extent, totals.usable);
+  const Box inner = innerBox(sketch);
+  const double margin = inner.sizes().maxCoeff(); // an outlier is farther off the others than they extend
+  const Box allowed(inner.min().array() - margin, inner.max().array() + margin);
+  if (margin > 0 && !allowed.contains(totals.box)) {
+    extent.allowed = allowed;
+    totals = readTotals(points, options, extent, nullptr);
+    requireEnough(extent, totals.usable);
+  }
+  require(totals.box.sizes().maxCoeff() > 1e-30, "volumetric reconstruction: all ", totals.usable,
           " usable points coincide");
-  const Index n = usable.points.size();
-  const double sum =
-      parallelSum(n, options.threads, 0.0, [&](Index k) { return usable.weights.of(set, usable.points[k]); });
-  usable.weights.scale = n / sum;
-  usable.cube = fitCube(box, options);
-  return usable;
+  extent.usable = totals.usable;
+  extent.largest_intensity = totals.largest_intensity;
+  if (extent.weights.source != Weights::Source::none)
+    extent.weights.scale = static_cast<double>(totals.usable) / totals.weight.value();
+  extent.cube = fitCube(totals.box, options);
+  extent.cells_per_unit = 1.0 / extent.cube.cell();
+  return extent;
 }
 } // namespace fresco::poisson

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <fresco/core/array.h>
 #include <fresco/core/point_set.h>
+#include <fresco/core/point_stream.h>
 #include <fresco/surface/core/volumetric_reconstruction.h>
 namespace fresco::poisson {
 /// The cube that the octree divides.
@@ -34,12 +35,26 @@ struct Samples {
   Array<Sample> samples;        ///< by code
   Array<Attributes> attributes; ///< by code; empty if the points have neither colour nor intensity
   Index used_points = 0, left_out_points = 0;
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero(); ///< of the points
+  bool has_colors = false, has_intensities = false;
+};
+
+/// Points that are all there already.
+class WholeSet : public PointStream {
+public:
+  explicit WholeSet(const PointSet& set) : set_(set) {}
+  void read(const std::function<void(const PointSet&)>& receive) const override { receive(set_); }
+
+private:
+  const PointSet& set_;
 };
 
 /// Leaves out unusable points and far outliers, fits the cube, sorts along the Z-order curve and joins the points of a
 /// cell.
 /// @throws std::invalid_argument as reconstructVolumetric()
 Samples gatherSamples(const PointSet& points, const VolumetricOptions& options);
+/// The same of a stream, which is read three times, or four times if there are far outliers.
+Samples gatherSamples(const PointStream& points, const VolumetricOptions& options);
 
 /// Samples joined within the cells of a coarser depth.
 struct CoarseSample {
@@ -57,6 +72,7 @@ struct SampleLevel {
 };
 
 SampleLevel finestLevel(const Samples& samples, int threads);
+Array<Eigen::Vector3f> normalsOf(const Samples& samples, int threads);
 SampleLevel coarsen(const SampleLevel& fine, int threads);
 
 /// First sample of each brick of `level` among sorted codes of a depth no coarser than the level's, and their count at

@@ -3,6 +3,7 @@
 #include "poisson/density.h"
 #include "poisson/isosurface/isosurface.h"
 #include "poisson/noise.h"
+#include "poisson/occupied_cells.h"
 #include "poisson/small_components.h"
 #include "poisson/solver/base_solver.h"
 #include "poisson/solver/constraints.h"
@@ -12,6 +13,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fresco/core/parallel.h>
+#include <fresco/core/release.h>
 #include <fresco/core/require.h>
 #include <fresco/core/statistics.h>
 #include <fresco/surface/core/mesh_trimming.h>
@@ -28,11 +30,11 @@ void validate(const PointSet& points, const VolumetricOptions& options)
 }
 
 /// samples joined in the cells of each depth, by depth
-std::vector<SampleLevel> sampleLevels(const Samples& samples, int threads)
+std::vector<SampleLevel> sampleLevels(SampleLevel&& finest, int threads)
 {
-  std::vector<SampleLevel> levels(samples.cube.depth + 1);
-  levels.back() = finestLevel(samples, threads);
-  for (int d = samples.cube.depth; d > 2; --d)
+  std::vector<SampleLevel> levels(finest.depth + 1);
+  levels.back() = std::move(finest);
+  for (int d = levels.back().depth; d > 2; --d)
     levels[d - 1] = coarsen(levels[d], threads);
   return levels;
 }
@@ -80,7 +82,7 @@ Solution solve(const Octree& tree, Constraints& constraints, const std::vector<S
 
 /// Mean of chi over the samples, weighted by their area (Kazhdan, Bolitho & Hoppe 2006, sections 4.4 and 4.5), kept
 /// below the margin that closeBoundary() gives the cube's boundary, so that the level set stays in the cube.
-float levelSetValue(const Octree& tree, const NodeField& chi, const Samples& samples, int threads)
+float levelSetValue(const Octree& tree, const NodeField& chi, const SampleLevel& samples, int threads)
 {
   const BrickLevel& level = tree.levels.back();
   const Array<std::uint32_t> begin = sampleRanges(level, samples.codes, tree.depth, threads);
@@ -88,7 +90,7 @@ float levelSetValue(const Octree& tree, const NodeField& chi, const Samples& sam
     Eigen::Array2d sum(0, 0);
     const Eigen::Vector3f origin = level.origin(b);
     for (std::uint32_t i = begin[b]; i < begin[b + 1]; ++i) {
-      const Sample& s = samples.samples[i];
+      const CoarseSample& s = samples.samples[i];
       const double value = HatWeights::inBrick(s.position - origin).interpolate(chi.brick(b));
       sum += Eigen::Array2d(s.area * value, s.area);
     }
@@ -109,21 +111,11 @@ Eigen::VectorXf vertexSupport(const Density& density, const IsoSurface& surface,
   return support;
 }
 
-/// What is still needed of the points after they have been sampled.
-struct Source {
-  Eigen::Vector3d origin;
-  bool colors, intensities;
-};
-
-Source sourceOf(const PointSet& points)
-{
-  return {points.origin, points.colors.cols() > 0, points.intensities.size() > 0};
-}
-
-TriangleMesh toMesh(const Source& source, const Cube& cube, IsoSurface&& surface, int threads)
+TriangleMesh toMesh(const Samples& samples, IsoSurface&& surface, int threads)
 {
   TriangleMesh mesh;
-  mesh.origin = source.origin;
+  const Cube& cube = samples.cube;
+  mesh.origin = samples.origin;
   mesh.faces = std::move(surface.faces);
   mesh.vertices = std::move(surface.vertices);
   parallelFor(mesh.vertices.cols(), threads, [&](Index v) {
@@ -132,11 +124,11 @@ TriangleMesh toMesh(const Source& source, const Cube& cube, IsoSurface&& surface
   return mesh;
 }
 
-void addAttributes(const Source& source, const Eigen::Matrix4Xf& attributes, TriangleMesh& mesh)
+void addAttributes(const Samples& samples, const Eigen::Matrix4Xf& attributes, TriangleMesh& mesh)
 {
-  if (source.colors)
+  if (samples.has_colors)
     mesh.colors = (attributes.topRows<3>().array() + 0.5f).max(0.f).min(255.f).cast<std::uint8_t>();
-  if (source.intensities)
+  if (samples.has_intensities)
     mesh.fields["intensity"] = attributes.row(3).transpose();
 }
 
@@ -149,8 +141,7 @@ float trimDepth(Eigen::VectorXf support, int depth, const VolumetricOptions& opt
   return std::max(options.trim, std::min<float>(upper_quartile, depth) - options.trim_levels);
 }
 
-VolumetricResult reconstruct(Samples&& samples, const Source& source, const VolumetricOptions& options,
-                             const Progress& progress)
+VolumetricResult reconstruct(Samples&& samples, const VolumetricOptions& options, const Progress& progress)
 {
   VolumetricResult result;
   result.used_points = samples.used_points;
@@ -167,22 +158,30 @@ VolumetricResult reconstruct(Samples&& samples, const Source& source, const Volu
   estimateDensity(tree, density, options.samples_per_node, samples, options.threads);
   estimateNoise(samples, options.threads);
   report(progress, "normal field", 0.25);
-  Constraints constraints = splatNormals(tree, samples, options.threads);
-  const Solution solution = solve(tree, constraints, sampleLevels(samples, options.threads), options, progress);
+  Array<Eigen::Vector3f> normals = normalsOf(samples, options.threads);
+  std::vector<SampleLevel> levels = sampleLevels(finestLevel(samples, options.threads), options.threads);
+  releaseMemory(samples.samples);
+  releaseMemory(samples.codes);
+  Constraints constraints = splatNormals(tree, levels.back(), normals, options.threads);
+  releaseMemory(normals);
+  const Solution solution = solve(tree, constraints, levels, options, progress);
   result.residual = solution.residual;
   report(progress, "surface", 0.7);
-  const LevelSet level_set{&tree, &solution.chi, levelSetValue(tree, solution.chi.back(), samples, options.threads)};
+  const LevelSet level_set{&tree, &solution.chi,
+                           levelSetValue(tree, solution.chi.back(), levels.back(), options.threads)};
+  if (samples.attributes.empty())
+    levels.clear(); // the vertices need them for their attributes only
   IsoSurface surface = extractIsoSurface(level_set, options.threads);
-  removeSmallComponents(surface);
+  removeSmallComponents(surface, options.threads);
   report(progress, "attributes", 0.9);
   const Eigen::VectorXf support = vertexSupport(density, surface, options.samples_per_node, options.threads);
   Eigen::Matrix4Xf attributes;
   if (!samples.attributes.empty())
-    attributes = vertexAttributes(tree, samples, surface, options.threads);
-  result.mesh = toMesh(source, samples.cube, std::move(surface), options.threads);
+    attributes = vertexAttributes(tree, {levels.back(), samples.attributes}, surface, options.threads);
+  result.mesh = toMesh(samples, std::move(surface), options.threads);
   result.mesh.fields["support"] = support;
   if (attributes.cols() > 0)
-    addAttributes(source, attributes, result.mesh);
+    addAttributes(samples, attributes, result.mesh);
   const float trim = trimDepth(support, result.depth, options);
   if (trim > 0) {
     result.trim_depth = trim;
@@ -223,28 +222,44 @@ VolumetricResult reconstructVolumetric(const PointSet& points, const VolumetricO
 {
   validate(points, options);
   report(progress, "sort points", 0.0);
-  return reconstruct(gatherSamples(points, options), sourceOf(points), options, progress);
+  return reconstruct(gatherSamples(points, options), options, progress);
 }
 
 VolumetricResult reconstructVolumetric(PointSet&& points, const VolumetricOptions& options, const Progress& progress)
 {
   validate(points, options);
   report(progress, "sort points", 0.0);
-  const Source source = sourceOf(points);
   Samples samples = gatherSamples(points, options);
   points = PointSet();
-  return reconstruct(std::move(samples), source, options, progress);
+  return reconstruct(std::move(samples), options, progress);
+}
+
+VolumetricResult reconstructVolumetric(std::unique_ptr<PointStream> points, const VolumetricOptions& options,
+                                       const Progress& progress)
+{
+  validateVolumetricOptions(options);
+  report(progress, "sort points", 0.0);
+  Samples samples = gatherSamples(*points, options);
+  points.reset();
+  return reconstruct(std::move(samples), options, progress);
+}
+
+std::size_t estimateMemory(const PointStream& points, const VolumetricOptions& options)
+{
+  validateVolumetricOptions(options);
+  const Extent extent = findExtent(points, options);
+  const Array<std::uint64_t> codes = findCells(points, extent, options.threads).codes(options.threads);
+  const int depth = extent.cube.depth;
+  std::size_t bricks = 0;
+  for (const Index n : countBricks(codes, depth, std::min(options.min_depth, depth), options.threads))
+    bricks += n;
+  constexpr std::size_t bytes_per_brick = 2000, bytes_per_sample = 150;
+  return bricks * bytes_per_brick + codes.size() * bytes_per_sample;
 }
 
 std::size_t estimateMemory(const PointSet& points, const VolumetricOptions& options)
 {
   validate(points, options);
-  const Samples samples = gatherSamples(points, options);
-  const int depth = samples.cube.depth;
-  std::size_t bricks = 0;
-  for (const Index n : countBricks(samples.codes, depth, std::min(options.min_depth, depth)))
-    bricks += n;
-  constexpr std::size_t bytes_per_brick = 2000, bytes_per_sample = 150, bytes_per_point = 40;
-  return bricks * bytes_per_brick + samples.codes.size() * bytes_per_sample + points.size() * bytes_per_point;
+  return estimateMemory(WholeSet(points), options);
 }
 } // namespace fresco

@@ -50,7 +50,7 @@ TEST(VolumetricScales, RightHandSideHasTheMomentsOfTheNormalsAtEveryDepth)
     samples.samples[i].depth = 3.f + 0.35f * static_cast<float>(i % 10);
     samples.samples[i].area = 1.f + samples.samples[i].normal.x() / 2;
   }
-  Constraints constraints = splatNormals(tree, samples, 2);
+  Constraints constraints = splatNormals(tree, finestLevel(samples, 2), normalsOf(samples, 2), 2);
   for (int d = 2; d <= 6; ++d) {
     addCoarser(tree, d, 2, constraints);
     double along = 0, across = 0, flux = 0, area = 0;

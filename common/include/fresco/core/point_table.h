@@ -162,6 +162,8 @@ FRESCO_EXPORT PointTable tableOfRows(const std::vector<std::string>& names, cons
 
 /// @throws std::runtime_error if x y z are missing
 FRESCO_EXPORT PointSet tableToPoints(const PointTable& table);
+/// The same relative to a given origin.
+FRESCO_EXPORT PointSet tableToPoints(const PointTable& table, const Eigen::Vector3d& origin);
 FRESCO_EXPORT PointTable pointsToTable(const PointSet& set);
 
 /// Vertices and their attributes; faces stay empty. @throws std::runtime_error if x y z are missing

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "io/mesh/ply.h"
+#include "io/points/row_file.h"
 #include "io/points/text_numbers.h"
 #include <algorithm>
 #include <cmath>
@@ -113,7 +114,7 @@ void checkSize(const Source& source, const PlyElement& element)
   const std::size_t least = Source::leastBytes(element);
   if (least > 0 && element.count > source.remaining() / least)
     failEarly(element);
-  if (element.count > static_cast<std::uint64_t>(std::numeric_limits<int>::max()))
+  if (element.name == "face" && element.count > static_cast<std::uint64_t>(std::numeric_limits<int>::max()))
     throw std::runtime_error(concat("too many rows of '", element.name, "'"));
 }
 
@@ -128,8 +129,8 @@ std::string columnName(const std::string& property)
   return property;
 }
 
-template <typename Source>
-PointTable readVertices(Source& source, const PlyElement& element)
+/// Columns of the properties that are no lists.
+PointTable layoutOf(const PlyElement& element)
 {
   PointTable table;
   for (const PlyProperty& property : element.properties)
@@ -137,6 +138,13 @@ PointTable readVertices(Source& source, const PlyElement& element)
       table.addColumn(columnName(property.name), property.type);
   if (table.columns.empty())
     throw std::runtime_error("vertices without properties");
+  return table;
+}
+
+template <typename Source>
+PointTable readVertices(Source& source, const PlyElement& element)
+{
+  PointTable table = layoutOf(element);
   table.rows = element.count;
   if (!element.hasList())
     table.view = source.takeRows(element.count * table.stride);
@@ -285,5 +293,29 @@ PlyContent parsePly(std::string_view content)
     return readElements(BinarySource<true>(data), header);
   }
   throw std::logic_error("unknown PLY format");
+}
+
+std::optional<RowLayout> plyRows(std::string_view begin)
+{
+  const PlyHeader header = parsePlyHeader(begin);
+  const bool one_cloud = std::count_if(header.elements.begin(), header.elements.end(),
+                                       [](const PlyElement& element) { return element.name == "vertex"; }) == 1;
+  if (header.format != PlyFormat::little_endian || !one_cloud)
+    return {};
+  RowLayout layout;
+  layout.offset = header.size;
+  for (const PlyElement& element : header.elements) {
+    if (element.hasList())
+      return {};
+    if (element.name == "vertex") {
+      layout.table = layoutOf(element);
+      layout.rows = element.count;
+      return layout;
+    }
+    if (element.count > std::numeric_limits<std::uint32_t>::max())
+      return {}; // of something else than points: damage, and the product might not fit
+    layout.offset += element.count * element.fixedSize();
+  }
+  return {};
 }
 } // namespace fresco::io

@@ -85,11 +85,19 @@ void writeFaces(OutputFile& file, const Faces& faces)
     int corners[3];
   };
 #pragma pack(pop)
-  std::vector<Row> rows(faces.cols());
-  const auto store = [&](Index f) { rows[f] = {3, {faces(0, f), faces(1, f), faces(2, f)}}; };
-  parallelFor(faces.cols(), 0, store, rows_per_task);
-  file.write(rows.data(), rows.size() * sizeof(Row));
+  constexpr Index at_most = Index{1} << 20;
+  std::vector<Row> rows(std::min(faces.cols(), at_most));
+  for (Index begin = 0; begin < faces.cols(); begin += at_most) {
+    const Index count = std::min(at_most, faces.cols() - begin);
+    const auto store = [&](Index i) {
+      const auto corners = faces.col(begin + i);
+      rows[i] = {3, {corners[0], corners[1], corners[2]}};
+    };
+    parallelFor(count, 0, store, rows_per_task);
+    file.write(rows.data(), count * sizeof(Row));
+  }
 }
+
 /// Colours as bytes, and only what PLY has types for.
 void prepare(const std::string& path, PointTable& table)
 {

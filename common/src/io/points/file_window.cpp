@@ -38,6 +38,7 @@ RandomAccessFile::RandomAccessFile(const std::string& path)
     throw std::runtime_error(reason);
   }
   size_ = status.st_size;
+  rememberInput(path);
 }
 
 RandomAccessFile::~RandomAccessFile() { ::close(descriptor_); }

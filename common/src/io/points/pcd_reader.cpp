@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "io/points/pcd.h"
+#include "io/points/row_file.h"
 #include "io/points/text_numbers.h"
 #include <algorithm>
 #include <fresco/core/require.h>
@@ -259,5 +260,27 @@ PointTable parsePcd(std::string_view content)
     std::tie(table.width, table.height) =
         std::pair(static_cast<Index>(header.width), static_cast<Index>(header.height));
   return table;
+}
+
+std::optional<RowLayout> pcdRows(std::string_view begin)
+{
+  const PcdHeader header = parseHeader(begin);
+  if (header.storage != "binary")
+    return {};
+  RowLayout layout;
+  const std::vector<StoredField> fields = storedFields(header, layout.table);
+  if (layout.table.columns.empty())
+    return {};
+  layout.table.stride = 0; // as stored, with padding
+  std::size_t column = 0;
+  for (const StoredField& field : fields) {
+    if (field.kept)
+      layout.table.columns[column++].offset = layout.table.stride;
+    layout.table.stride += field.bytes;
+  }
+  layout.table.sensor = header.sensor;
+  layout.offset = header.data.data() - begin.data();
+  layout.rows = header.points;
+  return layout;
 }
 } // namespace fresco::io

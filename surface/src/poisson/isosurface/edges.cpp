@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <fresco/core/parallel.h>
+#include <fresco/core/require.h>
+#include <limits>
+#include <utility>
 namespace fresco::poisson {
 namespace {
 /// Nodes from one end of an edge to the other.
@@ -15,6 +18,12 @@ std::array<int, 3> offsetAround(int axis, int k)
   return {axis == 0 ? 0 : p, axis == 0 ? p : axis == 1 ? 0 : q, axis == 2 ? 0 : q};
 }
 } // namespace
+
+void requireVertices(Index count)
+{
+  require(count <= std::numeric_limits<int>::max(), "volumetric reconstruction: the surface has ", count,
+          " vertices, more than 2^31 - 1: choose a smaller depth, or divide the points");
+}
 
 bool LevelSet::hasLeaves(int depth, Index brick) const
 {
@@ -44,7 +53,7 @@ int CrossedEdges::BrickEdges::count() const
 {
   int n = 0;
   for (const std::uint64_t word : bits)
-    n += __builtin_popcountll(word);
+    n += word == 0 ? 0 : __builtin_popcountll(word); // a call, and most are 0
   return n;
 }
 
@@ -65,12 +74,37 @@ CrossedEdges::CrossedEdges(const LevelSet& surface, int threads) : surface_(&sur
     if ((*surface.chi)[d].size() == 0)
       continue;
     bricks_[d].resize(tree.levels[d].codes.size());
-    parallelFor(tree.levels[d].size(), threads, [&](Index b) { findCrossings(d, b); });
-    for (BrickEdges& edges : bricks_[d]) {
-      edges.first = count_;
-      count_ += edges.count();
-    }
+    parallelFor(tree.levels[d].size(), threads, [&](Index b) {
+      bricks_[d][b] = BrickEdges();
+      findCrossings(d, b);
+    });
+    numberEdges(bricks_[d], threads);
   }
+  requireVertices(count_);
+}
+
+/// Counts by chunks of bricks first, so that the chunks can be numbered side by side.
+void CrossedEdges::numberEdges(Bricks& bricks, int threads)
+{
+  constexpr Index chunk = 1 << 12;
+  std::vector<Index> first((bricks.size() + chunk - 1) / chunk);
+  parallelRanges(
+      bricks.size(), threads,
+      [&](Index begin, Index end) {
+        for (Index b = begin; b < end; ++b)
+          first[begin / chunk] += bricks[b].count();
+      },
+      chunk);
+  for (Index& f : first)
+    f = std::exchange(count_, count_ + f);
+  parallelRanges(
+      bricks.size(), threads,
+      [&](Index begin, Index end) {
+        Index at = first[begin / chunk];
+        for (Index b = begin; b < end; at += bricks[b++].count())
+          bricks[b].first = at;
+      },
+      chunk);
 }
 
 void CrossedEdges::findCrossings(int depth, int brick)

@@ -15,6 +15,9 @@ struct LevelSet {
   bool hasLeaves(int depth, Index brick) const;
 };
 
+/// @throws std::invalid_argument if so many vertices cannot be numbered
+void requireVertices(Index count);
+
 /// Cell (x, y, z) of a brick.
 struct CellPlace {
   int depth, brick, x, y, z;
@@ -64,6 +67,8 @@ private:
     void set(int axis, int node) { bits[axis * 2 + node / 64] |= std::uint64_t(1) << (node & 63); }
     int rank(int axis, int node) const; ///< edges before this one
   };
+  using Bricks = Array<BrickEdges>;
+  void numberEdges(Bricks& bricks, int threads);
   void findCrossings(int depth, int brick);
   bool isSubdivided(const EdgePlace& edge) const;
   EdgePlace ownerOf(const EdgePlace& edge) const
@@ -77,7 +82,7 @@ private:
   Eigen::Vector3f position(const EdgePlace& edge) const;
 
   const LevelSet* surface_;
-  std::vector<std::vector<BrickEdges>> bricks_; ///< by depth
+  std::vector<Bricks> bricks_; ///< by depth
   Index count_ = 0;
 };
 } // namespace fresco::poisson

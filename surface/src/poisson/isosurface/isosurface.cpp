@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "poisson/isosurface/isosurface.h"
 #include "poisson/isosurface/polygon.h"
+#include "poisson/octree/select.h"
 #include <fresco/core/parallel.h>
+#include <fresco/core/release.h>
 namespace fresco::poisson {
 namespace {
 /// One part is what a thread takes at a time: small enough for an even share, few enough to join quickly.
@@ -126,37 +128,44 @@ struct BrickPlace {
   Index brick;
 };
 
-std::vector<BrickPlace> bricksWithLeaves(const LevelSet& surface)
+std::vector<BrickPlace> bricksWithLeaves(const LevelSet& surface, int threads)
 {
   std::vector<BrickPlace> bricks;
   for (int d = 2; d <= surface.tree->depth; ++d)
-    for (Index b = 0; b < surface.tree->levels[d].size(); ++b)
-      if (surface.hasLeaves(d, b))
-        bricks.push_back({d, b});
+    for (const std::uint32_t b : selectIndices(surface.tree->levels[d].size(), threads,
+                                               [&](Index brick) { return surface.hasLeaves(d, brick); }))
+      bricks.push_back({d, b});
   return bricks;
 }
 
-void join(const std::vector<Part>& parts, IsoSurface& surface, Index edge_vertices)
+/// Puts the parts behind each other and frees them.
+void join(std::vector<Part>& parts, IsoSurface& surface, int threads)
 {
-  Index faces = 0, vertices = edge_vertices;
-  for (const Part& part : parts) {
-    faces += part.faces.size() / 3;
-    vertices += part.extra.size();
-  }
-  surface.vertices.conservativeResize(3, vertices);
-  surface.faces.resize(3, faces);
-  int* to = surface.faces.data();
-  Index at = edge_vertices;
-  for (const Part& part : parts) {
-    for (const int v : part.faces)
-      *to++ = v >= 0 ? v : at - 1 - v;
-    for (VertexRange range : part.extra_ranges) {
-      range.first += at;
-      surface.ranges.push_back(range);
-    }
-    for (const Eigen::Vector3f& p : part.extra)
-      surface.vertices.col(at++) = p;
-  }
+  struct Place {
+    Index corner, vertex;
+  };
+  std::vector<Place> places(1, {0, surface.vertices.cols()});
+  for (const Part& part : parts)
+    places.push_back(
+        {places.back().corner + Index(part.faces.size()), places.back().vertex + Index(part.extra.size())});
+  requireVertices(places.back().vertex);
+  if (places.back().vertex > surface.vertices.cols())
+    surface.vertices.conservativeResize(3, places.back().vertex);
+  surface.faces.resize(3, places.back().corner / 3);
+  parallelFor(parts.size(), threads, [&](Index p) {
+    Part& part = parts[p];
+    const auto [corner, vertex] = places[p];
+    for (std::size_t i = 0; i < part.faces.size(); ++i)
+      surface.faces.data()[corner + Index(i)] = part.faces[i] >= 0 ? part.faces[i] : vertex - 1 - part.faces[i];
+    for (std::size_t i = 0; i < part.extra.size(); ++i)
+      surface.vertices.col(vertex + Index(i)) = part.extra[i];
+    for (VertexRange& range : part.extra_ranges)
+      range.first += vertex;
+    releaseMemory(part.faces);
+    releaseMemory(part.extra);
+  });
+  for (const Part& part : parts)
+    surface.ranges.insert(surface.ranges.end(), part.extra_ranges.begin(), part.extra_ranges.end());
 }
 } // namespace
 
@@ -168,7 +177,7 @@ IsoSurface extractIsoSurface(const LevelSet& surface, int threads)
   edges.forEachBrick([&](int depth, Index brick, Index first, Index count) {
     result.ranges.push_back({depth, brick, first, count});
   });
-  const std::vector<BrickPlace> bricks = bricksWithLeaves(surface);
+  const std::vector<BrickPlace> bricks = bricksWithLeaves(surface, threads);
   const Index n = bricks.size();
   std::vector<Part> parts((n + bricks_per_part - 1) / bricks_per_part);
   parallelRanges(
@@ -179,7 +188,7 @@ IsoSurface extractIsoSurface(const LevelSet& surface, int threads)
           marcher.marchBrick(bricks[i].depth, bricks[i].brick, parts[begin / bricks_per_part]);
       },
       bricks_per_part);
-  join(parts, result, edges.vertexCount());
+  join(parts, result, threads);
   return result;
 }
 } // namespace fresco::poisson

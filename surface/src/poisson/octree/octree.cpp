@@ -1,9 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "poisson/octree/octree.h"
+#include "poisson/octree/radix_sort.h"
+#include "poisson/octree/select.h"
 #include <algorithm>
 #include <cstring>
 #include <fresco/core/morton.h>
 #include <fresco/core/parallel.h>
+#include <fresco/core/release.h>
+#include <fresco/core/require.h>
+#include <limits>
 namespace fresco::poisson {
 namespace {
 /// A brick with the cells of it that hold samples, in Morton order.
@@ -27,49 +32,80 @@ Masks touchMasks()
   return masks;
 }
 
-std::vector<Occupied> occupiedBricks(const Array<std::uint64_t>& cell_codes)
+/// Bricks of n entries in Morton order. @param brick_of code of an entry's brick. @param cells_of cells that it adds
+template <typename BrickOf, typename CellsOf>
+Array<Occupied> joinEntries(Index n, int threads, const BrickOf& brick_of, const CellsOf& cells_of)
 {
-  std::vector<Occupied> bricks;
-  for (const std::uint64_t code : cell_codes) {
-    if (bricks.empty() || bricks.back().code != code >> 6)
-      bricks.push_back({code >> 6, 0});
-    bricks.back().cells |= std::uint64_t(1) << (code & 63);
-  }
+  const Array<std::uint32_t> runs = runBegins(n, threads, brick_of);
+  Array<Occupied> bricks(runs.size() - 1);
+  parallelFor(bricks.size(), threads, [&](Index b) {
+    bricks[b] = {brick_of(runs[b]), 0};
+    for (std::uint32_t i = runs[b]; i < runs[b + 1]; ++i)
+      bricks[b].cells |= cells_of(i);
+  });
   return bricks;
+}
+
+Array<Occupied> occupiedBricks(const Array<std::uint64_t>& cell_codes, int threads)
+{
+  return joinEntries(
+      cell_codes.size(), threads, [&](Index i) { return cell_codes[i] >> 6; },
+      [&](Index i) { return std::uint64_t(1) << (cell_codes[i] & 63); });
 }
 
 /// The same one depth coarser.
-std::vector<Occupied> coarsen(const std::vector<Occupied>& fine)
+Array<Occupied> coarsen(const Array<Occupied>& fine, int threads)
 {
-  std::vector<Occupied> bricks;
-  for (const Occupied& f : fine) {
-    if (bricks.empty() || bricks.back().code != f.code >> 3)
-      bricks.push_back({f.code >> 3, 0});
-    for (int g = 0; g < 8; ++g)
-      if (f.cells >> (8 * g) & 0xff)
-        bricks.back().cells |= std::uint64_t(1) << ((f.code & 7) * 8 + g);
-  }
-  return bricks;
+  return joinEntries(
+      fine.size(), threads, [&](Index i) { return fine[i].code >> 3; },
+      [&](Index i) {
+        std::uint64_t cells = 0;
+        for (int g = 0; g < 8; ++g)
+          if (fine[i].cells >> (8 * g) & 0xff)
+            cells |= std::uint64_t(1) << ((fine[i].code & 7) * 8 + g);
+        return cells;
+      });
 }
 
-/// Sorted codes of all bricks with a cell next to an occupied one.
-std::vector<std::uint64_t> dilate(const std::vector<Occupied>& bricks, int depth)
+/// Codes of all bricks with a cell next to one of the occupied bricks begin .. end - 1, sorted.
+std::vector<std::uint64_t> bricksAround(const Array<Occupied>& bricks, Index begin, Index end, int depth)
 {
   static const Masks masks = touchMasks();
   const int side = 1 << (depth - 2);
   std::vector<std::uint64_t> codes;
-  codes.reserve(bricks.size() * 4);
-  for (const Occupied& brick : bricks) {
-    const auto [x, y, z] = mortonCell(brick.code);
+  for (Index i = begin; i < end; ++i) {
+    const auto [x, y, z] = mortonCell(bricks[i].code);
     for (int o = 0; o < 27; ++o) {
       const int nx = x + o % 3 - 1, ny = y + o / 3 % 3 - 1, nz = z + o / 9 - 1;
-      if ((brick.cells & masks[o]) != 0 && std::min({nx, ny, nz}) >= 0 && std::max({nx, ny, nz}) < side)
+      if ((bricks[i].cells & masks[o]) != 0 && std::min({nx, ny, nz}) >= 0 && std::max({nx, ny, nz}) < side)
         codes.push_back(mortonCode(nx, ny, nz));
     }
   }
   std::sort(codes.begin(), codes.end());
   codes.erase(std::unique(codes.begin(), codes.end()), codes.end());
-  codes.shrink_to_fit();
+  return codes;
+}
+
+/// Sorted codes of all bricks with a cell next to an occupied one.
+std::vector<std::uint64_t> dilate(const Array<Occupied>& bricks, int depth, int threads)
+{
+  constexpr Index chunk = 1 << 10; // their neighbours are sorted in the cache; few are found by two chunks
+  std::vector<std::vector<std::uint64_t>> parts((bricks.size() + chunk - 1) / chunk);
+  parallelRanges(
+      bricks.size(), threads,
+      [&](Index begin, Index end) { parts[begin / chunk] = bricksAround(bricks, begin, end, depth); }, chunk);
+  std::vector<std::size_t> first(1, 0);
+  for (const auto& part : parts)
+    first.push_back(first.back() + part.size());
+  Array<std::uint64_t> all(first.back());
+  parallelFor(parts.size(), threads, [&](Index p) {
+    std::copy(parts[p].begin(), parts[p].end(), all.begin() + first[p]);
+    releaseMemory(parts[p]);
+  });
+  sortBits(all, 0, 3 * (depth - 2), threads);
+  const Array<std::uint32_t> unique = runBegins(all.size(), threads, [&](Index i) { return all[i]; });
+  std::vector<std::uint64_t> codes(unique.size() - 1);
+  parallelFor(codes.size(), threads, [&](Index i) { codes[i] = all[unique[i]]; });
   return codes;
 }
 
@@ -81,16 +117,19 @@ std::vector<std::uint64_t> allBricks(int depth)
   return codes;
 }
 
-void linkToParents(BrickLevel& coarse, BrickLevel& fine)
+void linkToParents(BrickLevel& coarse, BrickLevel& fine, int threads)
 {
   fine.parents.resize(fine.codes.size());
-  int parent = 0;
-  for (int i = 0; i < fine.size(); ++i) {
-    while (coarse.codes[parent] != fine.codes[i] >> 3)
-      ++parent;
-    fine.parents[i] = parent;
-    coarse.children[parent][fine.octant(i)] = i;
-  }
+  parallelRanges(fine.size(), threads, [&](Index begin, Index end) {
+    const auto first = std::lower_bound(coarse.codes.begin(), coarse.codes.end(), fine.codes[begin] >> 3);
+    int parent = first - coarse.codes.begin();
+    for (Index i = begin; i < end; ++i) {
+      while (coarse.codes[parent] != fine.codes[i] >> 3)
+        ++parent;
+      fine.parents[i] = parent;
+      coarse.children[parent][fine.octant(i)] = i;
+    }
+  });
 }
 
 std::array<int, 27> findNeighbors(const BrickLevel& coarse, int parent, int octant)
@@ -109,16 +148,12 @@ std::array<int, 27> findNeighbors(const BrickLevel& coarse, int parent, int octa
 void linkLevel(Octree& tree, int depth, int threads)
 {
   BrickLevel& level = tree.levels[depth];
-  std::array<int, 8> no_children;
-  no_children.fill(-1);
-  level.children.assign(level.codes.size(), no_children);
+  level.children.resize(level.codes.size());
+  parallelFor(level.size(), threads, [&](Index b) { level.children[b].fill(-1); });
   level.neighbors.resize(level.codes.size());
-  for (int i = 0; i < level.size(); ++i) {
-    std::vector<BrickRun>& runs = level.colors[level.codes[i] >> 6 & 7];
-    if (i == 0 || level.codes[i] >> 6 != level.codes[i - 1] >> 6)
-      runs.push_back({i, i});
-    runs.back().end = i + 1;
-  }
+  const Array<std::uint32_t> blocks = runBegins(level.size(), threads, [&](Index b) { return level.codes[b] >> 6; });
+  for (std::size_t i = 0; i + 1 < blocks.size(); ++i)
+    level.colors[level.codes[blocks[i]] >> 6 & 7].push_back({int(blocks[i]), int(blocks[i + 1])});
   if (depth == 2) {
     level.parents.assign(1, -1);
     level.neighbors[0].fill(-1);
@@ -126,7 +161,7 @@ void linkLevel(Octree& tree, int depth, int threads)
     return;
   }
   BrickLevel& coarse = tree.levels[depth - 1];
-  linkToParents(coarse, level);
+  linkToParents(coarse, level, threads);
   parallelFor(level.size(), threads,
               [&](Index b) { level.neighbors[b] = findNeighbors(coarse, level.parents[b], level.octant(b)); });
 }
@@ -152,6 +187,9 @@ Octree linkBricks(std::vector<std::vector<std::uint64_t>> codes, int full_depth,
   tree.levels.resize(codes.size());
   for (int d = 2; d <= tree.depth; ++d) {
     tree.levels[d].depth = d;
+    require(codes[d].size() <= std::size_t(std::numeric_limits<int>::max()),
+            "volumetric reconstruction: ", codes[d].size(), " bricks of depth ", d,
+            " are more than 2^31 - 1: choose a smaller depth");
     tree.levels[d].codes = std::move(codes[d]);
     linkLevel(tree, d, threads);
   }
@@ -161,24 +199,24 @@ Octree linkBricks(std::vector<std::vector<std::uint64_t>> codes, int full_depth,
 Octree buildOctree(const Array<std::uint64_t>& cell_codes, int depth, int full_depth, int threads)
 {
   std::vector<std::vector<std::uint64_t>> codes(depth + 1);
-  std::vector<Occupied> occupied = occupiedBricks(cell_codes);
+  Array<Occupied> occupied = occupiedBricks(cell_codes, threads);
   for (int d = depth; d >= 2; --d) {
-    codes[d] = d <= full_depth ? allBricks(d) : dilate(occupied, d);
-    occupied = coarsen(occupied);
+    codes[d] = d <= full_depth ? allBricks(d) : dilate(occupied, d, threads);
+    occupied = coarsen(occupied, threads);
   }
   return linkBricks(std::move(codes), full_depth, threads);
 }
 
-std::vector<Index> countBricks(const Array<std::uint64_t>& cell_codes, int depth, int full_depth)
+std::vector<Index> countBricks(const Array<std::uint64_t>& cell_codes, int depth, int full_depth, int threads)
 {
   std::vector<Index> counts(depth + 1, 0);
-  std::vector<Occupied> occupied = occupiedBricks(cell_codes);
+  Array<Occupied> occupied = occupiedBricks(cell_codes, threads);
   for (int d = depth; d >= 2; --d) {
     if (d <= full_depth)
       counts[d] = Index(1) << (3 * (d - 2));
     else
-      counts[d] = dilate(occupied, d).size();
-    occupied = coarsen(occupied);
+      counts[d] = dilate(occupied, d, threads).size();
+    occupied = coarsen(occupied, threads);
   }
   return counts;
 }

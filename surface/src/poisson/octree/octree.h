@@ -34,10 +34,10 @@ struct BrickRun {
 /// The bricks of one octree depth, sorted by Morton code. A brick covers 4^3 cells of side 1 / 2^depth.
 struct BrickLevel {
   int depth = 0;
-  std::vector<std::uint64_t> codes;           ///< Morton code of the brick's coordinates
-  std::vector<std::array<int, 27>> neighbors; ///< by offsetIndex(); -1 where there is none
-  std::vector<int> parents;                   ///< index into the coarser level; -1 at the coarsest
-  std::vector<std::array<int, 8>> children;   ///< index into the finer level by octant; -1 where the cells are leaves
+  std::vector<std::uint64_t> codes;     ///< Morton code of the brick's coordinates
+  Array<std::array<int, 27>> neighbors; ///< by offsetIndex(); -1 where there is none
+  Array<int> parents;                   ///< index into the coarser level; -1 at the coarsest
+  Array<std::array<int, 8>> children;   ///< index into the finer level by octant; -1 where the cells are leaves
   /// Blocks of 4^3 bricks, by the octant that a block is in the block of 8^3 around it. Those of one colour never
   /// touch.
   std::array<std::vector<BrickRun>, 8> colors;
@@ -64,7 +64,7 @@ Octree buildOctree(const Array<std::uint64_t>& cell_codes, int depth, int full_d
 Octree linkBricks(std::vector<std::vector<std::uint64_t>> codes, int full_depth, int threads);
 
 /// Bricks per depth that buildOctree() would make.
-std::vector<Index> countBricks(const Array<std::uint64_t>& cell_codes, int depth, int full_depth);
+std::vector<Index> countBricks(const Array<std::uint64_t>& cell_codes, int depth, int full_depth, int threads);
 
 /// One float per node and brick of a level. The upper faces are copies of the neighbours' values where there are
 /// neighbours.

@@ -13,12 +13,16 @@ float share(float sample_depth, int d, int finest)
   return std::max(0.f, 1.f - std::abs(s - d));
 }
 
+struct NormalField {
+  const SampleLevel& samples; ///< of the finest depth
+  const Array<Eigen::Vector3f>& vectors;
+};
+
 /// @tparam Weights hat functions convolved with the kernel that spreads a sample
 template <typename Weights>
-void splatSample(const Sample& s, float factor, const Eigen::Vector3f& position, SplatBlock<Weights::reach>& block)
+void splatVector(const Eigen::Vector3f& n, const Eigen::Vector3f& position, SplatBlock<Weights::reach>& block)
 {
   const Weights x(position.x()), y(position.y()), z(position.z());
-  const Eigen::Vector3f n = factor * s.normal;
   for (int c = 0; c < Weights::count; ++c)
     for (int r = 0; r < Weights::count; ++r) {
       const float along = n.x() * y.value[r] * z.value[c];
@@ -30,18 +34,19 @@ void splatSample(const Sample& s, float factor, const Eigen::Vector3f& position,
 }
 
 template <typename Weights>
-void splatLevel(const BrickLevel& level, const Samples& samples, NodeField& field, int threads)
+void splatLevel(const BrickLevel& level, const NormalField& normals, NodeField& field, int threads)
 {
-  const int finest = samples.cube.depth;
+  const SampleLevel& samples = normals.samples;
+  const int finest = samples.depth;
   const Array<std::uint32_t> begin = sampleRanges(level, samples.codes, finest, threads);
   const float scale = std::ldexp(1.f, level.depth - finest);
   splatBricks<Weights::reach>(level, begin, field, threads, [&](SplatBlock<Weights::reach>& block, int b) {
     const Eigen::Vector3f origin = level.origin(b);
     for (std::uint32_t i = begin[b]; i < begin[b + 1]; ++i) {
-      const Sample& s = samples.samples[i];
+      const CoarseSample& s = samples.samples[i];
       const float w = share(s.depth, level.depth, finest);
       if (w > 0.f)
-        splatSample<Weights>(s, w * s.area * scale * scale, s.position * scale - origin, block);
+        splatVector<Weights>(w * s.area * scale * scale * normals.vectors[i], s.position * scale - origin, block);
     }
   });
   sumFaces(level, field, threads);
@@ -57,8 +62,10 @@ NodeField copyOf(const NodeField& field, int threads)
 }
 } // namespace
 
-Constraints splatNormals(const Octree& tree, const Samples& samples, int threads)
+Constraints splatNormals(const Octree& tree, const SampleLevel& samples, const Array<Eigen::Vector3f>& normals,
+                         int threads)
 {
+  const NormalField normal_field{samples, normals};
   Constraints constraints;
   constraints.fine.resize(tree.levels.size());
   constraints.own.resize(tree.levels.size());
@@ -67,10 +74,10 @@ Constraints splatNormals(const Octree& tree, const Samples& samples, int threads
     NodeField& field = constraints.fine[d];
     field = NodeField(level.size(), threads);
     if (d == tree.depth) {
-      splatLevel<TentWeights>(level, samples, field, threads);
+      splatLevel<TentWeights>(level, normal_field, field, threads);
       continue;
     }
-    splatLevel<BoxWeights>(level, samples, field, threads);
+    splatLevel<BoxWeights>(level, normal_field, field, threads);
     constraints.own[d] = copyOf(field, threads);
     restrictLevel(tree.levels[d + 1], constraints.fine[d + 1], level, 0.5f, field, threads);
   }

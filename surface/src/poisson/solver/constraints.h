@@ -14,7 +14,10 @@ struct Constraints {
   std::vector<NodeField> own;  ///< by depth: what was splatted at this depth; empty at the finest
 };
 
-Constraints splatNormals(const Octree& tree, const Samples& samples, int threads);
+/// @param samples of the finest depth
+/// @param normals of the samples, unit
+Constraints splatNormals(const Octree& tree, const SampleLevel& samples, const Array<Eigen::Vector3f>& normals,
+                         int threads);
 
 /// Adds to the right-hand side of a depth what was splatted at coarser ones, interpolated. These must be complete, so
 /// depths come in rising order. `own` of the next coarser depth is freed.

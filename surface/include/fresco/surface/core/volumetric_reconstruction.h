@@ -4,7 +4,9 @@
 #include <fresco/core/export.h>
 #include <fresco/core/mesh.h>
 #include <fresco/core/point_set.h>
+#include <fresco/core/point_stream.h>
 #include <fresco/core/progress.h>
+#include <memory>
 namespace fresco {
 /// Screened Poisson reconstruction over an adaptive octree: Kazhdan, Bolitho & Hoppe 2006, "Poisson Surface
 /// Reconstruction"; Kazhdan & Hoppe 2013, "Screened Poisson Surface Reconstruction". The function chi is a sum of
@@ -56,8 +58,16 @@ FRESCO_EXPORT VolumetricResult reconstructVolumetric(const PointSet& points, con
 FRESCO_EXPORT VolumetricResult reconstructVolumetric(PointSet&& points, const VolumetricOptions& options = {},
                                                      const Progress& progress = {});
 
+/// The same of more points than memory holds. They are read three times, or four times if there are far outliers, and
+/// freed when they have been sampled. The result does not depend on their order and windows.
+/// @throws as the other forms, and what reading throws
+FRESCO_EXPORT VolumetricResult reconstructVolumetric(std::unique_ptr<PointStream> points,
+                                                     const VolumetricOptions& options = {},
+                                                     const Progress& progress = {});
+
 /// Bytes that reconstructVolumetric() needs at most beside the points themselves, judged from how many octree cells the
 /// points occupy. Costs a fraction of the reconstruction.
 /// @throws as reconstructVolumetric()
 FRESCO_EXPORT std::size_t estimateMemory(const PointSet& points, const VolumetricOptions& options = {});
+FRESCO_EXPORT std::size_t estimateMemory(const PointStream& points, const VolumetricOptions& options = {});
 } // namespace fresco

@@ -1,0 +1,245 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "io/points/parse_file.h"
+#include "io/points/row_file.h"
+#include "io/points/scan_reader.h"
+#include <algorithm>
+#include <filesystem>
+#include <fresco/core/require.h>
+#include <fresco/io/formats.h>
+#include <fresco/io/point_files.h>
+#include <fresco/io/point_io.h>
+#include <limits>
+namespace fresco {
+namespace {
+struct Source {
+  ScanPath path;
+  std::optional<io::RowFile> rows; ///< nothing: read whole
+};
+
+struct Attributes {
+  bool normals = true, colors = true, intensities = true, confidences = true;
+
+  void drop(PointSet& set) const
+  {
+    if (!normals)
+      set.normals.resize(3, 0);
+    if (!colors)
+      set.colors.resize(3, 0);
+    if (!intensities)
+      set.intensities.resize(0);
+    if (!confidences)
+      set.confidences.resize(0);
+    set.viewpoints.resize(3, 0);
+  }
+};
+
+/// What tableToPoints() makes of such columns.
+Attributes attributesOf(io::PointTable layout)
+{
+  layout.data.clear();
+  layout.allocate(1);
+  const PointSet one = io::tableToPoints(layout, Eigen::Vector3d::Zero());
+  return {one.hasNormals(), one.colors.cols() > 0, one.intensities.size() > 0, one.confidences.size() > 0};
+}
+
+bool isDouble(const io::PointTable& table)
+{
+  const auto xyz = findTriple(table, io::xyz_names);
+  return xyz && std::any_of(xyz->begin(), xyz->end(),
+                            [](const io::Column& column) { return column.type != io::Scalar::float32; });
+}
+
+io::CoordinateBounds merged(const io::CoordinateBounds& a, const io::CoordinateBounds& b)
+{
+  return {a.low.min(b.low), a.high.max(b.high), a.loss.max(b.loss)};
+}
+
+io::CoordinateBounds boundsOf(const Source& source)
+{
+  const auto ofTable = [](const io::PointTable& table) {
+    return coordinateBounds(table, *findTriple(table, io::xyz_names));
+  };
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  const io::CoordinateBounds none{Eigen::Array3d::Constant(infinity), Eigen::Array3d::Constant(-infinity),
+                                  Eigen::Array3d::Zero()};
+  if (!source.rows)
+    return ofTable(io::readTable(source.path));
+  return parallelReduce(
+      source.rows->size(), 0, none, [&](Index begin, Index end) { return ofTable(source.rows->read(begin, end)); },
+      merged, io::rows_per_window);
+}
+
+template <typename Matrix>
+void copyColumns(const Matrix& from, Index begin, Matrix& to)
+{
+  if (from.cols() > 0)
+    to.middleCols(begin, from.cols()) = from;
+}
+
+/// Rows of one file, read and converted in pieces.
+class RowWindow {
+public:
+  RowWindow(const io::RowFile& file, const Attributes& attributes, const Eigen::Vector3d& origin)
+      : file_(file), attributes_(attributes), origin_(origin)
+  {}
+
+  void read(Index begin, Index end, PointSet& set) const
+  {
+    const Index n = end - begin;
+    set.origin = origin_;
+    set.points.resize(3, n);
+    set.normals.resize(3, attributes_.normals ? n : 0);
+    set.colors.resize(3, attributes_.colors ? n : 0);
+    set.intensities.resize(attributes_.intensities ? n : 0);
+    set.confidences.resize(attributes_.confidences ? n : 0);
+    parallelRanges(
+        n, 0, [&](Index first, Index last) { copyPiece(begin, first, last, set); }, io::rows_per_window);
+  }
+
+private:
+  void copyPiece(Index begin, Index first, Index last, PointSet& set) const
+  {
+    PointSet piece = io::tableToPoints(file_.read(begin + first, begin + last), origin_);
+    attributes_.drop(piece);
+    copyColumns(piece.points, first, set.points);
+    copyColumns(piece.normals, first, set.normals);
+    copyColumns(piece.colors, first, set.colors);
+    if (attributes_.intensities)
+      set.intensities.segment(first, last - first) = piece.intensities;
+    if (attributes_.confidences)
+      set.confidences.segment(first, last - first) = piece.confidences;
+  }
+
+  const io::RowFile& file_;
+  const Attributes& attributes_;
+  const Eigen::Vector3d& origin_;
+};
+
+class FileStream : public PointStream {
+public:
+  FileStream(const std::vector<ScanPath>& files, Index window) : window_(window)
+  {
+    bool wide = false;
+    for (const ScanPath& path : files) {
+      Source source{path, {}};
+      if (path.scan < 0)
+        source.rows = io::RowFile::open(path.file);
+      wide = look(source) || wide;
+      sources_.push_back(std::move(source));
+    }
+    if (wide)
+      findOrigin();
+  }
+
+  void read(const std::function<void(const PointSet&)>& receive) const override
+  {
+    PointSet set;
+    for (const Source& source : sources_) {
+      const Index count = source.rows ? source.rows->size() : 1;
+      const Index windows = source.rows ? (count + window_ - 1) / window_ : 1; // of about the same size
+      for (Index w = 0; w < windows; ++w) {
+        io::namingFile(source.path.name(), [&] {
+          if (source.rows)
+            return RowWindow(*source.rows, attributes_, origin_)
+                .read(count * w / windows, count * (w + 1) / windows, set);
+          set = io::tableToPoints(io::readTable(source.path), origin_);
+          attributes_.drop(set);
+        });
+        receive(set);
+      }
+    }
+  }
+
+  bool fitsWindow() const
+  {
+    Index rows = 0;
+    for (const Source& source : sources_)
+      rows += source.rows ? source.rows->size() : window_ + 1;
+    return rows <= window_;
+  }
+
+private:
+  /// Joins the attributes of a file to those of the others. @return whether its coordinates are no floats
+  bool look(const Source& source)
+  {
+    const io::PointTable table = source.rows ? source.rows->layout() : io::readTable(source.path);
+    return io::namingFile(source.path.name(), [&] {
+      const Attributes own = attributesOf(table);
+      const bool first = sources_.empty();
+      if (!first && own.normals != attributes_.normals)
+        throw std::runtime_error(own.normals ? "the points have normals, unlike those of the files before"
+                                             : "the points have no normals");
+      attributes_ = {own.normals, attributes_.colors && own.colors, attributes_.intensities && own.intensities,
+                     attributes_.confidences && own.confidences};
+      return isDouble(table);
+    });
+  }
+
+  void findOrigin()
+  {
+    io::CoordinateBounds bounds = boundsOf(sources_[0]);
+    for (std::size_t i = 1; i < sources_.size(); ++i)
+      bounds = merged(bounds, boundsOf(sources_[i]));
+    if (bounds.exceedsFloat())
+      origin_ = bounds.origin();
+  }
+
+  std::vector<Source> sources_;
+  Index window_;
+  Attributes attributes_;
+  Eigen::Vector3d origin_ = Eigen::Vector3d::Zero();
+};
+
+class KeptPoints : public PointStream {
+public:
+  explicit KeptPoints(PointSet set) : set_(std::move(set)) {}
+  void read(const std::function<void(const PointSet&)>& receive) const override { receive(set_); }
+
+private:
+  PointSet set_;
+};
+
+/// In a folder, text files are notes or poses, and .stl files hold no normals.
+bool isPointFile(const std::filesystem::path& path)
+{
+  const std::string ending = extension(path.string());
+  return isReadable(path.string(), FileKind::points) && ending != ".txt" && ending != ".stl";
+}
+} // namespace
+
+std::unique_ptr<PointStream> openPointFiles(const std::vector<ScanPath>& files, Index window)
+{
+  require(!files.empty(), "points: no files");
+  require(window >= 1, "points: a window of ", window);
+  if (files.size() == 1 && (files[0].scan >= 0 || !io::RowFile::open(files[0].file)))
+    return std::make_unique<KeptPoints>(readPoints(files[0]));
+  auto stream = std::make_unique<FileStream>(files, window);
+  if (!stream->fitsWindow())
+    return stream;
+  PointSet all;
+  stream->read([&](const PointSet& part) { all.size() == 0 ? void(all = part) : appendPoints(all, part); });
+  return std::make_unique<KeptPoints>(std::move(all));
+}
+
+std::vector<std::string> pointFilesIn(const std::vector<std::string>& words)
+{
+  std::vector<std::string> files;
+  for (const std::string& word : words) {
+    if (!std::filesystem::exists(word))
+      throw std::runtime_error(word + ": no such file");
+    if (!std::filesystem::is_directory(word)) {
+      files.push_back(word);
+      continue;
+    }
+    std::vector<std::string> inside;
+    for (const auto& entry : std::filesystem::directory_iterator(word))
+      if (entry.is_regular_file() && isPointFile(entry.path()))
+        inside.push_back(entry.path().string());
+    if (inside.empty())
+      throw std::runtime_error(word + ": no file of points in this folder");
+    std::sort(inside.begin(), inside.end());
+    files.insert(files.end(), inside.begin(), inside.end());
+  }
+  return files;
+}
+} // namespace fresco
