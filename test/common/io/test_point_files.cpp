@@ -117,6 +117,11 @@ TEST_F(PointFiles, FilesThatDoNotGoTogetherAreNamed)
   std::filesystem::copy(good, path("short.ply"));
   std::filesystem::resize_file(path("short.ply"), std::filesystem::file_size(good) - 1);
   expectRefused({good, path("short.ply")}, "truncated");
+  writeFile(path("faces.ply"),
+            "ply\nformat binary_little_endian 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
+            "property float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n" +
+                std::string(12, '\0') + "\3");
+  expectRefused({good, path("faces.ply")}, "truncated"); // where only the points are used, too
   writeFile(path("broken.ply"), "ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty float x\n");
   expectRefused({good, path("broken.ply")}, "header");
   EXPECT_THROW(openPointFiles({}), std::invalid_argument);

@@ -304,18 +304,19 @@ std::optional<RowLayout> plyRows(std::string_view begin)
     return {};
   RowLayout layout;
   layout.offset = header.size;
+  bool found = false;
   for (const PlyElement& element : header.elements) {
-    if (element.hasList())
+    if (element.count > std::numeric_limits<std::uint32_t>::max() && element.name != "vertex")
+      return {}; // of something else than points: damage, and the product might not fit
+    if (element.hasList() && (element.count > 0 || element.name == "vertex"))
       return {};
     if (element.name == "vertex") {
+      found = true;
       layout.table = layoutOf(element);
       layout.rows = element.count;
-      return layout;
-    }
-    if (element.count > std::numeric_limits<std::uint32_t>::max())
-      return {}; // of something else than points: damage, and the product might not fit
-    layout.offset += element.count * element.fixedSize();
+    } else if (element.count > 0)
+      (found ? layout.bytes_after : layout.offset) += element.count * element.fixedSize();
   }
-  return {};
+  return found ? std::optional(layout) : std::nullopt;
 }
 } // namespace fresco::io

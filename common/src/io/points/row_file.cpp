@@ -32,7 +32,7 @@ std::optional<RowFile> RowFile::open(const std::string& path)
     if (!layout || layout->rows == 0 || layout->table.stride == 0)
       return {};
     const std::uint64_t available = result.file_->size() - std::min(layout->offset, result.file_->size());
-    if (layout->rows > available / layout->table.stride)
+    if (available < layout->bytes_after || layout->rows > (available - layout->bytes_after) / layout->table.stride)
       throw std::runtime_error(concat("truncated: ", layout->rows, " points of ", layout->table.stride,
                                       " bytes do not fit into ", available, " bytes"));
     result.layout_ = std::move(layout->table);

@@ -11,6 +11,7 @@ namespace fresco::io {
 struct RowLayout {
   PointTable table; ///< columns and bytes per row, without rows
   std::uint64_t offset = 0, rows = 0;
+  std::uint64_t bytes_after = 0; ///< at least, of what else the file holds
 };
 
 /// From the begin of a file, at least its header; nothing where rows have no fixed size, or where the reader of whole
