@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "cameras/photograph_matches.h"
 #include "cameras/rotation_search.h"
 #include "cameras/similarity_refinement.h"
 #include "cameras/similarity_votes.h"
@@ -194,6 +195,30 @@ std::vector<Place> findPlaces(const Scene& scene, const std::vector<Eigen::Matri
                                   " degrees, scaled by ", std::round(100 * b.scale / a.scale) / 100,
                                   " against the first: the scene looks alike from several sides"));
 }
+
+/// The place that matches between photographs and views of the scans single out.
+std::optional<CameraAlignmentResult> matchedPlace(const Scene& scene, const CameraSet& set, const SparsePoints& points,
+                                                  const SurfacePainter& painter, const Progress& progress)
+{
+  constexpr Index fewest_votes = 20;     // wrong matches come to some 9
+  constexpr double most_votes_next = 0.5; // of what no place but the best explains: the scene may repeat
+  constexpr std::pair<double, double> sizes(0.04, 2); // of the model, in units of the surface's radius
+  const double unit = scene.model.T_model_cameras.scale, radius = scene.surface.radius();
+  const auto matches = matchPhotographs(set, points, painter, scene.surface, scene.options, progress);
+  const auto found = agreeOnSimilarities(matches, points, {sizes.first * radius * unit, sizes.second * radius * unit},
+                                         vote_cell / unit);
+  const double alias = double(found[1].votes) / std::max<Index>(1, found[0].votes);
+  if (found[0].votes < fewest_votes || alias > most_votes_next)
+    return {};
+  std::vector<Place> places{{found[0].T_surface_cameras * scene.model.T_model_cameras.inverse(), {}, 0}};
+  finishPlaces(scene, places, vote_cell);
+  if (places[0].check.support < scene.options.min_support)
+    return {};
+  CameraAlignmentResult result = resultOf(scene, places);
+  result.matches = found[0].votes;
+  result.alias = alias;
+  return result;
+}
 } // namespace
 
 CameraAlignmentResult alignCameras(const CameraSet& set, const SparsePoints& points, const PointSet& surface_points,
@@ -216,6 +241,10 @@ CameraAlignmentResult alignCameras(const CameraSet& set, const SparsePoints& poi
     result.already_aligned = true;
     return result;
   }
+  if (options.photograph)
+    if (const SurfacePainter painter(surface_points, surface); painter.hasGray())
+      if (const auto matched = matchedPlace(scene, set, points, painter, subProgress(progress, 0.05, 0.4)))
+        return *matched;
   report(progress, "rotation", 0.1);
   std::vector<Eigen::Matrix3d> rotations;
   if (model.order.size() >= fewest_normals)
