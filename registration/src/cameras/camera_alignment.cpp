@@ -3,6 +3,7 @@
 #include "cameras/rotation_search.h"
 #include "cameras/similarity_refinement.h"
 #include "cameras/similarity_votes.h"
+#include "cameras/view_refinement.h"
 #include <algorithm>
 #include <cmath>
 #include <fresco/core/constants.h>
@@ -219,14 +220,55 @@ std::optional<CameraAlignmentResult> matchedPlace(const Scene& scene, const Came
   result.alias = alias;
   return result;
 }
+/// The place that shape alone tells.
+CameraAlignmentResult placeByShape(const Scene& scene, const Progress& progress)
+{
+  constexpr std::size_t fewest_normals = 20; // below, nothing tells a rotation
+  // Most models show most of a room. The smaller the part, the more places there are for it to fit by chance.
+  constexpr std::pair<double, double> sizes[] = {{0.25, 1.4}, {0.08, 0.25}};
+  report(progress, "rotation", 0.0);
+  std::vector<Eigen::Matrix3d> rotations;
+  if (scene.model.order.size() >= fewest_normals)
+    rotations = findRotations(scene.model, scene.surface, scene.options.threads);
+  double most = 0, begin = 0.1;
+  for (const auto& range : sizes) {
+    const std::vector<Place> places = findPlaces(scene, rotations, range, subProgress(progress, begin, begin + 0.45));
+    begin += 0.45;
+    if (places.empty())
+      continue;
+    const CameraAlignmentResult result = resultOf(scene, places);
+    most = std::max(most, result.support);
+    if (result.support < scene.options.min_support)
+      continue;
+    if (result.alias > scene.options.max_alias)
+      refuseAmbiguous(places, result.alias);
+    return result;
+  }
+  throw std::runtime_error(
+      concat("no place fits: at the best one ", std::lround(100 * most),
+             " % of the sparse points lie on the surface of the scans in sight of their cameras (",
+             std::lround(100 * scene.options.min_support),
+             " are wanted); the photographs show something else, or most of their points are wrong"));
+}
+
+/// Refined by what the photographs show.
+void refineResult(const CameraSet& set, const SurfacePainter& painter, const Scene& scene,
+                  CameraAlignmentResult& result, const Progress& progress)
+{
+  Similarity T = result.T_scans_cameras;
+  T.t -= scene.surface.center();
+  const ViewedSimilarity refined = refineByViews(set, painter, T, scene.options, progress);
+  result.patches = refined.patches;
+  if (refined.patches == 0)
+    return;
+  result.T_scans_cameras = refined.T_surface_cameras;
+  result.T_scans_cameras.t += scene.surface.center();
+}
 } // namespace
 
 CameraAlignmentResult alignCameras(const CameraSet& set, const SparsePoints& points, const PointSet& surface_points,
                                    const CameraAlignmentOptions& options, const Progress& progress)
 {
-  constexpr std::size_t fewest_normals = 20; // below, nothing tells a rotation
-  // Most models show most of a room. The smaller the part, the more places there are for it to fit by chance.
-  constexpr std::pair<double, double> sizes[] = {{0.25, 1.4}, {0.08, 0.25}};
   validate(set, points, options);
   report(progress, "surface", 0.0);
   const ScanSurface surface(surface_points, options.threads);
@@ -241,32 +283,17 @@ CameraAlignmentResult alignCameras(const CameraSet& set, const SparsePoints& poi
     result.already_aligned = true;
     return result;
   }
+  std::optional<SurfacePainter> painter;
   if (options.photograph)
-    if (const SurfacePainter painter(surface_points, surface); painter.hasGray())
-      if (const auto matched = matchedPlace(scene, set, points, painter, subProgress(progress, 0.05, 0.4)))
-        return *matched;
-  report(progress, "rotation", 0.1);
-  std::vector<Eigen::Matrix3d> rotations;
-  if (model.order.size() >= fewest_normals)
-    rotations = findRotations(model, surface, options.threads);
-  double most = 0, begin = 0.2;
-  for (const auto& range : sizes) {
-    const std::vector<Place> places = findPlaces(scene, rotations, range, subProgress(progress, begin, begin + 0.4));
-    begin += 0.4;
-    if (places.empty())
-      continue;
-    const CameraAlignmentResult result = resultOf(scene, places);
-    most = std::max(most, result.support);
-    if (result.support < options.min_support)
-      continue;
-    if (result.alias > options.max_alias)
-      refuseAmbiguous(places, result.alias);
-    return result;
-  }
-  throw std::runtime_error(
-      concat("no place fits: at the best one ", std::lround(100 * most),
-             " % of the sparse points lie on the surface of the scans in sight of their cameras (",
-             std::lround(100 * options.min_support),
-             " are wanted); the photographs show something else, or most of their points are wrong"));
+    painter.emplace(surface_points, surface);
+  const bool shows = painter && painter->hasGray();
+  std::optional<CameraAlignmentResult> result;
+  if (shows)
+    result = matchedPlace(scene, set, points, *painter, subProgress(progress, 0.05, 0.3));
+  if (!result)
+    result = placeByShape(scene, subProgress(progress, shows ? 0.3 : 0.05, 0.8));
+  if (shows)
+    refineResult(set, *painter, scene, *result, subProgress(progress, 0.8, 1.0));
+  return *result;
 }
 } // namespace fresco

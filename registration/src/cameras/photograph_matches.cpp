@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cameras/photograph_matches.h"
+#include "batches.h"
 #include <algorithm>
 #include <cmath>
-#include <fresco/core/parallel.h>
-#include <map>
 #include <numeric>
 #include <opencv2/features2d.hpp>
 #include <opencv2/imgproc.hpp>
@@ -73,7 +72,7 @@ struct PointFeatures {
 PointFeatures featuresOfPoints(const CameraSet& set, const SparsePoints& points, const CameraAlignmentOptions& options,
                                const Progress& progress)
 {
-  constexpr Index most_photographs = 100, batch = 8;
+  constexpr Index most_photographs = 100;
   constexpr std::size_t most_points = 20000;
   std::vector<Observed> observed(set.views.size());
   for (std::size_t i = 0; i < points.size(); ++i)
@@ -82,18 +81,10 @@ PointFeatures featuresOfPoints(const CameraSet& set, const SparsePoints& points,
         observed[observation.view].emplace_back(observation.pixel, i);
   const Index count = set.views.size(), used = std::min(count, most_photographs);
   std::vector<PhotographFeatures> found(used);
-  for (Index begin = 0; begin < used; begin += batch) {
-    report(progress, "photographs", double(begin) / used);
-    parallelFor(
-        std::min(batch, used - begin), options.threads,
-        [&](Index k) {
-          const Index v = (begin + k) * count / used;
-          found[begin + k] = featuresOf(options.photograph(v), set.cameras[set.views[v].camera], observed[v]);
-        },
-        1);
-  }
-  std::map<Index, Index> column;
-  std::vector<Index> seen;
+  parallelBatches(used, options.threads, progress, "photographs", [&](Index k) {
+    const Index v = k * count / used;
+    found[k] = featuresOf(options.photograph(v), set.cameras[set.views[v].camera], observed[v]);
+  });
   Descriptors sums = Descriptors::Zero(128, static_cast<Index>(points.size()));
   std::vector<int> times(points.size(), 0);
   for (const PhotographFeatures& of_one : found)
@@ -163,9 +154,8 @@ std::vector<SurfaceMatch> matchPhotographs(const CameraSet& set, const SparsePoi
   const PointFeatures features = featuresOfPoints(set, points, options, subProgress(progress, 0.0, 0.4));
   if (features.points.empty())
     return {};
-  CameraModel camera; // a right angle; at the typical distance a pixel is as large as the points are apart
-  camera.width = camera.height =
-      static_cast<int>(std::clamp(2 * surface.radius() / painter.spacing(), 200.0, 800.0));
+  CameraModel camera; // a right angle
+  camera.width = camera.height = static_cast<int>(painter.focal());
   camera.fx = camera.fy = camera.cx = camera.cy = 0.5 * camera.width;
   const std::vector<Vector3d> places = freePlaces(surface, most_places);
   std::vector<SurfaceMatch> all;

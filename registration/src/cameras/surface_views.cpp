@@ -64,6 +64,7 @@ SurfacePainter::SurfacePainter(const PointSet& scans, const ScanSurface& surface
       0.299f * raw.colors.row(0) + 0.587f * raw.colors.row(1) + 0.114f * raw.colors.row(2);
   grays_.assign(grays.begin(), grays.end());
   spacing_ = surface.grain() * std::max(finer, std::sqrt(double(surface.level().points.cols()) / points_.cols()));
+  focal_ = std::clamp(2 * surface.radius() / spacing_, 150.0, 1000.0);
 }
 
 SurfaceView SurfacePainter::draw(const CameraModel& camera, const Eigen::Isometry3d& T_camera_surface) const

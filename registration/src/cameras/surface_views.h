@@ -16,7 +16,7 @@ public:
   SurfacePainter(const PointSet& scans, const ScanSurface& surface);
 
   bool hasGray() const { return !grays_.empty(); }
-  double spacing() const { return spacing_; } ///< of neighbouring points, about, length
+  double focal() const { return focal_; } ///< of a camera that shows two pixels a point at a typical distance, pixels
 
   /// @param camera a pinhole without distortion @param T_camera_surface camera from ScanSurface's frame
   SurfaceView draw(const CameraModel& camera, const Eigen::Isometry3d& T_camera_surface) const;
@@ -24,7 +24,8 @@ public:
 private:
   Points points_;
   std::vector<float> grays_; ///< 0..255
-  double spacing_ = 0;
+  double spacing_ = 0; ///< of neighbouring points, about, length
+  double focal_ = 0;
 };
 
 /// Places in the free space between the surfaces, spread evenly: where people with cameras may have stood.
