@@ -91,7 +91,9 @@ TEST(StructureFromMotion, PhotographsOfOneKindShareACamera)
   EXPECT_TRUE(isOneCamera(folder, {"a.jpg", "b.png"}, 2));
   EXPECT_FALSE(isOneCamera(folder, {"a.jpg", "b.png", "c.png"}, 2));
   std::string bytes = readFile(folder + "/a.jpg");
-  bytes.insert(2, std::string("\xFF\xE1\0\x08""Exif\0\0", 10));
+  bytes.insert(2, std::string("\xFF\xE1\0\x08"
+                              "Exif\0\0",
+                              10));
   writeFile(folder + "/a.jpg", bytes);
   EXPECT_FALSE(isOneCamera(folder, {"a.jpg", "b.png"}, 2)); // it tells what took it
 }

@@ -109,10 +109,9 @@ TEST(PhotographAlignment, OneWallOfABareRoomIsFoundByWhatItShows)
         alignCameras(photographs.set, photographs.points, scanned(intensities), withImages(photographs));
     EXPECT_GT(found.matches, 20);
     EXPECT_GT(found.patches, 100);
-    const Similarity rest = found.T_scans_cameras * T; // identity but for the error
+    const Similarity rest = found.T_scans_cameras * T;  // identity but for the error
     for (const View& view : photographed().set.views) { // a pixel is 1 cm on the wall
-      const Vector3d ahead =
-          wallAt(view.center(), view.T_camera_world.linear().row(2).transpose());
+      const Vector3d ahead = wallAt(view.center(), view.T_camera_world.linear().row(2).transpose());
       EXPECT_LT((rest * ahead - ahead).norm(), 0.003);
       EXPECT_LT((rest * view.center() - view.center()).norm(), 0.003);
     }
@@ -123,7 +122,8 @@ TEST(PhotographAlignment, OtherPaintIsNotMatched)
 {
   Photographs photographs = photographed();
   transformCameras(ownFrame(), photographs.set, photographs.points);
-  EXPECT_THROW(alignCameras(photographs.set, photographs.points, scanned(true, {100, 100, 100}), withImages(photographs)),
-               std::runtime_error);
+  EXPECT_THROW(
+      alignCameras(photographs.set, photographs.points, scanned(true, {100, 100, 100}), withImages(photographs)),
+      std::runtime_error);
 }
 } // namespace

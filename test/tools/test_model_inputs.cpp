@@ -118,8 +118,8 @@ TEST(ModelInputs, PhotographsAloneArePlacedInStepsThatResume)
   Outcome outcome = run(folder, command + " -quiet");
   EXPECT_EQ(outcome.status, 1);
   EXPECT_EQ(outcome.err, "fresco_model: cancelled\n");
-  for (const auto& [mode, reason] : std::map<std::string, std::string>{{"fail", "it does not fit"},
-                                                                       {"nothing", "none of the 4 photographs"}}) {
+  for (const auto& [mode, reason] :
+       std::map<std::string, std::string>{{"fail", "it does not fit"}, {"nothing", "none of the 4 photographs"}}) {
     put(folder + "/mode", mode);
     outcome = run(folder, command + " -resume -quiet");
     EXPECT_EQ(outcome.status, 1);
@@ -128,15 +128,17 @@ TEST(ModelInputs, PhotographsAloneArePlacedInStepsThatResume)
   }
   put(folder + "/mode", "work");
   EXPECT_EQ(run(folder, command + " -resume").status, 0);
-  EXPECT_EQ(get(folder + "/calls"), "feature_extractor\nexhaustive_matcher\nexhaustive_matcher\nmapper\nmapper\nmapper\n");
+  EXPECT_EQ(get(folder + "/calls"),
+            "feature_extractor\nexhaustive_matcher\nexhaustive_matcher\nmapper\nmapper\nmapper\n");
   EXPECT_LT(paintError(folder), 10);
 }
 
 TEST(ModelInputs, VideoWithoutPosesIsTracked)
 {
   const std::string folder = scratchFolder();
-  ASSERT_EQ(run(folder, "scan conference_room room -no_images -stations 1 -points 1000 -rgbd 12 -rgbd_size 160x120").status,
-            0);
+  ASSERT_EQ(
+      run(folder, "scan conference_room room -no_images -stations 1 -points 1000 -rgbd 12 -rgbd_size 160x120").status,
+      0);
   const std::vector<Pose> truth = readPoses(folder + "/room/rgbd/poses.txt");
   ASSERT_EQ(truth.size(), 12u);
   const Outcome outcome = run(folder, "model room/rgbd out -cell 0.05 -size 160x120");

@@ -88,8 +88,8 @@ void StructureFromMotion::findFeatures(const Progress& progress) const
     list += name + "\n";
   writeFile(folder_ + "/photographs.txt", list);
   run({"feature_extractor", "--image_path", images_, "--image_list_path", folder_ + "/photographs.txt",
-       "--ImageReader.single_camera", isOneCamera(images_, names_, threads_) ? "1" : "0", "--SiftExtraction.use_gpu", "0",
-       "--SiftExtraction.num_threads", std::to_string(threads_)},
+       "--ImageReader.single_camera", isOneCamera(images_, names_, threads_) ? "1" : "0", "--SiftExtraction.use_gpu",
+       "0", "--SiftExtraction.num_threads", std::to_string(threads_)},
       "photographs", progress);
 }
 
@@ -139,7 +139,8 @@ std::vector<std::string> StructureFromMotion::findCameras(const Progress& progre
   std::copy_if(names_.begin(), names_.end(), std::back_inserter(without),
                [&](const std::string& name) { return placed.count(name) == 0; });
   if (!without.empty())
-    warnings.push_back(concat(without.size(), " of ", names_.size(), " photographs have no place: ", listed(without, 8)));
+    warnings.push_back(
+        concat(without.size(), " of ", names_.size(), " photographs have no place: ", listed(without, 8)));
   return warnings;
 }
 } // namespace fresco::model

@@ -201,8 +201,8 @@ std::vector<Place> findPlaces(const Scene& scene, const std::vector<Eigen::Matri
 std::optional<CameraAlignmentResult> matchedPlace(const Scene& scene, const CameraSet& set, const SparsePoints& points,
                                                   const SurfacePainter& painter, const Progress& progress)
 {
-  constexpr Index fewest_votes = 20;     // wrong matches come to some 9
-  constexpr double most_votes_next = 0.5; // of what no place but the best explains: the scene may repeat
+  constexpr Index fewest_votes = 20;                  // wrong matches come to some 9
+  constexpr double most_votes_next = 0.5;             // of what no place but the best explains: the scene may repeat
   constexpr std::pair<double, double> sizes(0.04, 2); // of the model, in units of the surface's radius
   const double unit = scene.model.T_model_cameras.scale, radius = scene.surface.radius();
   const auto matches = matchPhotographs(set, points, painter, scene.surface, scene.options, progress);

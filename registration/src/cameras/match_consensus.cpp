@@ -72,9 +72,10 @@ MatchedSimilarity bestOf(const Columns& all, const std::pair<double, double>& sc
   std::mt19937 random(1);
   MatchedSimilarity best;
   Chosen inliers;
-  const auto count = static_cast<std::uint32_t>(all.points.cols());
+  const Index count = all.points.cols();
+  const auto draw = [&] { return static_cast<Index>(random() % static_cast<std::uint64_t>(count)); };
   for (int k = 0; k < tried && count >= 3; ++k) {
-    const Chosen three{random() % count, random() % count, random() % count};
+    const Chosen three{draw(), draw(), draw()};
     if (!isSimilar(all, three, scales, tolerance))
       continue;
     const Similarity T = similarityOf(all, three);

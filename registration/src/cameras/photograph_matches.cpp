@@ -3,7 +3,6 @@
 #include "batches.h"
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <opencv2/features2d.hpp>
 #include <opencv2/imgproc.hpp>
 namespace fresco::registration {
@@ -15,8 +14,9 @@ using Eigen::Vector3d;
 Descriptors findFeatures(const cv::Mat1b& gray, std::vector<cv::KeyPoint>& corners)
 {
   constexpr double contrast = 0.02; // half of the usual: walls of rooms have faint texture
+  constexpr int most = 4000;        // the strongest: bounds time and memory
   cv::Mat found;
-  cv::SIFT::create(0, 3, contrast)->detectAndCompute(gray, {}, corners, found);
+  cv::SIFT::create(most, 3, contrast)->detectAndCompute(gray, {}, corners, found);
   if (corners.empty())
     return {};
   Descriptors all = Eigen::Map<Descriptors>(found.ptr<float>(), 128, static_cast<Index>(corners.size()));
@@ -85,20 +85,23 @@ PointFeatures featuresOfPoints(const CameraSet& set, const SparsePoints& points,
     const Index v = k * count / used;
     found[k] = featuresOf(options.photograph(v), set.cameras[set.views[v].camera], observed[v]);
   });
-  Descriptors sums = Descriptors::Zero(128, static_cast<Index>(points.size()));
-  std::vector<int> times(points.size(), 0);
+  std::vector<Index> times(points.size(), 0), column(points.size(), -1);
   for (const PhotographFeatures& of_one : found)
-    for (std::size_t i = 0; i < of_one.points.size(); ++i) {
-      sums.col(of_one.points[i]) += of_one.descriptors.col(i);
-      ++times[of_one.points[i]];
-    }
+    for (const Index point : of_one.points)
+      ++times[point];
   PointFeatures out;
   for (std::size_t i = 0; i < points.size(); ++i)
     if (times[i] > 0)
       out.points.push_back(i);
   std::stable_sort(out.points.begin(), out.points.end(), [&](Index a, Index b) { return times[a] > times[b]; });
   out.points.resize(std::min(out.points.size(), most_points));
-  out.descriptors = sums(Eigen::all, out.points);
+  for (std::size_t k = 0; k < out.points.size(); ++k)
+    column[out.points[k]] = k;
+  out.descriptors = Descriptors::Zero(128, static_cast<Index>(out.points.size()));
+  for (const PhotographFeatures& of_one : found)
+    for (std::size_t i = 0; i < of_one.points.size(); ++i)
+      if (const Index k = column[of_one.points[i]]; k >= 0)
+        out.descriptors.col(k) += of_one.descriptors.col(i);
   out.descriptors.colwise().normalize();
   return out;
 }
@@ -141,7 +144,8 @@ cv::Mat1b grayOf(const Image& image)
   for (int y = 0; y < image.height; ++y)
     for (int x = 0; x < image.width; ++x) {
       const std::uint8_t* const p = image.pixel(x, y);
-      gray(y, x) = image.channels < 3 ? *p : static_cast<std::uint8_t>(0.299 * p[0] + 0.587 * p[1] + 0.114 * p[2] + 0.5);
+      gray(y, x) =
+          image.channels < 3 ? *p : static_cast<std::uint8_t>(0.299 * p[0] + 0.587 * p[1] + 0.114 * p[2] + 0.5);
     }
   return gray;
 }

@@ -60,8 +60,7 @@ SurfacePainter::SurfacePainter(const PointSet& scans, const ScanSurface& surface
     return;
   raw = thin(raw, static_cast<float>(finer * surface.grain()));
   points_ = raw.points;
-  const Eigen::RowVectorXf grays =
-      0.299f * raw.colors.row(0) + 0.587f * raw.colors.row(1) + 0.114f * raw.colors.row(2);
+  const Eigen::RowVectorXf grays = 0.299f * raw.colors.row(0) + 0.587f * raw.colors.row(1) + 0.114f * raw.colors.row(2);
   grays_.assign(grays.begin(), grays.end());
   spacing_ = surface.grain() * std::max(finer, std::sqrt(double(surface.level().points.cols()) / points_.cols()));
   focal_ = std::clamp(2 * surface.radius() / spacing_, 150.0, 1000.0);

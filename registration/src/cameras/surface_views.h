@@ -24,7 +24,7 @@ public:
 private:
   Points points_;
   std::vector<float> grays_; ///< 0..255
-  double spacing_ = 0; ///< of neighbouring points, about, length
+  double spacing_ = 0;       ///< of neighbouring points, about, length
   double focal_ = 0;
 };
 
