@@ -3,7 +3,6 @@
 #include "cameras/rotation_search.h"
 #include "cameras/similarity_refinement.h"
 #include "cameras/similarity_votes.h"
-#include "cameras/view_refinement.h"
 #include <algorithm>
 #include <cmath>
 #include <fresco/core/constants.h>
@@ -250,20 +249,6 @@ CameraAlignmentResult placeByShape(const Scene& scene, const Progress& progress)
              std::lround(100 * scene.options.min_support),
              " are wanted); the photographs show something else, or most of their points are wrong"));
 }
-
-/// Refined by what the photographs show.
-void refineResult(const CameraSet& set, const SurfacePainter& painter, const Scene& scene,
-                  CameraAlignmentResult& result, const Progress& progress)
-{
-  Similarity T = result.T_scans_cameras;
-  T.t -= scene.surface.center();
-  const ViewedSimilarity refined = refineByViews(set, painter, T, scene.options, progress);
-  result.patches = refined.patches;
-  if (refined.patches == 0)
-    return;
-  result.T_scans_cameras = refined.T_surface_cameras;
-  result.T_scans_cameras.t += scene.surface.center();
-}
 } // namespace
 
 CameraAlignmentResult alignCameras(const CameraSet& set, const SparsePoints& points, const PointSet& surface_points,
@@ -283,17 +268,10 @@ CameraAlignmentResult alignCameras(const CameraSet& set, const SparsePoints& poi
     result.already_aligned = true;
     return result;
   }
-  std::optional<SurfacePainter> painter;
   if (options.photograph)
-    painter.emplace(surface_points, surface);
-  const bool shows = painter && painter->hasGray();
-  std::optional<CameraAlignmentResult> result;
-  if (shows)
-    result = matchedPlace(scene, set, points, *painter, subProgress(progress, 0.05, 0.3));
-  if (!result)
-    result = placeByShape(scene, subProgress(progress, shows ? 0.3 : 0.05, 0.8));
-  if (shows)
-    refineResult(set, *painter, scene, *result, subProgress(progress, 0.8, 1.0));
-  return *result;
+    if (const SurfacePainter painter(surface_points, surface); painter.hasGray())
+      if (const auto matched = matchedPlace(scene, set, points, painter, subProgress(progress, 0.05, 0.4)))
+        return *matched;
+  return placeByShape(scene, subProgress(progress, options.photograph ? 0.4 : 0.05, 1.0));
 }
 } // namespace fresco

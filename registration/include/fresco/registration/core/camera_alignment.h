@@ -24,9 +24,8 @@ struct CameraAlignmentResult {
   Similarity T_scans_cameras;
   bool already_aligned = false; ///< the cameras stand in the scans' frame; the similarity is the identity
   Index matches = 0;            ///< between photographs and scans that agree on the place; 0 = shape alone told it
-  Index patches = 0;  ///< of scans found in photographs, by which the place was refined; 0 = not refined by them
-  double support = 0; ///< share of the sparse points on the surface and in sight of their cameras, 0..1
-  double blocked = 0; ///< share of the sparse points behind a surface, seen from their cameras, 0..1
+  double support = 0;           ///< share of the sparse points on the surface and in sight of their cameras, 0..1
+  double blocked = 0;           ///< share of the sparse points behind a surface, seen from their cameras, 0..1
   double alias = 0; ///< score of the next best, distinct place, of that of the best, or of matches; 0 if there is none
   double rms = 0;   ///< distance of the supported points from the surface, unit of the scans
 };
