@@ -69,7 +69,6 @@ Figures alignCameras(const Job& job, const Progress& progress)
           {"scale", T.scale},
           {"turned_degrees", Eigen::AngleAxisd(T.R).angle() * degrees_per_radian},
           {"matches", result.matches},
-          {"patches", result.patches},
           {"support", result.support},
           {"blocked", result.blocked},
           {"next_best", result.alias},
