@@ -211,8 +211,10 @@ std::optional<CameraAlignmentResult> matchedPlace(const Scene& scene, const Came
   if (found[0].votes < fewest_votes || alias > most_votes_next)
     return {};
   std::vector<Place> places{{found[0].T_surface_cameras * scene.model.T_model_cameras.inverse(), {}, 0}};
+  const Similarity matched = places[0].T_surface_model;
   finishPlaces(scene, places, vote_cell);
-  if (places[0].check.support < scene.options.min_support)
+  if (places[0].check.support < scene.options.min_support ||
+      distanceOf(places[0].T_surface_model, matched) > 2 * vote_cell) // refinement slides where shape holds too little
     return {};
   CameraAlignmentResult result = resultOf(scene, places);
   result.matches = found[0].votes;
