@@ -213,8 +213,9 @@ std::optional<CameraAlignmentResult> matchedPlace(const Scene& scene, const Came
   std::vector<Place> places{{found[0].T_surface_cameras * scene.model.T_model_cameras.inverse(), {}, 0}};
   const Similarity matched = places[0].T_surface_model;
   finishPlaces(scene, places, vote_cell);
-  if (places[0].check.support < scene.options.min_support ||
-      distanceOf(places[0].T_surface_model, matched) > 2 * vote_cell) // refinement slides where shape holds too little
+  if (distanceOf(places[0].T_surface_model, matched) > 2 * vote_cell) // it slides where shape holds too little
+    places = {{matched, checkPlace(scene.model, scene.surface, matched, 0.4 * vote_cell), 1}};
+  if (places[0].check.support < scene.options.min_support)
     return {};
   CameraAlignmentResult result = resultOf(scene, places);
   result.matches = found[0].votes;
