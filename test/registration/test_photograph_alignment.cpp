@@ -19,24 +19,20 @@ Vector3d wallAt(const Vector3d& eye, const Vector3d& beam)
   return eye + range * beam;
 }
 
-/// As seen from three places, every 1.5 cm or so. @param painted from: shifts the blots, so that another room comes out
-PointSet scanned(bool intensities, const Vector3d& painted = Vector3d::Zero())
+/// Intensities as seen from three places, every 2 cm or so. @param painted from: shifts the blots, so that another room comes out
+PointSet scanned(const Vector3d& painted = Vector3d::Zero())
 {
   constexpr Index count = 240000;
   PointSet scans;
   scans.points.resize(3, count);
-  scans.colors.resize(3, count);
+  scans.intensities.resize(count);
   std::mt19937 random(1);
   std::normal_distribution<double> normal;
   for (Index i = 0; i < count; ++i) {
     const Vector3d p = wallAt(Vector3d(1 + i % 3 * 1.4, 1 + i % 2 * 1.8, 1.3),
                               Vector3d(normal(random), normal(random), normal(random)));
     scans.points.col(i) = p.cast<float>();
-    scans.colors.col(i).setConstant(test::blotted(p + painted));
-  }
-  if (intensities) {
-    scans.intensities = 7.f * scans.colors.row(0).cast<float>().transpose();
-    scans.colors.resize(3, 0);
+    scans.intensities[i] = 7.f * test::blotted(p + painted);
   }
   return scans;
 }
@@ -103,17 +99,14 @@ TEST(PhotographAlignment, OneWallOfABareRoomIsFoundByWhatItShows)
   Photographs photographs = photographed();
   const Similarity T = ownFrame();
   transformCameras(T, photographs.set, photographs.points);
-  EXPECT_THROW(alignCameras(photographs.set, photographs.points, scanned(true)), std::runtime_error); // shape alone
-  for (const bool intensities : {true}) {
-    const CameraAlignmentResult found =
-        alignCameras(photographs.set, photographs.points, scanned(intensities), withImages(photographs));
-    EXPECT_GT(found.matches, 20);
-    const Similarity rest = found.T_scans_cameras * T;  // identity but for the error
-    for (const View& view : photographed().set.views) { // the sparse points are off by 1 cm
-      const Vector3d ahead = wallAt(view.center(), view.T_camera_world.linear().row(2).transpose());
-      EXPECT_LT((rest * ahead - ahead).norm(), 0.02);
-      EXPECT_LT((rest * view.center() - view.center()).norm(), 0.02);
-    }
+  const CameraAlignmentResult found =
+      alignCameras(photographs.set, photographs.points, scanned(), withImages(photographs));
+  EXPECT_GT(found.matches, 20);
+  const Similarity rest = found.T_scans_cameras * T;  // identity but for the error
+  for (const View& view : photographed().set.views) { // the sparse points are off by 1 cm
+    const Vector3d ahead = wallAt(view.center(), view.T_camera_world.linear().row(2).transpose());
+    EXPECT_LT((rest * ahead - ahead).norm(), 0.02);
+    EXPECT_LT((rest * view.center() - view.center()).norm(), 0.02);
   }
 }
 
@@ -121,8 +114,7 @@ TEST(PhotographAlignment, OtherPaintIsNotMatched)
 {
   Photographs photographs = photographed();
   transformCameras(ownFrame(), photographs.set, photographs.points);
-  EXPECT_THROW(
-      alignCameras(photographs.set, photographs.points, scanned(true, {100, 100, 100}), withImages(photographs)),
-      std::runtime_error);
+  EXPECT_THROW(alignCameras(photographs.set, photographs.points, scanned({100, 100, 100}), withImages(photographs)),
+               std::runtime_error);
 }
 } // namespace
