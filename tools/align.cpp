@@ -4,6 +4,7 @@
 #include <fresco/core/require.h>
 #include <fresco/io/colmap.h>
 #include <fresco/io/formats.h>
+#include <fresco/io/image_io.h>
 #include <fresco/io/mesh_io.h>
 #include <fresco/io/point_io.h>
 #include <fresco/registration/core/camera_alignment.h>
@@ -36,10 +37,14 @@ void run(int argc, char** argv)
 {
   CameraAlignmentOptions options;
   CommonOptions common;
+  std::string images;
   Args args("fresco_align CAMERAS_DIR MESH_OR_CLOUD OUT_CAMERAS_DIR [options]",
             "Brings the cameras of photographs, in a frame and scale of their own, into the frame of scans.\n"
             "CAMERAS_DIR: a COLMAP model with points3D, text or binary. OUT_CAMERAS_DIR gets it as text.\n"
             "Cameras that stand in the frame of the scans already are written as they are.");
+  args.option("images", images,
+              "folder of the photographs: they are matched with the colours or intensities of the cloud, which finds "
+              "places that shape alone does not tell");
   args.option("min_support", options.min_support,
               "least share of the sparse points on the surface and in sight of their cameras, above 0 and at most 1");
   args.option(
@@ -55,6 +60,8 @@ void run(int argc, char** argv)
   if (points.empty())
     throw std::runtime_error(files[0] + ": no sparse points (points3D.txt or points3D.bin) in it");
   const PointSet surface = readSurface(files[1], common.threads);
+  if (!images.empty())
+    options.photograph = [&](Index view) { return readImage(images + "/" + set.views[view].image); };
   CameraAlignmentResult result;
   try {
     result = alignCameras(set, points, surface, options, printProgress(common.quiet));
@@ -71,6 +78,8 @@ void run(int argc, char** argv)
   else
     inform(common.quiet, format("scale %.6g, turned by %.2f degrees, shifted by %.6g", T.scale,
                                 Eigen::AngleAxisd(T.R).angle() * degrees_per_radian, T.t.norm()));
+  if (result.matches > 0)
+    inform(common.quiet, concat(result.matches, " matches between photographs and scans agree"));
   inform(
       common.quiet,
       format(

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "blots.h"
 #include "input/model_input.h"
 #include "photographs/program.h"
 #include "photographs/structure_from_motion.h"
@@ -81,6 +82,22 @@ TEST(StructureFromMotion, WithoutTheProgramThePackageIsNamed)
   setenv("PATH", path.c_str(), 1);
 }
 
+TEST(StructureFromMotion, PhotographsOfOneKindShareACamera)
+{
+  const std::string folder = test::scratchFolder();
+  writeImage(folder + "/a.jpg", Image(40, 30));
+  writeImage(folder + "/b.png", Image(40, 30));
+  writeImage(folder + "/c.png", Image(30, 40));
+  EXPECT_TRUE(isOneCamera(folder, {"a.jpg", "b.png"}, 2));
+  EXPECT_FALSE(isOneCamera(folder, {"a.jpg", "b.png", "c.png"}, 2));
+  std::string bytes = readFile(folder + "/a.jpg");
+  bytes.insert(2, std::string("\xFF\xE1\0\x08"
+                              "Exif\0\0",
+                              10));
+  writeFile(folder + "/a.jpg", bytes);
+  EXPECT_FALSE(isOneCamera(folder, {"a.jpg", "b.png"}, 2)); // it tells what took it
+}
+
 TEST(ModelInput, ImagesWithoutCamerasAreToBePlaced)
 {
   const std::string folder = test::scratchFolder();
@@ -92,7 +109,6 @@ TEST(ModelInput, ImagesWithoutCamerasAreToBePlaced)
   EXPECT_EQ(describe(input), "2 scans, 4 photographs without cameras");
 }
 
-/// Blots of all sizes, so that features are found on every wall.
 Image blotted(const CameraModel& camera, const Eigen::Isometry3d& T_camera_world)
 {
   Image image = test::photographRoom(camera, T_camera_world);
@@ -101,15 +117,7 @@ Image blotted(const CameraModel& camera, const Eigen::Isometry3d& T_camera_world
     for (int x = 0; x < camera.width; ++x) {
       const Eigen::Vector3d at = test::wallPoint(T_world_camera.translation(),
                                                  T_world_camera.linear() * unproject(camera, {x + 0.5, y + 0.5}));
-      double value = 0;
-      for (const double size : {0.31, 0.13, 0.057}) {
-        const Eigen::Vector3d cell = (at / size).array().floor();
-        const Eigen::Vector3d within = at / size - cell - Eigen::Vector3d::Constant(0.5);
-        const double chance = std::sin(cell.dot(Eigen::Vector3d(12.9898, 78.233, 37.719))) * 43758.5453;
-        value += (chance - std::floor(chance) - 0.5) * std::exp(-8 * within.squaredNorm());
-      }
-      for (int c = 0; c < 3; ++c)
-        image.pixel(x, y)[c] = static_cast<std::uint8_t>(std::clamp(128 + 150 * value, 0.0, 255.0));
+      std::fill_n(image.pixel(x, y), 3, test::blotted(at));
     }
   return image;
 }

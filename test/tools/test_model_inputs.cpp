@@ -7,6 +7,7 @@
 #include <fresco/core/constants.h>
 #include <fresco/io/file.h>
 #include <fresco/io/image_io.h>
+#include <map>
 #include <nlohmann/json.hpp>
 namespace fresco::test {
 namespace {
@@ -66,6 +67,88 @@ TEST(ModelInputs, CamerasOfTheirOwnFrameAreAligned)
   EXPECT_NEAR(alignment["figures"]["scale"].get<double>(), 50, 0.2);
   EXPECT_EQ(report["stages"][4]["figures"]["made_of"], "photographs");
   EXPECT_LT(paintError(folder), 10);
+}
+
+/// A program `colmap` that finds what lies in the folder `found`; `mode` holds what it does wrong.
+std::string photographsAlone()
+{
+  const std::string folder = scratchFolder();
+  writeSmallRoom(folder + "/room", 20000);
+  CameraSet set = readColmap(folder + "/room/cameras");
+  SparsePoints points = sparseRoom(set, 2000);
+  transformCameras(smallRoomsOwnFrame(), set, points);
+  writeColmap(folder + "/found", set, points);
+  fs::remove_all(folder + "/room/cameras");
+  fs::create_directory(folder + "/bin");
+  put(folder + "/bin/colmap", "#!/bin/sh\ncd '" + folder + R"('
+echo $1 >> calls
+step=$1
+while [ $# -gt 1 ]; do
+  [ "$1" = --output_path ] && models=$2
+  [ "$1" = --database_path ] && : >> "$2"
+  shift
+done
+case $step-$(cat mode) in
+  exhaustive_matcher-stop) kill -INT $PPID; sleep 60 ;;
+  mapper-fail) echo "it does not fit"; exit 3 ;;
+  mapper-nothing) ;;
+  mapper-*) cp -r found "$models/0" ;;
+esac
+)");
+  fs::permissions(folder + "/bin/colmap", fs::perms::owner_all);
+  return folder;
+}
+
+/// PATH with another folder in front, as long as it lives.
+class FirstInPath {
+public:
+  explicit FirstInPath(const std::string& folder) { setenv("PATH", (folder + ":" + before_).c_str(), 1); }
+  ~FirstInPath() { setenv("PATH", before_.c_str(), 1); }
+
+private:
+  std::string before_ = std::getenv("PATH");
+};
+
+TEST(ModelInputs, PhotographsAloneArePlacedInStepsThatResume)
+{
+  const std::string folder = photographsAlone();
+  const FirstInPath path(folder + "/bin");
+  const std::string command = "model room out -use_poses -cell 0.1 -size 160x120";
+  put(folder + "/mode", "stop");
+  Outcome outcome = run(folder, command + " -quiet");
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_EQ(outcome.err, "fresco_model: cancelled\n");
+  for (const auto& [mode, reason] :
+       std::map<std::string, std::string>{{"fail", "it does not fit"}, {"nothing", "none of the 4 photographs"}}) {
+    put(folder + "/mode", mode);
+    outcome = run(folder, command + " -resume -quiet");
+    EXPECT_EQ(outcome.status, 1);
+    EXPECT_NE(outcome.err.find(reason), std::string::npos) << outcome.err;
+    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+  }
+  put(folder + "/mode", "work");
+  EXPECT_EQ(run(folder, command + " -resume").status, 0);
+  EXPECT_EQ(get(folder + "/calls"),
+            "feature_extractor\nexhaustive_matcher\nexhaustive_matcher\nmapper\nmapper\nmapper\n");
+  EXPECT_LT(paintError(folder), 10);
+}
+
+TEST(ModelInputs, VideoWithoutPosesIsTracked)
+{
+  const std::string folder = scratchFolder();
+  ASSERT_EQ(
+      run(folder, "scan conference_room room -no_images -stations 1 -points 1000 -rgbd 12 -rgbd_size 160x120").status,
+      0);
+  const std::vector<Pose> truth = readPoses(folder + "/room/rgbd/poses.txt");
+  ASSERT_EQ(truth.size(), 12u);
+  const Outcome outcome = run(folder, "model room/rgbd out -cell 0.05 -size 160x120");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const std::vector<Pose> found = readPoses(folder + "/out/poses.txt");
+  ASSERT_EQ(found.size(), 12u);
+  ASSERT_TRUE(found[0] && found[11]);
+  const Eigen::Matrix4d way = truth[0]->inverse() * *truth[11], tracked = found[0]->inverse() * *found[11];
+  EXPECT_LT((way - tracked).topRightCorner(3, 1).norm(), 0.02); // metres
+  EXPECT_TRUE(fs::exists(folder + "/out/model.glb"));
 }
 
 TEST(ModelInputs, ScansAloneAreTexturedFromTheirPoints)

@@ -45,6 +45,22 @@ bool isPicture(const std::string& path)
   return kind == ".jpg" || kind == ".jpeg" || kind == ".png" || kind == ".tif" || kind == ".tiff";
 }
 
+/// Pictures in a folder, sorted by name; none where there is no such folder.
+template <typename Walk>
+std::vector<std::string> pictureNames(const std::string& folder)
+{
+  std::vector<std::string> names;
+  if (fs::is_directory(folder))
+    for (const auto& entry : Walk(folder)) {
+      const std::string name = fs::relative(entry.path(), folder).string();
+      if (entry.is_regular_file() && entry.path().filename().string()[0] != '.' && isPicture(name) &&
+          name.rfind("masks/", 0) != 0)
+        names.push_back(name);
+    }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
 /// Those of `panoramas/`, each named as its scan.
 void readPanoramas(ModelInput& input)
 {
@@ -55,32 +71,13 @@ void readPanoramas(ModelInput& input)
   for (std::size_t s = 0; s < input.scans.size(); ++s)
     if (input.scans[s].scan < 0)
       numbers[fs::path(input.scans[s].file).stem().string()] = s;
-  for (const auto& entry : fs::directory_iterator(folder)) {
-    const std::string path = entry.path().string();
-    if (entry.path().filename().string()[0] == '.' || !isPicture(path))
-      continue;
-    const auto scan = numbers.find(entry.path().stem().string());
+  for (const std::string& name : pictureNames<fs::directory_iterator>(folder)) {
+    const std::string path = folder + "/" + name;
+    const auto scan = numbers.find(fs::path(name).stem().string());
     if (scan == numbers.end())
       throw std::runtime_error(path + ": a panorama of no scan: none in " + input.folder + "/scans has this name");
     input.panoramas.push_back({path, scan->second});
   }
-  std::sort(input.panoramas.begin(), input.panoramas.end(),
-            [](const auto& a, const auto& b) { return a.file < b.file; });
-}
-
-/// Photographs in a folder and below, by name.
-std::vector<std::string> pictureNames(const std::string& folder)
-{
-  std::vector<std::string> names;
-  if (fs::is_directory(folder))
-    for (const auto& entry : fs::recursive_directory_iterator(folder)) {
-      const std::string name = fs::relative(entry.path(), folder).string();
-      if (entry.is_regular_file() && entry.path().filename().string()[0] != '.' && isPicture(name) &&
-          name.rfind("masks/", 0) != 0)
-        names.push_back(name);
-    }
-  std::sort(names.begin(), names.end());
-  return names;
 }
 
 void readPhotographs(ModelInput& input)
@@ -88,7 +85,7 @@ void readPhotographs(ModelInput& input)
   const std::string cameras = input.folder + "/cameras";
   input.images = input.folder + "/images";
   if (!fs::is_directory(cameras)) {
-    input.unplaced = pictureNames(input.images);
+    input.unplaced = pictureNames<fs::recursive_directory_iterator>(input.images);
     return;
   }
   input.cameras = readColmap(cameras);

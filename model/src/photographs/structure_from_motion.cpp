@@ -3,25 +3,41 @@
 #include "photographs/program.h"
 #include <algorithm>
 #include <filesystem>
+#include <fresco/core/listed.h>
 #include <fresco/core/parallel.h>
-#include <fresco/core/require.h>
 #include <fresco/io/colmap.h>
 #include <fresco/io/file.h>
+#include <fresco/io/image_io.h>
+#include <fstream>
 #include <regex>
 #include <set>
 namespace fresco::model {
 namespace {
 namespace fs = std::filesystem;
-
-std::string joined(const std::vector<std::string>& names)
-{
-  constexpr std::size_t most = 8; // a line
-  std::string text;
-  for (std::size_t i = 0; i < std::min(most, names.size()); ++i)
-    text += (i > 0 ? ", " : "") + names[i];
-  return names.size() > most ? concat(text, " and ", names.size() - most, " more") : text;
-}
 } // namespace
+
+bool isOneCamera(const std::string& images, const std::vector<std::string>& names, int threads)
+{
+  constexpr std::streamsize head = 65536; // EXIF is one of the first blocks of a file
+  std::vector<std::pair<int, int>> sizes(names.size());
+  std::vector<char> told(names.size(), 0);
+  parallelFor(
+      names.size(), threads,
+      [&](Index i) {
+        const std::string path = images + "/" + names[i];
+        std::ifstream file(path, std::ios::binary);
+        std::string text(head, '\0');
+        file.read(text.data(), head);
+        told[i] = text.find("Exif") != std::string::npos;
+        if (!told[i]) {
+          const Image image = readImage(path);
+          sizes[i] = {image.width, image.height};
+        }
+      },
+      1);
+  return std::none_of(told.begin(), told.end(), [](char t) { return t != 0; }) &&
+         std::all_of(sizes.begin(), sizes.end(), [&](const auto& size) { return size == sizes[0]; });
+}
 
 double shareToldBy(const std::string& line, std::size_t count)
 {
@@ -72,7 +88,8 @@ void StructureFromMotion::findFeatures(const Progress& progress) const
     list += name + "\n";
   writeFile(folder_ + "/photographs.txt", list);
   run({"feature_extractor", "--image_path", images_, "--image_list_path", folder_ + "/photographs.txt",
-       "--SiftExtraction.use_gpu", "0", "--SiftExtraction.num_threads", std::to_string(threads_)},
+       "--ImageReader.single_camera", isOneCamera(images_, names_, threads_) ? "1" : "0", "--SiftExtraction.use_gpu",
+       "0", "--SiftExtraction.num_threads", std::to_string(threads_)},
       "photographs", progress);
 }
 
@@ -122,7 +139,8 @@ std::vector<std::string> StructureFromMotion::findCameras(const Progress& progre
   std::copy_if(names_.begin(), names_.end(), std::back_inserter(without),
                [&](const std::string& name) { return placed.count(name) == 0; });
   if (!without.empty())
-    warnings.push_back(concat(without.size(), " of ", names_.size(), " photographs have no place: ", joined(without)));
+    warnings.push_back(
+        concat(without.size(), " of ", names_.size(), " photographs have no place: ", listed(without, 8)));
   return warnings;
 }
 } // namespace fresco::model

@@ -31,6 +31,10 @@ private:
 /// @throws std::runtime_error with a line that tells what to install, if the program is not there
 void requireStructureFromMotion(const std::string& images);
 
+/// Whether photographs are to share one camera: they are of one size, and none tells by EXIF what took it. Else colmap takes
+/// one for each kind that EXIF tells, and one for each photograph without.
+bool isOneCamera(const std::string& images, const std::vector<std::string>& names, int threads);
+
 /// Share of the work that a line of the program's output tells by "... [k/n...]" or "(k)": 0..1, or -1.
 double shareToldBy(const std::string& line, std::size_t count);
 } // namespace fresco::model

@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <fresco/core/constants.h>
 #include <fresco/io/colmap.h>
+#include <fresco/io/image_io.h>
 #include <fresco/io/point_io.h>
 #include <fresco/registration/core/camera_alignment.h>
 namespace fresco::model {
@@ -51,6 +52,7 @@ Figures alignCameras(const Job& job, const Progress& progress)
   }
   CameraAlignmentOptions options;
   options.threads = job.options.threads;
+  options.photograph = [&](Index view) { return readImage(job.input.images + "/" + set.views[view].image); };
   CameraAlignmentResult result;
   try {
     result = fresco::alignCameras(set, points, readPoints(job.files.points), options, progress);
@@ -66,6 +68,7 @@ Figures alignCameras(const Job& job, const Progress& progress)
           {"photographs", set.views.size()},
           {"scale", T.scale},
           {"turned_degrees", Eigen::AngleAxisd(T.R).angle() * degrees_per_radian},
+          {"matches", result.matches},
           {"support", result.support},
           {"blocked", result.blocked},
           {"next_best", result.alias},

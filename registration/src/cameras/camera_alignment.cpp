@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "cameras/photograph_matches.h"
 #include "cameras/rotation_search.h"
 #include "cameras/similarity_refinement.h"
 #include "cameras/similarity_votes.h"
@@ -194,14 +195,68 @@ std::vector<Place> findPlaces(const Scene& scene, const std::vector<Eigen::Matri
                                   " degrees, scaled by ", std::round(100 * b.scale / a.scale) / 100,
                                   " against the first: the scene looks alike from several sides"));
 }
+
+/// The place that matches between photographs and views of the scans single out.
+std::optional<CameraAlignmentResult> matchedPlace(const Scene& scene, const CameraSet& set, const SparsePoints& points,
+                                                  const SurfacePainter& painter, const Progress& progress)
+{
+  constexpr Index fewest_votes = 20;                  // wrong matches come to some 9
+  constexpr double most_votes_next = 0.5;             // of what no place but the best explains: the scene may repeat
+  constexpr std::pair<double, double> sizes(0.04, 2); // of the model, in units of the surface's radius
+  const double unit = scene.model.T_model_cameras.scale, radius = scene.surface.radius();
+  const auto matches = matchPhotographs(set, points, painter, scene.surface, scene.options, progress);
+  const auto found = agreeOnSimilarities(matches, points, {sizes.first * radius * unit, sizes.second * radius * unit},
+                                         vote_cell / unit);
+  const double alias = double(found[1].votes) / std::max<Index>(1, found[0].votes);
+  if (found[0].votes < fewest_votes || alias > most_votes_next)
+    return {};
+  std::vector<Place> places{{found[0].T_surface_cameras * scene.model.T_model_cameras.inverse(), {}, 0}};
+  const Similarity matched = places[0].T_surface_model;
+  finishPlaces(scene, places, vote_cell);
+  if (distanceOf(places[0].T_surface_model, matched) > 2 * vote_cell) // it slides where shape holds too little
+    places = {{matched, checkPlace(scene.model, scene.surface, matched, 0.4 * vote_cell), 1}};
+  if (places[0].check.support < scene.options.min_support)
+    return {};
+  CameraAlignmentResult result = resultOf(scene, places);
+  result.matches = found[0].votes;
+  result.alias = alias;
+  return result;
+}
+/// The place that shape alone tells.
+CameraAlignmentResult placeByShape(const Scene& scene, const Progress& progress)
+{
+  constexpr std::size_t fewest_normals = 20; // below, nothing tells a rotation
+  // Most models show most of a room. The smaller the part, the more places there are for it to fit by chance.
+  constexpr std::pair<double, double> sizes[] = {{0.25, 1.4}, {0.08, 0.25}};
+  report(progress, "rotation", 0.0);
+  std::vector<Eigen::Matrix3d> rotations;
+  if (scene.model.order.size() >= fewest_normals)
+    rotations = findRotations(scene.model, scene.surface, scene.options.threads);
+  double most = 0, begin = 0.1;
+  for (const auto& range : sizes) {
+    const std::vector<Place> places = findPlaces(scene, rotations, range, subProgress(progress, begin, begin + 0.45));
+    begin += 0.45;
+    if (places.empty())
+      continue;
+    const CameraAlignmentResult result = resultOf(scene, places);
+    most = std::max(most, result.support);
+    if (result.support < scene.options.min_support)
+      continue;
+    if (result.alias > scene.options.max_alias)
+      refuseAmbiguous(places, result.alias);
+    return result;
+  }
+  throw std::runtime_error(
+      concat("no place fits: at the best one ", std::lround(100 * most),
+             " % of the sparse points lie on the surface of the scans in sight of their cameras (",
+             std::lround(100 * scene.options.min_support),
+             " are wanted); the photographs show something else, or most of their points are wrong"));
+}
 } // namespace
 
 CameraAlignmentResult alignCameras(const CameraSet& set, const SparsePoints& points, const PointSet& surface_points,
                                    const CameraAlignmentOptions& options, const Progress& progress)
 {
-  constexpr std::size_t fewest_normals = 20; // below, nothing tells a rotation
-  // Most models show most of a room. The smaller the part, the more places there are for it to fit by chance.
-  constexpr std::pair<double, double> sizes[] = {{0.25, 1.4}, {0.08, 0.25}};
   validate(set, points, options);
   report(progress, "surface", 0.0);
   const ScanSurface surface(surface_points, options.threads);
@@ -216,28 +271,10 @@ CameraAlignmentResult alignCameras(const CameraSet& set, const SparsePoints& poi
     result.already_aligned = true;
     return result;
   }
-  report(progress, "rotation", 0.1);
-  std::vector<Eigen::Matrix3d> rotations;
-  if (model.order.size() >= fewest_normals)
-    rotations = findRotations(model, surface, options.threads);
-  double most = 0, begin = 0.2;
-  for (const auto& range : sizes) {
-    const std::vector<Place> places = findPlaces(scene, rotations, range, subProgress(progress, begin, begin + 0.4));
-    begin += 0.4;
-    if (places.empty())
-      continue;
-    const CameraAlignmentResult result = resultOf(scene, places);
-    most = std::max(most, result.support);
-    if (result.support < options.min_support)
-      continue;
-    if (result.alias > options.max_alias)
-      refuseAmbiguous(places, result.alias);
-    return result;
-  }
-  throw std::runtime_error(
-      concat("no place fits: at the best one ", std::lround(100 * most),
-             " % of the sparse points lie on the surface of the scans in sight of their cameras (",
-             std::lround(100 * options.min_support),
-             " are wanted); the photographs show something else, or most of their points are wrong"));
+  if (options.photograph)
+    if (const SurfacePainter painter(surface_points, surface); painter.hasGray())
+      if (const auto matched = matchedPlace(scene, set, points, painter, subProgress(progress, 0.05, 0.4)))
+        return *matched;
+  return placeByShape(scene, subProgress(progress, options.photograph ? 0.4 : 0.05, 1.0));
 }
 } // namespace fresco

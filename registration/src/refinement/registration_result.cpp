@@ -3,7 +3,7 @@
 #include "refinement/free_motion.h"
 #include <algorithm>
 #include <cmath>
-#include <fresco/core/require.h>
+#include <fresco/core/listed.h>
 #include <fresco/core/union_find.h>
 #include <map>
 namespace fresco::registration {
@@ -241,14 +241,12 @@ ScanRegistrationResult describeRegistration(const RegistrationState& state) { re
 
 namespace fresco {
 namespace {
-// "a, b and 3 more".
-std::string listed(const std::vector<Index>& scans, const ScanRegistrationOptions& options)
+std::string namesOf(const std::vector<Index>& scans, const ScanRegistrationOptions& options)
 {
-  constexpr std::size_t most = 5; // names that still read as a line
-  std::string text;
-  for (std::size_t k = 0; k < std::min(most, scans.size()); ++k)
-    text += (k > 0 ? ", " : "") + scanName(options, scans[k]);
-  return scans.size() > most ? concat(text, " and ", scans.size() - most, " more") : text;
+  std::vector<std::string> names;
+  for (const Index scan : scans)
+    names.push_back(scanName(options, scan));
+  return listed(names, 5);
 }
 } // namespace
 
@@ -269,7 +267,7 @@ std::vector<std::string> registrationWarnings(const ScanRegistrationResult& resu
   for (const std::vector<Index>& group : groups)
     if (group.size() > 1)
       warnings.push_back(concat("another group: ", group.size(),
-                                " scans hang together, but not with the placed ones: ", listed(group, options)));
+                                " scans hang together, but not with the placed ones: ", namesOf(group, options)));
   return warnings;
 }
 } // namespace fresco

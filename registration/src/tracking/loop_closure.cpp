@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tracking/loop_closure.h"
+#include "batches.h"
 #include <algorithm>
 #include <cmath>
-#include <fresco/core/parallel.h>
 namespace fresco::tracking {
 namespace {
 constexpr Index fewest_votes = 12; // features that agree on a pose: unrelated images reach some 6
@@ -60,12 +60,7 @@ Index closeLoops(TrackingMap& map, int threads, const Progress& progress)
         for (const KeyFrameEdge& edge : alignByFeatures(map, a, b))
           found[b].push_back(edge);
   };
-  constexpr Index batch = 16; // key frames between two looks at whether to stop
-  for (Index begin = 0; begin < count; begin += batch) {
-    report(progress, "loops", double(begin) / count);
-    parallelFor(
-        std::min(batch, count - begin), threads, [&](Index k) { look(begin + k); }, 1);
-  }
+  registration::parallelBatches(count, threads, progress, "loops", look);
   Index pairs = 0;
   for (const KeyFrameEdges& edges : found) {
     map.edges.insert(map.edges.end(), edges.begin(), edges.end());

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tracking/map_refinement.h"
+#include "batches.h"
 #include <algorithm>
 #include <cmath>
-#include <fresco/core/parallel.h>
 #include <fresco/core/union_find.h>
 #include <map>
 #include <queue>
@@ -151,12 +151,7 @@ void refineMap(TrackingMap& map, IsometryVector& poses, int threads, const Progr
       for (const KeyFrameEdge& edge : alignBothWays(map, {a, b, poses[a].inverse() * poses[b]}, 1, reference))
         found[a].push_back(edge);
   };
-  constexpr Index batch = 16; // key frames between two looks at whether to stop
-  for (Index begin = 0; begin < count; begin += batch) {
-    report(progress, "refine", double(begin) / count);
-    parallelFor(
-        std::min(batch, count - begin), threads, [&](Index k) { align(begin + k); }, 1);
-  }
+  registration::parallelBatches(count, threads, progress, "refine", align);
   std::map<std::pair<Index, Index>, bool> measured;
   KeyFrameEdges edges;
   for (const KeyFrameEdges& of_one : found)
