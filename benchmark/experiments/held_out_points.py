@@ -56,14 +56,15 @@ class Judge:
         if len(self.options.scans) > 1 or os.path.isdir(cloud):
             self.tool("register", *self.options.scans, "-o", self.options.out)
             cloud = os.path.join(self.options.out, "registered.pcd")
-        self.tool("normals", cloud, self.train)
-        vertices = read_ply(self.train)
+        all_points, others = (os.path.join(self.options.out, name) for name in ("all.ply", "others.ply"))
+        self.tool("normals", cloud, all_points)
+        vertices = read_ply(all_points)
         # A scan that names its points twice (lobby) must not have one of them on either side.
         vertices = vertices[np.sort(np.unique(positions(vertices), axis=0, return_index=True)[1])]
         kept_out = np.random.default_rng(self.options.seed).random(len(vertices)) < self.options.share
         self.test = near_others(positions(vertices[kept_out]), positions(vertices[~kept_out]))
-        write_ply(self.train, vertices[~kept_out])
-        self.tool("normals", self.train, self.train) # again, without the points kept out
+        write_ply(others, vertices[~kept_out])
+        self.tool("normals", others, self.train) # again, without the points kept out
         print(f"{np.sum(~kept_out)} points, {len(self.test)} kept out")
         print("| | mean mm | median mm | RMS mm | within 10 mm | s |\n|---|---|---|---|---|---|")
 

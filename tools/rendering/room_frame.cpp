@@ -92,7 +92,7 @@ Eigen::Matrix3d spread(const FaceSample& sample)
 
 Eigen::Vector3d upright(const FaceSample& sample)
 {
-  static const double near_axis = std::cos(25 * pi / 180);
+  static const double near_axis = std::cos(15 * pi / 180); // the z of a tilted camera is farther off
   const Eigen::Matrix3d moments = spread(sample);
   Eigen::Vector3d best = Eigen::Vector3d::UnitZ();
   double most = -1;

@@ -20,7 +20,7 @@ struct RoomFrame {
 std::vector<Eigen::Vector3d> evenDirections(int count, double first_z, double last_z);
 
 /// The upright direction: one that large parallel surfaces are orthogonal to, preferably along which the model extends
-/// little (rooms are wider than high) and near the z axis. It points to +z if it is near z, else away from the side
+/// little (rooms are wider than high) and within 15 degrees of the z axis. It points to +z if it is near z, else away from the side
 /// where more of the surface lies (furniture stands on the floor). A guess: where the upright direction is known,
 /// use that.
 /// @throws std::invalid_argument if the mesh has no face with an area

@@ -6,6 +6,7 @@
 #include "poisson/solver/low_pass_filter.h"
 #include "surface/poisson/volumetric_shapes.h"
 #include <fresco/core/mesh.h>
+#include <fresco/core/statistics.h>
 #include <gtest/gtest.h>
 using namespace fresco::poisson;
 namespace fresco::test {
@@ -93,6 +94,34 @@ TEST(VolumetricScales, AreasAndDepthsOfSamplesFollowTheDensity)
   depth /= area;
   EXPECT_NEAR(depth[1] - depth[0], std::log2(50.0) / 2, 0.3); // a level for each factor of four
   EXPECT_NEAR(depth[1], std::log2(std::sqrt(100000 / (4 * pi)) * samples.cube.side), 0.3);
+}
+
+/// Median of the samples, in the unit of the points.
+double medianNoise(const PointSet& points, int depth)
+{
+  Samples samples = gatherSamples(points, atDepth(depth));
+  const Octree tree = buildOctree(samples.codes, depth, 5, 2);
+  estimateDensity(tree, Density(tree, samples, 2), 1.f, samples, 2);
+  estimateNoise(samples, 2);
+  std::vector<float> noise;
+  for (const Sample& s : samples.samples)
+    noise.push_back(s.noise);
+  return samples.cube.cell() * static_cast<double>(median(noise));
+}
+
+TEST(VolumetricScales, NoiseIsFoundAndErrorsOfNormalsAreNotTakenForIt)
+{
+  std::mt19937 random(5);
+  std::normal_distribution<float> normal;
+  PointSet noisy = sphere(30000), tilted = sphere(3000);
+  for (Index i = 0; i < noisy.size(); ++i)
+    noisy.points.col(i) *= 1.f + 0.01f * normal(random);
+  for (Index i = 0; i < tilted.size(); ++i) {
+    tilted.normals.col(i) += 0.15f * Eigen::Vector3f(normal(random), normal(random), normal(random));
+    tilted.normals.col(i).normalize();
+  }
+  EXPECT_NEAR(medianNoise(noisy, 8), 0.01, 0.003);
+  EXPECT_LT(medianNoise(tilted, 8), 0.001); // such normals are 7 mm off where neighbours lie, 65 mm away
 }
 
 TEST(VolumetricScales, DensityDoesNotBendTheUnscreenedSurface)
