@@ -213,19 +213,20 @@ TEST(TextureViews, SeamsAreLevelled)
 }
 
 /// Cameras turned and shifted at random, and of another focal length than they have.
-std::vector<TextureView> disturbed(std::vector<TextureView> views)
+/// @param share of some pixels
+std::vector<TextureView> disturbed(std::vector<TextureView> views, double share = 1)
 {
   std::mt19937 random(5);
   std::normal_distribution<double> normal;
   for (TextureView& view : views) {
-    const Eigen::Vector3d turn = 0.004 * Eigen::Vector3d(normal(random), normal(random), normal(random));
-    const Eigen::Vector3d shift = 0.01 * Eigen::Vector3d(normal(random), normal(random), normal(random));
+    const Eigen::Vector3d turn = share * 0.004 * Eigen::Vector3d(normal(random), normal(random), normal(random));
+    const Eigen::Vector3d shift = share * 0.01 * Eigen::Vector3d(normal(random), normal(random), normal(random));
     Eigen::Isometry3d change = Eigen::Isometry3d::Identity();
     change.linear() = Eigen::AngleAxisd(turn.norm(), turn.normalized()).toRotationMatrix();
     change.translation() = shift;
     view.T_camera_world = change * view.T_camera_world;
-    view.camera.fx *= 1.03;
-    view.camera.fy *= 1.03;
+    view.camera.fx *= 1 + 0.03 * share;
+    view.camera.fy *= 1 + 0.03 * share;
   }
   return views;
 }
@@ -246,6 +247,17 @@ TEST(TextureViews, CamerasAreRefined)
   EXPECT_EQ(without.disagreement_before, 0);
   EXPECT_TRUE(with.refined);
   EXPECT_FALSE(without.refined);
+}
+
+TEST(TextureViews, FractionsOfAPixelAreRefined)
+{
+  const TriangleMesh mesh = cube();
+  const TextureResult result =
+      reconstructTexture(mesh, disturbed(photographsAround(mesh, detailed, 3.2, camera(320, 320, 420)), 0.03));
+  EXPECT_LT(result.disagreement_before, 0.5);
+  EXPECT_GT(result.disagreement_before, 0.15);
+  EXPECT_TRUE(result.refined);
+  EXPECT_LT(result.disagreement_after, 0.7 * result.disagreement_before);
 }
 
 TEST(TextureViews, RightCamerasAreLeftAlone)

@@ -94,7 +94,7 @@ TEST(OptimizationLaws, FandiskMovesWithItsInput)
   input.mesh = reconstructVolumetric(input.points, options).mesh;
   input.mesh.vertices.colwise() += input.mesh.origin.cast<float>();
   input.mesh.origin.setZero();
-  expectSame(input, 0.01); // at some corners of the model no surface fits, and steps that wander magnify rounding
+  expectSame(input, 0.02); // at some corners of the model no surface fits, and steps that wander magnify rounding
 }
 } // namespace
 } // namespace fresco

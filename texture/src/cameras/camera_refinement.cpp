@@ -136,11 +136,12 @@ void describeFits(const std::vector<PhotoMatch>& matches, const CameraState& sta
   }
 }
 
-/// Leaves the cameras as they are where they agree already or no correction makes them agree clearly better.
+/// Leaves the cameras as they are where no correction makes them agree clearly better. Those that agree to half a pixel
+/// get one step, by the matches that told so.
 void refineCameras(const RefinementInput& input, int threads, const Progress& progress, TextureResult& result)
 {
   constexpr double searches[] = {0.06, 0.025, 0.0125, 0.008}; // of the image's width: shrinks with what is left to find
-  constexpr double least_gain = 0.9;                          // of the error: a smaller gain may be chance
+  constexpr double least_gain = 0.9, least_pixels = 0.05;     // of the error: a smaller gain may be chance
   constexpr std::size_t least_matches = 50;                   // for a median, and for priors not to be all that decides
   double &before = result.disagreement_before, &after = result.disagreement_after;
   const std::size_t views = input.views.size();
@@ -150,28 +151,26 @@ void refineCameras(const RefinementInput& input, int threads, const Progress& pr
   std::vector<PhotoMatch> matches;
   MatchOptions options;
   options.threads = threads;
-  options.search =
-      searches[std::size(searches) - 1] * widestOf(state); // where cameras agree, nothing lies farther away
+  options.search = searches[std::size(searches) - 1] * widestOf(state);
   matches = matchPhotos(input.scene, prepared, state, options);
   const bool agree = matches.size() >= least_matches && medianError(matches, initial) < agreement_pixels;
-  if (agree)
-    before = after = medianError(matches, initial);
   double done = 0;
   for (const double search : searches) {
-    if (agree)
-      break;
     report(progress, "camera refinement", done);
     options.search = search * widestOf(state);
-    matches = matchPhotos(input.scene, prepared, state, options);
+    if (!agree)
+      matches = matchPhotos(input.scene, prepared, state, options);
     if (matches.size() < least_matches)
       break;
     before = medianError(matches, initial);
     state = adjustCameras(thinned(matches, views), initial, priorFor(medianDistance(matches, initial)), threads);
     after = medianError(matches, state);
     done += 1.0 / std::size(searches);
+    if (agree) // nothing lies farther away than what was found
+      break;
   }
   input.photos.setAside(0);
-  result.refined = matches.size() >= least_matches && after < least_gain * before;
+  result.refined = matches.size() >= least_matches && after < std::min(least_gain * before, before - least_pixels);
   if (!result.refined)
     after = before;
   if (matches.size() >= least_matches)

@@ -83,8 +83,8 @@ struct TextureResult {
   double disagreement_before = 0;  ///< pixels, median, between photographs on the mesh; 0 where it was not measured
   double disagreement_after = 0;   ///< with `cameras`; the same where these were left as given
   std::vector<PhotographFit> fits; ///< of each view, with `cameras`; empty where it was not measured
-  /// Whether `cameras` differ from what was given: not where photographs agree within half a pixel already, nor where no
-  /// correction makes them agree clearly better.
+  /// Whether `cameras` differ from what was given: not where no correction makes the photographs agree
+  /// clearly better.
   bool refined = false;
   std::vector<std::string> warnings;                   ///< what was left out or ignored, a sentence each
   std::vector<std::pair<std::string, double>> seconds; ///< time of each step
