@@ -116,4 +116,14 @@ inline void writeSmallRoom(const std::string& folder, Index beams = 6000)
   }
   writeColmap(folder + "/cameras", set);
 }
+
+/// A small room in `folder`, and its cameras with sparse points in a frame of their own in the folder `cameras`.
+inline void writeOwnFrameRoom(const std::string& folder, const std::string& cameras)
+{
+  writeSmallRoom(folder, 20000);
+  CameraSet set = readColmap(folder + "/cameras");
+  SparsePoints points = sparseRoom(set, 2000);
+  transformCameras(smallRoomsOwnFrame(), set, points);
+  writeColmap(cameras, set, points);
+}
 } // namespace fresco::test

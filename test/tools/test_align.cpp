@@ -7,11 +7,7 @@ namespace {
 std::string ownFrameRoom()
 {
   const std::string folder = scratchFolder();
-  writeSmallRoom(folder + "/room", 20000);
-  CameraSet set = readColmap(folder + "/room/cameras");
-  SparsePoints points = sparseRoom(set, 2000);
-  transformCameras(smallRoomsOwnFrame(), set, points);
-  writeColmap(folder + "/room/own", set, points);
+  writeOwnFrameRoom(folder + "/room", folder + "/room/own");
   PointSet cloud = readPoints(folder + "/room/scans/scan_00.pcd");
   cloud.points.colwise() += Eigen::Vector3f(1.2f, 1.1f, 1.3f); // its station
   writePoints(folder + "/cloud.ply", cloud);

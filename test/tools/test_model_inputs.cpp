@@ -54,11 +54,7 @@ double paintError(const std::string& folder)
 TEST(ModelInputs, CamerasOfTheirOwnFrameAreAligned)
 {
   const std::string folder = scratchFolder();
-  writeSmallRoom(folder + "/room", 20000);
-  CameraSet set = readColmap(folder + "/room/cameras");
-  SparsePoints points = sparseRoom(set, 2000);
-  transformCameras(smallRoomsOwnFrame(), set, points);
-  writeColmap(folder + "/room/cameras", set, points);
+  writeOwnFrameRoom(folder + "/room", folder + "/room/cameras");
   const nlohmann::json report = modelOf(folder);
   EXPECT_EQ(report["kind"], "2 scans, 4 photographs");
   const nlohmann::json& alignment = report["stages"][1];
@@ -73,11 +69,7 @@ TEST(ModelInputs, CamerasOfTheirOwnFrameAreAligned)
 std::string photographsAlone()
 {
   const std::string folder = scratchFolder();
-  writeSmallRoom(folder + "/room", 20000);
-  CameraSet set = readColmap(folder + "/room/cameras");
-  SparsePoints points = sparseRoom(set, 2000);
-  transformCameras(smallRoomsOwnFrame(), set, points);
-  writeColmap(folder + "/found", set, points);
+  writeOwnFrameRoom(folder + "/room", folder + "/found");
   fs::remove_all(folder + "/room/cameras");
   fs::create_directory(folder + "/bin");
   put(folder + "/bin/colmap", "#!/bin/sh\ncd '" + folder + R"('

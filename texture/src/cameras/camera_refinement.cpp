@@ -151,24 +151,26 @@ void refineCameras(const RefinementInput& input, int threads, const Progress& pr
   std::vector<PhotoMatch> matches;
   MatchOptions options;
   options.threads = threads;
-  options.search = searches[std::size(searches) - 1] * widestOf(state);
-  matches = matchPhotos(input.scene, prepared, state, options);
-  const bool agree = matches.size() >= least_matches && medianError(matches, initial) < agreement_pixels;
-  double done = 0;
-  for (const double search : searches) {
-    report(progress, "camera refinement", done);
-    options.search = search * widestOf(state);
-    if (!agree)
-      matches = matchPhotos(input.scene, prepared, state, options);
-    if (matches.size() < least_matches)
-      break;
+  const auto match = [&](double search) {
+    options.search = search * widestOf(initial);
+    matches = matchPhotos(input.scene, prepared, state, options);
+    return matches.size() >= least_matches;
+  };
+  const auto adjust = [&] {
     before = medianError(matches, initial);
     state = adjustCameras(thinned(matches, views), initial, priorFor(medianDistance(matches, initial)), threads);
     after = medianError(matches, state);
-    done += 1.0 / std::size(searches);
-    if (agree) // nothing lies farther away than what was found
-      break;
-  }
+  };
+  constexpr std::size_t rounds = std::size(searches);
+  if (match(searches[rounds - 1]) && medianError(matches, initial) < agreement_pixels)
+    adjust(); // nothing lies farther away than what was found
+  else
+    for (std::size_t round = 0; round < rounds; ++round) {
+      report(progress, "camera refinement", double(round) / rounds);
+      if (!match(searches[round]))
+        break;
+      adjust();
+    }
   input.photos.setAside(0);
   result.refined = matches.size() >= least_matches && after < std::min(least_gain * before, before - least_pixels);
   if (!result.refined)

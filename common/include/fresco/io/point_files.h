@@ -9,7 +9,7 @@ namespace fresco {
 inline constexpr Index points_per_window = Index{1} << 21;
 
 /// The points of files as one cloud, in windows, with the attributes that all of them have, without viewpoints. Rows of
-/// binary PLY without lists and of binary PCD are read window by window. Other files are read whole, one at a time; a
+/// binary PLY without faces and of binary PCD are read window by window. Other files are read whole, one at a time; a
 /// single one of them stays in memory, as do files that fit into one window. Which points there are, and their bits, does
 /// not depend on the order of the files or on the window.
 /// @throws std::runtime_error "PATH: reason" if a file cannot be read, std::invalid_argument for no files or `window` < 1
