@@ -110,6 +110,8 @@ Json scanJson(const std::string& file, const ScanResult& scan, const Pose& pose)
   json["problem"] = scan.problem;
   json["duplicate_of"] = scan.duplicate_of;
   json["viewpoint_problem"] = scan.viewpoint_problem;
+  if (scan.found_viewpoint)
+    json["found_viewpoint"] = toJson(*scan.found_viewpoint);
   json["rms"] = scan.rms;
   json["translation_deviation"] = scan.translation_deviation;
   json["rotation_deviation_deg"] = scan.rotation_deviation * 180.0 / pi;
@@ -154,8 +156,17 @@ std::vector<Pose> startPoses(const Request& request)
   return poses;
 }
 
-void write(const Request& request, const ScanSource& scans, const ScanRegistrationResult& result)
+// Normals point to viewpoints: also to those that were found.
+PointSet withViewpoint(PointSet scan, const ScanResult& result)
 {
+  if (result.found_viewpoint)
+    scan.viewpoints = (*result.found_viewpoint - scan.origin).cast<float>();
+  return scan;
+}
+
+void write(const Request& request, const ScanSource& files, const ScanRegistrationResult& result)
+{
+  const ScanSource scans(files.count, [&](Index i) { return withViewpoint(files.read(i), result.scans[i]); });
   writePoints(request.folder + "/registered.pcd", mergeScans(scans, result.poses, request.common.threads));
   writePoses(request.folder + "/poses.txt", result.poses);
   writeFile(request.folder + "/registration.json", reportText(request, result));

@@ -130,6 +130,28 @@ TEST(ScanSets, LargeCoordinatesAreRegisteredAndMergedExactly)
     }
 }
 
+// From the true place no surface lies behind another one; in an empty room that is so from everywhere.
+TEST(ScanSets, ScannerIsFoundWhereItsSurfacesTell)
+{
+  const Eigen::Vector3d offset(500000, 5000000, 300);
+  const auto furnished = registerScans(georeferenced(offset, false).scans);
+  for (const ScanResult& scan : furnished.scans) {
+    ASSERT_TRUE(scan.found_viewpoint.has_value());
+    EXPECT_LT((*scan.found_viewpoint - offset).norm(), 0.2);
+  }
+  test::Boxes empty;
+  test::addRoom(empty, {0, 0, 0}, {4, 5, 2.6}, std::numeric_limits<double>::quiet_NaN());
+  std::vector<PointSet> scans;
+  for (const double x : {1.0, 2.5}) {
+    scans.push_back(test::scanBoxes(empty, test::stationPose({x, 2, 1.5}, x, 0.02), 20000, 0.004, 3));
+    scans.back().origin = offset;
+    scans.back().viewpoints.resize(3, 0);
+  }
+  const auto result = registerScans(scans);
+  EXPECT_FALSE(result.scans[0].found_viewpoint || result.scans[1].found_viewpoint);
+  EXPECT_FALSE(result.poses[0] && result.poses[1]);
+}
+
 TEST(ScanSets, FixedScansStayToTheLastBit)
 {
   ScanRegistrationOptions options;

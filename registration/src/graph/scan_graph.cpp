@@ -38,6 +38,9 @@ private:
   bool unconvincing(const Candidate& candidate) const;
   bool joinUnambiguous();
   bool joinAmbiguous();
+  bool mostAgree(Index scan, const PairAlignment& candidate) const;
+  bool joinBlind();
+  bool blind(const PairAlignment& pair) const { return input_.scans[pair.a].blind || input_.scans[pair.b].blind; }
   void markLookAlikes();
 
   const GraphInput& input_;
@@ -207,7 +210,8 @@ bool GraphBuilder::joinUnambiguous()
 {
   std::vector<Candidate> candidates;
   for (const PairAlignment& pair : input_.pairs)
-    if (!pair.hypotheses.empty() && !pair.ambiguous && pair.hypotheses[0].check.color.value_or(1.0) >= least_color_)
+    if (!pair.hypotheses.empty() && !pair.ambiguous && !blind(pair) &&
+        pair.hypotheses[0].check.color.value_or(1.0) >= least_color_)
       candidates.push_back({&pair, &pair.hypotheses[0]});
   std::stable_sort(candidates.begin(), candidates.end(),
                    [](const Candidate& x, const Candidate& y) { return x.hypothesis->score > y.hypothesis->score; });
@@ -222,7 +226,7 @@ bool GraphBuilder::joinAmbiguous()
 {
   for (const PairAlignment& pair : input_.pairs) {
     const Index a = places_[pair.a].cluster, b = places_[pair.b].cluster;
-    if (!pair.ambiguous || a == b)
+    if (!pair.ambiguous || a == b || blind(pair))
       continue;
     std::vector<std::pair<double, Candidate>> left;
     for (const VerifiedHypothesis& hypothesis : pair.hypotheses) {
@@ -238,13 +242,45 @@ bool GraphBuilder::joinAmbiguous()
   return false;
 }
 
+// Whether most pairs of a scan, and two at least, see it where the candidate does.
+bool GraphBuilder::mostAgree(Index scan, const PairAlignment& candidate) const
+{
+  constexpr Index fewest = 2; // one may be wrong
+  const auto partner = [&](const PairAlignment& pair) { return pair.a == scan ? pair.b : pair.a; };
+  const auto seen = [&](const PairAlignment& pair) {
+    const Eigen::Isometry3d& T = pair.hypotheses[0].T_a_b;
+    return Eigen::Isometry3d(pose(partner(pair)) * (pair.a == scan ? T.inverse() : T));
+  };
+  Index agree = 0, others = 0;
+  for (const PairAlignment& pair : input_.pairs) {
+    if ((pair.a != scan && pair.b != scan) || pair.hypotheses.empty() || input_.scans[partner(pair)].blind)
+      continue;
+    const bool same = places_[partner(pair)].cluster == places_[partner(candidate)].cluster &&
+                      poseDistance(seen(pair), seen(candidate), input_.scans[scan].size) < slack();
+    (same ? agree : others) += 1;
+  }
+  return agree >= fewest && agree > others;
+}
+
+// Scans that know nothing of free space join last, one at a time, and hold no two others together.
+bool GraphBuilder::joinBlind()
+{
+  for (const PairAlignment& pair : input_.pairs) {
+    const Index scan = input_.scans[pair.a].blind ? pair.a : pair.b;
+    if (blind(pair) && !pair.hypotheses.empty() && graph_.clusters[places_[scan].cluster].scans.size() == 1 &&
+        mostAgree(scan, pair) && tryJoin({&pair, &pair.hypotheses[0]}))
+      return true;
+  }
+  return false;
+}
+
 // Clusters that stayed apart although pairs between them fit.
 void GraphBuilder::markLookAlikes()
 {
   for (const PairAlignment& pair : input_.pairs) {
     const Index a = places_[pair.a].cluster, b = places_[pair.b].cluster;
     const bool contested = std::find(aliased_.begin(), aliased_.end(), &pair) != aliased_.end();
-    if (a != b && !pair.hypotheses.empty() && (pair.ambiguous || contested))
+    if (a != b && !pair.hypotheses.empty() && !blind(pair) && (pair.ambiguous || contested))
       graph_.clusters[a].look_alike = graph_.clusters[b].look_alike = true;
   }
 }
@@ -260,6 +296,8 @@ ScanGraph GraphBuilder::build()
       break;
     begin();
   }
+  while (joinBlind())
+    ;
   std::stable_sort(graph_.clusters.begin() + (known_.scans.empty() ? 0 : 1), graph_.clusters.end(),
                    [](const ScanCluster& x, const ScanCluster& y) { return x.scans.size() > y.scans.size(); });
   return std::move(graph_);

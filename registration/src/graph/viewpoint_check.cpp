@@ -50,7 +50,7 @@ std::vector<char> wrongViewpoints(const std::vector<PreparedScan>& scans, const 
   for (Index i = 0; i < n; ++i) {
     const bool without = scans[i].free_space.empty();
     const double share = isNarrow(scans[i]) ? narrow_share : wide_share;
-    const bool sure = scans[i].viewpoint_given && !isNarrow(scans[i]);
+    const bool sure = (scans[i].viewpoint_given || scans[i].viewpoint_found) && !isNarrow(scans[i]);
     wrong[i] = !without && !sure && evidence[i].contradicts(share * max_violation);
     known_wrong += wrong[i] || (scans[i].problem.empty() && without) ? 1 : 0;
   }

@@ -24,21 +24,18 @@ namespace {
 // Share of the comparable points of a level that lie, together with their neighbours, in space that was seen through.
 double violationShare(const ScanFreeSpace& space, const ScanLevel& level, const Eigen::Isometry3f& T_space_level)
 {
-  constexpr int neighbor_count = 8;
-  constexpr int fewest_violating = 6; // of them: mixed pixels at edges violate alone, misplaced surfaces all over
+  constexpr int fewest_violating = 6; // of a point and its 7 neighbours: mixed pixels at edges violate alone, misplaced surfaces all over
   if (space.empty())
     return 0.0;
   const auto verdicts = space.judge(level.points, T_space_level, {1.5f * level.voxel, 0.02f});
   Index comparable = 0, violating = 0;
-  std::vector<Neighbor> hits;
   for (Index i = 0; i < level.points.cols(); ++i) {
     comparable += verdicts[i] != ScanFreeSpace::Verdict::unknown ? 1 : 0;
     if (verdicts[i] != ScanFreeSpace::Verdict::violates)
       continue;
-    level.nearest(level.points.col(i), neighbor_count, hits);
-    const auto around = std::count_if(hits.begin(), hits.end(), [&](const Neighbor& hit) {
-      return verdicts[hit.index] == ScanFreeSpace::Verdict::violates;
-    });
+    int around = 0;
+    for (const std::int32_t hit : level.around.col(i))
+      around += hit >= 0 && verdicts[hit] == ScanFreeSpace::Verdict::violates ? 1 : 0;
     violating += around >= fewest_violating ? 1 : 0;
   }
   return 1.0 * violating / std::max<Index>(1, comparable);
@@ -77,14 +74,21 @@ std::optional<double> colorCorrelation(const ScanLevel& source, const ScanLevel&
 
 double pairViolation(const PreparedScan& a, const PreparedScan& b, const Eigen::Isometry3d& T_a_b, int level)
 {
-  a.levels[level].prepareSearch();
-  b.levels[level].prepareSearch();
   return std::max(violationShare(a.free_space, b.levels[level], T_a_b.cast<float>()),
                   violationShare(b.free_space, a.levels[level], T_a_b.inverse().cast<float>()));
 }
 
-PairCheck checkPair(const PreparedScan& a, const PreparedScan& b, const Eigen::Isometry3d& T_a_b, int level)
+namespace {
+struct CheckDetail {
+  int level;
+  Index samples; // that look for a counterpart
+};
+
+// All but the colours.
+PairCheck checkSurfaces(const PreparedScan& a, const PreparedScan& b, const Eigen::Isometry3d& T_a_b,
+                        const CheckDetail& detail)
 {
+  const int level = detail.level;
   const ScanLevel& level_a = a.levels[level];
   const ScanLevel& level_b = b.levels[level];
   const Eigen::Isometry3f T_ab = T_a_b.cast<float>(), T_ba = T_a_b.inverse().cast<float>();
@@ -92,13 +96,28 @@ PairCheck checkPair(const PreparedScan& a, const PreparedScan& b, const Eigen::I
   level_b.prepareSearch();
   OverlapTest test;
   test.distance = 2.f * std::max(level_a.voxel, level_b.voxel);
+  test.most = detail.samples;
   test.oriented = a.oriented && b.oriented;
   PairCheck check;
   check.overlap = std::max(overlapShare(level_b, level_a, T_ab, test), overlapShare(level_a, level_b, T_ba, test));
   check.violation_a = violationShare(a.free_space, level_b, T_ab);
   check.violation_b = violationShare(b.free_space, level_a, T_ba);
   check.violation = std::max(check.violation_a, check.violation_b);
-  check.color = colorCorrelation(level_b, level_a, T_ab, test.distance / 2.f);
   return check;
+}
+} // namespace
+
+PairCheck checkPair(const PreparedScan& a, const PreparedScan& b, const Eigen::Isometry3d& T_a_b, int level)
+{
+  PairCheck check = checkSurfaces(a, b, T_a_b, {level, OverlapTest().most});
+  const ScanLevel &level_a = a.levels[level], &level_b = b.levels[level];
+  check.color = colorCorrelation(level_b, level_a, T_a_b.cast<float>(), std::max(level_a.voxel, level_b.voxel));
+  return check;
+}
+
+PairCheck checkRoughly(const PreparedScan& a, const PreparedScan& b, const Eigen::Isometry3d& T_a_b, int level)
+{
+  constexpr Index few = 500; // samples: the share is known to 2 %
+  return checkSurfaces(a, b, T_a_b, {level, few});
 }
 } // namespace fresco::registration

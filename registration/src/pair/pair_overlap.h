@@ -31,6 +31,9 @@ struct PairCheck {
 /// surfaces that count as violations
 PairCheck checkPair(const PreparedScan& a, const PreparedScan& b, const Eigen::Isometry3d& T_a_b, int level);
 
+/// The same from fewer samples and without colours: to sort out hypotheses.
+PairCheck checkRoughly(const PreparedScan& a, const PreparedScan& b, const Eigen::Isometry3d& T_a_b, int level);
+
 /// PairCheck::violation alone.
 double pairViolation(const PreparedScan& a, const PreparedScan& b, const Eigen::Isometry3d& T_a_b, int level);
 } // namespace fresco::registration

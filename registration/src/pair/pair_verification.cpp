@@ -43,7 +43,7 @@ void rankByCheck(const PairGeometry& pair, int level, std::size_t most, PoseHypo
 {
   constexpr double rough_scale = 0.03; // as violation_scale, but before refinement, when right poses violate too
   for (PoseHypothesis& hypothesis : hypotheses) {
-    const PairCheck check = checkPair(pair.a, pair.b, hypothesis.T_a_b, level);
+    const PairCheck check = checkRoughly(pair.a, pair.b, hypothesis.T_a_b, level);
     hypothesis.score = check.overlap * std::exp(-check.violation / rough_scale);
   }
   keepBest(hypotheses, most);

@@ -120,7 +120,7 @@ public:
     constexpr double same_place = 0.25;           // overlap of two scans that look at one room from two places
     constexpr double rejecting_violation = 0.005; // of another scan taken there: more than twice what noise causes
     for (const PairAlignment& pair : pairs) {
-      if ((pair.a != scan && pair.b != scan) || pair.hypotheses.empty() ||
+      if ((pair.a != scan && pair.b != scan) || pair.hypotheses.empty() || scans[pair.a].blind || scans[pair.b].blind ||
           pair.hypotheses[0].check.overlap < same_place)
         continue;
       const Eigen::Isometry3d T_a_b = pair.hypotheses[0].T_a_b, T = pair.a == scan ? T_a_b.inverse() : T_a_b;

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "refinement/joint_covariance.h"
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <algorithm>
+#include <cmath>
 #include <fresco/core/parallel.h>
 #include <map>
 namespace fresco::registration {
@@ -11,8 +13,9 @@ using Block = Eigen::Matrix<double, 6, Eigen::Dynamic>;
 
 // The share of one cell: what its matches pull at the scans that see it.
 struct CellPull {
-  std::vector<Index> scans; // that can move
-  Eigen::VectorXd pull;     // 6 per scan
+  std::vector<Index> scans;    // that can move
+  Eigen::VectorXd pull;        // 6 per scan
+  Eigen::MatrixXd information; // 6 x 6 blocks, the cell's part of the normal equations
 };
 
 class CovarianceEstimator {
@@ -29,6 +32,7 @@ private:
   CellPull pullOf(Index begin, Index end) const;
   Matrix6d groupMotion(Index scan) const;
   Block fitRows(Index holder) const;
+  double fewCellsFactor(Index scan, const Vector6d& direction, const std::vector<CellPull>& pulls) const;
   Matrix6d covarianceOf(Index scan, const std::vector<CellPull>& pulls) const;
 
   const JointSystem& joint_;
@@ -110,6 +114,7 @@ CellPull CovarianceEstimator::pullOf(Index begin, Index end) const
     for (Index c = 0; c < n; ++c)
       P.block<6, 6>(6 * r, 6 * c) = P_.block<6, 6>(6 * slots_[result.scans[r]], 6 * slots_[result.scans[c]]);
   const Eigen::MatrixXd A = Eigen::MatrixXd::Identity(6 * n, 6 * n) - H * P;
+  result.information = H;
   result.pull = A.partialPivLu().solve(result.pull).eval();
   return result;
 }
@@ -138,6 +143,26 @@ Block CovarianceEstimator::fitRows(Index holder) const
   return sum.ldlt().solve(rows * P_);
 }
 
+// By how much the deviation along a direction grows because few cells tell the pose along it: what they disagree about
+// says little then. Satterthwaite's degrees of freedom nu, and the quantile of Student's t at 99.5 % over that of Gauss,
+// exp(2 / nu + 1.3 / nu^2) to 2 %.
+double CovarianceEstimator::fewCellsFactor(Index scan, const Vector6d& direction,
+                                           const std::vector<CellPull>& pulls) const
+{
+  double sum = 0.0, squares = 0.0;
+  for (const CellPull& cell : pulls) {
+    const Index n = cell.scans.size();
+    Eigen::VectorXd x(6 * n);
+    for (Index k = 0; k < n; ++k)
+      x.segment<6>(6 * k) = P_.block<6, 6>(6 * slots_[cell.scans[k]], 6 * slots_[scan]) * direction;
+    const double share = x.dot(cell.information * x);
+    sum += share;
+    squares += share * share;
+  }
+  const double cells = squares > 0.0 ? sum * sum / squares : 1.0;
+  return std::exp(2.0 / cells + 1.3 / (cells * cells));
+}
+
 Matrix6d CovarianceEstimator::covarianceOf(Index scan, const std::vector<CellPull>& pulls) const
 {
   const Block& fit = fits_[joint_.holders[scan]];
@@ -152,7 +177,13 @@ Matrix6d CovarianceEstimator::covarianceOf(Index scan, const std::vector<CellPul
       own -= G * (fit.middleCols<6>(6 * slots_[cell.scans[k]]) * cell.pull.segment<6>(6 * k));
     to_fit += own * own.transpose();
   }
-  const Matrix6d& larger = to_holder.trace() > to_fit.trace() ? to_holder : to_fit;
+  Matrix6d larger = to_holder.trace() > to_fit.trace() ? to_holder : to_fit;
+  if (!held(scan)) {
+    const Eigen::SelfAdjointEigenSolver<Matrix6d> solver(larger);
+    const Vector6d widest = solver.eigenvectors().col(5);
+    const double factor = fewCellsFactor(scan, widest, pulls);
+    larger += (factor * factor - 1.0) * solver.eigenvalues()[5] * widest * widest.transpose();
+  }
   return scale_.asDiagonal() * larger * scale_.asDiagonal();
 }
 

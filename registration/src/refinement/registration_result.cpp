@@ -70,6 +70,8 @@ public:
       result_.scans[i].problem = scans_[i].problem;
       result_.scans[i].duplicate_of = scans_[i].duplicate_of;
       result_.scans[i].viewpoint_problem = scans_[i].viewpoint_problem;
+      if (scans_[i].viewpoint_found && scans_[i].oriented)
+        result_.scans[i].found_viewpoint = scans_[i].center;
     }
   }
 

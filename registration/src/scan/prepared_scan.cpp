@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scan/prepared_scan.h"
 #include "scan/surface_normals.h"
+#include "scan/viewpoint_search.h"
 #include <algorithm>
 #include <fresco/core/require.h>
 namespace fresco::registration {
@@ -62,6 +63,7 @@ PreparedScan prepareScan(const PointSet& scan, const Thinning& thinning, int thr
 {
   // Of the free space: from a wrong viewpoint, one direction meets many surfaces.
   constexpr double coherence_limit = 0.7;
+  constexpr double wide_view = 0.75; // of all directions, from the points' middle: a room, not a part of one
   PreparedScan prepared;
   const WorkingCenter center = workingCenter(scan);
   prepared.center = center.place;
@@ -72,9 +74,20 @@ PreparedScan prepareScan(const PointSet& scan, const Thinning& thinning, int thr
     prepared.problem = concat("only ", raw.points.cols(), " finite points");
     return prepared;
   }
-  prepared.free_space = ScanFreeSpace(raw.points, raw.viewpoints, 3.f * thinning.voxels[0]);
-  const bool coherent = prepared.free_space.coherence() > coherence_limit;
-  prepared.oriented = coherent && (center.given || center.assumed);
+  const auto look = [&] {
+    prepared.free_space = ScanFreeSpace(raw.points, raw.viewpoints, 3.f * thinning.voxels[0]);
+    return prepared.free_space.coherence() > coherence_limit;
+  };
+  prepared.oriented = look() && (center.given || center.assumed);
+  if (!prepared.oriented && !center.given)
+    if (const auto place = findViewpoint(raw.points, prepared.size, threads)) {
+      prepared.center += place->cast<double>();
+      prepared.viewpoint_found = true;
+      raw.points.colwise() -= *place;
+      prepared.oriented = look();
+    } else {
+      prepared.blind = prepared.free_space.coverage() > wide_view;
+    }
   for (const float voxel : thinning.voxels) {
     ScanLevel& level = prepared.levels.emplace_back();
     level.voxel = voxel;
@@ -82,6 +95,7 @@ PreparedScan prepareScan(const PointSet& scan, const Thinning& thinning, int thr
     fillLevel(raw, threads, level);
     raw = {level.points, level.viewpoints, level.colors};
   }
+  prepared.levels.front().around.resize(Eigen::NoChange, 0); // only coarser levels are compared with free space
   std::reverse(prepared.levels.begin(), prepared.levels.end());
   if (static_cast<Index>(prepared.levels.back().samples.size()) < fewest_points)
     prepared.problem = concat("only ", prepared.levels.back().samples.size(), " points lie on surfaces");

@@ -16,6 +16,7 @@ struct ScanLevel {
   Points viewpoints;                      ///< 3xN
   Points colors;                          ///< 3xN, means over the cells, or 3x0
   Points normals;                         ///< 3xN unit, zero where the neighbours do not span a plane
+  Eigen::Matrix<std::int32_t, 8, Eigen::Dynamic> around; ///< 8xN, nearest points, itself first, -1 = fewer; not of the finest
   Eigen::VectorXf surface_variation;      ///< N, smallest eigenvalue / sum of eigenvalues of the neighbourhood, 0..1/3
   std::vector<Index> samples;             ///< see normalSpaceOrder()
 
@@ -43,6 +44,8 @@ struct PreparedScan {
   Index duplicate_of = -1;                          ///< the scan that has the same points; -1 = none
   Eigen::Vector3d center = Eigen::Vector3d::Zero(); ///< scan = center + working
   bool viewpoint_given = false;                     ///< its file tells where it was seen from
+  bool viewpoint_found = false;                     ///< its points do, see findViewpoint()
+  bool blind = false;                               ///< it saw a place all around, and nothing tells from where
   std::string viewpoint_problem;                    ///< why its free space is not used; empty = it is
   double size = 0.0;                                ///< median distance of its points from where they were seen, length
   bool oriented = false;                            ///< normals point to the free side; else their sign means nothing

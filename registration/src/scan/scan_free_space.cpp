@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scan/scan_free_space.h"
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <fresco/core/constants.h>
 #include <fresco/core/statistics.h>
@@ -17,8 +18,9 @@ Index cellOf(const Eigen::Vector3f& direction, int side)
   const float length = direction.cwiseAbs().maxCoeff(&axis);
   const Index face = axis * 2 + (direction[axis] < 0.f ? 1 : 0);
   const auto slot = [&](Index other) {
-    // atan makes the cells about equally wide in angle.
-    const float across = std::atan(direction[other % 3] / length) * (4.f / float_pi);
+    // 4 / pi of the arc tangent, to 0.002, makes the cells about equally wide in angle.
+    const float t = direction[other % 3] / length, size = std::abs(t);
+    const float across = t + t * (1.f - size) * (0.3116f + 0.0844f * size);
     return std::clamp(static_cast<int>((across + 1.f) * 0.5f * side), 0, side - 1);
   };
   return (face * side + slot(axis + 1)) * side + slot(axis + 2);
@@ -76,6 +78,9 @@ ScanFreeSpace::Map ScanFreeSpace::buildMap(const Points& points, const std::vect
   Map map{center, std::vector<float>(cells, infinity), std::vector<float>(cells, 0.f)};
   std::vector<std::vector<float>> ranges(cells);
   const float spread = float_pi / 2.f / side_;
+  std::array<Eigen::Vector2f, 8> ring;
+  for (int step = 0; step < 8; ++step)
+    ring[step] = {std::cos(step * float_pi / 4.f), std::sin(step * float_pi / 4.f)};
   for (const Index i : members) {
     const Eigen::Vector3f ray = points.col(i) - center;
     const float range = ray.norm();
@@ -86,9 +91,8 @@ ScanFreeSpace::Map ScanFreeSpace::buildMap(const Points& points, const std::vect
     const Eigen::Vector3f direction = ray / range;
     const Eigen::Vector3f u = direction.unitOrthogonal() * spread, v = direction.cross(u);
     for (int step = 0; step < 9; ++step) {
-      const float angle = step * float_pi / 4.f;
       const Eigen::Vector3f shifted =
-          step == 8 ? direction : Eigen::Vector3f(direction + std::cos(angle) * u + std::sin(angle) * v);
+          step == 8 ? direction : Eigen::Vector3f(direction + ring[step][0] * u + ring[step][1] * v);
       const Index cell = cellOf(shifted, side_);
       map.nearest[cell] = std::min(map.nearest[cell], range);
       map.farthest[cell] = std::max(map.farthest[cell], range);

@@ -65,11 +65,14 @@ void estimateNormals(ScanLevel& level, int threads)
   const Index n = level.points.cols();
   level.normals.resize(3, n);
   level.surface_variation.resize(n);
+  level.around.setConstant(level.around.rows(), n, -1);
   parallelRanges(n, threads, [&](Index begin, Index end) {
     std::vector<Neighbor> hits;
     for (Index i = begin; i < end; ++i) {
       const Eigen::Vector3f point = level.points.col(i);
       level.nearest(point, neighbor_count, hits);
+      for (std::size_t k = 0; k < std::min<std::size_t>(hits.size(), level.around.rows()); ++k)
+        level.around(k, i) = hits[k].index;
       const LocalPlane plane = fitPlane(level.points, point, hits, widest_neighborhood * level.voxel);
       const bool away = plane.normal.dot(level.viewpoints.col(i) - point) < 0.f;
       level.normals.col(i) = away ? Eigen::Vector3f(-plane.normal) : plane.normal;

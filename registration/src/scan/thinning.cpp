@@ -7,7 +7,7 @@
 namespace fresco::registration {
 namespace {
 struct CellPoint {
-  std::array<std::int32_t, 3> cell;
+  std::uint64_t cell; // 21 bits per axis
   Index point;
   bool operator<(const CellPoint& other) const { return cell != other.cell ? cell < other.cell : point < other.point; }
 };
@@ -20,8 +20,8 @@ std::vector<CellPoint> orderByCell(const Points& points, float voxel)
   for (Index i = 0; i < points.cols(); ++i) {
     const Eigen::Array3f cell = (points.col(i).array() / voxel).floor();
     if ((cell.abs() < grid_limit).all()) {
-      const Eigen::Array3i whole = cell.cast<int>();
-      order.push_back({{whole[0], whole[1], whole[2]}, i});
+      const Eigen::Array<std::uint64_t, 3, 1> whole = (cell + grid_limit).cast<std::uint64_t>();
+      order.push_back({whole[0] << 42 | whole[1] << 21 | whole[2], i});
     }
   }
   std::sort(order.begin(), order.end());

@@ -71,6 +71,9 @@ struct ScanResult {
   bool placed = false;
   std::string problem;           ///< why it was not placed, or what is doubtful about its place
   std::string viewpoint_problem; ///< why what it saw through is not used; empty = it is
+  /// Where it was seen from, in its own frame, to about a decimetre in rooms; only where its file does not tell and its
+  /// points do.
+  std::optional<Eigen::Vector3d> found_viewpoint;
   Index duplicate_of = -1;       ///< the scan that has the same points; -1 = none. Scans with a start pose are none
   Index group = -1;              ///< scans held together by accepted pairs; 0 is the group with poses; -1 = none
   Eigen::Matrix4d T_group_scan = Eigen::Matrix4d::Identity(); ///< within its group, whether placed or not

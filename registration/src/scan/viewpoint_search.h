@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include <Eigen/Geometry>
+#include <fresco/core/types.h>
+#include <optional>
+namespace fresco::registration {
+/// The place that a scan of wide view was seen from, to a few centimetres in a room: there, no surface lies behind another
+/// one. Nothing if the points do not surround it, if even from there many lie behind others, or if they do not tell it from
+/// places around it, as in an empty room.
+/// @param points 3xN, finite
+/// @param size   of the scan, length
+std::optional<Eigen::Vector3f> findViewpoint(const Points& points, float size, int threads);
+} // namespace fresco::registration
