@@ -24,7 +24,8 @@ namespace {
 // Share of the comparable points of a level that lie, together with their neighbours, in space that was seen through.
 double violationShare(const ScanFreeSpace& space, const ScanLevel& level, const Eigen::Isometry3f& T_space_level)
 {
-  constexpr int fewest_violating = 6; // of a point and its 7 neighbours: mixed pixels at edges violate alone, misplaced surfaces all over
+  constexpr int fewest_violating =
+      6; // of a point and its 7 neighbours: mixed pixels at edges violate alone, misplaced surfaces all over
   if (space.empty())
     return 0.0;
   const auto verdicts = space.judge(level.points, T_space_level, {1.5f * level.voxel, 0.02f});

@@ -16,9 +16,10 @@ struct ScanLevel {
   Points viewpoints;                      ///< 3xN
   Points colors;                          ///< 3xN, means over the cells, or 3x0
   Points normals;                         ///< 3xN unit, zero where the neighbours do not span a plane
-  Eigen::Matrix<std::int32_t, 8, Eigen::Dynamic> around; ///< 8xN, nearest points, itself first, -1 = fewer; not of the finest
-  Eigen::VectorXf surface_variation;      ///< N, smallest eigenvalue / sum of eigenvalues of the neighbourhood, 0..1/3
-  std::vector<Index> samples;             ///< see normalSpaceOrder()
+  Eigen::Matrix<std::int32_t, 8, Eigen::Dynamic>
+      around;                        ///< 8xN, nearest points, itself first, -1 = fewer; not of the finest
+  Eigen::VectorXf surface_variation; ///< N, smallest eigenvalue / sum of eigenvalues of the neighbourhood, 0..1/3
+  std::vector<Index> samples;        ///< see normalSpaceOrder()
 
   /// To be called before searches: a caller's own search holds the points of one level at a time.
   void prepareSearch() const;

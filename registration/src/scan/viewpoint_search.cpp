@@ -85,17 +85,21 @@ std::vector<Candidate> rated(const HiddenPoints& hidden, const std::vector<Eigen
 {
   std::vector<Candidate> candidates(places.size());
   parallelFor(
-      places.size(), threads, [&](Index k) { candidates[k] = {places[k], hidden.share(places[k])}; }, 1);
+      places.size(), threads,
+      [&](Index k) {
+        candidates[k] = {places[k], hidden.share(places[k])};
+      },
+      1);
   return candidates;
 }
 
 // The best places of a grid over the middle of the points.
 std::vector<Candidate> coarseSearch(const Points& points, int threads)
 {
-  constexpr Index few = 4000;      // points: their coarse cells see only large surfaces
-  constexpr int steps = 7;         // per axis: half a metre in a room, within which the finer search finds the place
-  constexpr std::size_t kept = 3;  // the best may lie beyond a wall
-  constexpr double margin = 0.15;  // of the points on either side of a scanner, along each axis
+  constexpr Index few = 4000;     // points: their coarse cells see only large surfaces
+  constexpr int steps = 7;        // per axis: half a metre in a room, within which the finer search finds the place
+  constexpr std::size_t kept = 3; // the best may lie beyond a wall
+  constexpr double margin = 0.15; // of the points on either side of a scanner, along each axis
   const Points sparse = everyNth(points, few);
   std::array<std::vector<float>, 3> along;
   for (Index i = 0; i < sparse.cols(); ++i)
@@ -146,11 +150,11 @@ Candidate descend(const HiddenPoints& hidden, Candidate best, float size, int th
 
 std::optional<Eigen::Vector3f> findViewpoint(const Points& points, float size, int threads)
 {
-  constexpr double most_hidden = 0.05;    // from the true place: mixed pixels and surfaces at a slant are half of it
-  constexpr double least_coverage = 0.5;  // of all directions: scanners of a narrow view stand outside of their points
-  constexpr float apart = 0.3f;           // of the size: half a metre in a room, from where more lie behind others
-  constexpr double deviations = 3.0;      // of that number: by more than chance,
-  constexpr double least_rise = 10.0;     // and by more than the outliers of one beam or edge
+  constexpr double most_hidden = 0.05;   // from the true place: mixed pixels and surfaces at a slant are half of it
+  constexpr double least_coverage = 0.5; // of all directions: scanners of a narrow view stand outside of their points
+  constexpr float apart = 0.3f;          // of the size: half a metre in a room, from where more lie behind others
+  constexpr double deviations = 3.0;     // of that number: by more than chance,
+  constexpr double least_rise = 10.0;    // and by more than the outliers of one beam or edge
   const Points few = everyNth(points, most_points);
   const HiddenPoints hidden(few, 4);
   std::vector<Candidate> found;

@@ -74,8 +74,8 @@ struct ScanResult {
   /// Where it was seen from, in its own frame, to about a decimetre in rooms; only where its file does not tell and its
   /// points do.
   std::optional<Eigen::Vector3d> found_viewpoint;
-  Index duplicate_of = -1;       ///< the scan that has the same points; -1 = none. Scans with a start pose are none
-  Index group = -1;              ///< scans held together by accepted pairs; 0 is the group with poses; -1 = none
+  Index duplicate_of = -1; ///< the scan that has the same points; -1 = none. Scans with a start pose are none
+  Index group = -1;        ///< scans held together by accepted pairs; 0 is the group with poses; -1 = none
   Eigen::Matrix4d T_group_scan = Eigen::Matrix4d::Identity(); ///< within its group, whether placed or not
   double rms = 0.0;                                           ///< point-to-plane distance over its accepted pairs
   /// Standard deviation of the scanner's position: root of the expected squared distance, length. Relative to the scan
