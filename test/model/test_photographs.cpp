@@ -82,6 +82,30 @@ TEST(StructureFromMotion, WithoutTheProgramThePackageIsNamed)
   setenv("PATH", path.c_str(), 1);
 }
 
+/// What is said if `colmap` is a script that says a line and fails.
+std::string failureOf(const std::string& line)
+{
+  const std::string folder = test::scratchFolder(), path = std::getenv("PATH");
+  writeFile(folder + "/colmap", "#!/bin/sh\necho '" + line + "'\nexit 1\n");
+  std::filesystem::permissions(folder + "/colmap", std::filesystem::perms::owner_all);
+  setenv("PATH", folder.c_str(), 1);
+  std::string said;
+  try {
+    StructureFromMotion(folder, {"a.png", "b.png"}, folder + "/work", 1).findCameras({});
+  } catch (const std::runtime_error& error) {
+    said = error.what();
+  }
+  setenv("PATH", path.c_str(), 1);
+  return said;
+}
+
+TEST(StructureFromMotion, NothingPlacedIsSaidInOneLine)
+{
+  EXPECT_NE(failureOf("ERROR: failed to create sparse model").find("could place none of the 2 photographs"),
+            std::string::npos);
+  EXPECT_NE(failureOf("ERROR: database is locked").find("database is locked"), std::string::npos);
+}
+
 TEST(StructureFromMotion, PhotographsOfOneKindShareACamera)
 {
   const std::string folder = test::scratchFolder();

@@ -3,6 +3,7 @@
 #include <fresco/core/constants.h>
 #include <fresco/registration/core/camera_alignment.h>
 #include <gtest/gtest.h>
+#include <opencv2/core/utility.hpp>
 #include <random>
 namespace {
 using namespace fresco;
@@ -94,14 +95,23 @@ Similarity ownFrame()
   return T;
 }
 
+/// @param threads of the search and of the library that finds features
+CameraAlignmentResult alignedBy(int threads, const Photographs& photographs)
+{
+  CameraAlignmentOptions options = withImages(photographs);
+  options.threads = threads;
+  cv::setNumThreads(threads);
+  return alignCameras(photographs.set, photographs.points, scanned(), options);
+}
+
 TEST(PhotographAlignment, OneWallOfABareRoomIsFoundByWhatItShows)
 {
   Photographs photographs = photographed();
   const Similarity T = ownFrame();
   transformCameras(T, photographs.set, photographs.points);
-  const CameraAlignmentResult found =
-      alignCameras(photographs.set, photographs.points, scanned(), withImages(photographs));
+  const CameraAlignmentResult found = alignedBy(2, photographs);
   EXPECT_GT(found.matches, 20);
+  EXPECT_EQ(alignedBy(1, photographs).T_scans_cameras.matrix(), found.T_scans_cameras.matrix());
   const Similarity rest = found.T_scans_cameras * T;  // identity but for the error
   for (const View& view : photographed().set.views) { // the sparse points are off by 1 cm
     const Vector3d ahead = wallAt(view.center(), view.T_camera_world.linear().row(2).transpose());

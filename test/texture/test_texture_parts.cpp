@@ -31,7 +31,9 @@ struct BoardScene {
     PhotoStore photos(whole, 1 << 24);
     TextureOptions options;
     options.threads = threads;
-    return cutHiddenParts(patches, {RayScene(mesh), {projectors, photos, std::move(used), {0, 1}, 0.2}, options});
+    const RayScene scene(mesh);
+    const ViewList list{projectors, photos, std::move(used), {0, 1}, 0.2};
+    return cutHiddenParts(patches, {scene, list, options}, coarseMaps({scene, list, options}));
   }
 
   Candidates candidates(const PatchMesh& parts) const

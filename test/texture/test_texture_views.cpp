@@ -260,6 +260,26 @@ TEST(TextureViews, FractionsOfAPixelAreRefined)
   EXPECT_LT(result.disagreement_after, 0.7 * result.disagreement_before);
 }
 
+TEST(TextureViews, LargePhotographsAreMatchedByTheirOwnPixels)
+{
+  const TriangleMesh mesh = cube();
+  const auto fine = [](const Eigen::Vector3d& p) { return detailed(5 * p); };
+  std::vector<TextureView> views;
+  for (const double x : {0.4, 1.2, 2.0, 2.8})
+    views.push_back(photograph(mesh, fine, camera(1040, 1040, 1100), lookAt({x, 2, 1.8}, {0, 0, 0})));
+  TextureOptions options;
+  options.exposure = options.examples = false;
+  options.rounds = 0;
+  options.texel = 0.05;
+  const auto disagreement = [&](int memory) {
+    options.memory = memory;
+    const TextureResult result = reconstructTexture(mesh, disturbed(views, 0.1), options);
+    EXPECT_TRUE(result.refined);
+    return result.disagreement_after;
+  };
+  EXPECT_LT(disagreement(1024), 0.7 * disagreement(15)); // MB: too few for more than half of the pixels
+}
+
 TEST(TextureViews, RightCamerasAreLeftAlone)
 {
   const TriangleMesh mesh = cube();

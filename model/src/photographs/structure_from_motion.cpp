@@ -109,8 +109,13 @@ std::vector<std::string> StructureFromMotion::findCameras(const Progress& progre
   fs::remove_all(found);
   fs::remove_all(model());
   makeFolder(found);
-  run({"mapper", "--image_path", images_, "--output_path", found, "--Mapper.num_threads", std::to_string(threads_)},
-      "photographs placed", progress);
+  try {
+    run({"mapper", "--image_path", images_, "--output_path", found, "--Mapper.num_threads", std::to_string(threads_)},
+        "photographs placed", progress);
+  } catch (const std::runtime_error& error) {
+    if (std::string(error.what()).find("failed to create sparse model") == std::string::npos) // it does not tell why
+      throw;
+  }
   std::vector<std::pair<std::size_t, std::string>> models;
   for (const auto& entry : fs::directory_iterator(found))
     if (entry.is_directory())

@@ -56,19 +56,26 @@ void applyMask(const Image& mask, MatchPhoto& photo)
 }
 
 /// Grey copies take at most half of what may be kept of the photographs; the rest keeps what they are made of.
-std::vector<MatchPhoto> prepare(PhotoStore& photos, Index count, int threads)
+std::vector<MatchPhoto> prepare(PhotoStore& photos, const std::vector<ViewPart>& views, int threads)
 {
+  const Index count = views.size();
   constexpr Index most_pixels = 1 << 20;  // of a photograph that is searched: bounds the time
   constexpr Index least_pixels = 1 << 16; // coarser, half a pixel is too much of the photograph
-  constexpr int levels = 4;               // the widest search becomes one of few pixels
+  constexpr std::size_t levels = 4;       // the widest search becomes one of few pixels
   constexpr int corner_cells = 400; // per photograph: many times the unknowns of a camera where a fifth is matched
   constexpr double with_halvings = 4.0 / 3;
   const double share = 0.5 * photos.mostBytes() / (with_halvings * count);
   const Index pixels = std::clamp<double>(share, least_pixels, most_pixels);
-  photos.setAside(with_halvings * (pixels * count));
+  std::size_t fine_bytes = 0;
+  for (const ViewPart& view : views)
+    if (const Index own = Index(view.camera.width) * view.camera.height; own > pixels)
+      fine_bytes += std::min(own, 4 * pixels);
+  const std::size_t bytes = with_halvings * (pixels * count);
+  const bool fine = bytes + fine_bytes <= 0.5 * photos.mostBytes();
+  photos.setAside(bytes + (fine ? fine_bytes : 0));
   std::vector<MatchPhoto> out(count);
   const auto prepareOne = [&](Index v) {
-    out[v].pyramid = buildPyramid(*photos.get(v), pixels, levels);
+    out[v].pyramid = buildPyramid(*photos.get(v), {pixels, levels, fine});
     out[v].corners = findCorners(out[v].pyramid.levels[0], corner_cells);
     applyMask(photos.mask(v), out[v]);
   };
@@ -79,7 +86,7 @@ std::vector<MatchPhoto> prepare(PhotoStore& photos, Index count, int threads)
 /// Spread over all pairs of views; more would not make the cameras better.
 std::vector<PhotoMatch> thinned(const std::vector<PhotoMatch>& matches, std::size_t views)
 {
-  constexpr std::size_t per_view = 200; // many times the 6 unknowns of a pose
+  constexpr std::size_t per_view = 1000; // what they err by counts a thirtieth
   const std::size_t most = per_view * views;
   if (matches.size() <= most)
     return matches;
@@ -147,7 +154,7 @@ void refineCameras(const RefinementInput& input, int threads, const Progress& pr
   const std::size_t views = input.views.size();
   const CameraState initial = stateOf(input.mesh, input.views);
   CameraState state = initial;
-  const std::vector<MatchPhoto> prepared = prepare(input.photos, views, threads);
+  const std::vector<MatchPhoto> prepared = prepare(input.photos, input.views, threads);
   std::vector<PhotoMatch> matches;
   MatchOptions options;
   options.threads = threads;

@@ -43,17 +43,20 @@ double cornerness(const Image& image, int x, int y)
 }
 } // namespace
 
-GreyPyramid buildPyramid(const Image& photo, Index most_pixels, int levels)
+GreyPyramid buildPyramid(const Image& photo, const PyramidSize& size)
 {
+  const std::size_t most = size.most_pixels;
   GreyPyramid out;
-  const std::size_t most = most_pixels, count = levels;
   Image level = greyOf(photo);
   while (level.data.size() > most) {
-    level = halved(level);
+    Image half = halved(level);
+    if (size.fine)
+      out.fine = std::move(level);
+    level = std::move(half);
     out.scale *= 0.5;
   }
   out.levels.push_back(std::move(level));
-  while (out.levels.size() < count && std::min(out.levels.back().width, out.levels.back().height) >= 64)
+  while (out.levels.size() < size.levels && std::min(out.levels.back().width, out.levels.back().height) >= 64)
     out.levels.push_back(halved(out.levels.back()));
   return out;
 }

@@ -9,10 +9,15 @@ namespace fresco::texture {
 struct GreyPyramid {
   std::vector<Image> levels; ///< one channel
   double scale = 1;          ///< pixels of level 0 per pixel of the photograph: 1, 1/2, 1/4 ...
+  Image fine; ///< twice as wide as level 0; empty where that is the photograph itself or this is not asked for
 };
 
-/// @param most_pixels of level 0
-GreyPyramid buildPyramid(const Image& photo, Index most_pixels, int levels);
+struct PyramidSize {
+  Index most_pixels; ///< of level 0
+  std::size_t levels;
+  bool fine;
+};
+GreyPyramid buildPyramid(const Image& photo, const PyramidSize& size);
 
 /// Grey level at a place in pixels (bilinear); the place lies at least one pixel inside.
 float greyAt(const Image& image, float x, float y);

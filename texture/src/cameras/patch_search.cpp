@@ -15,11 +15,18 @@ constexpr int radius = 5, side = 2 * radius + 1, count = side * side;
 /// Patch with mean 0 and norm 1.
 using Template = std::array<float, count>;
 
+constexpr int fine = -1; // level of GreyPyramid::fine
+
+const Image& imageOf(const GreyPyramid& pyramid, int level)
+{
+  return level == fine ? pyramid.fine : pyramid.levels[level];
+}
+
 bool takeTemplate(const PatchQuery& query, int level, Template& out)
 {
   constexpr float least_deviation = 3; // grey levels: below, the patch is mostly noise
-  const Image& image = query.from.levels[level];
-  const float scale = 1.f / (1 << level);
+  const Image& image = imageOf(query.from, level);
+  const float scale = std::ldexp(1.f, -level);
   float sum = 0, squares = 0;
   for (int j = 0; j < side; ++j)
     for (int i = 0; i < side; ++i) {
@@ -195,6 +202,18 @@ bool fitPlace(const Template& patch, const Image& image, Eigen::Vector2f& place)
   }
   return (place - start).norm() <= reach;
 }
+
+/// Fits the place at one level. @return false, with nothing changed, if that is not near where it was
+bool settle(const PatchQuery& query, int level, Eigen::Vector2f& place)
+{
+  const float scale = std::ldexp(1.f, -level);
+  Template patch;
+  Eigen::Vector2f fitted = place * scale;
+  if (!takeTemplate(query, level, patch) || !fitPlace(patch, imageOf(query.to, level), fitted))
+    return false;
+  place = fitted / scale;
+  return true;
+}
 } // namespace
 
 bool findPatch(const PatchQuery& query, Eigen::Vector2f& place)
@@ -228,7 +247,10 @@ bool findPatch(const PatchQuery& query, Eigen::Vector2f& place)
                                parabolaVertex(correlation(patch, image, peak.x, peak.y - 1), peak.value,
                                               correlation(patch, image, peak.x, peak.y + 1)));
   }
-  Template patch;
-  return takeTemplate(query, 0, patch) && fitPlace(patch, query.to.levels[0], place);
+  if (!settle(query, 0, place))
+    return false;
+  if (!query.from.fine.empty() && !query.to.fine.empty())
+    settle(query, fine, place); // where it is too smooth for that, the place stays
+  return true;
 }
 } // namespace fresco::texture

@@ -19,11 +19,15 @@ RayPacket<packet> raysOf(const Projector& view, const DepthMap& map, int x, int 
 
 } // namespace
 
+float depthStep(const CameraModel& camera, Index most_cells)
+{
+  return std::max(1.0, std::sqrt(1.0 * cellCount(camera.width, camera.height) / most_cells));
+}
+
 DepthMap depthMap(const RayScene& scene, const Projector& view, Index most_cells)
 {
   DepthMap map;
-  const double pixels = cellCount(view.camera().width, view.camera().height);
-  map.step = std::max(1.0, std::sqrt(pixels / most_cells));
+  map.step = depthStep(view.camera(), most_cells);
   map.width = std::ceil(view.camera().width / map.step);
   map.height = std::ceil(view.camera().height / map.step);
   map.depth.reserve(cellCount(map.width, map.height));

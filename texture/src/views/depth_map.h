@@ -14,6 +14,9 @@ struct DepthMap {
   float at(int x, int y) const { return depth[cellAt(x, y, width)]; }
 };
 
+/// Pixels of the image per cell of a depth map of at most so many cells.
+float depthStep(const CameraModel& camera, Index most_cells);
+
 /// One ray through the centre of each cell; as fine as the image, but at most `most_cells`.
 DepthMap depthMap(const RayScene& scene, const Projector& view, Index most_cells);
 

@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "views/outline_mask.h"
 #include "grid.h"
-#include "views/patch_visibility.h"
 #include <algorithm>
 #include <cmath>
-#include <fresco/core/parallel.h>
 namespace fresco::texture {
 namespace {
 /// Inverse depth along a row or column of cells; over a plane it is linear.
@@ -101,19 +99,5 @@ bool OutlineMask::touches(const Eigen::Vector2f& low, const Eigen::Vector2f& hig
       if (near_[cellAt(x, y, width_)])
         return true;
   return false;
-}
-
-std::vector<OutlineMask> outlineMasks(const PatchMesh& patches, const VisibilityInput& input)
-{
-  const ViewList& views = input.views;
-  constexpr float reach_pixels = 2.f; // of cubic interpolation
-  const float step = limitsFor(patches, views, input.options).tolerance;
-  std::vector<OutlineMask> masks(views.used.size());
-  const auto make = [&](Index v) {
-    if (views.used[v])
-      masks[v] = OutlineMask(shownDepth(input, v, most_cells), reach_pixels, step);
-  };
-  parallelFor(masks.size(), input.options.threads, make, 1);
-  return masks;
 }
 } // namespace fresco::texture

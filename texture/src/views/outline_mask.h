@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include "views/patch_mesh.h"
-#include "views/visibility.h"
+#include "views/depth_map.h"
 namespace fresco::texture {
 /// Where a photograph's pixels lie so near to the outline of something that they mix it with what stands behind.
 class OutlineMask {
 public:
+  static constexpr float pixel_reach = 2; ///< pixels: what cubic interpolation and the pixels' own width mix
+
   OutlineMask() = default; ///< holds nothing
   /// @param reach pixels from the outline
   /// @param step  mesh units by which depth jumps at an outline; bends of one surface, however oblique, are none
@@ -25,6 +26,4 @@ private:
   std::vector<std::pair<std::uint32_t, float>> between_; ///< of these, ascending, inverse depth between both sides
 };
 
-/// Of every view in use; the reach is what cubic interpolation and the pixels' own width mix.
-std::vector<OutlineMask> outlineMasks(const PatchMesh& patches, const VisibilityInput& input);
 } // namespace fresco::texture

@@ -61,13 +61,12 @@ public:
       pixels_.col(v) = pixelWithin(view, patches.vertices.col(v));
   }
 
-  std::vector<Seen> run(const VisibilityInput& input, Index number) const
+  std::vector<Seen> run(const VisibilityInput& input, Index number, const DepthMap& map) const
   {
     std::vector<Seen> seen;
     if (!(pixels_.row(2).array() > 0).any())
       return seen;
     const std::shared_ptr<const Image> photo = input.views.photos.get(number);
-    const DepthMap map = shownDepth(input, number, most_cells);
     const float misfit = input.views.misfits.empty() ? 0.f : input.views.misfits[number];
     const float radius = limits_.margin / map.step;
     constexpr float rim_pixels = 2; // reach of cubic interpolation
@@ -141,6 +140,13 @@ private:
   float outline_; ///< mesh units by which depth jumps at an outline: more than a surface behind may lie
   Points pixels_; ///< x, y, depth per vertex; depth 0 where out of the image
 };
+
+/// The map if it is as fine as can be, else another one.
+DepthMap finestDepth(const VisibilityInput& input, Index view, DepthMap map)
+{
+  const CameraModel& camera = input.views.projectors[view].camera();
+  return !map.depth.empty() && map.step == depthStep(camera, most_cells) ? std::move(map) : shownDepth(input, view, most_cells);
+}
 } // namespace
 
 CandidateTable::CandidateTable(Index patches, Index most) : most_(most), counts_(patches, 0), slots_(patches * most) {}
@@ -217,7 +223,8 @@ DepthMap shownDepth(const VisibilityInput& input, Index view, Index cells)
   return map;
 }
 
-Candidates findCandidates(const PatchMesh& patches, const VisibilityInput& input, const Progress& progress)
+Candidates findCandidates(const PatchMesh& patches, const VisibilityInput& input, const Progress& progress,
+                          std::vector<DepthMap> maps, std::vector<OutlineMask>* outlines)
 {
   const ViewList& views = input.views;
   constexpr Index batch = 16; // views between two reports
@@ -225,13 +232,21 @@ Candidates findCandidates(const PatchMesh& patches, const VisibilityInput& input
   CandidateTable table(patches.size(), CandidateTable::mostPerPatch(patches.size(), n));
   std::vector<std::vector<Seen>> seen(batch);
   const VisibilityLimits limits = limitsFor(patches, views, input.options);
+  maps.resize(n);
+  if (outlines)
+    outlines->resize(n);
   for (Index first = 0; first < n; first += batch) {
     report(progress, "visibility", 1.0 * first / n);
     const Index count = std::min(batch, n - first);
     const auto test = [&](Index i) {
       seen[i].clear();
-      if (const Index v = first + i; views.used[v])
-        seen[i] = ViewTest(patches, views.projectors[v], limits).run(input, v);
+      const Index v = first + i;
+      if (!views.used[v])
+        return;
+      const DepthMap map = finestDepth(input, v, std::move(maps[v]));
+      seen[i] = ViewTest(patches, views.projectors[v], limits).run(input, v, map);
+      if (outlines)
+        (*outlines)[v] = OutlineMask(map, OutlineMask::pixel_reach, limits.tolerance);
     };
     parallelFor(count, input.options.threads, test, 1);
     for (Index i = 0; i < count; ++i)

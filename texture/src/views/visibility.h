@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include "cameras/projector.h"
-#include "views/depth_map.h"
+#include "views/outline_mask.h"
 #include "views/patch_mesh.h"
 #include "views/photo_store.h"
 #include "views/photometry.h"
@@ -80,5 +80,8 @@ DepthMap shownDepth(const VisibilityInput& input, Index view, Index cells);
 
 /// A patch counts as seen by a view where all of it lies in the image, turned towards the camera, and no ray through
 /// the pixels that it covers ends clearly before it.
-Candidates findCandidates(const PatchMesh& patches, const VisibilityInput& input, const Progress& progress);
+/// @param maps     shownDepth() of each view in any number of cells, or none; those as fine as can be are used up
+/// @param outlines of each view in use, if not null; they need the same depth
+Candidates findCandidates(const PatchMesh& patches, const VisibilityInput& input, const Progress& progress,
+                          std::vector<DepthMap> maps = {}, std::vector<OutlineMask>* outlines = nullptr);
 } // namespace fresco::texture

@@ -48,20 +48,6 @@ Eigen::VectorXi viewsOfFaces(const PatchMesh& patches, const Eigen::VectorXi& vi
   return out;
 }
 
-std::vector<DepthMap> coarseMaps(const VisibilityInput& input)
-{
-  constexpr Index cells_of_all = 64'000'000; // 256 MB
-  const ViewList& views = input.views;
-  const Index n = views.projectors.size();
-  std::vector<DepthMap> maps(views.projectors.size());
-  const auto make = [&](Index v) {
-    if (views.used[v])
-      maps[v] = shownDepth(input, v, std::min(most_cells, cells_of_all / n));
-  };
-  parallelFor(n, input.options.threads, make, 1);
-  return maps;
-}
-
 struct DepthTest {
   const std::vector<Projector>& projectors;
   const std::vector<DepthMap>& maps; ///< of each; empty where not in use
@@ -98,10 +84,23 @@ double diagonalOf(const TriangleMesh& mesh)
   return box.sizes().norm();
 }
 
-PatchMesh cutHiddenParts(PatchMesh patches, const VisibilityInput& input)
+std::vector<DepthMap> coarseMaps(const VisibilityInput& input)
+{
+  constexpr Index cells_of_all = 64'000'000; // 256 MB
+  const ViewList& views = input.views;
+  const Index n = views.projectors.size();
+  std::vector<DepthMap> maps(views.projectors.size());
+  const auto make = [&](Index v) {
+    if (views.used[v])
+      maps[v] = shownDepth(input, v, std::min(most_cells, cells_of_all / n));
+  };
+  parallelFor(n, input.options.threads, make, 1);
+  return maps;
+}
+
+PatchMesh cutHiddenParts(PatchMesh patches, const VisibilityInput& input, const std::vector<DepthMap>& maps)
 {
   const int threads = input.options.threads;
-  const std::vector<DepthMap> maps = coarseMaps(input);
   const DepthTest test{input.views.projectors, maps, limitsFor(patches, input.views, input.options).tolerance};
   constexpr int rounds = 3; // each halves the sides: patches of 2 pixels
   for (int round = 0; round < rounds; ++round) {
@@ -116,11 +115,13 @@ VisibleSurface findVisibleSurface(const TriangleMesh& mesh, const VisibilityInpu
   const bool exact = input.views.pose_uncertainty < 1; // else outlines are too uncertain to be followed closely
   VisibleSurface out;
   out.patches = cutFaces(mesh, longestEdge(mesh, input.views.projectors), input.options.threads);
-  if (exact)
-    out.patches = cutHiddenParts(std::move(out.patches), input);
-  out.candidates = findCandidates(out.patches, input, progress);
-  if (exact)
-    out.outlines = outlineMasks(out.patches, input);
+  if (!exact) {
+    out.candidates = findCandidates(out.patches, input, progress);
+    return out;
+  }
+  std::vector<DepthMap> maps = coarseMaps(input);
+  out.patches = cutHiddenParts(std::move(out.patches), input, maps);
+  out.candidates = findCandidates(out.patches, input, progress, std::move(maps), &out.outlines);
   return out;
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include "views/outline_mask.h"
+#include "views/visibility.h"
 namespace fresco::texture {
 /// What the views show of the mesh.
 struct VisibleSurface {
@@ -12,9 +12,13 @@ struct VisibleSurface {
 /// Patches of about 16 pixels of a typical view, smaller ones beside outlines, and the views that show them.
 VisibleSurface findVisibleSurface(const TriangleMesh& mesh, const VisibilityInput& input, const Progress& progress);
 
+/// shownDepth() of each view in use, in as many cells as fit into 256 MB together.
+std::vector<DepthMap> coarseMaps(const VisibilityInput& input);
+
 /// Cuts the patches that no view shows whole, though some view shows a part of them, to an eighth of their side: what
 /// is seen beside something that stands before it can then be painted, and only the rest is unseen.
-PatchMesh cutHiddenParts(PatchMesh patches, const VisibilityInput& input);
+/// @param maps coarseMaps()
+PatchMesh cutHiddenParts(PatchMesh patches, const VisibilityInput& input, const std::vector<DepthMap>& maps);
 
 /// Fills coverage, views_used, seam_length and face_view of the result.
 /// @param view P, -1 = unseen; panoramas as a whole

@@ -9,8 +9,6 @@ namespace fresco::optimization {
 namespace {
 using Eigen::Vector3d;
 
-constexpr int halvings = 5; // of a move before it is given up: what is left of it, 3 %, is below what a step gains
-
 // How much of `move` face f can take: all, or up to where nearly nothing is left of its area.
 double partAllowed(const MeshGraph& graph, const Positions& x, const Positions& move, const Vector3d& normal, Index f)
 {
@@ -29,26 +27,66 @@ double partAllowed(const MeshGraph& graph, const Positions& x, const Positions& 
   return denominator > 2.0 * most_lost ? 2.0 * most_lost / denominator : 1.0;
 }
 
-// Marks the corners of an inverted face that can still be moved back, and where there is none, the ring around it: with
-// all of that at the start the face cannot be inverted. False if everything is there already.
-bool touchInverted(const MeshGraph& graph, Index f, const std::vector<char>& times, std::vector<char>& touched)
+// Faces that are inverted at x and were not so before.
+std::vector<int> newlyInverted(const MeshGraph& graph, const Positions& x, const std::vector<char>& before, int threads)
 {
-  bool any = false;
-  const auto touch = [&](Index v) {
-    if (times[v] > halvings)
-      return;
-    touched[v] = 1;
-    any = true;
+  const std::vector<char> now = invertedFaces(graph, x, threads);
+  std::vector<int> found;
+  for (Index f = 0; f < graph.faceCount(); ++f)
+    if (now[f] && !before[f])
+      found.push_back(static_cast<int>(f));
+  return found;
+}
+
+// Sum of the areas of the faces around the corners of face f.
+Vector3d areaAround(const MeshGraph& graph, const Positions& x, Index f)
+{
+  Vector3d sum = Vector3d::Zero();
+  for (int k = 0; k < 3; ++k)
+    for (const int g : facesAround(graph, graph.faces(k, f))) {
+      const auto corner = graph.faces.col(g);
+      sum += (x.col(corner[1]) - x.col(corner[0])).cross(x.col(corner[2]) - x.col(corner[0]));
+    }
+  return sum;
+}
+
+// The least part of the way back to the start after which inverted face f faces as those around it do now; 1 if none.
+double leastWayBack(const MeshGraph& graph, const Positions& start, const Positions& x, Index f)
+{
+  const Vector3d mean = areaAround(graph, x, f);
+  const auto edge = [&](const Positions& of, int k) -> Vector3d {
+    return of.col(graph.faces(k, f)) - of.col(graph.faces(0, f));
   };
-  for (int k = 0; k < 3; ++k)
-    touch(graph.faces(k, f));
-  if (any)
-    return true;
-  for (int k = 0; k < 3; ++k)
-    for (const int g : facesAround(graph, graph.faces(k, f)))
-      for (int j = 0; j < 3; ++j)
-        touch(graph.faces(j, g));
-  return any;
+  const Vector3d e1 = edge(x, 1), e2 = edge(x, 2), d1 = edge(start, 1) - e1, d2 = edge(start, 2) - e2;
+  // area + linear t + square t^2 = 0 from area < 0 on, in a form without cancellation.
+  const double area = e1.cross(e2).dot(mean), linear = (e1.cross(d2) + d1.cross(e2)).dot(mean),
+               square = d1.cross(d2).dot(mean), inside = linear * linear - 4.0 * square * area;
+  const double denominator = linear + std::sqrt(std::max(0.0, inside));
+  return inside >= 0.0 && denominator > -2.0 * area ? std::max(0.0, -2.0 * area / denominator) : 1.0;
+}
+
+// Puts the corners of inverted faces back to the start, and where they are there, the ring around them: with all of
+// that at the start a face cannot be inverted.
+void putBack(const MeshGraph& graph, const Positions& start, const std::vector<char>& before, Positions& x, int threads)
+{
+  const auto put = [&](Index v) {
+    const bool away = x.col(v) != start.col(v);
+    x.col(v) = start.col(v);
+    return away;
+  };
+  for (bool any = true; any;) {
+    any = false;
+    for (const int f : newlyInverted(graph, x, before, threads)) {
+      bool corners = false;
+      for (int k = 0; k < 3; ++k)
+        corners |= put(graph.faces(k, f));
+      any |= corners;
+      for (int k = 0; k < 3 && !corners; ++k)
+        for (const int g : facesAround(graph, graph.faces(k, f)))
+          for (int j = 0; j < 3; ++j)
+            any |= put(graph.faces(j, g));
+    }
+  }
 }
 
 void sortUnique(std::vector<int>& numbers)
@@ -161,23 +199,26 @@ void relaxStuck(const MeshGraph& graph, const Eigen::VectorXf& part, const Eigen
 Index repairInverted(const MeshGraph& graph, const Positions& start, const Eigen::VectorXf& part, Positions& x,
                      int threads)
 {
-  constexpr int relaxations = 3; // each reaches one ring farther; what is inverted over a wider part goes back
+  constexpr int relaxations = 3, rounds = 20; // each reaches one ring farther; few faces are left after five rounds
+  constexpr double farther = 1.25;            // than needed, so that rounds come to an end
   const std::vector<char> before = invertedFaces(graph, start, threads);
   for (int round = 0; round < relaxations; ++round)
     relaxInverted(graph, part, x, threads);
-  std::vector<char> times(graph.vertexCount(), 0), touched(graph.vertexCount());
-  for (bool again = true; again;) {
-    again = false;
-    std::fill(touched.begin(), touched.end(), char{0});
-    const std::vector<char> now = invertedFaces(graph, x, threads);
-    for (Index f = 0; f < graph.faceCount(); ++f)
-      if (now[f] && !before[f])
-        again |= touchInverted(graph, f, times, touched);
-    parallelFor(graph.vertexCount(), threads, [&](Index v) {
-      if (touched[v])
-        x.col(v) = ++times[v] > halvings ? start.col(v).eval() : (0.5 * (start.col(v) + x.col(v))).eval();
-    });
+  const Positions relaxed = x;
+  Eigen::VectorXd back(graph.vertexCount());
+  for (int round = 0; round < rounds; ++round) {
+    const std::vector<int> faces = newlyInverted(graph, x, before, threads);
+    if (faces.empty())
+      break;
+    back.setZero();
+    for (const int f : faces) {
+      const double way = std::min(1.0, farther * leastWayBack(graph, start, x, f));
+      for (int k = 0; k < 3; ++k)
+        back[graph.faces(k, f)] = std::max(back[graph.faces(k, f)], way);
+    }
+    parallelFor(graph.vertexCount(), threads, [&](Index v) { x.col(v) += back[v] * (start.col(v) - x.col(v)); });
   }
-  return graph.vertexCount() - std::count(times.begin(), times.end(), char{0});
+  putBack(graph, start, before, x, threads);
+  return (x.array() != relaxed.array()).colwise().any().count();
 }
 } // namespace fresco::optimization
