@@ -145,7 +145,8 @@ private:
 DepthMap finestDepth(const VisibilityInput& input, Index view, DepthMap map)
 {
   const CameraModel& camera = input.views.projectors[view].camera();
-  return !map.depth.empty() && map.step == depthStep(camera, most_cells) ? std::move(map) : shownDepth(input, view, most_cells);
+  return !map.depth.empty() && map.step == depthStep(camera, most_cells) ? std::move(map)
+                                                                         : shownDepth(input, view, most_cells);
 }
 } // namespace
 
