@@ -50,7 +50,7 @@ CovarianceEstimator::CovarianceEstimator(const JointSystem& joint) : joint_(join
     slots_.push_back(held(i) ? -1 : moving_++);
   invert();
   fits_.resize(count_);
-  for (Index i = 0; i < count_ && joint.fit; ++i)
+  for (Index i = 0; i < count_ && joint.fit && moving_ > 0; ++i)
     if (held(i))
       fits_[i] = fitRows(i);
 }
