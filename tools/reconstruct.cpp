@@ -1,14 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "support/scan_option.h"
 #include "support/tool.h"
+#include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <fresco/core/require.h>
+#include <fresco/core/scratch_space.h>
 #include <fresco/io/formats.h>
 #include <fresco/io/mesh_io.h>
 #include <fresco/io/point_files.h>
 #include <fresco/surface/core/volumetric_reconstruction.h>
 #include <iostream>
 #include <limits>
+#include <optional>
 namespace {
 using namespace fresco;
 
@@ -18,7 +22,11 @@ struct Request {
   VolumetricOptions options;
   CommonOptions common;
   bool estimate = false;
+  int memory = 0;      ///< MB, 0 = no limit
+  std::string scratch; ///< folder
 };
+
+std::size_t bytes(int megabytes) { return std::max(0, megabytes) * std::size_t{1000000}; }
 
 Request parse(int argc, char** argv)
 {
@@ -54,7 +62,13 @@ Request parse(int argc, char** argv)
   args.option("scale", o.scale, "cube side / longest side of the points' bounding box, 1..100");
   args.option("min_depth", o.min_depth, "the octree is complete down to this depth, 2..8");
   args.option("iterations", o.iterations, "solver sweeps per octree depth, 1..1000");
-  args.flag("estimate", request.estimate, "print the memory needed in MB on stdout and stop; OUT is not written");
+  args.flag("estimate", request.estimate,
+            "print three numbers on stdout and stop, without writing OUT: MB of memory, MB of scratch files with this "
+            "-memory, seconds to about a factor of two");
+  args.option("memory", request.memory,
+              "MB to stay below, 256 or more: arrays that do not fit go to files in -scratch; the same bytes come out. "
+              "0 = all in memory");
+  args.option("scratch", request.scratch, "folder for such files, on a fast disk; default: the folder of OUT");
   args.note("fresco_reconstruct scan.ply mesh.ply -depth 9\n"
             "fresco_reconstruct room.pcd room.ply -cell 0.02 -trim_levels 2   (an open room: cells of 2 cm, no "
             "invented surface)");
@@ -68,6 +82,10 @@ Request parse(int argc, char** argv)
   } catch (const std::invalid_argument& error) {
     throw UsageError(error.what());
   }
+  if (request.memory != 0 && bytes(request.memory) < ScratchSpace::least_memory)
+    throw UsageError(concat("-memory ", request.memory, " is not ", ScratchSpace::least_memory / 1000000, " or more"));
+  if (!request.scratch.empty() && request.memory == 0)
+    throw UsageError("-scratch goes with -memory");
   request.output = files.back();
   files.pop_back();
   files = pointFilesIn(files);
@@ -85,18 +103,36 @@ std::string nameOf(const std::vector<ScanPath>& inputs)
   return inputs.size() == 1 ? inputs[0].file : concat(inputs[0].file, " and ", inputs.size() - 1, " more");
 }
 
+std::string scratchFolder(const Request& request)
+{
+  if (!request.scratch.empty())
+    return request.scratch;
+  const std::string folder = std::filesystem::path(request.output).parent_path().string();
+  return folder.empty() ? "." : folder;
+}
+
 std::string percent(Index part, Index whole) { return concat(std::round(1000.0 * part / whole) / 10, " %"); }
 
 void run(const Request& request)
 {
   std::unique_ptr<PointStream> points = openPointFiles(request.inputs);
   if (request.estimate) {
-    std::cout << std::ceil(estimateMemory(*points, request.options) / 1e6) << '\n';
+    const VolumetricEstimate estimate = estimateVolumetric(*points, request.options);
+    const std::size_t kept = request.memory == 0 ? estimate.memory : ScratchSpace::keptInMemory(bytes(request.memory));
+    std::cout << std::ceil(estimate.memory / 1e6) << ' '
+              << std::ceil((estimate.memory - std::min(kept, estimate.memory)) / 1e6) << ' '
+              << std::ceil(estimate.seconds) << '\n';
     return;
   }
-  const VolumetricResult result =
+  std::optional<ScratchSpace> scratch;
+  if (request.memory > 0)
+    scratch.emplace(bytes(request.memory), scratchFolder(request));
+  VolumetricResult result =
       reconstructVolumetric(std::move(points), request.options, printProgress(request.common.quiet));
-  writeOutputs([&] { writeMesh(request.output, result.mesh); });
+  {
+    const FileBacking vertices(result.mesh.vertices), faces(result.mesh.faces);
+    writeOutputs([&] { writeMesh(request.output, result.mesh); });
+  }
   inform(request.common.quiet,
          concat(result.mesh.vertexCount(), " vertices, ", result.mesh.faceCount(), " faces; depth ", result.depth,
                 ", cell ", result.cell_size, "; ", result.used_points, " points used, ", result.left_out_points,

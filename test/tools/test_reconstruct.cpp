@@ -7,6 +7,7 @@
 #include <fresco/io/point_io.h>
 #include <fstream>
 #include <iomanip>
+#include <sstream>
 #include <sys/wait.h>
 namespace fresco::test {
 namespace {
@@ -86,6 +87,27 @@ TEST_F(ReconstructTool, EstimatePrintsMegabytesAndWritesNothing)
   ASSERT_EQ(run("in.ply", "out.ply", "-depth 10 -estimate -quiet"), 0);
   EXPECT_GT(coarse, 1);
   EXPECT_GT(std::stod(readFile(path("log.out"))), 2 * coarse);
+}
+
+TEST_F(ReconstructTool, LittleMemoryGivesTheSameBytes)
+{
+  ASSERT_EQ(run("in.ply", "out.ply", "-depth 8 -quiet"), 0);
+  const std::string expected = readFile(path("out.ply"));
+  std::filesystem::create_directories(path("scratch"));
+  const std::string little = "-depth 8 -quiet -memory 256 -scratch " + path("scratch");
+  ASSERT_EQ(run("in.ply", "out.ply", little + " -estimate"), 0);
+  double memory = 0, files = 0, seconds = 0;
+  std::istringstream(readFile(path("log.out"))) >> memory >> files >> seconds;
+  EXPECT_GT(files, 0); // so that something is tested here
+  EXPECT_LT(files, memory);
+  EXPECT_GT(seconds, 0);
+  ASSERT_EQ(run("in.ply", "out.ply", little), 0) << readFile(path("log.err"));
+  EXPECT_EQ(readFile(path("out.ply")), expected);
+  EXPECT_TRUE(std::filesystem::is_empty(path("scratch")));
+  EXPECT_EQ(run("in.ply", "new.ply", "-memory 256 -scratch " + path("none")), 1);
+  EXPECT_FALSE(std::filesystem::exists(path("new.ply")));
+  EXPECT_EQ(run("in.ply", "new.ply", "-memory 10"), 2);
+  EXPECT_EQ(run("in.ply", "new.ply", "-scratch " + path("scratch")), 2);
 }
 
 TEST_F(ReconstructTool, SeveralFilesAreOneCloudInAnyOrder)

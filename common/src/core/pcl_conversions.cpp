@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <cmath>
-#include <fresco/core/cloud_table.h>
+#include <fresco/core/pcl_cloud_table.h>
 #include <fresco/core/pcl_conversions.h>
 #include <fresco/core/polygon_fans.h>
 #include <fresco/core/require.h>

@@ -91,6 +91,9 @@ Eigen::VectorXf firstOf(const PointTable& table, std::initializer_list<const cha
 /// Adds columns with what fills them; they are filled once all are there.
 class TableWriter {
 public:
+  /// @param first row of the values that the table begins with
+  explicit TableWriter(Index first = 0) : first_(first) {}
+
   /// @param value value(row), of the size that `type` has
   template <typename Value>
   void add(const std::string& name, Scalar type, const Value& value)
@@ -98,7 +101,7 @@ public:
     table_.addColumn(name, type);
     fills_.push_back([this, value, column = table_.columns.back()] {
       forEachRow(table_, [&](Index row) {
-        const auto stored = value(row);
+        const auto stored = value(first_ + row);
         std::memcpy(table_.cell(row, column), &stored, sizeof stored);
       });
     });
@@ -141,6 +144,7 @@ public:
   }
 
 private:
+  const Index first_;
   PointTable table_;
   std::vector<std::function<void()>> fills_;
 };
@@ -209,7 +213,12 @@ TriangleMesh tableToMesh(const PointTable& table)
 PointTable meshToTable(const TriangleMesh& mesh)
 {
   validateMesh(mesh);
-  TableWriter writer;
+  return verticesToTable(mesh, 0, mesh.vertexCount());
+}
+
+PointTable verticesToTable(const TriangleMesh& mesh, Index begin, Index end)
+{
+  TableWriter writer(begin);
   writer.addPositions(xyz_names, mesh.vertices, mesh.origin);
   if (mesh.normals.cols() > 0)
     writer.addTriple(normal_names, mesh.normals);
@@ -217,6 +226,6 @@ PointTable meshToTable(const TriangleMesh& mesh)
     writer.addColors(mesh.colors);
   for (const auto& [name, values] : mesh.fields)
     writer.addValues(name, values);
-  return writer.take(mesh.vertexCount());
+  return writer.take(end - begin);
 }
 } // namespace fresco::core

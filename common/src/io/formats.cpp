@@ -46,7 +46,12 @@ TriangleMesh readPlyMesh(const std::string& path)
   });
 }
 
-void writePlyMesh(const std::string& path, const TriangleMesh& mesh) { writePly(path, meshToTable(mesh), mesh.faces); }
+void writePlyMesh(const std::string& path, const TriangleMesh& mesh)
+{
+  validateMesh(mesh);
+  writePly(
+      path, mesh.vertexCount(), [&](Index begin, Index end) { return verticesToTable(mesh, begin, end); }, mesh.faces);
+}
 
 PointTable readVtkPoints(const std::string& path)
 {

@@ -17,6 +17,7 @@ void compactVertices(const std::vector<int>& new_index, IsoSurface& surface)
     range.first = first;
     range.count = count - first;
   }
+  surface.vertices_backing = FileBacking();
   surface.vertices.conservativeResize(3, count);
   for (Index f = 0; f < surface.faces.cols(); ++f)
     for (int k = 0; k < 3; ++k)
@@ -25,9 +26,9 @@ void compactVertices(const std::vector<int>& new_index, IsoSurface& surface)
 using Counter = std::atomic<std::uint32_t>;
 
 /// Number of faces of each component, at its lowest vertex.
-std::unique_ptr<Counter[]> facesByRoot(const IsoSurface& surface, ConcurrentUnionFind& components, int threads)
+Array<Counter> facesByRoot(const IsoSurface& surface, ConcurrentUnionFind& components, int threads)
 {
-  std::unique_ptr<Counter[]> faces(new Counter[surface.vertices.cols()]);
+  Array<Counter> faces(surface.vertices.cols());
   parallelFor(surface.vertices.cols(), threads, [&](Index v) { faces[v].store(0, std::memory_order_relaxed); });
   parallelRanges(surface.faces.cols(), threads, [&](Index begin, Index end) {
     Index root = components.root(surface.faces(0, begin));
@@ -58,7 +59,7 @@ void removeSmallComponents(IsoSurface& surface, int threads)
     components.join(surface.faces(0, f), surface.faces(1, f));
     components.join(surface.faces(0, f), surface.faces(2, f));
   });
-  const std::unique_ptr<Counter[]> faces = facesByRoot(surface, components, threads);
+  const Array<Counter> faces = facesByRoot(surface, components, threads);
   const auto numberOf = [&](Index v) { return faces[v].load(std::memory_order_relaxed); };
   const auto map = [&](Index begin, Index end) {
     SizeRange sizes;
@@ -80,6 +81,7 @@ void removeSmallComponents(IsoSurface& surface, int threads)
   for (Index f = 0; f < surface.faces.cols(); ++f)
     if (!isRemoved(surface.faces(0, f)))
       surface.faces.col(kept++) = surface.faces.col(f).eval();
+  surface.faces_backing = FileBacking();
   surface.faces.conservativeResize(3, kept);
   std::vector<int> new_index(vertices);
   int count = 0;

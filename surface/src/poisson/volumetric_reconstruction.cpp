@@ -11,6 +11,7 @@
 #include "poisson/solver/low_pass_filter.h"
 #include "poisson/solver/transfer.h"
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <fresco/core/parallel.h>
 #include <fresco/core/release.h>
@@ -111,7 +112,8 @@ Eigen::VectorXf vertexSupport(const Density& density, const IsoSurface& surface,
   return support;
 }
 
-TriangleMesh toMesh(const Samples& samples, IsoSurface&& surface, int threads)
+/// Takes the vertices and faces; what backs them is still the surface's.
+TriangleMesh toMesh(const Samples& samples, IsoSurface& surface, int threads)
 {
   TriangleMesh mesh;
   const Cube& cube = samples.cube;
@@ -133,11 +135,12 @@ void addAttributes(const Samples& samples, const Eigen::Matrix4Xf& attributes, T
 }
 
 /// Depth below which the surface is cut away, 0 = nowhere; see VolumetricOptions::trim_levels.
-float trimDepth(Eigen::VectorXf support, int depth, const VolumetricOptions& options)
+float trimDepth(const Eigen::VectorXf& support, int depth, const VolumetricOptions& options)
 {
   if (options.trim_levels <= 0 || support.size() == 0)
     return options.trim;
-  const float upper_quartile = rankedValue(support, support.size() * 3 / 4);
+  Eigen::VectorXf values = support; // to be put in another order
+  const float upper_quartile = rankedValue(values, values.size() * 3 / 4);
   return std::max(options.trim, std::min<float>(upper_quartile, depth) - options.trim_levels);
 }
 
@@ -174,20 +177,21 @@ VolumetricResult reconstruct(Samples&& samples, const VolumetricOptions& options
   IsoSurface surface = extractIsoSurface(level_set, options.threads);
   removeSmallComponents(surface, options.threads);
   report(progress, "attributes", 0.9);
-  const Eigen::VectorXf support = vertexSupport(density, surface, options.samples_per_node, options.threads);
+  Eigen::VectorXf support = vertexSupport(density, surface, options.samples_per_node, options.threads);
   Eigen::Matrix4Xf attributes;
   if (!samples.attributes.empty())
     attributes = vertexAttributes(tree, {levels.back(), samples.attributes}, surface, options.threads);
-  result.mesh = toMesh(samples, std::move(surface), options.threads);
-  result.mesh.fields["support"] = support;
+  result.mesh = toMesh(samples, surface, options.threads);
   if (attributes.cols() > 0)
     addAttributes(samples, attributes, result.mesh);
   const float trim = trimDepth(support, result.depth, options);
+  result.mesh.fields["support"].swap(support);
   if (trim > 0) {
+    surface = IsoSurface(); // what backs the mesh ends before it is freed
     result.trim_depth = trim;
     constexpr double trim_patch = 16; // faces of such cells: smaller gaps and islands are below what the depth resolves
     const double trim_cell = samples.cube.side / std::exp2(result.trim_depth);
-    result.mesh = trimMesh(result.mesh, support, trim, trim_patch * trim_cell * trim_cell);
+    result.mesh = trimMesh(result.mesh, result.mesh.fields["support"], trim, trim_patch * trim_cell * trim_cell);
   }
   report(progress, "done", 1.0);
   return result;
@@ -244,17 +248,28 @@ VolumetricResult reconstructVolumetric(std::unique_ptr<PointStream> points, cons
   return reconstruct(std::move(samples), options, progress);
 }
 
-std::size_t estimateMemory(const PointStream& points, const VolumetricOptions& options)
+VolumetricEstimate estimateVolumetric(const PointStream& points, const VolumetricOptions& options)
 {
+  constexpr std::size_t bytes_per_brick = 2000, bytes_per_sample = 150;
+  // Passes over one point that a brick costs, and passes over all points, in all and here. docs/scale.md has both times.
+  constexpr double passes_per_brick = 350, passes = 3, passes_here = 2;
   validateVolumetricOptions(options);
+  const auto start = std::chrono::steady_clock::now();
   const Extent extent = findExtent(points, options);
   const Array<std::uint64_t> codes = findCells(points, extent, options.threads).codes(options.threads);
+  const std::chrono::duration<double> here = std::chrono::steady_clock::now() - start;
   const int depth = extent.cube.depth;
-  std::size_t bricks = 0;
+  Index bricks = 0;
   for (const Index n : countBricks(codes, depth, std::min(options.min_depth, depth), options.threads))
     bricks += n;
-  constexpr std::size_t bytes_per_brick = 2000, bytes_per_sample = 150;
-  return bricks * bytes_per_brick + codes.size() * bytes_per_sample;
+  const double seconds_per_pass = here.count() / passes_here;
+  return {bricks * bytes_per_brick + codes.size() * bytes_per_sample,
+          seconds_per_pass * (passes + passes_per_brick * bricks / std::max<Index>(1, extent.all))};
+}
+
+std::size_t estimateMemory(const PointStream& points, const VolumetricOptions& options)
+{
+  return estimateVolumetric(points, options).memory;
 }
 
 std::size_t estimateMemory(const PointSet& points, const VolumetricOptions& options)

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+#include <fresco/core/scratch_space.h>
 #include <memory>
 #include <new>
 #include <utility>
 #include <vector>
 namespace fresco {
-/// Leaves new numbers unset, so that the parallel loop that fills an array is also the first to touch its memory.
+/// Leaves new numbers unset, so that the parallel loop that fills an array is also the first to touch its memory. Large
+/// arrays may lie in a ScratchSpace.
 template <typename T>
 struct UnsetAllocator : std::allocator<T> {
   template <typename U>
@@ -17,6 +19,20 @@ struct UnsetAllocator : std::allocator<T> {
   template <typename U>
   UnsetAllocator(const UnsetAllocator<U>&)
   {}
+
+  T* allocate(std::size_t n)
+  {
+    if (n >= scratch::least_bytes / sizeof(T) && n <= std::size_t(-1) / 2 / sizeof(T))
+      return static_cast<T*>(scratch::allocate(n * sizeof(T)));
+    return std::allocator<T>::allocate(n);
+  }
+  void deallocate(T* data, std::size_t n) noexcept
+  {
+    if (n >= scratch::least_bytes / sizeof(T))
+      scratch::release(data);
+    else
+      std::allocator<T>::deallocate(data, n);
+  }
 
   template <typename U>
   void construct(U* place)

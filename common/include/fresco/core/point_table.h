@@ -170,6 +170,9 @@ FRESCO_EXPORT PointTable pointsToTable(const PointSet& set);
 FRESCO_EXPORT TriangleMesh tableToMesh(const PointTable& table);
 /// Vertices and their attributes.
 FRESCO_EXPORT PointTable meshToTable(const TriangleMesh& mesh);
+
+/// Vertices begin .. end - 1 of a mesh that is sound.
+FRESCO_EXPORT PointTable verticesToTable(const TriangleMesh& mesh, Index begin, Index end);
 } // namespace fresco::core
 /// Readers and writers work on these tables.
 namespace fresco::io {

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <atomic>
 #include <cstdint>
+#include <fresco/core/array.h>
 #include <fresco/core/parallel.h>
 #include <fresco/core/types.h>
-#include <memory>
 #include <numeric>
 #include <vector>
 namespace fresco {
@@ -38,7 +38,7 @@ private:
 class ConcurrentUnionFind {
 public:
   /// @param n up to 2^32 - 1
-  explicit ConcurrentUnionFind(Index n, int threads) : parent_(new std::atomic<std::uint32_t>[n])
+  explicit ConcurrentUnionFind(Index n, int threads) : parent_(n)
   {
     parallelFor(n, threads, [&](Index i) { parent_[i].store(static_cast<std::uint32_t>(i), order); });
   }
@@ -68,6 +68,6 @@ public:
 
 private:
   static constexpr auto order = std::memory_order_relaxed; // parents only fall, and nothing else is told by them
-  std::unique_ptr<std::atomic<std::uint32_t>[]> parent_;
+  Array<std::atomic<std::uint32_t>> parent_;
 };
 } // namespace fresco

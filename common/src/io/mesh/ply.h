@@ -46,6 +46,7 @@ PlyContent parsePly(std::string_view content);
 /// @param faces 0 columns: no element `face`
 void writePly(const std::string& path, PointTable vertices, const Faces& faces);
 
-/// The same without faces, with part(begin, end) = rows begin .. end - 1: the whole table is never in memory.
-void writePly(const std::string& path, Index rows, const std::function<PointTable(Index, Index)>& part);
+/// The same, with part(begin, end) = rows begin .. end - 1: the whole table is never in memory.
+void writePly(const std::string& path, Index rows, const std::function<PointTable(Index, Index)>& part,
+              const Faces& faces);
 } // namespace fresco::io

@@ -136,14 +136,15 @@ void writePly(const std::string& path, PointTable vertices, const Faces& faces)
   file.commit();
 }
 
-void writePly(const std::string& path, Index rows, const std::function<PointTable(Index, Index)>& part)
+void writePly(const std::string& path, Index rows, const std::function<PointTable(Index, Index)>& part,
+              const Faces& faces)
 {
   constexpr Index at_most = Index{1} << 19;
   const Index parts = std::max<Index>(1, (rows + at_most - 1) / at_most); // of about the same size
   PointTable table = part(0, rows / parts);
   prepare(path, table);
   OutputFile file(path);
-  const auto [header, end] = headerAndEnd(table, rows, 0);
+  const auto [header, end] = headerAndEnd(table, rows, faces.cols());
   file.write(header);
   file.write(table.data.data(), table.data.size());
   for (Index i = 1; i < parts; ++i) {
@@ -151,6 +152,7 @@ void writePly(const std::string& path, Index rows, const std::function<PointTabl
     prepare(path, table);
     file.write(table.data.data(), table.data.size());
   }
+  writeFaces(file, faces);
   file.write(end);
   file.commit();
 }

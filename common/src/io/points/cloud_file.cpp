@@ -3,7 +3,7 @@
 #include "io/points/scan_reader.h"
 #include <algorithm>
 #include <cmath>
-#include <fresco/core/cloud_table.h>
+#include <fresco/core/pcl_cloud_table.h>
 #include <fresco/core/require.h>
 #include <fresco/io/cloud_file.h>
 #include <fresco/io/scan_file.h>

@@ -47,7 +47,8 @@ void writePoints(const std::string& path, const PointSet& set)
     return;
   }
   validatePointSet(set);
-  io::writePly(path, set.size(),
-               [&](Index begin, Index end) { return io::pointsToTable(pointsBetween(set, begin, end)); });
+  io::writePly(
+      path, set.size(), [&](Index begin, Index end) { return io::pointsToTable(pointsBetween(set, begin, end)); },
+      Faces());
 }
 } // namespace fresco

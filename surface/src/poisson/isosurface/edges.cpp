@@ -221,9 +221,8 @@ Eigen::Vector3f CrossedEdges::position(const EdgePlace& edge) const
   return p * std::ldexp(1.f, surface_->tree->depth - edge.depth);
 }
 
-Points CrossedEdges::positions(int threads) const
+void CrossedEdges::fillPositions(int threads, Points& positions) const
 {
-  Points points(3, count_);
   for (int d = 2; d <= surface_->tree->depth; ++d)
     parallelFor(bricks_[d].size(), threads, [&](int b) {
       const BrickEdges& edges = bricks_[d][b];
@@ -232,12 +231,11 @@ Points CrossedEdges::positions(int threads) const
         for (int bit = 0; edges.bits[w] >> bit != 0; ++bit) {
           if (edges.bits[w] >> bit & 1) {
             const int node = (w & 1) * 64 + bit;
-            points.col(at++) = position({d, b, w / 2, node % 5, node / 5 % 5, node / 25});
+            positions.col(at++) = position({d, b, w / 2, node % 5, node / 5 % 5, node / 25});
           }
           if (bit == 63)
             break;
         }
     });
-  return points;
 }
 } // namespace fresco::poisson

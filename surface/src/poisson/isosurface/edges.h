@@ -45,8 +45,8 @@ public:
   /// Vertex on a crossed edge of a leaf.
   int vertexOn(EdgePlace edge) const;
 
-  /// Positions of all vertices, in finest cells.
-  Points positions(int threads) const;
+  /// Positions of all vertices, 3 x vertexCount(), in finest cells.
+  void fillPositions(int threads, Points& positions) const;
 
   /// visit(depth, brick, first vertex, number of vertices) for each brick that has vertices.
   template <typename Visit>

@@ -2,17 +2,19 @@
 #include "poisson/isosurface/isosurface.h"
 #include "poisson/isosurface/polygon.h"
 #include "poisson/octree/select.h"
+#include <algorithm>
 #include <fresco/core/parallel.h>
 #include <fresco/core/release.h>
 namespace fresco::poisson {
 namespace {
-/// One part is what a thread takes at a time: small enough for an even share, few enough to join quickly.
-constexpr Index bricks_per_part = 128;
+/// One part is what a thread takes at a time: small enough for an even share, few enough to join quickly. As many bricks
+/// as a chunk has yield tens of megabytes: arrays that a ScratchSpace takes.
+constexpr Index bricks_per_part = 128, bricks_per_chunk = 1024 * bricks_per_part;
 
 /// What one range of bricks yields; vertices < 0 are -1 - index into `extra`.
 struct Part {
-  std::vector<int> faces;
-  std::vector<Eigen::Vector3f> extra;
+  Array<int> faces;
+  Array<Eigen::Vector3f> extra;
   std::vector<VertexRange> extra_ranges; ///< `first` counts within `extra`
 };
 
@@ -138,34 +140,79 @@ std::vector<BrickPlace> bricksWithLeaves(const LevelSet& surface, int threads)
   return bricks;
 }
 
-/// Puts the parts behind each other and frees them.
-void join(std::vector<Part>& parts, IsoSurface& surface, int threads)
+/// Where a part begins in the joined arrays.
+struct PartPlace {
+  Index corner, vertex;
+};
+
+/// One place more than there are parts. @param vertex where the first one's `extra` begin
+std::vector<PartPlace> placesOf(const std::vector<Part>& parts, Index vertex)
 {
-  struct Place {
-    Index corner, vertex;
-  };
-  std::vector<Place> places(1, {0, surface.vertices.cols()});
+  std::vector<PartPlace> places(1, {0, vertex});
   for (const Part& part : parts)
     places.push_back(
         {places.back().corner + Index(part.faces.size()), places.back().vertex + Index(part.extra.size())});
+  return places;
+}
+
+/// Copies the parts behind each other and frees them; number(v, place) is what becomes of a vertex < 0.
+template <typename Number>
+void copyParts(std::vector<Part>& parts, const std::vector<PartPlace>& places, int threads, int* faces,
+               const Number& number)
+{
+  parallelFor(
+      parts.size(), threads,
+      [&](Index p) {
+        std::transform(parts[p].faces.begin(), parts[p].faces.end(), faces + places[p].corner,
+                       [&](int v) { return v >= 0 ? v : number(v, places[p]); });
+        releaseMemory(parts[p].faces);
+      },
+      1);
+}
+
+Part joined(std::vector<Part>& parts, int threads)
+{
+  const std::vector<PartPlace> places = placesOf(parts, 0);
+  Part chunk;
+  chunk.faces.resize(places.back().corner);
+  copyParts(parts, places, threads, chunk.faces.data(),
+            [](int v, const PartPlace& place) { return v - static_cast<int>(place.vertex); });
+  chunk.extra.reserve(places.back().vertex);
+  for (std::size_t p = 0; p < parts.size(); ++p) {
+    for (VertexRange& range : parts[p].extra_ranges) {
+      range.first += places[p].vertex;
+      chunk.extra_ranges.push_back(range);
+    }
+    chunk.extra.insert(chunk.extra.end(), parts[p].extra.begin(), parts[p].extra.end());
+  }
+  return chunk;
+}
+
+/// Puts the chunks behind each other and frees them.
+void join(std::vector<Part>& chunks, IsoSurface& surface, int threads)
+{
+  const Index vertices = surface.vertices.cols();
+  const std::vector<PartPlace> places = placesOf(chunks, vertices);
   requireVertices(places.back().vertex);
-  if (places.back().vertex > surface.vertices.cols())
-    surface.vertices.conservativeResize(3, places.back().vertex);
+  if (places.back().vertex > vertices) {
+    Points all(3, places.back().vertex);
+    FileBacking backing(all);
+    all.leftCols(vertices) = surface.vertices;
+    surface.vertices_backing = std::move(backing);
+    surface.vertices.swap(all);
+  }
   surface.faces.resize(3, places.back().corner / 3);
-  parallelFor(parts.size(), threads, [&](Index p) {
-    Part& part = parts[p];
-    const auto [corner, vertex] = places[p];
-    for (std::size_t i = 0; i < part.faces.size(); ++i)
-      surface.faces.data()[corner + Index(i)] = part.faces[i] >= 0 ? part.faces[i] : vertex - 1 - part.faces[i];
-    for (std::size_t i = 0; i < part.extra.size(); ++i)
-      surface.vertices.col(vertex + Index(i)) = part.extra[i];
-    for (VertexRange& range : part.extra_ranges)
-      range.first += vertex;
-    releaseMemory(part.faces);
-    releaseMemory(part.extra);
-  });
-  for (const Part& part : parts)
-    surface.ranges.insert(surface.ranges.end(), part.extra_ranges.begin(), part.extra_ranges.end());
+  surface.faces_backing = FileBacking(surface.faces);
+  copyParts(chunks, places, threads, surface.faces.data(),
+            [](int v, const PartPlace& place) { return static_cast<int>(place.vertex) - 1 - v; });
+  for (std::size_t c = 0; c < chunks.size(); ++c) {
+    for (std::size_t i = 0; i < chunks[c].extra.size(); ++i)
+      surface.vertices.col(places[c].vertex + Index(i)) = chunks[c].extra[i];
+    for (VertexRange& range : chunks[c].extra_ranges) {
+      range.first += places[c].vertex;
+      surface.ranges.push_back(range);
+    }
+  }
 }
 } // namespace
 
@@ -173,22 +220,29 @@ IsoSurface extractIsoSurface(const LevelSet& surface, int threads)
 {
   IsoSurface result;
   const CrossedEdges edges(surface, threads);
-  result.vertices = edges.positions(threads);
+  result.vertices.resize(3, edges.vertexCount());
+  result.vertices_backing = FileBacking(result.vertices);
+  edges.fillPositions(threads, result.vertices);
   edges.forEachBrick([&](int depth, Index brick, Index first, Index count) {
     result.ranges.push_back({depth, brick, first, count});
   });
   const std::vector<BrickPlace> bricks = bricksWithLeaves(surface, threads);
   const Index n = bricks.size();
-  std::vector<Part> parts((n + bricks_per_part - 1) / bricks_per_part);
-  parallelRanges(
-      n, threads,
-      [&](Index begin, Index end) {
-        CellMarcher marcher(surface, edges, result.vertices);
-        for (Index i = begin; i < end; ++i)
-          marcher.marchBrick(bricks[i].depth, bricks[i].brick, parts[begin / bricks_per_part]);
-      },
-      bricks_per_part);
-  join(parts, result, threads);
+  std::vector<Part> chunks;
+  for (Index from = 0; from < n; from += bricks_per_chunk) {
+    const Index count = std::min(bricks_per_chunk, n - from);
+    std::vector<Part> parts((count + bricks_per_part - 1) / bricks_per_part);
+    parallelRanges(
+        count, threads,
+        [&](Index begin, Index end) {
+          CellMarcher marcher(surface, edges, result.vertices);
+          for (Index i = from + begin; i < from + end; ++i)
+            marcher.marchBrick(bricks[i].depth, bricks[i].brick, parts[begin / bricks_per_part]);
+        },
+        bricks_per_part);
+    chunks.push_back(joined(parts, threads));
+  }
+  join(chunks, result, threads);
   return result;
 }
 } // namespace fresco::poisson

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include "poisson/isosurface/edges.h"
+#include <fresco/core/scratch_space.h>
 namespace fresco::poisson {
 /// Vertices first..first + count - 1 lie on edges of a brick, or in its cells.
 struct VertexRange {
@@ -13,6 +14,7 @@ struct IsoSurface {
   Points vertices; ///< in finest cells, from the cube's corner
   Faces faces;     ///< counter-clockwise seen from where chi is larger
   std::vector<VertexRange> ranges;
+  FileBacking vertices_backing, faces_backing; ///< to be ended before these are resized
 };
 
 /// Marching cubes over the leaves of the octree. On the faces of a leaf it takes the polygons' sides from the finest

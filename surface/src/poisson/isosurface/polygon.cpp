@@ -33,8 +33,7 @@ FaceCrossings crossFace(const float chi[4])
   return crossings;
 }
 
-void CellPolygons::triangulate(const Eigen::Matrix3Xf& positions, std::vector<int>& faces,
-                               std::vector<Eigen::Vector3f>& extra)
+void CellPolygons::triangulate(const Eigen::Matrix3Xf& positions, Array<int>& faces, Array<Eigen::Vector3f>& extra)
 {
   used_.assign(segments_.size(), 0);
   for (std::size_t s = 0; s < segments_.size(); ++s)
@@ -62,8 +61,8 @@ void CellPolygons::nextPolygon(std::size_t first)
   polygon_.front().faces |= face_before;
 }
 
-void CellPolygons::triangulatePolygon(const Eigen::Matrix3Xf& positions, std::vector<int>& faces,
-                                      std::vector<Eigen::Vector3f>& extra) const
+void CellPolygons::triangulatePolygon(const Eigen::Matrix3Xf& positions, Array<int>& faces,
+                                      Array<Eigen::Vector3f>& extra) const
 {
   const std::size_t n = polygon_.size();
   if (n < 3)
@@ -84,7 +83,7 @@ void CellPolygons::triangulatePolygon(const Eigen::Matrix3Xf& positions, std::ve
 }
 
 /// Least total area, by dynamic programming over the corner intervals.
-bool CellPolygons::cheapestTriangles(const Eigen::Matrix3Xf& positions, std::vector<int>& faces) const
+bool CellPolygons::cheapestTriangles(const Eigen::Matrix3Xf& positions, Array<int>& faces) const
 {
   constexpr float forbidden = std::numeric_limits<float>::infinity();
   const int n = polygon_.size();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include <Eigen/Core>
+#include <fresco/core/array.h>
 #include <vector>
 namespace fresco::poisson {
 /// Part of the level set on a cell's face, directed so that the polygons of the cell are counter-clockwise from outside
@@ -35,7 +36,7 @@ public:
   /// the cell beyond might have the same one. Where no such triangulation exists a centre vertex is appended to `extra`
   /// and named by -1 - its index.
   /// @param positions of all vertices
-  void triangulate(const Eigen::Matrix3Xf& positions, std::vector<int>& faces, std::vector<Eigen::Vector3f>& extra);
+  void triangulate(const Eigen::Matrix3Xf& positions, Array<int>& faces, Array<Eigen::Vector3f>& extra);
 
 private:
   struct Corner {
@@ -43,9 +44,9 @@ private:
     unsigned faces; ///< bits: the cell faces that the vertex lies on
   };
   void nextPolygon(std::size_t first);
-  void triangulatePolygon(const Eigen::Matrix3Xf& positions, std::vector<int>& faces,
-                          std::vector<Eigen::Vector3f>& extra) const;
-  bool cheapestTriangles(const Eigen::Matrix3Xf& positions, std::vector<int>& faces) const;
+  void triangulatePolygon(const Eigen::Matrix3Xf& positions, Array<int>& faces,
+                          Array<Eigen::Vector3f>& extra) const;
+  bool cheapestTriangles(const Eigen::Matrix3Xf& positions, Array<int>& faces) const;
 
   std::vector<FaceSegment> segments_;
   std::vector<char> used_; ///< by segment

@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <fresco/core/array.h>
 #include <fresco/core/types.h>
-#include <memory>
 #include <vector>
 namespace fresco::poisson {
 /// Cells a side of a brick: a row of four is one vector instruction, and 4^3 cells are the bits of one word.
@@ -71,16 +70,16 @@ std::vector<Index> countBricks(const Array<std::uint64_t>& cell_codes, int depth
 class NodeField {
 public:
   NodeField() = default;
-  explicit NodeField(Index bricks) : size_(bricks), data_(new float[bricks * brick_stride]) {}
+  explicit NodeField(Index bricks) : size_(bricks), data_(bricks * brick_stride) {}
   NodeField(Index bricks, int threads) : NodeField(bricks) { clear(threads); }
   void clear(int threads);
-  float* brick(Index b) { return data_.get() + b * brick_stride; }
-  const float* brick(Index b) const { return data_.get() + b * brick_stride; }
+  float* brick(Index b) { return data_.data() + b * brick_stride; }
+  const float* brick(Index b) const { return data_.data() + b * brick_stride; }
   Index size() const { return size_; }
 
 private:
   Index size_ = 0;
-  std::unique_ptr<float[]> data_;
+  Array<float> data_;
 };
 
 /// A node as seen from a brick, which may belong to one of its neighbours.

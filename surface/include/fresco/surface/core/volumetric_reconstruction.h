@@ -65,9 +65,17 @@ FRESCO_EXPORT VolumetricResult reconstructVolumetric(std::unique_ptr<PointStream
                                                      const VolumetricOptions& options = {},
                                                      const Progress& progress = {});
 
-/// Bytes that reconstructVolumetric() needs at most beside the points themselves, judged from how many octree cells the
-/// points occupy. Costs a fraction of the reconstruction.
+/// What a reconstruction will take, judged from how many octree cells the points occupy.
+struct VolumetricEstimate {
+  std::size_t memory = 0; ///< bytes at most, beside the points themselves
+  double seconds = 0;     ///< wall time, to a factor of about two: from how long counting took
+};
+
+/// Costs a fraction of the reconstruction: two passes over the points.
 /// @throws as reconstructVolumetric()
+FRESCO_EXPORT VolumetricEstimate estimateVolumetric(const PointStream& points, const VolumetricOptions& options = {});
+
+/// Its memory only.
 FRESCO_EXPORT std::size_t estimateMemory(const PointSet& points, const VolumetricOptions& options = {});
 FRESCO_EXPORT std::size_t estimateMemory(const PointStream& points, const VolumetricOptions& options = {});
 } // namespace fresco

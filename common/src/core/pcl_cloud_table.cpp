@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <fresco/core/cloud_table.h>
+#include <fresco/core/pcl_cloud_table.h>
 #include <fresco/core/require.h>
 #include <limits>
 #include <pcl/PCLPointCloud2.h>
