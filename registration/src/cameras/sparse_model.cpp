@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cameras/sparse_model.h"
+#include "cameras/track_triangulation.h"
 #include "scan/surface_normals.h"
 #include <Eigen/Eigenvalues>
 #include <algorithm>
@@ -31,12 +32,12 @@ Similarity normalization(const Eigen::Matrix3Xd& points)
   return T;
 }
 
-Vector3d nearestEye(const CameraSet& set, const SparsePoint& point)
+Vector3d nearestEye(const CameraSet& set, const SparsePoint& point, const Vector3d& place)
 {
   Vector3d best = set.views[point.track[0].view].center();
   for (const Observation& observation : point.track)
     if (const Vector3d eye = set.views[observation.view].center();
-        (eye - point.position).squaredNorm() < (best - point.position).squaredNorm())
+        (eye - place).squaredNorm() < (best - place).squaredNorm())
       best = eye;
   return best;
 }
@@ -109,9 +110,7 @@ SparseModel makeSparseModel(const CameraSet& set, const SparsePoints& points, in
 {
   constexpr double farthest = 6, cell = 0.04; // in median distances: beyond are distant outliers; features of one thing
   SparseModel model;
-  Eigen::Matrix3Xd places(3, points.size());
-  for (std::size_t i = 0; i < points.size(); ++i)
-    places.col(i) = points[i].position;
+  const Eigen::Matrix3Xd places = triangulateTracks(set, points, threads);
   const Similarity T = model.T_model_cameras = normalization(places);
   std::vector<Index> kept;
   for (Index i = 0; i < places.cols(); ++i)
@@ -124,8 +123,8 @@ SparseModel makeSparseModel(const CameraSet& set, const SparsePoints& points, in
   std::set<std::tuple<int, int, int>> taken;
   for (Index i = 0; i < count; ++i) {
     const SparsePoint& point = points[kept[i]];
-    model.points.col(i) = T * point.position;
-    model.eyes.col(i) = T * nearestEye(set, point);
+    model.points.col(i) = T * places.col(kept[i]);
+    model.eyes.col(i) = T * nearestEye(set, point, places.col(kept[i]));
     model.colors.col(i) = point.color.cast<float>();
     const Eigen::Vector3i at = (model.points.col(i) / cell).array().floor().cast<int>();
     if (taken.insert({at.x(), at.y(), at.z()}).second)
