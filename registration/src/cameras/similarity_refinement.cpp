@@ -15,12 +15,14 @@ using Vector7 = Eigen::Matrix<double, 7, 1>;
 struct Foot {
   Index point = 0;
   Vector3d normal;
+  double flatness = 1; ///< 0..1: near edges, averaged points lie beside the surface, all of them inwards
   double height = 0; ///< of the place over the plane, length
 };
 
 /// @param reach length along the surface and over it
 std::optional<Foot> footOf(const ScanSurface& surface, const Vector3d& place, double reach)
 {
+  constexpr double flat = 0.01; // surface variation of a disc that is off its plane by a tenth of its extent
   const ScanLevel& level = surface.level();
   const Neighbor nearest = level.nearest(place.cast<float>(), static_cast<float>(std::hypot(reach, surface.grain())));
   if (nearest.index < 0 || level.surface_variation[nearest.index] > variation_limit)
@@ -29,7 +31,8 @@ std::optional<Foot> footOf(const ScanSurface& surface, const Vector3d& place, do
   if (!(normal.squaredNorm() > 0))
     return {};
   const double height = normal.dot(place - level.points.col(nearest.index).cast<double>());
-  return Foot{nearest.index, normal, height};
+  const double bend = level.surface_variation[nearest.index] / flat;
+  return Foot{nearest.index, normal, 1 / (1 + bend * bend), height};
 }
 
 /// One step of Gauss and Newton.
@@ -44,7 +47,7 @@ Similarity improved(const SparseModel& model, const std::vector<Index>& points, 
     const auto foot = footOf(surface, arm + T.t, reach);
     if (!foot || std::abs(foot->height) >= reach)
       continue;
-    const double share = foot->height / reach, weight = std::pow(1 - share * share, 2);
+    const double share = foot->height / reach, weight = foot->flatness * std::pow(1 - share * share, 2);
     Vector7 J;
     J << arm.cross(foot->normal), foot->normal, foot->normal.dot(arm);
     H += weight * J * J.transpose();
