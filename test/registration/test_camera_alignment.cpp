@@ -199,7 +199,8 @@ TEST(CameraAlignment, AnotherRoomAndWrongPointsAreRefused)
   EXPECT_NE(refusal(photographs, cameras_elsewhere), "");
   photographs = photographed(furnishedRoom(), 5, 1.0, 10);
   transformCameras(ownFrame(3, 6), photographs.set, photographs.points);
-  EXPECT_NE(refusal(photographs, scanned(furnishedRoom(), false)).find("no place fits"), std::string::npos);
+  const std::string why = refusal(photographs, scanned(furnishedRoom(), false));
+  EXPECT_NE(why.find("no place fits"), std::string::npos) << why;
 }
 
 TEST(CameraAlignment, BadInputIsNamed)

@@ -32,12 +32,12 @@ Similarity normalization(const Eigen::Matrix3Xd& points)
   return T;
 }
 
-Vector3d nearestEye(const CameraSet& set, const SparsePoint& point, const Vector3d& place)
+Vector3d nearestEye(const CameraSet& set, const SparsePoint& point)
 {
   Vector3d best = set.views[point.track[0].view].center();
   for (const Observation& observation : point.track)
     if (const Vector3d eye = set.views[observation.view].center();
-        (eye - place).squaredNorm() < (best - place).squaredNorm())
+        (eye - point.position).squaredNorm() < (best - point.position).squaredNorm())
       best = eye;
   return best;
 }
@@ -110,7 +110,9 @@ SparseModel makeSparseModel(const CameraSet& set, const SparsePoints& points, in
 {
   constexpr double farthest = 6, cell = 0.04; // in median distances: beyond are distant outliers; features of one thing
   SparseModel model;
-  const Eigen::Matrix3Xd places = triangulateTracks(set, points, threads);
+  Eigen::Matrix3Xd places(3, points.size());
+  for (std::size_t i = 0; i < points.size(); ++i)
+    places.col(i) = points[i].position;
   const Similarity T = model.T_model_cameras = normalization(places);
   std::vector<Index> kept;
   for (Index i = 0; i < places.cols(); ++i)
@@ -118,13 +120,16 @@ SparseModel makeSparseModel(const CameraSet& set, const SparsePoints& points, in
       kept.push_back(i);
   const Index count = kept.size();
   model.points.resize(3, count);
+  model.seen.resize(3, count);
   model.eyes.resize(3, count);
   model.colors.resize(3, count);
+  const Eigen::Matrix3Xd seen = triangulateTracks(set, points, threads);
   std::set<std::tuple<int, int, int>> taken;
   for (Index i = 0; i < count; ++i) {
     const SparsePoint& point = points[kept[i]];
-    model.points.col(i) = T * places.col(kept[i]);
-    model.eyes.col(i) = T * nearestEye(set, point, places.col(kept[i]));
+    model.points.col(i) = T * point.position;
+    model.seen.col(i) = T * seen.col(kept[i]);
+    model.eyes.col(i) = T * nearestEye(set, point);
     model.colors.col(i) = point.color.cast<float>();
     const Eigen::Vector3i at = (model.points.col(i) / cell).array().floor().cast<int>();
     if (taken.insert({at.x(), at.y(), at.z()}).second)
