@@ -16,7 +16,7 @@ struct Foot {
   Index point = 0;
   Vector3d normal;
   double flatness = 1; ///< 0..1
-  double height = 0; ///< of the place over the plane, length
+  double height = 0;   ///< of the place over the plane, length
 };
 
 /// @param reach length along the surface and over it
@@ -47,7 +47,8 @@ Similarity improved(const SparseModel& model, const std::vector<Index>& points, 
     const auto foot = footOf(surface, arm + T.t, reach);
     if (!foot || std::abs(foot->height) >= reach)
       continue;
-    const double share = foot->height / reach, weight = (range.flat ? foot->flatness : 1) * std::pow(1 - share * share, 2);
+    const double share = foot->height / reach,
+                 weight = (range.flat ? foot->flatness : 1) * std::pow(1 - share * share, 2);
     Vector7 J;
     J << arm.cross(foot->normal), foot->normal, foot->normal.dot(arm);
     H += weight * J * J.transpose();

@@ -5,8 +5,8 @@
 namespace fresco::registration {
 /// How a similarity is refined; lengths in the model's unit.
 struct RefinementRange {
-  double start = 0; ///< distance from the surface below which points count at first
-  double end = 0;   ///< and in the end
+  double start = 0;  ///< distance from the surface below which points count at first
+  double end = 0;    ///< and in the end
   bool flat = false; ///< whether planes count less where the surface bends: averaged points lie beside it there
 };
 

@@ -20,8 +20,7 @@ std::vector<TrackRay> raysOf(const CameraSet& set, const SparsePoint& point)
     const View& view = set.views[observation.view];
     const CameraModel& camera = set.cameras[view.camera];
     if (observation.pixel.allFinite() && camera.fx > 0 && camera.fy > 0)
-      rays.push_back({view.center(),
-                      view.T_camera_world.linear().transpose() * direction(camera, observation.pixel),
+      rays.push_back({view.center(), view.T_camera_world.linear().transpose() * direction(camera, observation.pixel),
                       std::sqrt(camera.fx * camera.fy)});
   }
   return rays;
