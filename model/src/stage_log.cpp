@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdint>
-#include <ctime>
 #include <filesystem>
 #include <fresco/core/require.h>
 #include <fresco/io/file.h>
@@ -12,6 +11,7 @@
 #include <iomanip>
 #include <link.h>
 #include <sstream>
+#include <sys/resource.h>
 namespace fresco::model {
 namespace {
 using Json = nlohmann::ordered_json;
@@ -39,7 +39,18 @@ double peakMegabytes()
   return 0;
 }
 
-double cpuSeconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
+/// Of this process and of programs that it ran and that have ended.
+double cpuSeconds()
+{
+  double seconds = 0;
+  for (const int who : {RUSAGE_SELF, RUSAGE_CHILDREN}) {
+    rusage used{};
+    getrusage(who, &used);
+    for (const timeval& time : {used.ru_utime, used.ru_stime})
+      seconds += static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+  }
+  return seconds;
+}
 } // namespace
 
 std::string fingerprint(const std::vector<std::string>& files)

@@ -10,7 +10,7 @@ namespace fresco::model {
 struct StageRecord {
   std::string name;
   double seconds = 0;        ///< wall clock
-  double cpu_seconds = 0;    ///< of all threads
+  double cpu_seconds = 0;    ///< of all threads, and of programs that were run
   double peak_megabytes = 0; ///< resident memory of the process, highest during the stage
   bool resumed = false;      ///< taken over from an earlier run
   nlohmann::ordered_json figures;

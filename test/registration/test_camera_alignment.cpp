@@ -53,6 +53,7 @@ PointSet scanned(const test::Boxes& boxes, bool colored)
 struct Photographed {
   CameraSet set;
   SparsePoints points;
+  std::vector<Vector3d> places = {}; ///< of the points, without noise
 };
 
 /// Photographs of a part of the room, x < `end`; `wrong` of the points lie elsewhere on their rays.
@@ -80,8 +81,9 @@ Photographed photographed(const test::Boxes& boxes, double end, double wrong, un
       continue;
     SparsePoint point;
     point.position = place + Vector3d(error(random), error(random), error(random));
+    out.places.push_back(place);
     if (uniform(0, 1) < wrong)
-      point.position = eye + std::exp(uniform(-1, 1)) * range * beam;
+      out.places.back() = point.position = eye + std::exp(uniform(-1, 1)) * range * beam;
     point.color = paint(place);
     point.track = {{v, {0, 0}}, {(v + 1) % 12, {0, 0}}};
     out.points.push_back(point);
@@ -137,6 +139,37 @@ TEST(CameraAlignment, AnyScaleIsFoundWithHalfOfThePointsWrong)
   }
 }
 
+/// Worst corner of the room, metres.
+double cornersOff(const Photographed& photographs, const PointSet& scans, const Similarity& T_own_world)
+{
+  const Similarity rest = alignCameras(photographs.set, photographs.points, scans).T_scans_cameras * T_own_world;
+  double most = 0;
+  for (int corner = 0; corner < 8; ++corner) {
+    const Vector3d x(corner & 1 ? 5 : 0, corner & 2 ? 4 : 0, corner & 4 ? 2.6 : 0);
+    most = std::max(most, (rest * x - x).norm());
+  }
+  return most;
+}
+
+TEST(CameraAlignment, PixelsTellMoreThanThePlacesOfPoints)
+{
+  const PointSet scans = scanned(furnishedRoom(), false);
+  Photographed photographs = photographed(furnishedRoom(), 3.2, 0.5, 7);
+  photographs.set.cameras = {sphericalCamera(4000, 2000)};
+  for (std::size_t i = 0; i < photographs.points.size(); ++i)
+    for (Observation& observation : photographs.points[i].track)
+      observation.pixel = project(photographs.set.cameras[0],
+                                  photographs.set.views[observation.view].T_camera_world * photographs.places[i]);
+  const Similarity T = ownFrame(100, 3);
+  transformCameras(T, photographs.set, photographs.points);
+  const double by_pixels = cornersOff(photographs, scans, T);
+  for (SparsePoint& point : photographs.points)
+    for (Observation& observation : point.track)
+      observation.pixel.setConstant(std::numeric_limits<double>::quiet_NaN()); // not known
+  EXPECT_LT(by_pixels, 0.5 * cornersOff(photographs, scans, T));
+  EXPECT_LT(by_pixels, 0.002); // noise of the scans
+}
+
 TEST(CameraAlignment, CamerasThatStandRightAreLeft)
 {
   const Photographed photographs = photographed(furnishedRoom(), 5, 0.3, 8);
@@ -166,7 +199,8 @@ TEST(CameraAlignment, AnotherRoomAndWrongPointsAreRefused)
   EXPECT_NE(refusal(photographs, cameras_elsewhere), "");
   photographs = photographed(furnishedRoom(), 5, 1.0, 10);
   transformCameras(ownFrame(3, 6), photographs.set, photographs.points);
-  EXPECT_NE(refusal(photographs, scanned(furnishedRoom(), false)).find("no place fits"), std::string::npos);
+  const std::string why = refusal(photographs, scanned(furnishedRoom(), false));
+  EXPECT_NE(why.find("no place fits"), std::string::npos) << why;
 }
 
 TEST(CameraAlignment, BadInputIsNamed)

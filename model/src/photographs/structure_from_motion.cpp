@@ -109,21 +109,26 @@ std::vector<std::string> StructureFromMotion::findCameras(const Progress& progre
   fs::remove_all(found);
   fs::remove_all(model());
   makeFolder(found);
+  std::string failure;
   try {
     run({"mapper", "--image_path", images_, "--output_path", found, "--Mapper.num_threads", std::to_string(threads_)},
         "photographs placed", progress);
+  } catch (const Cancelled&) {
+    throw;
   } catch (const std::runtime_error& error) {
-    if (std::string(error.what()).find("failed to create sparse model") == std::string::npos) // it does not tell why
+    if (!fs::is_empty(found))
       throw;
+    failure = error.what();
   }
   std::vector<std::pair<std::size_t, std::string>> models;
   for (const auto& entry : fs::directory_iterator(found))
     if (entry.is_directory())
       models.emplace_back(readColmap(entry.path().string()).views.size(), entry.path().string());
   if (models.empty())
-    throw std::runtime_error(concat(images_, ": colmap could place none of the ", names_.size(),
-                                    " photographs: they overlap too little, or show too little (its lines: ", folder_,
-                                    "/log.txt)"));
+    throw std::runtime_error(
+        concat(images_, ": colmap could place none of the ", names_.size(), " photographs: ",
+               failure.empty() ? "they overlap too little, or show too little (its lines: " + folder_ + "/log.txt)"
+                               : failure));
   std::sort(models.begin(), models.end(), [](const auto& a, const auto& b) {
     return a.first > b.first || (a.first == b.first && a.second < b.second);
   });

@@ -140,6 +140,19 @@ void finishPlaces(const Scene& scene, std::vector<Place>& places, double start)
   refineAll({0.2 * vote_cell, std::max(3 * noise, least)});
 }
 
+/// The same place, by where the pixels of the tracks see the points: that is free of the noise of their coordinates.
+Similarity refinedByTracks(const Scene& scene, const Similarity& T_surface_model)
+{
+  SparseModel seen = scene.model;
+  seen.points = scene.model.seen;
+  std::vector<Index> all(seen.points.cols());
+  std::iota(all.begin(), all.end(), 0);
+  const Similarity T =
+      refineSimilarity(seen, all, scene.surface, {0.2 * vote_cell, 0.1 * vote_cell, true}, T_surface_model);
+  const double noise = noiseOf(seen, scene.surface, T, 0.2 * vote_cell), least = 0.1 * scene.surface.grain() / T.scale;
+  return refineSimilarity(seen, all, scene.surface, {0.1 * vote_cell, std::max(3 * noise, least), true}, T);
+}
+
 /// Whether the cameras stand in the frame of the scans as they are.
 std::optional<Place> givenPlace(const Scene& scene)
 {
@@ -157,11 +170,12 @@ std::optional<Place> givenPlace(const Scene& scene)
 }
 
 /// The best place, and how good the next one is.
-CameraAlignmentResult resultOf(const Scene& scene, const std::vector<Place>& places)
+/// @param T_surface_model the best place as refined
+CameraAlignmentResult resultOf(const Scene& scene, const std::vector<Place>& places, const Similarity& T_surface_model)
 {
   const Place& best = places[0];
   CameraAlignmentResult result;
-  result.T_scans_cameras = best.T_surface_model * scene.model.T_model_cameras;
+  result.T_scans_cameras = T_surface_model * scene.model.T_model_cameras;
   result.T_scans_cameras.t += scene.surface.center();
   result.support = best.check.support;
   result.blocked = best.check.blocked;
@@ -213,11 +227,13 @@ std::optional<CameraAlignmentResult> matchedPlace(const Scene& scene, const Came
   std::vector<Place> places{{found[0].T_surface_cameras * scene.model.T_model_cameras.inverse(), {}, 0}};
   const Similarity matched = places[0].T_surface_model;
   finishPlaces(scene, places, vote_cell);
-  if (distanceOf(places[0].T_surface_model, matched) > 2 * vote_cell) // it slides where shape holds too little
+  const bool slides = distanceOf(places[0].T_surface_model, matched) > 2 * vote_cell; // shape holds too little
+  if (slides)
     places = {{matched, checkPlace(scene.model, scene.surface, matched, 0.4 * vote_cell), 1}};
   if (places[0].check.support < scene.options.min_support)
     return {};
-  CameraAlignmentResult result = resultOf(scene, places);
+  CameraAlignmentResult result =
+      resultOf(scene, places, slides ? matched : refinedByTracks(scene, places[0].T_surface_model));
   result.matches = found[0].votes;
   result.alias = alias;
   return result;
@@ -238,7 +254,7 @@ CameraAlignmentResult placeByShape(const Scene& scene, const Progress& progress)
     begin += 0.45;
     if (places.empty())
       continue;
-    const CameraAlignmentResult result = resultOf(scene, places);
+    const CameraAlignmentResult result = resultOf(scene, places, refinedByTracks(scene, places[0].T_surface_model));
     most = std::max(most, result.support);
     if (result.support < scene.options.min_support)
       continue;
@@ -266,7 +282,7 @@ CameraAlignmentResult alignCameras(const CameraSet& set, const SparsePoints& poi
                                     " are wanted to find where the cameras stand"));
   const Scene scene{model, surface, options};
   if (const auto given = givenPlace(scene)) {
-    CameraAlignmentResult result = resultOf(scene, {*given});
+    CameraAlignmentResult result = resultOf(scene, {*given}, given->T_surface_model);
     result.T_scans_cameras = Similarity();
     result.already_aligned = true;
     return result;

@@ -15,12 +15,14 @@ using Vector7 = Eigen::Matrix<double, 7, 1>;
 struct Foot {
   Index point = 0;
   Vector3d normal;
-  double height = 0; ///< of the place over the plane, length
+  double flatness = 1; ///< 0..1
+  double height = 0;   ///< of the place over the plane, length
 };
 
 /// @param reach length along the surface and over it
 std::optional<Foot> footOf(const ScanSurface& surface, const Vector3d& place, double reach)
 {
+  constexpr double flat = 0.01; // surface variation of a disc that is off its plane by a tenth of its extent
   const ScanLevel& level = surface.level();
   const Neighbor nearest = level.nearest(place.cast<float>(), static_cast<float>(std::hypot(reach, surface.grain())));
   if (nearest.index < 0 || level.surface_variation[nearest.index] > variation_limit)
@@ -29,22 +31,24 @@ std::optional<Foot> footOf(const ScanSurface& surface, const Vector3d& place, do
   if (!(normal.squaredNorm() > 0))
     return {};
   const double height = normal.dot(place - level.points.col(nearest.index).cast<double>());
-  return Foot{nearest.index, normal, height};
+  const double bend = level.surface_variation[nearest.index] / flat;
+  return Foot{nearest.index, normal, 1 / (1 + bend * bend), height};
 }
 
-/// One step of Gauss and Newton.
+/// One step of Gauss and Newton, at the end of the range.
 Similarity improved(const SparseModel& model, const std::vector<Index>& points, const ScanSurface& surface,
-                    double tolerance, const Similarity& T)
+                    const RefinementRange& range, const Similarity& T)
 {
   Eigen::Matrix<double, 7, 7> H = Eigen::Matrix<double, 7, 7>::Zero();
   Vector7 b = Vector7::Zero();
-  const double reach = T.scale * tolerance;
+  const double reach = T.scale * range.end;
   for (const Index i : points) {
     const Vector3d arm = T.scale * (T.R * model.points.col(i));
     const auto foot = footOf(surface, arm + T.t, reach);
     if (!foot || std::abs(foot->height) >= reach)
       continue;
-    const double share = foot->height / reach, weight = std::pow(1 - share * share, 2);
+    const double share = foot->height / reach,
+                 weight = (range.flat ? foot->flatness : 1) * std::pow(1 - share * share, 2);
     Vector7 J;
     J << arm.cross(foot->normal), foot->normal, foot->normal.dot(arm);
     H += weight * J * J.transpose();
@@ -75,9 +79,9 @@ Similarity refineSimilarity(const SparseModel& model, const std::vector<Index>& 
   constexpr int last_steps = 5; // at the smallest tolerance
   Similarity T = T_surface_model;
   for (double tolerance = range.start; tolerance > range.end; tolerance *= shrink)
-    T = improved(model, points, surface, tolerance, T);
+    T = improved(model, points, surface, {tolerance, tolerance, range.flat}, T);
   for (int step = 0; step < last_steps; ++step)
-    T = improved(model, points, surface, range.end, T);
+    T = improved(model, points, surface, range, T);
   return T;
 }
 

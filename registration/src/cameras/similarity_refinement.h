@@ -5,8 +5,9 @@
 namespace fresco::registration {
 /// How a similarity is refined; lengths in the model's unit.
 struct RefinementRange {
-  double start = 0; ///< distance from the surface below which points count at first
-  double end = 0;   ///< and in the end
+  double start = 0;  ///< distance from the surface below which points count at first
+  double end = 0;    ///< and in the end
+  bool flat = false; ///< whether planes count less where the surface bends: averaged points lie beside it there
 };
 
 /// Moves, turns and scales the model so that its points lie on the surface: point-to-plane (Chen & Medioni 1992) with a

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cameras/sparse_model.h"
+#include "cameras/track_triangulation.h"
 #include "scan/surface_normals.h"
 #include <Eigen/Eigenvalues>
 #include <algorithm>
@@ -119,12 +120,15 @@ SparseModel makeSparseModel(const CameraSet& set, const SparsePoints& points, in
       kept.push_back(i);
   const Index count = kept.size();
   model.points.resize(3, count);
+  model.seen.resize(3, count);
   model.eyes.resize(3, count);
   model.colors.resize(3, count);
+  const Eigen::Matrix3Xd seen = triangulateTracks(set, points, threads);
   std::set<std::tuple<int, int, int>> taken;
   for (Index i = 0; i < count; ++i) {
     const SparsePoint& point = points[kept[i]];
     model.points.col(i) = T * point.position;
+    model.seen.col(i) = T * seen.col(kept[i]);
     model.eyes.col(i) = T * nearestEye(set, point);
     model.colors.col(i) = point.color.cast<float>();
     const Eigen::Vector3i at = (model.points.col(i) / cell).array().floor().cast<int>();

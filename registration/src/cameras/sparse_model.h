@@ -9,6 +9,7 @@ namespace fresco::registration {
 struct SparseModel {
   Similarity T_model_cameras;
   Eigen::Matrix3Xd points;   ///< 3xN
+  Eigen::Matrix3Xd seen;     ///< 3xN, where the pixels of their tracks see them
   Eigen::Matrix3Xd eyes;     ///< 3xN, where each is seen from: the camera of its track that is nearest to it
   Points colors;             ///< 3xN
   std::vector<Index> spread; ///< points no two of which lie in one cell of `cell`

@@ -5,6 +5,7 @@
 #include <fresco/core/parallel.h>
 #include <fresco/core/similarity.h>
 #include <iomanip>
+#include <optional>
 #include <sstream>
 namespace fresco::simulation {
 using Eigen::Vector3d;
@@ -43,6 +44,19 @@ bool isDistinct(const LitScene& lit, const CameraModel& camera, const View& view
   return random.uniformFloat() < std::max(least, contrast / clear);
 }
 
+/// Where the view's frame has the place; none if beside it.
+std::optional<Eigen::Vector2d> pixelOf(const CameraSet& set, int view, const Vector3d& place)
+{
+  const CameraModel& camera = set.cameras[set.views[view].camera];
+  const Vector3d q = set.views[view].T_camera_world * place;
+  if (!(q.z() > 0.1))
+    return {};
+  const Eigen::Vector2d pixel = project(camera, q);
+  if (!(pixel.x() > 0 && pixel.y() > 0 && pixel.x() < camera.width && pixel.y() < camera.height))
+    return {};
+  return pixel;
+}
+
 /// Views that show the place, first of all `first`.
 std::vector<Observation> observe(const LitScene& lit, const CameraSet& set, int first, const Vector3d& place)
 {
@@ -51,18 +65,31 @@ std::vector<Observation> observe(const LitScene& lit, const CameraSet& set, int 
   const int count = static_cast<int>(set.views.size());
   for (int k = 0; k < count && track.size() < most; ++k) {
     const int v = (first + k) % count;
+    const auto pixel = pixelOf(set, v, place);
+    if (!pixel)
+      continue;
     const Vector3d q = set.views[v].T_camera_world * place;
-    const CameraModel& camera = set.cameras[set.views[v].camera];
-    if (!(q.z() > 0.1))
-      continue;
-    const Eigen::Vector2d pixel = project(camera, q);
-    if (!(pixel.x() > 0 && pixel.y() > 0 && pixel.x() < camera.width && pixel.y() < camera.height))
-      continue;
     const Sight sight = look(lit, set.views[v], q / q.z());
     if (sight.hit.face >= 0 && std::abs(sight.hit.distance / q.z() - 1) < 0.01)
-      track.push_back({v, pixel});
+      track.push_back({v, *pixel});
   }
   return track;
+}
+
+/// Matches of things that only look alike: a place elsewhere on the first ray, and a track that agrees on it.
+void makeWrong(const CameraSet& set, SparsePoint& point, CounterRandom& random)
+{
+  constexpr int most_draws = 20; // places that one photograph alone shows are no points
+  const Vector3d eye = set.views[point.track[0].view].center(), right = point.position;
+  std::vector<Observation> track;
+  for (int draw = 0; draw < most_draws && track.size() < 2; ++draw) {
+    point.position = eye + std::exp(random.uniform(-1, 1)) * (right - eye);
+    track.clear();
+    for (const Observation& observation : point.track)
+      if (const auto pixel = pixelOf(set, observation.view, point.position))
+        track.push_back({observation.view, *pixel});
+  }
+  point.track = track;
 }
 
 /// One try; without a track where it fails.
@@ -85,9 +112,10 @@ SparsePoint tryPoint(const LitScene& lit, const CameraSet& set, const DatasetOpt
   point.position = place;
   for (double& coordinate : point.position)
     coordinate += o.sparse_noise * random.gaussian();
-  const bool wrong = random.uniform() < o.sparse_outliers;
-  if (wrong)
-    point.position = view.center() + std::exp(random.uniform(-1, 1)) * (place - view.center());
+  if (random.uniform() < o.sparse_outliers)
+    makeWrong(set, point, random);
+  if (point.track.size() < 2)
+    return SparsePoint();
   for (Observation& observation : point.track) {
     const Eigen::Vector2d noise(0.5 * random.gaussian(), 0.5 * random.gaussian()); // pixels: as features are found
     observation.pixel += noise;

@@ -9,7 +9,7 @@ ScenePlaces partAlongX(const ScenePlaces& samples, double share);
 
 /// What structure from motion makes of the photographs: points on the surface, the more the sharper its pattern is, each
 /// seen by two views at least, with noise; of wrong ones the distance from the first of these views is wrong by a factor of
-/// up to e. DatasetOptions: sparse, sparse_noise, sparse_outliers, seed.
+/// up to e, and the pixels of the others with it. DatasetOptions: sparse, sparse_noise, sparse_outliers, seed.
 SparsePoints sparsePoints(const LitScene& lit, const CameraSet& set, const DatasetOptions& options);
 
 /// Brings cameras and points into a frame with a random rotation, position and scale 0.01..100.

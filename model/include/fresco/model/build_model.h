@@ -29,7 +29,7 @@ struct ModelOptions {
 struct ModelStage {
   std::string name;       ///< features, matches, cameras, points, alignment, surface, optimization, texture or pictures
   double seconds = 0;     ///< wall clock
-  double cpu_seconds = 0; ///< of all threads
+  double cpu_seconds = 0; ///< of all threads, and of programs that were run
   double peak_megabytes = 0; ///< resident memory of the process, highest during the stage
   bool resumed = false;      ///< taken over from an earlier run
   /// Name and value, numbers with four digits, lists as JSON; report.json has them in full.
