@@ -64,6 +64,8 @@ Canvas::Canvas(const PictureOptions& options, Lighting lighting)
 {
   if (window_.samples() < 2)
     oversampling_ = std::max(oversampling_, 2);
+  else if (oversampling_ > 1)
+    window_.window().SetMultiSamples(0); // samples of every pixel drawn would take most of the time
   const int largest = window_.largestPicture() / oversampling_;
   if (std::max(width_, height_) > largest)
     throw std::runtime_error(

@@ -190,58 +190,76 @@ double scoreAbove(const RayScene& scene, const Viewpoint& view, const Eigen::Vec
   return hits / rays.size() + 4 * relief(depths);
 }
 
-void validate(const TriangleMesh& mesh, const IndoorOptions& options)
-{
-  validateMesh(mesh);
-  require(options.aspect > 0 && std::isfinite(options.aspect), "view: aspect ratio ", options.aspect,
-          " is not above 0");
-}
-} // namespace
+/// A model that is looked at, with where its walls are.
+struct Room {
+  Room(const TriangleMesh& model, const IndoorOptions& chosen) : mesh(validated(model, chosen)), options(chosen) {}
 
-std::optional<Viewpoint> insideView(const TriangleMesh& mesh, const IndoorOptions& options)
+  static const TriangleMesh& validated(const TriangleMesh& mesh, const IndoorOptions& options)
+  {
+    validateMesh(mesh);
+    require(options.aspect > 0 && std::isfinite(options.aspect), "view: aspect ratio ", options.aspect,
+            " is not above 0");
+    return mesh;
+  }
+
+  const TriangleMesh& mesh;
+  const IndoorOptions& options;
+  RoomFrame frame = findRoomFrame(mesh, options.up);
+  RayScene scene{mesh, false};
+};
+
+std::optional<Viewpoint> insideOf(const Room& room)
 {
-  validate(mesh, options);
-  const RoomFrame room = findRoomFrame(mesh, options.up);
-  const double room_size = room.size().head<2>().norm();
-  const RayScene scene(mesh, false);
-  const std::vector<Stand> grid = gridOfStands(scene, room, options.threads);
+  const double room_size = room.frame.size().head<2>().norm();
+  const std::vector<Stand> grid = gridOfStands(room.scene, room.frame, room.options.threads);
   std::vector<Stand> stands = freeStands(grid, room_size, false);
   if (stands.empty())
     stands = freeStands(grid, room_size, true);
   if (stands.empty())
     return {};
   std::vector<Look> looks(stands.size());
-  parallelFor(stands.size(), options.threads,
-              [&](Index i) { looks[i] = bestLook(scene, stands[i], room, options.aspect); });
+  parallelFor(stands.size(), room.options.threads,
+              [&](Index i) { looks[i] = bestLook(room.scene, stands[i], room.frame, room.options.aspect); });
   const auto best =
       std::max_element(looks.begin(), looks.end(), [](const Look& a, const Look& b) { return a.score < b.score; });
-  const Eigen::Vector3d eye = mesh.origin + stands[best - looks.begin()].eye;
-  return Viewpoint{eye, eye + 0.5 * room_size * best->direction, room.up, inside_angle};
+  const Eigen::Vector3d eye = room.mesh.origin + stands[best - looks.begin()].eye;
+  return Viewpoint{eye, eye + 0.5 * room_size * best->direction, room.frame.up, inside_angle};
 }
 
-Viewpoint aboveView(const TriangleMesh& mesh, const IndoorOptions& options)
+Viewpoint above(const Room& room)
 {
-  validate(mesh, options);
-  const RoomFrame room = findRoomFrame(mesh, options.up);
-  const RayScene scene(mesh, false);
   constexpr std::array<double, 8> headings{30, 60, 120, 150, 210, 240, 300, 330}; // degrees from the walls
   constexpr double elevation = 52 * pi / 180;
   Viewpoint best;
   double best_score = -1;
   for (const double degrees : headings) {
     const double heading = degrees * pi / 180;
-    const Eigen::Vector3d level = std::cos(heading) * room.along + std::sin(heading) * room.across;
+    const Eigen::Vector3d level = std::cos(heading) * room.frame.along + std::sin(heading) * room.frame.across;
     Framing framing;
-    framing.direction = std::cos(elevation) * level + std::sin(elevation) * room.up;
-    framing.up = room.up;
-    framing.aspect = options.aspect;
-    const Viewpoint view = frameView(mesh, framing);
-    const double score = scoreAbove(scene, view, mesh.origin, options.aspect);
+    framing.direction = std::cos(elevation) * level + std::sin(elevation) * room.frame.up;
+    framing.up = room.frame.up;
+    framing.aspect = room.options.aspect;
+    const Viewpoint view = frameView(room.mesh, framing);
+    const double score = scoreAbove(room.scene, view, room.mesh.origin, room.options.aspect);
     if (score > best_score) {
       best_score = score;
       best = view;
     }
   }
   return best;
+}
+} // namespace
+
+std::optional<Viewpoint> insideView(const TriangleMesh& mesh, const IndoorOptions& options)
+{
+  return insideOf(Room(mesh, options));
+}
+
+Viewpoint aboveView(const TriangleMesh& mesh, const IndoorOptions& options) { return above(Room(mesh, options)); }
+
+IndoorViews indoorViews(const TriangleMesh& mesh, const IndoorOptions& options)
+{
+  const Room room(mesh, options);
+  return {insideOf(room), above(room)};
 }
 } // namespace fresco::rendering

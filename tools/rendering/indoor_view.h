@@ -20,4 +20,11 @@ std::optional<Viewpoint> insideView(const TriangleMesh& mesh, const IndoorOption
 /// Of eight directions the one that shows most.
 /// @throws as insideView()
 Viewpoint aboveView(const TriangleMesh& mesh, const IndoorOptions& options = {});
+
+/// Both of them, in less time.
+struct IndoorViews {
+  std::optional<Viewpoint> inside;
+  Viewpoint above;
+};
+IndoorViews indoorViews(const TriangleMesh& mesh, const IndoorOptions& options = {});
 } // namespace fresco::rendering

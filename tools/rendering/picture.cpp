@@ -40,27 +40,6 @@ SurfaceLook pointLook(const DrawMesh& drawn, const PictureOptions& options)
   return look;
 }
 
-DrawMesh drawnFaces(const TriangleMesh& mesh, const PictureOptions& options)
-{
-  if (options.shading == Shading::Normals)
-    return normalColoredMesh(mesh, options.threads);
-  DrawMesh drawn =
-      options.shading == Shading::Gouraud ? creasedMesh(mesh, options.crease_angle, options.threads) : plainMesh(mesh);
-  if (options.no_colors || options.shading == Shading::Wireframe)
-    drawn.colors.resize(3, 0);
-  return drawn;
-}
-
-SurfaceLook surfaceLook(const DrawMesh& drawn, const PictureOptions& options)
-{
-  SurfaceLook look;
-  look.lit = options.shading != Shading::Normals;
-  look.ambient = drawn.colors.cols() > 0 ? 0.5 : 0.08; // colours that were seen hold the light of the place
-  look.specular = options.shading == Shading::Gouraud ? 0.12 : 0.0;
-  look.cull_back_faces = options.cull_back_faces;
-  return look;
-}
-
 /// A viewpoint in world coordinates for actors whose coordinates are relative to `origin`.
 struct Shot {
   Viewpoint view;
@@ -102,6 +81,27 @@ PointSet drawnPoints(PointSet set, const PictureOptions& options, const Eigen::V
   return selectPoints(set, seen);
 }
 } // namespace
+
+DrawMesh drawnFaces(const TriangleMesh& mesh, const PictureOptions& options)
+{
+  if (options.shading == Shading::Normals)
+    return normalColoredMesh(mesh, options.threads);
+  DrawMesh drawn =
+      options.shading == Shading::Gouraud ? creasedMesh(mesh, options.crease_angle, options.threads) : plainMesh(mesh);
+  if (options.no_colors || options.shading == Shading::Wireframe)
+    drawn.colors.resize(3, 0);
+  return drawn;
+}
+
+SurfaceLook surfaceLook(const DrawMesh& drawn, const PictureOptions& options)
+{
+  SurfaceLook look;
+  look.lit = options.shading != Shading::Normals;
+  look.ambient = drawn.colors.cols() > 0 ? 0.5 : 0.08; // colours that were seen hold the light of the place
+  look.specular = options.shading == Shading::Gouraud ? 0.12 : 0.0;
+  look.cull_back_faces = options.cull_back_faces;
+  return look;
+}
 
 void validatePictureOptions(const PictureOptions& options)
 {

@@ -6,6 +6,7 @@
 #include <fresco/core/mesh.h>
 #include <fresco/core/point_set.h>
 #include <fresco/core/textured_mesh.h>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -39,7 +40,7 @@ struct PictureOptions {
   double error_limit =
       0; ///< Error: distance that is blue, unit of the mesh; 0 = 99th percentile of the distances, rounded up
   std::string unit;     ///< Error: unit of the mesh for the scale bar, may be empty
-  int oversampling = 1; ///< pixels drawn per pixel along each side, 1..4, besides multisampling
+  int oversampling = 1; ///< pixels drawn per pixel along each side, 1..4; 1 = multisampling in its place
   int threads = 0;      ///< 0 = all cores; the picture does not depend on it
 };
 
@@ -52,6 +53,22 @@ Image renderPicture(const TriangleMesh& mesh, const PictureOptions& options = {}
 /// Shading::Texture shows the atlases (faces without texture: lit, grey); the other shadings are those of `model.mesh`.
 /// @throws as above, and std::invalid_argument if the model has no texture or its arrays do not fit together
 Image renderPicture(const TexturedMesh& model, const PictureOptions& options = {});
+
+/// Pictures of one model from several views: what the graphics system draws is made once. It is held for the whole life
+/// of a series, other pictures wait.
+class PictureSeries {
+public:
+  /// @param options of all pictures, as for renderPicture(); `view` and `cull_back_faces` are given with each. Shadings
+  ///                Normals, Gouraud, Flat and Texture
+  /// @throws as renderPicture()
+  PictureSeries(const TexturedMesh& model, const PictureOptions& options);
+  ~PictureSeries();
+  Image draw(const Viewpoint& view, bool cull_back_faces);
+
+private:
+  struct Stage;
+  std::unique_ptr<Stage> stage_;
+};
 
 /// Points in their own colours, else by intensity, else lit by their normals, else coloured by height. Non-finite
 /// points are left out. Shading::Normals colours by normal; the other shadings make no difference.

@@ -136,36 +136,48 @@ std::vector<std::string> pictureFiles(const Job& job)
   return paths;
 }
 
+namespace {
+/// How all pictures of one shading are made.
+PictureOptions optionsFor(Shading shading, const ModelOptions& options, const TexturedMesh& model)
+{
+  PictureOptions picture;
+  picture.width = options.width;
+  picture.height = options.height;
+  picture.threads = options.threads;
+  picture.shading = shading == Shading::Texture && model.atlases.empty() ? Shading::Gouraud : shading;
+  picture.oversampling = 2; // textures and small faces hold finer detail than the picture
+  picture.no_colors = shading == Shading::Gouraud;
+  return picture;
+}
+} // namespace
+
 Figures makePictures(const Job& job, const Progress& progress)
 {
   const auto& [input, files, options] = job;
   const TexturedMesh model = readTexturedMesh(files.model_obj);
   const Eigen::Vector3d up = uprightOf(job).value_or(Eigen::Vector3d::UnitZ());
   const IndoorOptions indoor{uprightOf(job), static_cast<double>(options.width) / options.height, options.threads};
-  const Viewpoint above = aboveView(model.mesh, indoor);
-  const Viewpoint inside = insideView(model.mesh, indoor).value_or(above);
+  const auto [from_inside, above] = indoorViews(model.mesh, indoor);
+  const Viewpoint inside = from_inside.value_or(above);
   std::vector<Viewpoint> places = levelViews(job, up);
   if (places.empty())
     places = viewsFromScans(job, model.mesh, up);
   places = variedViews(places, 3);
   const std::vector<Shot> all = shots(input);
-  PictureOptions picture;
-  picture.width = options.width;
-  picture.height = options.height;
-  picture.threads = options.threads;
   Figures list = Figures::array();
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    const Shot& shot = all[i];
-    report(progress, shot.name, double(i) / all.size());
-    picture.shading = shot.shading == Shading::Texture && model.atlases.empty() ? Shading::Gouraud : shot.shading;
-    picture.oversampling = shot.shading == Shading::Texture ? 2 : 1; // textures hold finer detail than the picture
-    picture.view = shot.from == From::above ? above : shot.from == From::inside ? inside : places[shot.place];
-    picture.cull_back_faces = shot.from == From::above;
-    picture.no_colors = shot.shading == Shading::Gouraud;
-    const Image image =
-        picture.shading == Shading::Texture ? renderPicture(model, picture) : renderPicture(model.mesh, picture);
-    writeImage(pictureFiles(job)[i], image);
-    list.push_back(entryOf(shot, *picture.view));
+  int made = 0;
+  for (const Shading shading : {Shading::Texture, Shading::Normals, Shading::Gouraud}) {
+    PictureSeries series(model, optionsFor(shading, options, model));
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      const Shot& shot = all[i];
+      if (shot.shading != shading)
+        continue;
+      report(progress, shot.name, double(made++) / all.size());
+      const bool is_above = shot.from == From::above;
+      const Viewpoint& view = is_above ? above : shot.from == From::inside ? inside : places[shot.place];
+      writeImage(pictureFiles(job)[i], series.draw(view, is_above));
+      list[i] = entryOf(shot, view);
+    }
   }
   return {{"up", listOf(up)}, {"pictures", list}};
 }

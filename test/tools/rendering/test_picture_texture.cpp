@@ -105,6 +105,33 @@ TEST(TexturePicture, OtherShadingsShowTheMesh)
   EXPECT_LE(difference(rgb(renderPicture(texturedSquare(Image(4, 4)), options), 20, 20), {128, 128, 255}), 1);
 }
 
+TEST(TexturePicture, SeriesShowsWhatSinglePicturesShow)
+{
+  const TexturedMesh model = texturedSquare(quarters(64));
+  Viewpoint behind = squareView();
+  behind.eye = 2 * behind.look - behind.eye;
+  for (const Shading shading : {Shading::Texture, Shading::Normals, Shading::Gouraud}) {
+    PictureOptions options = squareOptions(60);
+    options.shading = shading;
+    std::vector<Image> series;
+    {
+      PictureSeries pictures(model, options);
+      for (const bool cull : {false, true})
+        for (const Viewpoint& view : {squareView(), behind})
+          series.push_back(pictures.draw(view, cull));
+    }
+    std::size_t i = 0;
+    for (const bool cull : {false, true})
+      for (const Viewpoint& view : {squareView(), behind}) {
+        options.view = view;
+        options.cull_back_faces = cull;
+        EXPECT_EQ(series[i++].data, renderPicture(model, options).data) << i;
+      }
+    EXPECT_NE(series[1].data, series[3].data); // nothing is left of the square from behind
+  }
+  EXPECT_THROW(PictureSeries(model, optionsFor(Shading::Wireframe)), std::invalid_argument);
+}
+
 TEST(TexturePicture, BadModelsAreRefused)
 {
   const TexturedMesh good = texturedSquare(Image(4, 4));

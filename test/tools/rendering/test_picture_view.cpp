@@ -180,7 +180,9 @@ TEST(IndoorView, DoesNotDependOnThreads)
   four.threads = 4;
   EXPECT_EQ(insideView(room, one)->eye, insideView(room, four)->eye);
   EXPECT_EQ(insideView(room, one)->look, insideView(room, four)->look);
-  EXPECT_EQ(aboveView(room, one).eye, aboveView(room, four).eye);
+  const auto [inside, above] = indoorViews(room, four);
+  EXPECT_EQ(aboveView(room, one).eye, above.eye);
+  EXPECT_EQ(insideView(room, one)->eye, inside->eye);
 }
 
 TEST(IndoorView, AboveViewShowsTheFloorThroughTheCeiling)

@@ -35,14 +35,7 @@ public:
   template <typename Visit>
   void forPixels(const PatchMap::Row& row, const Visit& visit) const
   {
-    constexpr int most = 64; // at a time: rows of patches are hardly longer
-    float u[most], v[most];
-    for (int done = 0; done < row.count; done += most) {
-      const int count = std::min(most, row.count - done);
-      map.pixels({row.start + Eigen::Vector2f(row.step * done, 0.f), row.step, count}, u, v);
-      for (int k = 0; k < count; ++k)
-        visit(done + k, Eigen::Vector2f(u[k], v[k]));
-    }
+    map.forPixels(row, visit);
   }
 
   std::size_t texels() const ///< number
@@ -59,7 +52,11 @@ public:
   TexelSpan insideOf(const TexelSpan& span, float edge) const
   {
     const Eigen::Vector2f start = place(span.x, span.y);
-    const Eigen::Vector3f at = map.weights(start.x(), start.y()), step = map.weights(start.x() + 1, start.y()) - at;
+    const Eigen::Vector3f at = map.weights(start.x(), start.y());
+    const Eigen::Vector3f last = map.weights(start.x() + (span.length - 1), start.y());
+    if (at.cwiseMin(last).minCoeff() >= -edge)
+      return span;
+    const Eigen::Vector3f step = map.weights(start.x() + 1, start.y()) - at;
     float low = 0, high = span.length - 1; // texels from the span's first
     for (int k = 0; k < 3; ++k) {
       const float least = -edge - at[k];

@@ -39,18 +39,6 @@ bool PatchMap::look(const Projector& view)
   return true;
 }
 
-void PatchMap::pixels(const Row& row, float* __restrict u, float* __restrict v) const
-{
-  const auto [x, y] = std::pair(row.start.x(), row.start.y());
-  const Eigen::Vector3f camera = camera_.col(1) * y + camera_.col(2), camera_step = camera_.col(0);
-  const Eigen::Vector2f lens = lens_.col(1) * y + lens_.col(2), lens_step = lens_.col(0);
-  for (int i = 0; i < row.count; ++i) { // several at a time, by the compiler
-    const float at = x + row.step * i, scale = 1 / (camera_step[2] * at + camera[2]);
-    u[i] = (camera_step[0] * at + camera[0]) * scale + lens_step[0] * at + lens[0];
-    v[i] = (camera_step[1] * at + camera[1]) * scale + lens_step[1] * at + lens[1];
-  }
-}
-
 Eigen::Matrix<float, 2, 3> PatchMap::cornerPixels() const
 {
   Eigen::Matrix<float, 2, 3> pixels;

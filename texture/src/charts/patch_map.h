@@ -28,8 +28,19 @@ public:
     float step = 1;        ///< texels to the right
     int count;
   };
-  /// u[i], v[i] = pixel(x + i step, y), i = 0..count-1.
-  void pixels(const Row& row, float* __restrict u, float* __restrict v) const;
+  /// visit(i, pixel(x + i step, y)), i = 0..count-1.
+  template <typename Visit>
+  void forPixels(const Row& row, const Visit& visit) const
+  {
+    const float y = row.start.y();
+    const Eigen::Vector3f camera = camera_.col(1) * y + camera_.col(2), camera_step = camera_.col(0);
+    const Eigen::Vector2f lens = lens_.col(1) * y + lens_.col(2), lens_step = lens_.col(0);
+    for (int i = 0; i < row.count; ++i) {
+      const float x = row.start.x() + row.step * i, scale = 1 / (camera_step[2] * x + camera[2]);
+      visit(i, Eigen::Vector2f((camera_step[0] * x + camera[0]) * scale + lens_step[0] * x + lens[0],
+                               (camera_step[1] * x + camera[1]) * scale + lens_step[1] * x + lens[1]));
+    }
+  }
 
   /// Of the surface, along the camera's axis.
   float inverseDepth(float x, float y) const { return 1 / (camera_(2, 0) * x + camera_(2, 1) * y + camera_(2, 2)); }

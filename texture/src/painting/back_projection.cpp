@@ -120,11 +120,15 @@ private:
     });
   }
 
-  static void start(const PatchFrame& frame, Sums& sums)
+  void start(const PatchFrame& frame, Sums& sums) const
   {
     sums.values.assign(frame.texels(), Eigen::Vector4f::Zero());
     sums.inside.clear();
-    frame.forSpans([&](const TexelSpan& span) { sums.inside.push_back(frame.insideOf(span, 0.f)); });
+    const Image& atlas = atlases_[frame.chart.atlas];
+    frame.forSpans([&](const TexelSpan& span) {
+      sums.inside.push_back(frame.insideOf(span, 0.f));
+      __builtin_prefetch(atlas.pixel(frame.chart.x + span.x, frame.chart.y + span.y)); // for change()
+    });
   }
 
   void correct(Index patch, const Range& views, Sums& sums)

@@ -82,15 +82,22 @@ int texelsPerPixel(const Eigen::Matrix2f& steps)
   return texels;
 }
 
+/// The rows of a patch lie far apart in memory: to be asked for before they are needed.
+void prefetch(const Prediction& p, Index patch)
+{
+  const Chart& chart = p.scene.chartOf(patch);
+  const Image& atlas = p.atlases[chart.atlas];
+  const int slot = p.scene.slots[patch].number;
+  for (int s = chart.texels.begin[slot]; s < chart.texels.begin[slot + 1]; ++s)
+    __builtin_prefetch(atlas.pixel(chart.x + chart.texels.spans[s].x, chart.y + chart.texels.spans[s].y));
+}
+
 /// Adds a patch's colours, each texel times the area it covers in the photograph, and the areas.
 void draw(const Prediction& p, Index patch, PhotoResidual& sums)
 {
   constexpr float largest_box = 6; // pixels: beyond, the photograph shows more than the texture can hold
   PatchFrame frame(p.scene, patch);
   const Image& atlas = p.atlases[frame.chart.atlas];
-  frame.forSpans([&](const TexelSpan& span) { // the rows lie far apart in memory
-    __builtin_prefetch(atlas.pixel(frame.chart.x + span.x, frame.chart.y + span.y));
-  });
   if (!frame.map.look(p.view))
     return;
   const Eigen::Vector2f middle = frame.map.place(Eigen::Vector3f::Constant(1.f / 3));
@@ -143,8 +150,12 @@ PhotoResidual residualOf(const Prediction& prediction, const Image& photo, const
   out.width = photo.width;
   out.height = photo.height;
   out.pixels.assign(cellCount(photo.width, photo.height), Eigen::Vector4f::Zero());
-  for (const int patch : prediction.patches)
-    draw(prediction, patch, out);
+  const std::vector<int>& patches = prediction.patches;
+  constexpr std::size_t ahead = 4;
+  for (std::size_t i = 0; i < patches.size(); ++i) {
+    prefetch(prediction, patches[std::min(i + ahead, patches.size() - 1)]);
+    draw(prediction, patches[i], out);
+  }
   const std::uint8_t* p = photo.data.data();
   for (Index i = 0; i < Index(out.pixels.size()); ++i, p += 3) {
     Eigen::Vector4f& pixel = out.pixels[i];
