@@ -44,8 +44,7 @@ private:
     unsigned faces; ///< bits: the cell faces that the vertex lies on
   };
   void nextPolygon(std::size_t first);
-  void triangulatePolygon(const Eigen::Matrix3Xf& positions, Array<int>& faces,
-                          Array<Eigen::Vector3f>& extra) const;
+  void triangulatePolygon(const Eigen::Matrix3Xf& positions, Array<int>& faces, Array<Eigen::Vector3f>& extra) const;
   bool cheapestTriangles(const Eigen::Matrix3Xf& positions, Array<int>& faces) const;
 
   std::vector<FaceSegment> segments_;
