@@ -28,23 +28,9 @@ struct Request {
 
 std::size_t bytes(int megabytes) { return std::max(0, megabytes) * std::size_t{1000000}; }
 
-Request parse(int argc, char** argv)
+void declareOptions(Args& args, Request& request)
 {
-  Request request;
   VolumetricOptions& o = request.options;
-  Args args(
-      "fresco_reconstruct IN... OUT [options]",
-      "Volumetric surface reconstruction (screened Poisson over an octree) of points with normals.\n"
-      "IN: " +
-          readableExtensions(FileKind::points) +
-          ", with normals that point to the free side; a folder stands for the files of\npoints in it. "
-          "Several are taken as one cloud. Binary .ply and .pcd are read in windows, several times, and may be larger\n"
-          "than memory. Other files are read whole: a single one once, several one after the other, several "
-          "times.\nOUT: " +
-          writableExtensions(FileKind::mesh) +
-          ", a mesh, closed\n"
-          "and manifold unless trimmed, with colours and intensity where IN has them and the field `support`: the\n"
-          "octree depth that the data sustain at the vertex.");
   args.option("depth", o.depth, "octree depth, 2..16; finest cell = cube side / 2^depth");
   args.option("cell", o.cell_size,
               "side of the finest cell, unit of the points, which sets the depth; 0 = from -depth");
@@ -69,6 +55,26 @@ Request parse(int argc, char** argv)
               "MB to stay below, 256 or more: arrays that do not fit go to files in -scratch; the same bytes come out. "
               "0 = all in memory");
   args.option("scratch", request.scratch, "folder for such files, on a fast disk; default: the folder of OUT");
+}
+
+Request parse(int argc, char** argv)
+{
+  Request request;
+  VolumetricOptions& o = request.options;
+  Args args(
+      "fresco_reconstruct IN... OUT [options]",
+      "Volumetric surface reconstruction (screened Poisson over an octree) of points with normals.\n"
+      "IN: " +
+          readableExtensions(FileKind::points) +
+          ", with normals that point to the free side; a folder stands for the files of\npoints in it. "
+          "Several are taken as one cloud. Binary .ply and .pcd are read in windows, several times, and may be larger\n"
+          "than memory. Other files are read whole: a single one once, several one after the other, several "
+          "times.\nOUT: " +
+          writableExtensions(FileKind::mesh) +
+          ", a mesh, closed\n"
+          "and manifold unless trimmed, with colours and intensity where IN has them and the field `support`: the\n"
+          "octree depth that the data sustain at the vertex.");
+  declareOptions(args, request);
   args.note("fresco_reconstruct scan.ply mesh.ply -depth 9\n"
             "fresco_reconstruct room.pcd room.ply -cell 0.02 -trim_levels 2   (an open room: cells of 2 cm, no "
             "invented surface)");
