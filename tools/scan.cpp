@@ -31,6 +31,7 @@ void declare(Args& args, DatasetOptions& options, int& seed)
               "spread of the photographs' brightness, 0..0.9; white balance a quarter of it");
   args.option("sensor_noise", options.sensor_noise, "of the photographs, grey levels of 255, 0..100");
   args.option("vignetting", options.vignetting, "light in the photographs' corners, of that in their middle, 0.1..1");
+  args.option("response", options.response, "strength of the photographs' S-shaped tone curve, 0..1; 0 = none");
   args.option("blur", options.blur, "of the photographs, pixels (deviation), 0..20");
   args.option("intruder", options.intruder, "somebody stands in every Nth photograph, >= 0; 0 = in none");
   args.option("pose_noise", options.pose_noise, "deviation of the written cameras' positions, metres, 0..1");
@@ -49,7 +50,8 @@ void declare(Args& args, DatasetOptions& options, int& seed)
       "frames of an RGB-D camera that is carried around, 0..100000, as rgbd/frame-NNNNNN.{color.jpg,depth.png}; "
       "rgbd/poses.txt is the truth");
   args.size("rgbd_size", options.rgbd_width, options.rgbd_height, "size of these images, pixels, 16..20000 each");
-  args.flag("truth_images", options.truth_images, "also photographs without exposure differences and noise (PNG)");
+  args.flag("truth_images", options.truth_images,
+            "also photographs without exposure differences and noise, with the tone curve of -response (PNG)");
   args.option("edge", options.max_edge, "longest side of a face of the rooms' truth, metres, 0.02..10");
   args.note("SCENE is conference_room, apartment (two rooms and a door), office (rooms at corridors) or a mesh file (" +
             readableExtensions(FileKind::mesh) +

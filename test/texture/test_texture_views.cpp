@@ -56,6 +56,32 @@ TEST(TextureViews, VignettingIsFoundAndTakenAway)
   EXPECT_LT(worst, 0.08);
 }
 
+/// Photographs of different exposure through one curve give what photographs of one exposure show through it.
+TEST(TextureViews, ResponseCurveIsFoundAndUndone)
+{
+  const TriangleMesh mesh = cube();
+  const auto soft = [](const Eigen::Vector3d& p) { return Eigen::Vector3d(0.6 * waves(p).array() + 30); };
+  const auto curve = [](double value) {
+    const double v = value / 255;
+    return 255 * (0.3 * v + 0.7 * (3 * v * v - 2 * v * v * v));
+  };
+  const auto curved = [&](const Eigen::Vector3d& p) { return Eigen::Vector3d(soft(p).unaryExpr(curve)); };
+  std::vector<TextureView> straight = photographsAround(mesh, soft), bent;
+  for (std::size_t v = 0; v < straight.size(); ++v) { // mean logarithm 0
+    const double gain = std::exp(0.5 * (2.0 * v / (straight.size() - 1) - 1));
+    straight[v] = photograph(mesh, soft, straight[v].camera, straight[v].T_camera_world, {gain, gain, gain});
+    bent.push_back(straight[v]);
+    for (std::uint8_t& value : bent[v].image.data)
+      value = static_cast<std::uint8_t>(std::lround(curve(value)));
+  }
+  EXPECT_TRUE(reconstructTexture(mesh, straight).response.isZero(0));
+  const TextureResult result = reconstructTexture(mesh, bent, withThreads(1));
+  EXPECT_FALSE(result.response.isZero(0));
+  EXPECT_LT(colorError(result.model, curved).mean, 1.5);
+  EXPECT_LT(colorError(result.model, curved).largest, 8);
+  EXPECT_TRUE(sameAtlases(result, reconstructTexture(mesh, bent, withThreads(2))));
+}
+
 /// A red square in the middle of the second of two views that see the top.
 TEST(TextureViews, WhatStoodInOnePhotographIsNotPaintedThoughFewSeeThePlace)
 {

@@ -240,6 +240,7 @@ TEST(VirtualDataset, RefusesBadOptionsAndFiles)
   refused([](DatasetOptions& o) { o.width = 3; });
   refused([](DatasetOptions& o) { o.focal = 0.f; });
   refused([](DatasetOptions& o) { o.exposure_spread = 1.f; });
+  refused([](DatasetOptions& o) { o.response = 1.1f; });
   refused([](DatasetOptions& o) { o.sensor_noise = -1.f; });
   refused([](DatasetOptions& o) { o.jpeg_quality = 0; });
   EXPECT_FALSE(fs::exists(folder + "/out"));

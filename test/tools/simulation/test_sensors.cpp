@@ -292,6 +292,23 @@ TEST(VirtualCamera, ExposureIsAGainOnDisplayValues)
     EXPECT_NEAR(darker.data[i], exposure.gain[static_cast<Index>(i % 3)] * truth.data[i], 1.01f);
 }
 
+TEST(VirtualCamera, ResponseIsACurveAfterTheExposure)
+{
+  const CameraModel camera = smallCamera();
+  const View view = chooseViews(room().planning, camera, 1).views[0];
+  Exposure exposure;
+  exposure.gain = {0.7f, 0.6f, 0.8f};
+  const Image straight = takePhotograph(room().lit, {camera, view, exposure}, 1);
+  exposure.response = 0.6f;
+  const Image curved = takePhotograph(room().lit, {camera, view, exposure}, 4);
+  for (std::size_t i = 0; i < straight.data.size(); ++i) {
+    const double v = straight.data[i] / 255.0; // to half a level; the curve is at most 1.3 times as steep
+    EXPECT_NEAR(curved.data[i], 255 * (0.4 * v + 0.6 * (3 * v * v - 2 * v * v * v)), 1.2);
+  }
+  exposure.response = -0.1f;
+  EXPECT_THROW(takePhotograph(room().lit, {camera, view, exposure}, 1), std::invalid_argument);
+}
+
 TEST(VirtualCamera, ExposuresSpreadAsAsked)
 {
   float least = 9, most = 0;

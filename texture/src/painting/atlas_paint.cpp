@@ -39,7 +39,7 @@ public:
   {
     const Eigen::Vector2f middle = pixel(center);
     if (steps_ == 1)
-      return gain_(middle).cwiseProduct(samplePhoto(photo_, middle.x(), middle.y()));
+      return gain_(middle, samplePhoto(photo_, middle.x(), middle.y()));
     Eigen::Vector3f sum = Eigen::Vector3f::Zero();
     const float step = 1.f / steps_;
     for (int j = 0; j < steps_; ++j)
@@ -47,7 +47,7 @@ public:
         const Eigen::Vector2f p = pixel(center + Eigen::Vector2f((i + 0.5f) * step - 0.5f, (j + 0.5f) * step - 0.5f));
         sum += samplePhoto(photo_, p.x(), p.y());
       }
-    return gain_(middle).cwiseProduct(sum * (step * step));
+    return gain_(middle, sum * (step * step));
   }
 
 private:

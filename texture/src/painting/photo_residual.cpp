@@ -162,9 +162,8 @@ PhotoResidual residualOf(const Prediction& prediction, const Image& photo, const
     const float trust = std::max({p[0], p[1], p[2]}) < overexposed ? coverageWeight(pixel.w()) : 0.f;
     if (trust > 0)
       pixel.head<3>() =
-          trust *
-          (gain({i % photo.width + 0.5f, i / photo.width + 0.5f}).cwiseProduct(Eigen::Vector3f(p[0], p[1], p[2])) -
-           pixel.head<3>() / pixel.w());
+          trust * (gain({i % photo.width + 0.5f, i / photo.width + 0.5f}, Eigen::Vector3f(p[0], p[1], p[2])) -
+                   pixel.head<3>() / pixel.w());
     else
       pixel.setZero();
     pixel.w() = 0;

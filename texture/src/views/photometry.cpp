@@ -4,7 +4,7 @@
 #include <cmath>
 namespace fresco::texture {
 PixelGain::PixelGain(const Photometry& photometry, int view, const CameraModel& camera)
-    : camera_(camera), gain_(photometry.gains.col(view))
+    : camera_(camera), curve_(photometry.responseOf(view)), gain_(photometry.gains.col(view))
 {
   const LensFalloff falloff = photometry.falloffOf(view);
   if (falloff.a.isZero(0))

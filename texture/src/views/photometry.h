@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include "cameras/view_parts.h"
+#include "views/response_curve.h"
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
@@ -30,19 +31,35 @@ struct LensFalloff {
   }
 };
 
-/// How photographs answer to light: value = light * T(r) / gain.
+/// How photographs answer to light: light of the value = light of the colour * T(r) / gain. Of a straight response the light
+/// is the value.
 struct Photometry {
-  Eigen::Matrix3Xf gains;           ///< 3xV
-  std::vector<int> lens;            ///< V, into `falloff`; -1 where all is let through
-  std::vector<LensFalloff> falloff; ///< of each lens
+  Eigen::Matrix3Xf gains;              ///< 3xV
+  std::vector<int> lens;               ///< V, into `falloff`; -1 where all is let through
+  std::vector<LensFalloff> falloff;    ///< of each lens
+  std::vector<ResponseCurve> response; ///< of each lens
 
   LensFalloff falloffOf(int view) const { return lens.empty() || lens[view] < 0 ? LensFalloff{} : falloff[lens[view]]; }
 
-  /// Factors on RGB at a place of a photograph.
+  /// Null where it is straight.
+  const ResponseCurve* responseOf(int view) const
+  {
+    return lens.empty() || lens[view] < 0 || response[lens[view]].isLinear() ? nullptr : &response[lens[view]];
+  }
+
+  /// Factors on the light of RGB at a place of a photograph.
   Eigen::Vector3f factor(int view, float squared_radius) const
   {
     const float log_t = falloffOf(view).logTransmission(squared_radius);
     return log_t == 0.f ? Eigen::Vector3f(gains.col(view)) : Eigen::Vector3f(std::exp(-log_t) * gains.col(view));
+  }
+
+  /// A colour at a place of a photograph as a photograph of the middle of the lens and of gain 1 would show it.
+  Eigen::Vector3f corrected(int view, float squared_radius, const Eigen::Vector3f& color) const
+  {
+    const ResponseCurve* curve = responseOf(view);
+    const Eigen::Vector3f f = factor(view, squared_radius);
+    return curve ? curve->relight(color, f) : Eigen::Vector3f(color.cwiseProduct(f));
   }
 };
 
@@ -51,7 +68,15 @@ class PixelGain {
 public:
   PixelGain(const Photometry& photometry, int view, const CameraModel& camera);
 
-  Eigen::Vector3f operator()(const Eigen::Vector2f& pixel) const
+  /// A colour at a pixel, see Photometry::corrected().
+  Eigen::Vector3f operator()(const Eigen::Vector2f& pixel, const Eigen::Vector3f& color) const
+  {
+    const Eigen::Vector3f f = factor(pixel);
+    return curve_ ? curve_->relight(color, f) : Eigen::Vector3f(f.cwiseProduct(color));
+  }
+
+private:
+  Eigen::Vector3f factor(const Eigen::Vector2f& pixel) const
   {
     if (table_.empty())
       return gain_;
@@ -60,9 +85,9 @@ public:
     return (table_[i] + (at - static_cast<float>(i)) * (table_[i + 1] - table_[i])) * gain_;
   }
 
-private:
   static constexpr float last_ = 255;
   const CameraModel& camera_;
+  const ResponseCurve* curve_; ///< null: straight
   Eigen::Vector3f gain_;
   std::vector<float> table_; ///< 1 / T by stored radius; empty where it is 1 everywhere
 };

@@ -23,7 +23,7 @@ struct Candidate {
   float squaredRadius() const { return static_cast<float>(radius) / radius_steps; }
   Eigen::Vector3f corrected(const Photometry& photometry) const
   {
-    return Eigen::Vector3f(color[0], color[1], color[2]).cwiseProduct(photometry.factor(view, squaredRadius()));
+    return photometry.corrected(view, squaredRadius(), Eigen::Vector3f(color[0], color[1], color[2]));
   }
 };
 

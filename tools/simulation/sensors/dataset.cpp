@@ -34,6 +34,7 @@ void validate(const DatasetOptions& o)
           " is not in 0..0.9");
   require(o.sensor_noise >= 0.f && o.sensor_noise <= 100.f, "sensor noise ", o.sensor_noise, " is not in 0..100");
   require(o.vignetting >= 0.1f && o.vignetting <= 1.f, "vignetting ", o.vignetting, " is not in 0.1..1");
+  require(o.response >= 0.f && o.response <= 1.f, "response ", o.response, " is not in 0..1");
   require(o.blur >= 0.f && o.blur <= 20.f, "blur ", o.blur, " is not in 0..20");
   require(o.intruder >= 0, "intruder ", o.intruder, " is negative");
   require(o.pose_noise >= 0 && o.pose_noise <= 1, "pose noise ", o.pose_noise, " is not in 0..1");
@@ -129,13 +130,17 @@ void writePhotographs(const Run& run, const CameraSet& set, const Progress& prog
     exposure.noise = o.sensor_noise;
     exposure.corner = o.vignetting;
     exposure.blur = o.blur;
+    exposure.response = o.response;
     Shot shot{set.cameras[0], view, exposure};
     if (o.intruder > 0 && (k + 1) % o.intruder == 0)
       shot.intruder = intruderBefore(run.lit, view);
     writeImage(run.folder + "/images/" + view.image, takePhotograph(run.lit, shot, o.threads), o.jpeg_quality);
-    if (o.truth_images)
+    if (o.truth_images) {
+      Exposure exact;
+      exact.response = o.response;
       writeImage(run.folder + "/truth_images/" + std::filesystem::path(view.image).replace_extension(".png").string(),
-                 takePhotograph(run.lit, {set.cameras[0], view, {}}, o.threads));
+                 takePhotograph(run.lit, {set.cameras[0], view, exact}, o.threads));
+    }
     gains.write(concat(view.image, ' ', exposure.gain[0], ' ', exposure.gain[1], ' ', exposure.gain[2], '\n'));
   }
   gains.commit();

@@ -20,6 +20,7 @@ struct DatasetOptions {
   float exposure_spread = 0.2f;   ///< brightness of photographs is 1 +- this, 0..0.9
   float sensor_noise = 0.6f;      ///< deviation, grey levels of 0..255, >= 0
   float vignetting = 1.f;         ///< light in the photographs' corners / in their middle, 0.1..1
+  float response = 0.f;           ///< strength of the photographs' S-shaped tone curve, 0..1
   float blur = 0.f;               ///< deviation of the photographs' blur, pixels, 0..20
   int intruder = 0;               ///< somebody stands in every Nth photograph, >= 0; 0 = in none
   double pose_noise = 0;          ///< deviation of the written cameras' positions, metres, 0..1
@@ -32,7 +33,7 @@ struct DatasetOptions {
   int jpeg_quality = 95;          ///< 1..100
   int rgbd_frames = 0;            ///< of an RGB-D camera carried around, in rgbd/; 0..100000
   int rgbd_width = 640, rgbd_height = 480; ///< pixels, 16..20000
-  bool truth_images = false;               ///< also the photographs without exposure differences and noise, as PNG
+  bool truth_images = false;               ///< also the photographs as exact ones with the same tone curve, as PNG
   float max_edge = 0.1f;                   ///< metres, longest side of the faces of rooms, 0.02..10
   std::uint64_t seed = 1;
   int threads = 0; ///< 0 = all cores; the result does not depend on it

@@ -32,14 +32,21 @@ Vector3f pixelNoise(const Exposure& exposure, std::uint64_t pixel)
   return noise;
 }
 
+/// @param value grey levels
+float throughCurve(float value, float response)
+{
+  const float v = std::min(value / 255.f, 1.f);
+  return 255.f * ((1 - response) * v + response * v * v * (3 - 2 * v));
+}
+
 /// What the sensor makes of the light, display values as fractions of white, row by row.
 Image develop(const std::vector<Vector3f>& light, const Shot& shot, int threads)
 {
-  const auto& [gain, noise, corner, blur, seed, number] = shot.exposure;
+  const auto& [gain, noise, corner, blur, response, seed, number] = shot.exposure;
   const CameraModel& camera = shot.camera;
   Image image(camera.width, camera.height);
   const double half = 0.5 * std::hypot(camera.width, camera.height);
-  parallelFor(image.height, threads, [&, gain = gain, noise = noise, corner = corner](Index y) {
+  parallelFor(image.height, threads, [&, gain = gain, noise = noise, corner = corner, response = response](Index y) {
     for (int x = 0; x < image.width; ++x) {
       const Index at = y * image.width + x;
       Vector3f value = 255.f * light[at].cwiseProduct(gain);
@@ -47,6 +54,8 @@ Image develop(const std::vector<Vector3f>& light, const Shot& shot, int threads)
         const double r = std::hypot(x + 0.5 - camera.cx, y + 0.5 - camera.cy) / half;
         value *= 1 - (1 - corner) * r * r;
       }
+      if (response > 0.f)
+        value = value.unaryExpr([&](float v) { return throughCurve(v, response); });
       if (noise > 0.f)
         value += noise * pixelNoise(shot.exposure, at);
       for (int channel = 0; channel < 3; ++channel)
@@ -134,8 +143,8 @@ Image takePhotograph(const LitScene& lit, const Shot& shot, int threads)
   const CameraModel& camera = shot.camera;
   require(camera.width > 0 && camera.height > 0 && camera.fx > 0 && camera.fy > 0, "photograph: not a camera");
   require(shot.exposure.corner >= 0.1f && shot.exposure.corner <= 1.f && shot.exposure.blur >= 0.f &&
-              shot.exposure.blur <= 20.f,
-          "photograph: vignetting or blur out of range");
+              shot.exposure.blur <= 20.f && shot.exposure.response >= 0.f && shot.exposure.response <= 1.f,
+          "photograph: vignetting, blur or response out of range");
   std::vector<Vector3f> light(static_cast<std::size_t>(camera.width) * camera.height);
   const Vector3f center = (shot.view.center() - lit.scene.mesh.origin).cast<float>();
   const Index rows = (camera.height + block - 1) / block;

@@ -11,7 +11,9 @@ struct Exposure {
   float noise = 0.f;                              ///< deviation per pixel and channel, grey levels of 0..255
   float corner = 1.f;                             ///< light in the image's corners / in its middle (vignetting), 0.1..1
   float blur = 0.f;                               ///< deviation of the blur (Gaussian), pixels, >= 0
-  std::uint64_t seed = 1, number = 0;             ///< of the noise; number of the photograph
+  /// Strength s of an S-shaped tone curve, 0..1: value v of 0..1 becomes (1 - s) v + s (3 v^2 - 2 v^3).
+  float response = 0.f;
+  std::uint64_t seed = 1, number = 0; ///< of the noise; number of the photograph
 };
 
 /// Gains of photograph `number`: brightness 1 +- `spread`, red and blue 1 +- `spread` / 4 beside.
@@ -37,7 +39,7 @@ struct Shot {
 /// @return nothing where there is no room before the camera
 std::optional<Intruder> intruderBefore(const LitScene& lit, const View& view);
 
-/// What the camera sees: 4 rays a pixel; a pixel is their mean, blurred, times vignetting and gain.
+/// What the camera sees: 4 rays a pixel; a pixel is their mean, blurred, times vignetting and gain, through the tone curve.
 /// @param threads 0 = all cores; the result does not depend on it
 Image takePhotograph(const LitScene& lit, const Shot& shot, int threads);
 } // namespace fresco::simulation

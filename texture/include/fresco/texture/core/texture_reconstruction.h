@@ -80,6 +80,9 @@ struct TextureResult {
   /// 3xV, vignetting found: light that arrives at distance r from the principal point, in half diagonals of the image, is
   /// exp(a_1 r^2 + a_2 r^4 + a_3 r^6) of that in the middle; zeros where nothing is known. Colours are corrected by it.
   Points vignetting;
+  /// 2xV, tone curve found: a value v, as a share of white, stands for the light v exp(b_1 v + b_2 v^3), on which gains and
+  /// vignetting act; zeros where it is straight or nothing is known.
+  Eigen::Matrix2Xf response;
   double disagreement_before = 0;  ///< pixels, median, between photographs on the mesh; 0 where it was not measured
   double disagreement_after = 0;   ///< with `cameras`; the same where these were left as given
   std::vector<PhotographFit> fits; ///< of each view, with `cameras`; empty where it was not measured

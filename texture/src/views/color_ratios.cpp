@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "views/color_ratios.h"
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+namespace fresco::texture {
+namespace {
+bool isClear(const Candidate& c)
+{
+  constexpr int darkest = 12, brightest = 240; // grey levels: beyond, a value says little of the light
+  return !c.clipped &&
+         std::all_of(c.color.begin(), c.color.end(), [](int v) { return v >= darkest && v <= brightest; });
+}
+
+Eigen::Vector3f logColor(const Candidate& c)
+{
+  return Eigen::Vector3f(c.color[0], c.color[1], c.color[2]).array().log();
+}
+
+ColorRatio ratioOf(const Candidate& first, const Candidate& second)
+{
+  const Eigen::Vector3f a = logColor(first), b = logColor(second);
+  return {a - b, 0.5f * (a + b), {first.squaredRadius(), second.squaredRadius()}};
+}
+
+void addPatch(const Candidates& candidates, const std::vector<int>& owner, Index patch, ColorRatios& pairs)
+{
+  constexpr float trusted = 0.2f;            // of the best quality: views that show much less blur the colour
+  constexpr std::size_t most_samples = 1000; // per pair of views: more hardly change a median
+  const Candidate* list = candidates.of(patch);
+  const float best = candidates.bestQuality(patch);
+  for (Index i = 0; i < candidates.count(patch); ++i) {
+    if (list[i].quality() < trusted * best || !isClear(list[i]))
+      continue;
+    for (Index j = i + 1; j < candidates.count(patch); ++j)
+      if (const int a = owner[list[i].view], b = owner[list[j].view];
+          a != b && list[j].quality() >= trusted * best && isClear(list[j])) {
+        auto& ratios = pairs[{a, b}];
+        if (ratios.size() < most_samples)
+          ratios.push_back(ratioOf(list[i], list[j]));
+      }
+  }
+}
+} // namespace
+
+ColorRatios collectColorRatios(const Candidates& candidates, const std::vector<int>& owner)
+{
+  constexpr Index most_patches = 40000; // far more than the unknowns ask for
+  const Index patches = candidates.begin.size() - 1;
+  const Index taken = std::min(patches, most_patches);
+  ColorRatios pairs;
+  const Index golden = 0.618 * taken;
+  Index step = golden | 1;
+  while (taken > 1 && std::gcd(step, taken) != 1)
+    step += 2;
+  for (Index k = 0, at = 0; k < taken; ++k, at = (at + step) % taken)
+    addPatch(candidates, owner, at * patches / taken, pairs);
+  return pairs;
+}
+} // namespace fresco::texture
