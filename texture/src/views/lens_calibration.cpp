@@ -188,7 +188,7 @@ private:
 
   const ColorRatios& pairs_;
   const std::vector<int>& lens_;
-  const std::vector<char>& curved_;
+  const std::vector<char> curved_;
   int lenses_, views_;
   Eigen::VectorXd x_; ///< of each lens its falloff, of each view its exposure, of each lens its response
   Eigen::MatrixXd A_;
