@@ -14,8 +14,8 @@ namespace fresco {
 namespace {
 int runTool(const std::string& arguments, const std::string& folder, const std::string& before = "")
 {
-  const std::string command = before + std::string(FRESCO_BINARY_DIR) + "/bin/fresco_optimize " + arguments + " >" + folder +
-                              "/stdout.txt 2>" + folder + "/stderr.txt";
+  const std::string command = before + std::string(FRESCO_BINARY_DIR) + "/bin/fresco_optimize " + arguments + " >" +
+                              folder + "/stdout.txt 2>" + folder + "/stderr.txt";
   const int code = std::system(command.c_str());
   return WIFEXITED(code) ? WEXITSTATUS(code) : -1;
 }
@@ -91,7 +91,8 @@ TEST(Optimize, WhatMemoryDoesNotHoldIsRefusedBeforeTheWork)
   ASSERT_GT(optimizationMemory(mesh.faceCount(), 1000), std::size_t{700000} << 10);
   EXPECT_EQ(optimizationMemory(2 * mesh.faceCount(), 2000), 2 * optimizationMemory(mesh.faceCount(), 1000));
   const std::string out = folder + "/out.ply";
-  EXPECT_EQ(runTool(folder + "/mesh.ply " + folder + "/points.ply " + out + " -quiet", folder, "ulimit -v 700000 && "), 1);
+  EXPECT_EQ(runTool(folder + "/mesh.ply " + folder + "/points.ply " + out + " -quiet", folder, "ulimit -v 700000 && "),
+            1);
   const std::string error = readFile(folder + "/stderr.txt");
   EXPECT_NE(error.find("MB of memory"), std::string::npos) << error;
   EXPECT_EQ(std::count(error.begin(), error.end(), '\n'), 1) << error;

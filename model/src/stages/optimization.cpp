@@ -19,7 +19,8 @@ Figures makeOptimizedSurface(const Job& job, const Progress& progress)
   NormalFilteringOptions filtering;
   filtering.flip = true;
   filtering.threads = options.threads;
-  const PointSet points = pointsForVertices(*PlacedPoints(files.points).stream(), surface.vertexCount(), finestCell(job));
+  const PointSet points =
+      pointsForVertices(*PlacedPoints(files.points).stream(), surface.vertexCount(), finestCell(job));
   const NormalFilteringResult result = filterSurface(surface, points, filtering, progress);
   writeMesh(files.mesh, result.mesh);
   return {{"optimized", true},

@@ -136,7 +136,8 @@ Figures textureFromPoints(const Job& job, const TriangleMesh& mesh, const Progre
   PointTextureOptions texture;
   texture.texel = job.options.texel;
   texture.threads = job.options.threads;
-  const PointTextureResult result = reconstructPointTexture(mesh, PlacedPoints(job.files.points).sample(most_points), texture, progress);
+  const PointTextureResult result =
+      reconstructPointTexture(mesh, PlacedPoints(job.files.points).sample(most_points), texture, progress);
   Figures figures = {{"made_of", looks[int(result.look)]}};
   figures.update(writeModel(result, job.files, job.options.quality));
   if (result.look == PointLook::intensities)
