@@ -6,7 +6,8 @@ namespace fresco::model {
 struct ModelFiles {
   std::string folder;
   std::string work = folder + "/work", snapshots = folder + "/snapshots";
-  std::string points = work + "/registered.ply", surface = work + "/surface.ply", viewer_glb = work + "/viewer.glb";
+  std::string points = work + "/points"; ///< a folder: PlacedPoints
+  std::string surface = work + "/surface.ply", viewer_glb = work + "/viewer.glb";
   std::string pictures = work + "/pictures";       ///< unpacked from files of scans while they are needed
   std::string photographs = work + "/photographs"; ///< what the program colmap finds
   std::string cameras = work + "/cameras";         ///< of photographs, in the frame of the points

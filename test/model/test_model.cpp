@@ -3,6 +3,7 @@
 #include "input/rgbd.h"
 #include "report/report.h"
 #include "stages/fusion.h"
+#include "stages/placed_points.h"
 #include "test_data.h"
 #include "viewer/viewer.h"
 #include <fresco/core/require.h>
@@ -44,14 +45,51 @@ TEST(Fusion, OptimisationGetsNoMorePointsThanVerticesCanUse)
   set.normals.row(2).setOnes();
   set.viewpoints = set.points;
   set.origin = {1000, 2000, 3000};
-  const PointSet same = pointsForVertices(set, 4000, 0.02);
-  EXPECT_EQ(same.points, set.points);
-  const PointSet thinned = pointsForVertices(set, 900, 0.02);
+  const PlacedPoints placed(test::scratchFolder() + "/points");
+  placed.clear();
+  placed.write(0, set);
+  const PointSet same = pointsForVertices(*placed.stream(), 4000, 0.02);
+  EXPECT_LT(((same.points - set.points).cast<double>().colwise() + (same.origin - set.origin)).norm(), 1e-2);
+  EXPECT_EQ(same.size(), set.size());
+  const PointSet thinned = pointsForVertices(*placed.stream(), 900, 0.02);
   EXPECT_LE(thinned.size(), 2 * 92 * 92); // two layers of cells meet at z = 0
   EXPECT_GT(thinned.size(), 90 * 90);
-  EXPECT_EQ(thinned.origin, set.origin);
+  EXPECT_EQ(thinned.origin, same.origin);
   EXPECT_NEAR(thinned.confidences.sum(), 50000.f, 1.f);
-  EXPECT_NEAR(thinned.points.row(2).mean(), 0.f, 1e-4f);
+  EXPECT_NEAR(thinned.points.row(2).mean() + thinned.origin.z(), set.origin.z(), 1e-4);
+}
+
+TEST(PlacedPoints, AreTheSameInWindowsAndAsFilesAndSamplesAreEven)
+{
+  PointSet a, b;
+  a.points = Points::Random(3, 1000);
+  b.points = Points::Random(3, 500);
+  a.normals = a.points.colwise().normalized();
+  b.normals = b.points.colwise().normalized();
+  a.viewpoints = Eigen::Vector3f(1, 2, 3);
+  b.viewpoints = Eigen::Vector3f(3, 2, 1);
+  a.colors = Colors::Constant(3, 1000, 7);
+  const PlacedPoints placed(test::scratchFolder() + "/points");
+  placed.clear();
+  EXPECT_THROW(placed.stream(), std::runtime_error);
+  placed.write(11, b); // the order is that of the scans
+  placed.write(2, a);
+  const PointSet both = mergePoints(a, b);
+  const PointSet all = placed.sample(1500);
+  EXPECT_EQ(all.points, both.points);
+  EXPECT_EQ(all.normals, both.normals);
+  EXPECT_EQ(all.viewpoints, both.viewpoints);
+  EXPECT_EQ(all.colors.cols(), 0);
+  PointSet streamed;
+  placed.stream()->read([&](const PointSet& window) { appendPoints(streamed, window); });
+  EXPECT_EQ(streamed.points, both.points);
+  EXPECT_EQ(countPoints(*placed.stream()), 1500);
+  const PointSet third = placed.sample(500);
+  ASSERT_EQ(third.size(), 500);
+  for (Index i = 0; i < 500; ++i)
+    EXPECT_EQ(third.points.col(i), both.points.col(3 * i));
+  placed.clear();
+  EXPECT_THROW(placed.forEach([](const PointSet&) {}), std::runtime_error);
 }
 
 struct TwoStages {

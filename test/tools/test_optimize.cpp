@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "common/shapes.h"
 #include "surface/optimization/optimization_shapes.h"
 #include "test_data.h"
 #include <cstdlib>
@@ -11,10 +12,10 @@
 #include <sys/wait.h>
 namespace fresco {
 namespace {
-int runTool(const std::string& arguments, const std::string& folder)
+int runTool(const std::string& arguments, const std::string& folder, const std::string& before = "")
 {
-  const std::string command = std::string(FRESCO_BINARY_DIR) + "/bin/fresco_optimize " + arguments + " >" + folder +
-                              "/stdout.txt 2>" + folder + "/stderr.txt";
+  const std::string command = before + std::string(FRESCO_BINARY_DIR) + "/bin/fresco_optimize " + arguments + " >" +
+                              folder + "/stdout.txt 2>" + folder + "/stderr.txt";
   const int code = std::system(command.c_str());
   return WIFEXITED(code) ? WEXITSTATUS(code) : -1;
 }
@@ -73,6 +74,28 @@ TEST(Optimize, BadInputEndsCleanly)
   EXPECT_EQ(runTool(mesh + folder + "/points.ply " + out + " -mode other", folder), 2);
   EXPECT_EQ(runTool(mesh + folder + "/points.ply", folder), 2);
   EXPECT_EQ(runTool("-h", folder), 0);
+  EXPECT_FALSE(std::filesystem::exists(out));
+}
+
+TEST(Optimize, WhatMemoryDoesNotHoldIsRefusedBeforeTheWork)
+{
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "AddressSanitizer wants an address space without limit";
+#endif
+  const std::string folder = test::scratchFolder();
+  const TriangleMesh mesh = test::sphere(1.f, 9); // 2 million faces: 0.8 GB
+  writeMesh(folder + "/mesh.ply", mesh);
+  PointSet points;
+  points.points = mesh.vertices.leftCols(1000);
+  writePoints(folder + "/points.ply", points);
+  ASSERT_GT(optimizationMemory(mesh.faceCount(), 1000), std::size_t{700000} << 10);
+  EXPECT_EQ(optimizationMemory(2 * mesh.faceCount(), 2000), 2 * optimizationMemory(mesh.faceCount(), 1000));
+  const std::string out = folder + "/out.ply";
+  EXPECT_EQ(runTool(folder + "/mesh.ply " + folder + "/points.ply " + out + " -quiet", folder, "ulimit -v 700000 && "),
+            1);
+  const std::string error = readFile(folder + "/stderr.txt");
+  EXPECT_NE(error.find("MB of memory"), std::string::npos) << error;
+  EXPECT_EQ(std::count(error.begin(), error.end(), '\n'), 1) << error;
   EXPECT_FALSE(std::filesystem::exists(out));
 }
 } // namespace

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "photographs/structure_from_motion.h"
+#include "stages/placed_points.h"
 #include "stages/stages.h"
 #include <Eigen/Geometry>
 #include <fresco/core/constants.h>
 #include <fresco/io/colmap.h>
 #include <fresco/io/image_io.h>
-#include <fresco/io/point_io.h>
 #include <fresco/registration/core/camera_alignment.h>
 namespace fresco::model {
 namespace {
@@ -50,12 +50,13 @@ Figures alignCameras(const Job& job, const Progress& progress)
     writeColmap(job.files.cameras, set, points);
     return figures;
   }
+  constexpr Index most_points = 5000000; // the search takes far fewer, and drawings of 24 places hardly show more
   CameraAlignmentOptions options;
   options.threads = job.options.threads;
   options.photograph = [&](Index view) { return readImage(job.input.images + "/" + set.views[view].image); };
   CameraAlignmentResult result;
   try {
-    result = fresco::alignCameras(set, points, readPoints(job.files.points), options, progress);
+    result = fresco::alignCameras(set, points, PlacedPoints(job.files.points).sample(most_points), options, progress);
   } catch (const Cancelled&) {
     throw;
   } catch (const std::runtime_error& error) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "stages/fusion.h"
+#include "stages/placed_points.h"
 #include <fresco/core/require.h>
 namespace fresco::model {
 PointFusion::PointFusion(double cell) : cell_(cell) { require(cell > 0, "fusion: cell ", cell, " is not positive"); }
@@ -57,19 +58,23 @@ PointSet PointFusion::result() const
   return set;
 }
 
-PointSet pointsForVertices(PointSet points, Index vertices, double cell)
+PointSet pointsForVertices(const PointStream& points, Index vertices, double cell)
 {
   constexpr Index most_per_vertex = 16; // more cost memory and time in every iteration and say little that is new
-  if (points.size() <= most_per_vertex * vertices || !points.hasNormals())
-    return points;
-  points.viewpoints.resize(3, 0);
-  points.colors.resize(3, 0);
+  PointSet result;
+  if (countPoints(points) <= most_per_vertex * vertices) {
+    points.read([&](const PointSet& window) { appendPoints(result, window); });
+    result.colors.resize(3, 0);
+    return result;
+  }
   PointFusion fusion(cell / 3);
-  fusion.add(points);
-  const Eigen::Vector3d origin = points.origin;
-  points = PointSet();
-  points = fusion.result();
-  points.origin = origin;
-  return points;
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();
+  points.read([&](const PointSet& window) {
+    origin = window.origin;
+    fusion.add(window);
+  });
+  result = fusion.result();
+  result.origin = origin;
+  return result;
 }
 } // namespace fresco::model

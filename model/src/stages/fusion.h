@@ -2,6 +2,7 @@
 #pragma once
 #include <cstdint>
 #include <fresco/core/point_set.h>
+#include <fresco/core/point_stream.h>
 #include <unordered_map>
 #include <vector>
 namespace fresco::model {
@@ -35,5 +36,5 @@ private:
 /// attributes that the optimisation of a surface uses.
 /// @param points   with normals
 /// @param vertices of the surface that was reconstructed with cells of `cell`, length unit of the points, > 0
-PointSet pointsForVertices(PointSet points, Index vertices, double cell);
+PointSet pointsForVertices(const PointStream& points, Index vertices, double cell);
 } // namespace fresco::model

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "stages/fusion.h"
+#include "stages/placed_points.h"
 #include "stages/stages.h"
 #include <fresco/io/mesh_io.h>
-#include <fresco/io/point_io.h>
 #include <fresco/surface/core/normal_filtering.h>
 namespace fresco::model {
 Figures makeOptimizedSurface(const Job& job, const Progress& progress)
@@ -19,7 +19,8 @@ Figures makeOptimizedSurface(const Job& job, const Progress& progress)
   NormalFilteringOptions filtering;
   filtering.flip = true;
   filtering.threads = options.threads;
-  const PointSet points = pointsForVertices(readPoints(files.points), surface.vertexCount(), finestCell(job));
+  const PointSet points =
+      pointsForVertices(*PlacedPoints(files.points).stream(), surface.vertexCount(), finestCell(job));
   const NormalFilteringResult result = filterSurface(surface, points, filtering, progress);
   writeMesh(files.mesh, result.mesh);
   return {{"optimized", true},

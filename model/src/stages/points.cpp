@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "stages/placed_points.h"
 #include "stages/stages.h"
 #include <Eigen/LU>
 #include <algorithm>
@@ -103,7 +104,7 @@ Figures pointsFromScans(const Job& job, const Progress& progress)
   const Index count = job.input.scans.size();
   const std::vector<Pose> poses = placeScans(job.input, job.options, subProgress(progress, 0.0, 0.4), figures);
   Index raw = 0, colored = 0, with_intensities = 0, read = 0;
-  const double step = 0.55 / count;
+  const double step = 0.6 / count;
   const auto prepared = [&](Index s) {
     const double begin = 0.4 + step * s;
     report(progress, concat("scan ", s + 1, " of ", count), begin);
@@ -114,13 +115,18 @@ Figures pointsFromScans(const Job& job, const Progress& progress)
     with_intensities += scan.intensities.size() > 0;
     return preparedScan(std::move(scan), job.options, subProgress(progress, begin, begin + step));
   };
-  const PointSet merged = mergeScans({count, prepared}, poses, job.options.threads);
-  report(progress, "write", 0.95);
-  writePoints(job.files.points, merged);
+  const PlacedPoints placed(job.files.points);
+  placed.clear();
+  Index points = 0;
+  const auto keep = [&](Index s, const PointSet& scan) {
+    points += scan.size();
+    placed.write(s, scan);
+  };
+  forEachPlacedScan({count, prepared}, poses, keep, job.options.threads);
   writePoses(job.files.poses, poses);
   figures["scans"] = count;
   figures["raw_points"] = raw; // of the scans that have a place
-  figures["points"] = merged.size();
+  figures["points"] = points;
   figures["unplaced_scans"] = std::count(poses.begin(), poses.end(), std::nullopt);
   for (const auto& [having, what] : {std::pair{colored, "colours"}, {with_intensities, "intensities"}})
     if (having > 0 && having < read && !job.input.hasPictures())
@@ -167,7 +173,9 @@ Figures pointsFromFrames(const Job& job, const Progress& progress)
   if (fused.points.size() < 100)
     throw std::runtime_error(input.folder + ": hardly any depth in the frames");
   const PointSet points = smoothed(fused.points, options, subProgress(progress, 0.8, 1.0));
-  writePoints(files.points, points);
+  const PlacedPoints placed(files.points);
+  placed.clear();
+  placed.write(0, points);
   std::size_t next = 0;
   for (Pose& pose : poses)
     if (pose)

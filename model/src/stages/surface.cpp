@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "stages/free_space.h"
+#include "stages/placed_points.h"
 #include "stages/stages.h"
 #include <algorithm>
 #include <fresco/core/parallel.h>
@@ -17,14 +18,16 @@ namespace {
 constexpr double most_trim_of_frames = 0.75;
 
 /// 1 where no point of the data is within a cell.
-std::vector<char> farFromPoints(const TriangleMesh& mesh, const PointSet& points, float cell, int threads)
+std::vector<char> farFromPoints(const TriangleMesh& mesh, const PlacedPoints& placed, float cell, int threads)
 {
-  const PointTree tree(points.points, threads);
-  const Eigen::Vector3f shift = (mesh.origin - points.origin).cast<float>();
-  std::vector<char> far(mesh.vertexCount());
-  parallelFor(mesh.vertexCount(), threads, [&](Index v) {
-    const Eigen::Vector3f place = mesh.vertices.col(v) + shift;
-    far[v] = tree.nearest(place, cell).index < 0;
+  std::vector<char> far(mesh.vertexCount(), 1);
+  placed.forEach([&](const PointSet& points) {
+    const PointTree tree(points.points, threads);
+    const Eigen::Vector3f shift = (mesh.origin - points.origin).cast<float>();
+    parallelFor(mesh.vertexCount(), threads, [&](Index v) {
+      const Eigen::Vector3f place = mesh.vertices.col(v) + shift;
+      far[v] = far[v] && tree.nearest(place, cell).index < 0;
+    });
   });
   return far;
 }
@@ -54,9 +57,9 @@ FreeSpace askAllViews(const Points& places, const Job& job, double cell)
 
 /// 1 for the vertices in places that the sensors saw through and that no point is near to. Poses of depth cameras are
 /// not exact: there, one frame in thirty must have seen through.
-std::vector<char> inFreeSpace(const TriangleMesh& mesh, const PointSet& points, const Job& job, double cell)
+std::vector<char> inFreeSpace(const TriangleMesh& mesh, const PlacedPoints& placed, const Job& job, double cell)
 {
-  std::vector<char> removed = farFromPoints(mesh, points, cell, job.options.threads);
+  std::vector<char> removed = farFromPoints(mesh, placed, cell, job.options.threads);
   std::vector<Index> asked;
   for (Index v = 0; v < mesh.vertexCount(); ++v)
     if (removed[v])
@@ -75,16 +78,16 @@ Figures makeSurface(const Job& job, const Progress& progress)
 {
   const auto& [input, files, options] = job;
   report(progress, "read", 0.0);
-  PointSet points = readPoints(files.points);
+  const PlacedPoints placed(files.points);
   VolumetricOptions volumetric;
   volumetric.cell_size = finestCell(job);
   volumetric.threads = options.threads;
   volumetric.trim_levels = input.rgbd ? std::min(options.trim_levels, most_trim_of_frames) : options.trim_levels;
-  VolumetricResult result = reconstructVolumetric(std::move(points), volumetric, subProgress(progress, 0.0, 0.7));
+  VolumetricResult result = reconstructVolumetric(placed.stream(), volumetric, subProgress(progress, 0.0, 0.7));
   Index carved = 0;
   if (options.trim_levels > 0) {
     report(progress, "free space", 0.7);
-    std::vector<char> removed = inFreeSpace(result.mesh, readPoints(files.points), job, volumetric.cell_size);
+    std::vector<char> removed = inFreeSpace(result.mesh, placed, job, volumetric.cell_size);
     carved = std::count(removed.begin(), removed.end(), 1);
     result.mesh = withoutVertices(result.mesh, std::move(removed));
   }

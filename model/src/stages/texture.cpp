@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "stages/placed_points.h"
 #include "stages/stages.h"
 #include <algorithm>
 #include <cmath>
@@ -131,10 +132,12 @@ Figures textureFromPoints(const Job& job, const TriangleMesh& mesh, const Progre
 {
   static constexpr const char* looks[] = {"nothing: no colours, no intensities", "colours of the points",
                                           "intensities of the points"};
+  constexpr Index most_points = 20000000; // about 2 GB while they are painted
   PointTextureOptions texture;
   texture.texel = job.options.texel;
   texture.threads = job.options.threads;
-  const PointTextureResult result = reconstructPointTexture(mesh, readPoints(job.files.points), texture, progress);
+  const PointTextureResult result =
+      reconstructPointTexture(mesh, PlacedPoints(job.files.points).sample(most_points), texture, progress);
   Figures figures = {{"made_of", looks[int(result.look)]}};
   figures.update(writeModel(result, job.files, job.options.quality));
   if (result.look == PointLook::intensities)

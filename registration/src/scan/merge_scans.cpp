@@ -4,6 +4,8 @@
 #include <fresco/filters/core/normal_orientation.h>
 #include <fresco/filters/core/oriented_normals.h>
 #include <fresco/registration/core/scan_registration.h>
+#include <optional>
+#include <utility>
 namespace fresco {
 namespace {
 std::vector<Index> finiteColumns(const PointSet& scan)
@@ -42,15 +44,13 @@ Eigen::Vector3d originFor(const PointSet& scan, const Eigen::Matrix4d& T_world_s
   return center.norm() > large_coordinate ? Eigen::Vector3d(center.array().round()) : Eigen::Vector3d::Zero();
 }
 
-// One scan in the world less `origin`, with normals and a viewpoint per point.
+// One scan in the world less `origin`, with normals and viewpoints.
 PointSet placedScan(const PointSet& scan, const Eigen::Matrix4d& T_world_scan, const Eigen::Vector3d& origin,
                     int threads)
 {
   PointSet own = selectPoints(scan, finiteColumns(scan));
   if (own.viewpoints.cols() == 0)
     own.viewpoints = (-own.origin).cast<float>();
-  if (own.viewpoints.cols() == 1)
-    own.viewpoints = Points(own.viewpoints.replicate(1, own.size()));
   own.normals = orientedNormals(own, threads);
   Eigen::Matrix4d T = T_world_scan;
   T.topRightCorner<3, 1>() -= origin;
@@ -67,9 +67,27 @@ PointSet mergeScans(const std::vector<PointSet>& scans, const std::vector<Pose>&
 
 PointSet mergeScans(const ScanSource& scans, const std::vector<Pose>& poses, int threads)
 {
+  PointSet merged;
+  forEachPlacedScan(
+      scans, poses,
+      [&](Index, PointSet placed) {
+        if (merged.size() == 0)
+          merged = std::move(placed);
+        else
+          appendPoints(merged, placed);
+      },
+      threads);
+  if (merged.viewpoints.cols() == 1)
+    merged.viewpoints = Points(merged.viewpoints.replicate(1, merged.size()));
+  return merged;
+}
+
+void forEachPlacedScan(const ScanSource& scans, const std::vector<Pose>& poses,
+                       const std::function<void(Index, PointSet)>& receive, int threads)
+{
   const Index count = poses.size();
   require(scans.count == count, "merge: ", scans.count, " scans, ", poses.size(), " poses");
-  PointSet merged;
+  std::optional<Eigen::Vector3d> origin;
   for (Index i = 0; i < count; ++i) {
     if (!poses[i])
       continue;
@@ -77,10 +95,10 @@ PointSet mergeScans(const ScanSource& scans, const std::vector<Pose>& poses, int
     validatePointSet(scan);
     if (scan.size() == 0)
       continue;
-    if (merged.size() == 0)
-      merged.origin = originFor(scan, *poses[i]);
-    appendPoints(merged, placedScan(scan, *poses[i], merged.origin, threads));
+    if (!origin)
+      origin = originFor(scan, *poses[i]);
+    if (PointSet placed = placedScan(scan, *poses[i], *origin, threads); placed.size() > 0)
+      receive(i, std::move(placed));
   }
-  return merged;
 }
 } // namespace fresco

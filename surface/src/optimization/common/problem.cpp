@@ -3,6 +3,7 @@
 #include "optimization/common/inversion_guard.h"
 #include <algorithm>
 #include <cmath>
+#include <fresco/core/machine_memory.h>
 #include <fresco/core/parallel.h>
 #include <fresco/core/require.h>
 namespace fresco::optimization {
@@ -14,6 +15,16 @@ void validate(const TriangleMesh& mesh, const PointSet& points)
   validateMesh(mesh);
   validatePointSet(points);
   require(points.size() > 0, "optimisation: no points");
+}
+
+void requireMemory(Index faces, Index points)
+{
+  constexpr std::size_t megabyte = 1000000;
+  const std::size_t needed = optimizationMemory(faces, points), there = machineMemory();
+  if (needed > there)
+    throw std::runtime_error(concat("optimisation: ", faces, " faces and ", points, " points take about ",
+                                    needed / megabyte, " MB of memory, there are ", there / megabyte,
+                                    "; a mesh of larger cells takes less"));
 }
 
 // Mean of the vertices that faces name.
@@ -58,6 +69,7 @@ OptimizationProblem makeProblem(const TriangleMesh& mesh, const PointSet& points
   constexpr double reach =
       6.0; // mean edge lengths, twice the outlier distance: beyond, a datum has no weight to speak of
   validate(mesh, points);
+  requireMemory(mesh.faceCount(), points.size());
   OptimizationProblem problem;
   problem.graph = buildGraph(mesh.faces, mesh.vertexCount(), threads);
   const Eigen::Vector3d middle = middleOf(mesh, problem.graph);
@@ -96,3 +108,9 @@ double rmsMove(const Positions& move, const std::vector<char>& counts, int threa
   return number > 0 ? std::sqrt(sum / number) : 0.0;
 }
 } // namespace fresco::optimization
+
+std::size_t fresco::optimizationMemory(Index faces, Index points)
+{
+  constexpr std::size_t per_face = 370, per_point = 65; // bytes, measured: docs/measurements/optimization.md
+  return per_face * static_cast<std::size_t>(faces) + per_point * static_cast<std::size_t>(points);
+}

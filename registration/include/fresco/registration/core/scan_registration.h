@@ -124,4 +124,10 @@ FRESCO_EXPORT ScanRegistrationResult registerScans(const ScanSource& scans, cons
 /// @throws std::invalid_argument if sizes differ or an attribute is malformed
 FRESCO_EXPORT PointSet mergeScans(const std::vector<PointSet>& scans, const std::vector<Pose>& poses, int threads = 0);
 FRESCO_EXPORT PointSet mergeScans(const ScanSource& scans, const std::vector<Pose>& poses, int threads = 0);
+
+/// The parts of the above one at a time, where all together are more than memory holds. They have one origin; each keeps
+/// the attributes that its scan has.
+/// @param receive gets the scan's number and its points, at least one
+FRESCO_EXPORT void forEachPlacedScan(const ScanSource& scans, const std::vector<Pose>& poses,
+                                     const std::function<void(Index, PointSet)>& receive, int threads = 0);
 } // namespace fresco

@@ -44,6 +44,7 @@ struct NormalFilteringResult : SurfaceOptimizationResult {
 ///               are close together. Non-finite points are left out.
 /// @throws std::invalid_argument if the mesh is not valid or has no area, there is no finite point, no point is near
 ///         the mesh, or an option is out of range
+/// @throws std::runtime_error if optimizationMemory() exceeds what the machine has
 /// @throws Cancelled if `progress` asks to stop
 FRESCO_EXPORT NormalFilteringResult filterSurface(const TriangleMesh& mesh, const PointSet& points,
                                                   const NormalFilteringOptions& options = {},

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+#include <cstddef>
+#include <fresco/core/export.h>
 #include <fresco/core/mesh.h>
 namespace fresco {
 /// The algorithm that moves the vertices.
@@ -22,4 +24,8 @@ struct SurfaceOptimizationResult {
   Index covered_vertices = 0;  ///< vertices near data; the others stay exactly where they were
   Index restored_vertices = 0; ///< vertices put back by the final check
 };
+
+/// Bytes that an optimisation of so many faces by so many points takes, mesh and points included, to about a tenth. The
+/// whole mesh is optimised at once: one that takes more than machineMemory() is refused.
+FRESCO_EXPORT std::size_t optimizationMemory(Index faces, Index points);
 } // namespace fresco

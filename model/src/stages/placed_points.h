@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include <fresco/core/point_set.h>
+#include <fresco/core/point_stream.h>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+namespace fresco::model {
+/// The points that a model is made of: a file per scan in a folder, all in one frame, with normals. All together may be
+/// more than memory holds; no more than one file is in memory at a time.
+class PlacedPoints {
+public:
+  explicit PlacedPoints(std::string folder) : folder_(std::move(folder)) {}
+
+  /// An empty folder. @throws std::runtime_error if it cannot be made
+  void clear() const;
+
+  /// @param scan its number, >= 0; the others' files stay
+  void write(Index scan, const PointSet& points) const;
+
+  /// All points in windows, without viewpoints. @throws std::runtime_error if there is no file
+  std::unique_ptr<PointStream> stream() const;
+
+  /// Hands over file after file, with all that it has. @throws as stream()
+  void forEach(const std::function<void(const PointSet&)>& receive) const;
+
+  /// All points, or every k-th where there are more than `most`, with the attributes that all files have.
+  PointSet sample(Index most) const;
+
+private:
+  std::vector<std::string> files() const;
+
+  std::string folder_;
+};
+
+Index countPoints(const PointStream& points);
+} // namespace fresco::model
