@@ -211,7 +211,8 @@ void calibrateLenses(const ColorRatios& pairs, const std::vector<int>& lens, Pho
   std::vector<char> curved(lenses, 1);
   const LensSystem first(pairs, lens, curved);
   for (int l = 0; l < lenses; ++l)
-    curved[l] = first.isCertain(l) && first.strength(l) >= least_curve;
+    curved[l] =
+        ResponseCurve::rises(first.response(l).cast<float>()) && first.isCertain(l) && first.strength(l) >= least_curve;
   const LensSystem last(pairs, lens, curved);
   for (int l = 0; l < lenses; ++l) {
     out.falloff.push_back(last.falloff(l));

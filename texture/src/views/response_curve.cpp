@@ -5,6 +5,7 @@
 namespace fresco::texture {
 namespace {
 constexpr int light_steps = 256, value_steps = 1024; // finer where the curve may be steep
+constexpr float flattest = 0.1f;                     // of a logarithm: less light cannot be told from noise
 
 /// Logarithm of light over that of value: its least slope.
 float leastSlope(const ResponseCurve::Coefficients& b)
@@ -18,9 +19,10 @@ float leastSlope(const ResponseCurve::Coefficients& b)
 }
 } // namespace
 
+bool ResponseCurve::rises(const Coefficients& b) { return leastSlope(b) >= flattest; }
+
 ResponseCurve::ResponseCurve(Coefficients b)
 {
-  constexpr float flattest = 0.1f; // of a logarithm: less light cannot be told from noise
   if (b.isZero(0))
     return;
   if (const float slope = leastSlope(b); slope < flattest)

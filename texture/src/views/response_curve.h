@@ -15,6 +15,9 @@ public:
   /// @param b any; those of a curve that does not rise everywhere are made smaller
   explicit ResponseCurve(Coefficients b);
 
+  /// Whether more light is a higher value everywhere. Otherwise it is no camera's curve: values differ for another reason.
+  static bool rises(const Coefficients& b);
+
   bool isLinear() const { return light_.empty(); }
   const Coefficients& coefficients() const { return b_; }
 
