@@ -9,7 +9,7 @@
 #include "painting/back_projection.h"
 #include "painting/color_growth.h"
 #include "painting/outline_texels.h"
-#include "views/exposure.h"
+#include "photometry/exposure.h"
 #include "views/face_orientation.h"
 #include "views/photo_consistency.h"
 #include "views/view_selection.h"

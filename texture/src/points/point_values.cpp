@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "points/point_values.h"
-#include "views/exposure.h"
+#include "photometry/exposure.h"
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>

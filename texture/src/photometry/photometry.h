@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include "cameras/view_parts.h"
-#include "views/response_curve.h"
+#include "photometry/response_curve.h"
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>

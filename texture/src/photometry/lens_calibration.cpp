@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "views/lens_calibration.h"
+#include "photometry/lens_calibration.h"
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "views/exposure.h"
-#include "views/lens_calibration.h"
+#include "photometry/exposure.h"
+#include "photometry/lens_calibration.h"
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include "views/color_ratios.h"
+#include "photometry/color_ratios.h"
 namespace fresco::texture {
 /// Vignetting of each lens, a polynomial as in Goldman 2010, "Vignette and Exposure Calibration and Compensation", and the
 /// tone curve behind it, by least squares over patches that several views show. Lenses that come out within 1 % of even

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "views/color_ratios.h"
+#include "photometry/color_ratios.h"
 #include <algorithm>
 #include <cmath>
 #include <numeric>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "views/photometry.h"
+#include "photometry/photometry.h"
 #include <algorithm>
 #include <cmath>
 namespace fresco::texture {

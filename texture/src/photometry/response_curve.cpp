@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "views/response_curve.h"
+#include "photometry/response_curve.h"
 #include <algorithm>
 #include <cmath>
 namespace fresco::texture {
