@@ -27,6 +27,17 @@ std::string hashed(const std::string& text)
   return out.str();
 }
 
+/// Those in folders too: where one is lost, the stage is not done.
+std::ptrdiff_t fileCount(const std::vector<std::string>& outputs)
+{
+  std::ptrdiff_t count = 0;
+  for (const std::string& path : outputs)
+    count += std::filesystem::is_directory(path)
+                 ? std::distance(std::filesystem::directory_iterator(path), std::filesystem::directory_iterator())
+                 : std::ptrdiff_t{std::filesystem::exists(path)};
+  return count;
+}
+
 /// Restarts the kernel's count of the highest resident memory.
 void resetPeakMemory() { std::ofstream("/proc/self/clear_refs") << "5"; }
 
@@ -90,7 +101,8 @@ try {
   if (!resume_ || !exists(file) || !std::all_of(stage.outputs.begin(), stage.outputs.end(), exists))
     return false;
   const Json stored = Json::parse(readFile(file), nullptr, false);
-  if (stored.is_discarded() || !stored.is_object() || stored.value("key", "") != key_ || !stored.contains("figures"))
+  if (stored.is_discarded() || !stored.is_object() || stored.value("key", "") != key_ || !stored.contains("figures") ||
+      stored.value("files", std::ptrdiff_t{0}) != fileCount(stage.outputs))
     return false;
   records_.push_back({stage.name, stored.value("seconds", 0.0), stored.value("cpu_seconds", 0.0),
                       stored.value("peak_megabytes", 0.0), true, stored["figures"]});
@@ -121,6 +133,7 @@ void StageLog::run(const Stage& stage)
   record.cpu_seconds = cpuSeconds() - cpu_start;
   record.peak_megabytes = peakMegabytes();
   writeFile(file, jsonText(Json{{"key", key_},
+                                {"files", fileCount(stage.outputs)},
                                 {"seconds", record.seconds},
                                 {"cpu_seconds", record.cpu_seconds},
                                 {"peak_megabytes", record.peak_megabytes},

@@ -145,6 +145,26 @@ TEST(Stages, ResumeTakesOverOnlyWhatIsStillValid)
   EXPECT_EQ(job.runs_a, 5);
 }
 
+TEST(Stages, AStageThatLostAFileOfItsFolderIsMadeAnew)
+{
+  const std::string folder = test::scratchFolder(), points = folder + "/points";
+  const auto isResumed = [&] {
+    StageLog log(folder + "/work", "input", true, {});
+    log.run({"a", "", {points}, [&](const Progress&) {
+               fs::create_directories(points);
+               std::ofstream(points + "/1") << "one";
+               std::ofstream(points + "/2") << "two";
+               return Json();
+             }});
+    return log.records().at(0).resumed;
+  };
+  EXPECT_FALSE(isResumed());
+  EXPECT_TRUE(isResumed());
+  fs::remove(points + "/1");
+  EXPECT_FALSE(isResumed());
+  EXPECT_TRUE(fs::exists(points + "/1"));
+}
+
 TEST(Report, SummaryOfAStageIsOneLineForPeople)
 {
   StageRecord stage;
