@@ -123,7 +123,9 @@ void run(const Request& request)
 {
   std::unique_ptr<PointStream> points = openPointFiles(request.inputs);
   if (request.estimate) {
-    const VolumetricEstimate estimate = estimateVolumetric(*points, request.options);
+    constexpr std::size_t program = 40'000'000; // libraries, threads
+    VolumetricEstimate estimate = estimateVolumetric(*points, request.options);
+    estimate.memory += program;
     const std::size_t kept = request.memory == 0 ? estimate.memory : ScratchSpace::keptInMemory(bytes(request.memory));
     std::cout << std::ceil(estimate.memory / 1e6) << ' '
               << std::ceil((estimate.memory - std::min(kept, estimate.memory)) / 1e6) << ' '
