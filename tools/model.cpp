@@ -35,6 +35,8 @@ int main(int argc, char** argv)
     args.flag("no_optimize", options.optimize,
               "leave the vertices where the reconstruction puts them: rounded edges; always so for RGB-D", false);
     args.option("texel", options.texel, "side of a texel, metres; 0 = as fine as photographs, panoramas or points");
+    args.option("atlas", options.atlas,
+                "largest side of a picture of the texture, 128..16384 pixels; a larger texture has several; 0 = 8192");
     args.option("quality", options.quality, "JPEG quality of the texture's pictures, 1..100; 0 = PNG, without loss");
     args.option(
         "panorama_direction", options.panorama_direction,

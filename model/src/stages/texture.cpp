@@ -135,6 +135,7 @@ Figures textureFromPoints(const Job& job, const TriangleMesh& mesh, const Progre
   constexpr Index most_points = 20000000; // about 2 GB while they are painted
   PointTextureOptions texture;
   texture.texel = job.options.texel;
+  texture.atlas = job.options.atlas;
   texture.threads = job.options.threads;
   const PointTextureResult result =
       reconstructPointTexture(mesh, PlacedPoints(job.files.points).sample(most_points), texture, progress);
@@ -151,6 +152,7 @@ Figures textureFromViews(const Job& job, const TriangleMesh& mesh, const std::ve
   const ModelInput& input = job.input;
   TextureOptions texture;
   texture.texel = job.options.texel;
+  texture.atlas = job.options.atlas;
   texture.threads = job.options.threads;
   TextureResult result = reconstructTexture(mesh, views, texture, progress);
   const std::size_t given = input.panoramas.size() + input.inside.pictures.size() + placedCameras(job).views.size();

@@ -61,11 +61,12 @@ public:
       pixels_.col(v) = pixelWithin(view, patches.vertices.col(v));
   }
 
+  /// Whether a vertex lies in the image: else no patch does.
+  bool mayShow() const { return (pixels_.row(2).array() > 0).any(); }
+
   std::vector<Seen> run(const VisibilityInput& input, Index number, const DepthMap& map) const
   {
     std::vector<Seen> seen;
-    if (!(pixels_.row(2).array() > 0).any())
-      return seen;
     const std::shared_ptr<const Image> photo = input.views.photos.get(number);
     const float misfit = input.views.misfits.empty() ? 0.f : input.views.misfits[number];
     const float radius = limits_.margin / map.step;
@@ -244,8 +245,12 @@ Candidates findCandidates(const PatchMesh& patches, const VisibilityInput& input
       const Index v = first + i;
       if (!views.used[v])
         return;
+      const ViewTest view(patches, views.projectors[v], limits);
+      if (!view.mayShow() && !outlines)
+        return;
       const DepthMap map = finestDepth(input, v, std::move(maps[v]));
-      seen[i] = ViewTest(patches, views.projectors[v], limits).run(input, v, map);
+      if (view.mayShow())
+        seen[i] = view.run(input, v, map);
       if (outlines)
         (*outlines)[v] = OutlineMask(map, OutlineMask::pixel_reach, limits.tolerance);
     };

@@ -18,6 +18,8 @@ struct ModelOptions {
   double trim_levels = 2.0;       ///< see VolumetricOptions::trim_levels, >= 0; 0 = keep the surface closed; RGB-D:
                                   ///< at most 0.75
   double texel = 0.0;             ///< side of a texel, >= 0; 0 = as fine as photographs, panoramas or points
+  int atlas = 0;                  ///< largest side of a picture of the texture, 128..16384 pixels, more of them beyond;
+                                  ///< 0 = 8192
   int quality = 0;                ///< JPEG quality of the texture's pictures, 1..100; 0 = PNG
   double panorama_direction = 0;  ///< degrees counter-clockwise from the scan's x axis to the middle of its panorama
   bool panorama_mirrored = false; ///< panoramas go around counter-clockwise from left to right
