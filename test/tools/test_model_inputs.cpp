@@ -51,6 +51,24 @@ double paintError(const std::string& folder)
   return sum / count;
 }
 
+TEST(ModelInputs, AtlasesAreNoLargerThanAskedAndOlderOnesGo)
+{
+  const std::string folder = scansAlone();
+  EXPECT_EQ(textureFigures(modelOf(folder))["atlases"], 1);
+  const double whole = paintError(folder);
+  EXPECT_TRUE(fs::exists(folder + "/out/model.png"));
+  put(folder + "/out/model_of_mine.png", "kept");
+  const nlohmann::json report = modelOf(folder, "-resume -atlas 128");
+  EXPECT_GT(textureFigures(report)["atlases"], 1);
+  EXPECT_LE(textureFigures(report)["atlas_width"], 128);
+  EXPECT_NEAR(paintError(folder), whole, 1);
+  EXPECT_FALSE(fs::exists(folder + "/out/model.png"));
+  EXPECT_FALSE(fs::exists(folder + "/out/model_mask.png"));
+  EXPECT_TRUE(fs::exists(folder + "/out/model_0.png"));
+  EXPECT_TRUE(fs::exists(folder + "/out/model_of_mine.png"));
+  EXPECT_EQ(run(folder, "model room out -atlas 100").status, 2);
+}
+
 TEST(ModelInputs, CamerasOfTheirOwnFrameAreAligned)
 {
   const std::string folder = scratchFolder();

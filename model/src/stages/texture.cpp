@@ -13,7 +13,10 @@
 #include <fresco/io/pose_file.h>
 #include <fresco/texture/core/point_texture.h>
 #include <fresco/texture/core/texture_reconstruction.h>
+#include <fstream>
 #include <map>
+#include <regex>
+#include <set>
 namespace fresco::model {
 namespace {
 /// Where a panorama was taken, in the frame of its scan: where the scanner stood.
@@ -110,6 +113,26 @@ std::vector<TextureView> viewsOf(const Job& job, const std::vector<Pose>& poses)
   return views;
 }
 
+/// Removes the pictures and masks of an earlier model that had others: more atlases, or another format.
+void removeOldPictures(const ModelFiles& files, std::size_t masks)
+{
+  namespace fs = std::filesystem;
+  std::set<std::string> present;
+  for (std::size_t i = 0; i < masks; ++i)
+    present.insert(fs::path(files.mask(i, masks)).filename());
+  std::ifstream materials(fs::path(files.model_obj).replace_extension(".mtl"));
+  for (std::string word; materials >> word;)
+    if (word == "map_Kd" && materials >> word)
+      present.insert(word);
+  const std::regex ours("model(_mask)?(_[0-9]+)?\\.(png|jpg)");
+  std::vector<fs::path> old;
+  for (const auto& entry : fs::directory_iterator(fs::path(files.model_obj).parent_path()))
+    if (const std::string name = entry.path().filename(); std::regex_match(name, ours) && present.count(name) == 0)
+      old.push_back(entry.path());
+  for (const fs::path& path : old)
+    fs::remove(path);
+}
+
 /// Writes the model of a TextureResult or PointTextureResult. @return the figures that both have
 template <typename Result>
 Figures writeModel(const Result& result, const ModelFiles& files, int quality)
@@ -119,6 +142,7 @@ Figures writeModel(const Result& result, const ModelFiles& files, int quality)
   writeTexturedMesh(files.model_glb, result.model, quality);
   writeTexturedMesh(files.model_obj, result.model, quality);
   writeTexturedMesh(files.viewer_glb, result.model, 90); // smaller, since the report has it inside
+  removeOldPictures(files, result.masks.size());
   return {{"coverage", result.coverage},
           {"charts", result.charts},
           {"atlases", result.model.atlases.size()},
