@@ -59,7 +59,7 @@ private:
     Fields& fields = fields_[d];
     const Array<std::uint32_t> begin = sampleRanges(level, samples_.level.codes, tree_.depth, threads);
     for (int c = 0; c < channel_count; ++c) {
-      fields[c] = NodeField(level.size(), threads);
+      fields[c] = NodeField(level, threads);
       if (d < tree_.depth - 1) {
         restrictLevel(tree_.levels[d + 1], fields_[d + 1][c], level, 1.f, fields[c], threads);
         continue;
@@ -72,7 +72,6 @@ private:
             block.at(w.x + (k & 1), w.y + (k >> 1 & 1), w.z + (k >> 2)) += value * w.value[k];
         }
       });
-      syncFaces(level, fields[c], threads);
     }
   }
 
@@ -112,7 +111,7 @@ private:
     const HatWeights w = HatWeights::inBrick(toBrick(position, d, b));
     Channels sum;
     for (int c = 0; c < channel_count; ++c)
-      sum[c] = w.interpolate(fields_[d][c].brick(b));
+      sum[c] = w.interpolateWith([&](int x, int y, int z) { return fields_[d][c].value(tree_.levels[d], b, x, y, z); });
     return sum;
   }
 

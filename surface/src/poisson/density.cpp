@@ -34,7 +34,7 @@ Density::Density(const Octree& tree, const Samples& samples, int threads) : tree
   for (int d = std::max(2, tree.depth - 1); d >= 2; --d) {
     const BrickLevel& bricks = tree.levels[d];
     NodeField& field = fields_[d];
-    field = NodeField(bricks.size(), threads);
+    field = NodeField(bricks, threads);
     splatWeights(bricks, level, tree.depth, field, threads);
     level = coarsen(level, threads);
   }
@@ -54,8 +54,8 @@ float Density::weightAt(int depth, Index brick, const Eigen::Vector3f& position)
     for (int r = 0; r < 3; ++r)
       for (int q = 0; q < 3; ++q) {
         const NodePlace place = findNode(level, brick, x.first + q, y.first + r, z.first + c);
-        if (place.brick >= 0)
-          sum += field.brick(place.brick)[place.index] * x.value[q] * y.value[r] * z.value[c];
+        if (std::max(place.own, place.rim) >= 0)
+          sum += field.at(place) * x.value[q] * y.value[r] * z.value[c];
       }
   return sum;
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include "poisson/octree/octree.h"
+#include "poisson/octree/node_field.h"
 #include "poisson/samples.h"
 namespace fresco::poisson {
 /// Local sampling density (Kazhdan, Bolitho & Hoppe 2006, section 4.5), kept as sample weights splatted onto the nodes

@@ -30,22 +30,16 @@ void validate(const PointSet& points, const VolumetricOptions& options)
   validateVolumetricOptions(options);
 }
 
-/// samples joined in the cells of each depth, by depth
-std::vector<SampleLevel> sampleLevels(SampleLevel&& finest, int threads)
+/// Samples joined in the cells of each depth, by depth.
+using SampleLevels = std::vector<SampleLevel>;
+
+SampleLevels sampleLevels(SampleLevel&& finest, int threads)
 {
-  std::vector<SampleLevel> levels(finest.depth + 1);
+  SampleLevels levels(finest.depth + 1);
   levels.back() = std::move(finest);
   for (int d = levels.back().depth; d > 2; --d)
     levels[d - 1] = coarsen(levels[d], threads);
   return levels;
-}
-
-NodeField interpolateLevel(const BrickLevel& level, const NodeField& coarse, int threads)
-{
-  NodeField x(level.size());
-  parallelFor(level.size(), threads,
-              [&](Index b) { interpolateToChild(coarse.brick(level.parents[b]), level.octant(b), x.brick(b)); });
-  return x;
 }
 
 struct Solution {
@@ -53,19 +47,24 @@ struct Solution {
   double residual = 0;
 };
 
-Solution solve(const Octree& tree, Constraints& constraints, const std::vector<SampleLevel>& levels,
-               const VolumetricOptions& options, const Progress& progress)
+/// Frees what it does not need any more: of `levels` all but the finest remain empty.
+Solution solve(const Octree& tree, Constraints& constraints, SampleLevels& levels, const VolumetricOptions& options,
+               const Progress& progress)
 {
   Solution solution;
   solution.chi.resize(tree.levels.size());
   for (int d = 2; d <= tree.full_depth; ++d)
     addCoarser(tree, d, options.threads, constraints);
   solution.chi[tree.full_depth] = solveBase(tree, constraints.fine, levels, options.point_weight, options.threads);
+  for (int d = 2; d <= std::min(tree.full_depth + 1, tree.depth - 1); ++d)
+    levels[d] = SampleLevel();
   for (int d = tree.full_depth + 1; d <= tree.depth; ++d) {
     report(progress, "solve", 0.35 + 0.35 * (d - tree.full_depth) / (tree.depth - tree.full_depth + 1));
     addCoarser(tree, d, options.threads, constraints);
     const BrickLevel& level = tree.levels[d];
-    solution.chi[d] = interpolateLevel(level, solution.chi[d - 1], options.threads);
+    NodeField& chi = solution.chi[d] = NodeField(level);
+    interpolateLevel(tree, d, solution.chi[d - 1], options.threads,
+                     [&](Index b, const float* nodes) { chi.store(level, b, nodes); });
     const SampleLevel& joined = levels[std::min(d + 1, tree.depth)];
     const LevelSystem system(level, joined, tree.depth, options.point_weight, options.threads);
     system.smooth(constraints.fine[d], options.iterations, solution.chi[d]);
@@ -77,6 +76,8 @@ Solution solve(const Octree& tree, Constraints& constraints, const std::vector<S
     }
     LowPassFilter(level, joined, tree.depth, options.threads).apply(solution.chi[d], constraints.fine[d]);
     constraints.fine[d] = NodeField();
+    if (d + 1 < tree.depth)
+      levels[d + 1] = SampleLevel();
   }
   return solution;
 }
@@ -89,10 +90,14 @@ float levelSetValue(const Octree& tree, const NodeField& chi, const SampleLevel&
   const Array<std::uint32_t> begin = sampleRanges(level, samples.codes, tree.depth, threads);
   const Eigen::Array2d sums = parallelSum(level.size(), threads, Eigen::Array2d(0, 0), [&](Index b) {
     Eigen::Array2d sum(0, 0);
+    if (begin[b] == begin[b + 1])
+      return sum;
     const Eigen::Vector3f origin = level.origin(b);
+    float nodes[nodes_per_brick];
+    chi.load(level, b, nodes);
     for (std::uint32_t i = begin[b]; i < begin[b + 1]; ++i) {
       const CoarseSample& s = samples.samples[i];
-      const double value = HatWeights::inBrick(s.position - origin).interpolate(chi.brick(b));
+      const double value = HatWeights::inBrick(s.position - origin).interpolate(nodes);
       sum += Eigen::Array2d(s.area * value, s.area);
     }
     return sum;
@@ -162,19 +167,18 @@ VolumetricResult reconstruct(Samples&& samples, const VolumetricOptions& options
   estimateNoise(samples, options.threads);
   report(progress, "normal field", 0.25);
   Array<Eigen::Vector3f> normals = normalsOf(samples, options.threads);
-  std::vector<SampleLevel> levels = sampleLevels(finestLevel(samples, options.threads), options.threads);
+  SampleLevel finest = finestLevel(samples, options.threads);
   releaseMemory(samples.samples);
   releaseMemory(samples.codes);
-  Constraints constraints = splatNormals(tree, levels.back(), normals, options.threads);
-  releaseMemory(normals);
-  const Solution solution = solve(tree, constraints, levels, options, progress);
+  Constraints constraints = splatNormals(tree, finest, std::move(normals), options.threads);
+  SampleLevels levels = sampleLevels(std::move(finest), options.threads);
+  Solution solution = solve(tree, constraints, levels, options, progress);
   result.residual = solution.residual;
   report(progress, "surface", 0.7);
-  const LevelSet level_set{&tree, &solution.chi,
-                           levelSetValue(tree, solution.chi.back(), levels.back(), options.threads)};
+  const float level_set = levelSetValue(tree, solution.chi.back(), levels.back(), options.threads);
   if (samples.attributes.empty())
     levels.clear(); // the vertices need them for their attributes only
-  IsoSurface surface = extractIsoSurface(level_set, options.threads);
+  IsoSurface surface = extractIsoSurface(tree, std::move(solution.chi), level_set, options.threads);
   removeSmallComponents(surface, options.threads);
   report(progress, "attributes", 0.9);
   Eigen::VectorXf support = vertexSupport(density, surface, options.samples_per_node, options.threads);

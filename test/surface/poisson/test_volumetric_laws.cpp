@@ -39,7 +39,7 @@ TEST(VolumetricLaws, UnscreenedSolutionIsTheIndicatorFunction)
       const Eigen::Vector3f node = tree.levels[5].origin(b) + Eigen::Vector3i(n % 5, n / 5 % 5, n / 25).cast<float>();
       const double radius = (node.array().cast<double>() * cell - 1.1).matrix().norm();
       if (std::abs(radius - 1) > 3 * cell) {
-        EXPECT_NEAR(chi.brick(b)[n], radius < 1 ? -0.5 : 0.5, 0.04) << radius;
+        EXPECT_NEAR(chi.value(tree.levels[5], b, n % 5, n / 5 % 5, n / 25), radius < 1 ? -0.5 : 0.5, 0.04) << radius;
       }
     }
 }

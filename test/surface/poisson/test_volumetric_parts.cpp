@@ -136,18 +136,17 @@ std::vector<NodeField> randomValues(const Octree& tree, std::mt19937& random)
   for (int d = tree.full_depth; d <= tree.depth; ++d) {
     const auto i = static_cast<std::size_t>(d);
     const BrickLevel& level = tree.levels[i];
-    chi[i] = NodeField(level.size(), 1);
+    chi[i] = NodeField(level);
+    if (d > tree.full_depth)
+      interpolateLevel(tree, d, chi[i - 1], 1, [&](Index b, const float* nodes) { chi[i].store(level, b, nodes); });
+    const std::vector<float> ones(125, 1.f);
     for (Index b = 0; b < level.size(); ++b) {
-      if (d > tree.full_depth)
-        interpolateToChild(chi[i - 1].brick(level.parents[b]), static_cast<int>(level.codes[b] & 7), chi[i].brick(b));
-      else
-        std::fill_n(chi[i].brick(b), 125, 1.f);
+      if (d == tree.full_depth)
+        chi[i].store(level, b, ones.data());
+      for (int n = 0; n < own_nodes; ++n)
+        if (isFree(tree, d, static_cast<int>(b), n & 3, n >> 2 & 3, n >> 4))
+          chi[i].own(b)[n] = unit(random);
     }
-    for (Index b = 0; b < level.size(); ++b)
-      for (int n = 0; n < 125; ++n)
-        if (n % 5 < 4 && n / 5 % 5 < 4 && n / 25 < 4 && isFree(tree, d, static_cast<int>(b), n % 5, n / 5 % 5, n / 25))
-          chi[i].brick(b)[n] = unit(random);
-    syncFaces(level, chi[i], 1);
   }
   return chi;
 }
@@ -161,8 +160,8 @@ TEST(VolumetricParts, LevelSetIsClosedAndManifoldOnRandomTrees)
       if (depth == 6 && probability > 0.7)
         continue;
       const Octree tree = randomTree(depth, probability, random);
-      const std::vector<NodeField> chi = randomValues(tree, random);
-      const IsoSurface surface = extractIsoSurface({&tree, &chi, 0.05f}, 2);
+      std::vector<NodeField> chi = randomValues(tree, random);
+      const IsoSurface surface = extractIsoSurface(tree, std::move(chi), 0.05f, 2);
       TriangleMesh mesh;
       mesh.vertices = surface.vertices;
       mesh.faces = surface.faces;

@@ -33,7 +33,7 @@ double momentOf(const BrickLevel& level, const NodeField& field, const Function&
     for (int n = 0; n < 125; ++n)
       if (holdsNode(level, b, n % 5, n / 5 % 5, n / 25)) {
         const Eigen::Vector3f node = level.origin(b) + Eigen::Vector3i(n % 5, n / 5 % 5, n / 25).cast<float>();
-        sum += field.brick(b)[n] * function(node.cast<double>().eval());
+        sum += field.value(level, b, n % 5, n / 5 % 5, n / 25) * function(node.cast<double>().eval());
       }
   return sum;
 }
@@ -149,10 +149,13 @@ struct FilterCase {
   NodeField filtered(const Function& function) const
   {
     const BrickLevel& level = tree.levels[4];
-    NodeField chi(level.size(), 1), spare(level.size(), 1);
-    for (Index b = 0; b < level.size(); ++b)
+    NodeField chi(level), spare(level);
+    for (Index b = 0; b < level.size(); ++b) {
+      float nodes[125];
       for (int n = 0; n < 125; ++n)
-        chi.brick(b)[n] = function(level.origin(b) + Eigen::Vector3i(n % 5, n / 5 % 5, n / 25).cast<float>());
+        nodes[n] = function(level.origin(b) + Eigen::Vector3i(n % 5, n / 5 % 5, n / 25).cast<float>());
+      chi.store(level, b, nodes);
+    }
     LowPassFilter(level, finestLevel(samples, 1), 4, 1).apply(chi, spare);
     return chi;
   }
@@ -167,7 +170,8 @@ struct FilterCase {
       for (int n = 0; n < 125; ++n) {
         const Eigen::Vector3f x = level.origin(b) + Eigen::Vector3i(n % 5, n / 5 % 5, n / 25).cast<float>();
         if (x.minCoeff() >= margin && x.maxCoeff() <= 16 - margin)
-          largest = std::max(largest, std::abs(chi.brick(b)[n] - factor * static_cast<double>(function(x))));
+          largest = std::max(largest, std::abs(chi.value(level, b, n % 5, n / 5 % 5, n / 25) -
+                                               factor * static_cast<double>(function(x))));
       }
     return largest;
   }
@@ -201,7 +205,7 @@ TEST(VolumetricScales, FilterLeavesWhatComesFromTheCoarserDepth)
     for (int i = 0; i < own_nodes; ++i)
       if (fixedNodes(level, b) >> i & 1) {
         const Eigen::Vector3f x = level.origin(b) + Eigen::Vector3i(i & 3, i >> 2 & 3, i >> 4).cast<float>();
-        EXPECT_EQ(chi.brick(b)[nodeIndex(i & 3, i >> 2 & 3, i >> 4)], alternating(x));
+        EXPECT_EQ(chi.own(b)[i], alternating(x));
       }
 }
 

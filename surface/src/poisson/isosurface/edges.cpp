@@ -29,8 +29,7 @@ bool LevelSet::hasLeaves(int depth, Index brick) const
 {
   if ((*chi)[depth].size() == 0)
     return false;
-  const auto& children = tree->levels[depth].children[brick];
-  return *std::min_element(children.begin(), children.end()) < 0;
+  return tree->levels[depth].child_octants[brick] != 0xff;
 }
 
 CellPlace normalized(const Octree& tree, CellPlace c)
@@ -46,14 +45,14 @@ CellPlace normalized(const Octree& tree, CellPlace c)
 
 int childBrick(const Octree& tree, const CellPlace& c)
 {
-  return tree.levels[c.depth].children[c.brick][octantOf(c.x, c.y, c.z)];
+  return tree.levels[c.depth].child(c.brick, octantOf(c.x, c.y, c.z));
 }
 
 int CrossedEdges::BrickEdges::count() const
 {
   int n = 0;
   for (const std::uint64_t word : bits)
-    n += word == 0 ? 0 : __builtin_popcountll(word); // a call, and most are 0
+    n += bitCount(word);
   return n;
 }
 
@@ -62,8 +61,8 @@ int CrossedEdges::BrickEdges::rank(int axis, int node) const
   const int last = axis * 2 + node / 64;
   int n = 0;
   for (int w = 0; w < last; ++w)
-    n += __builtin_popcountll(bits[w]);
-  return n + __builtin_popcountll(bits[last] & ((std::uint64_t(1) << (node & 63)) - 1));
+    n += bitCount(bits[w]);
+  return n + bitCount(bits[last] & ((std::uint64_t(1) << (node & 63)) - 1));
 }
 
 CrossedEdges::CrossedEdges(const LevelSet& surface, int threads) : surface_(&surface)
@@ -111,7 +110,8 @@ void CrossedEdges::findCrossings(int depth, int brick)
 {
   if (!surface_->hasLeaves(depth, brick))
     return;
-  const float* chi = (*surface_->chi)[depth].brick(brick);
+  float chi[nodes_per_brick];
+  (*surface_->chi)[depth].load(surface_->tree->levels[depth], brick, chi);
   bool inside[nodes_per_brick];
   int count = 0;
   for (int i = 0; i < nodes_per_brick; ++i)
@@ -173,6 +173,17 @@ EdgePlace CrossedEdges::ownerOfFaceEdge(const EdgePlace& edge) const
   return edge;
 }
 
+float CrossedEdges::lowerEnd(const EdgePlace& edge) const
+{
+  return surface_->at(edge.depth, edge.brick, edge.x, edge.y, edge.z);
+}
+
+float CrossedEdges::upperEnd(const EdgePlace& edge) const
+{
+  return surface_->at(edge.depth, edge.brick, edge.x + (edge.axis == 0), edge.y + (edge.axis == 1),
+                      edge.z + (edge.axis == 2));
+}
+
 /// Replaces a subdivided edge by that half of it which the level set crosses; false if it is not subdivided.
 bool CrossedEdges::finerHalf(EdgePlace& edge) const
 {
@@ -187,10 +198,7 @@ bool CrossedEdges::finerHalf(EdgePlace& edge) const
       continue;
     EdgePlace half{edge.depth + 1,       child, edge.axis, 2 * (cell.x % 2 + dx), 2 * (cell.y % 2 + dy),
                    2 * (cell.z % 2 + dz)};
-    const float* chi = (*surface_->chi)[half.depth].brick(child);
-    const int node = nodeIndex(half.x, half.y, half.z);
-    const int step = stepAlong(edge.axis);
-    if (surface_->inside(chi[node]) == surface_->inside(chi[node + step]))
+    if (surface_->inside(lowerEnd(half)) == surface_->inside(upperEnd(half)))
       (edge.axis == 0 ? half.x : edge.axis == 1 ? half.y : half.z) += 1;
     edge = half;
     return true;
@@ -210,10 +218,7 @@ int CrossedEdges::vertexOn(EdgePlace edge) const
 Eigen::Vector3f CrossedEdges::position(const EdgePlace& edge) const
 {
   constexpr float end_margin = 1e-3f; // of an edge of length 1: no two vertices coincide
-  const float* chi = (*surface_->chi)[edge.depth].brick(edge.brick);
-  const int node = nodeIndex(edge.x, edge.y, edge.z);
-  const int step = stepAlong(edge.axis);
-  const float a = chi[node], b = chi[node + step];
+  const float a = lowerEnd(edge), b = upperEnd(edge);
   const float t = std::clamp((surface_->value - a) / (b - a), end_margin, 1.f - end_margin);
   const auto corner = surface_->tree->levels[edge.depth].corner(edge.brick);
   Eigen::Vector3f p(corner[0] + edge.x, corner[1] + edge.y, corner[2] + edge.z);

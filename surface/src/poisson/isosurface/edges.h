@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include "poisson/octree/octree.h"
+#include "poisson/octree/node_field.h"
 #include <Eigen/Core>
 #include <vector>
 namespace fresco::poisson {
@@ -12,6 +12,10 @@ struct LevelSet {
   float value;                       ///< of chi on the surface; smaller inside
 
   bool inside(float v) const { return v < value; }
+  float at(int depth, Index brick, int x, int y, int z) const
+  {
+    return (*chi)[depth].value(tree->levels[depth], brick, x, y, z);
+  }
   bool hasLeaves(int depth, Index brick) const;
 };
 
@@ -78,6 +82,8 @@ private:
     return within ? edge : ownerOfFaceEdge(edge);
   }
   EdgePlace ownerOfFaceEdge(const EdgePlace& edge) const;
+  float lowerEnd(const EdgePlace& edge) const; ///< chi there
+  float upperEnd(const EdgePlace& edge) const;
   bool finerHalf(EdgePlace& edge) const;
   Eigen::Vector3f position(const EdgePlace& edge) const;
 

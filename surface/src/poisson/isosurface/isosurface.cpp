@@ -28,26 +28,23 @@ public:
   {
     const Index extra_before = part.extra.size();
     const int b = brick;
+    (*surface_.chi)[depth].load(tree_.levels[depth], brick, nodes_);
     for (int z = 0; z < brick_cells; ++z)
       for (int y = 0; y < brick_cells; ++y)
         for (int x = 0; x < brick_cells; ++x)
-          if (const CellPlace cell{depth, b, x, y, z}; isCrossed(cell) && childBrick(tree_, cell) < 0)
+          if (const CellPlace cell{depth, b, x, y, z}; isCrossed(x, y, z) && childBrick(tree_, cell) < 0)
             marchCell(cell, part);
     if (const Index n = part.extra.size() - extra_before; n > 0)
       part.extra_ranges.push_back({depth, brick, extra_before, n});
   }
 
 private:
-  const float* values(const CellPlace& c) const
-  {
-    return (*surface_.chi)[c.depth].brick(c.brick) + nodeIndex(c.x, c.y, c.z);
-  }
-
   static int cornerStep(int corner) { return nodeIndex(corner & 1, corner >> 1 & 1, corner >> 2); }
 
-  bool isCrossed(const CellPlace& cell) const
+  /// Whether the surface passes through a cell of the brick that is marched.
+  bool isCrossed(int x, int y, int z) const
   {
-    const float* v = values(cell);
+    const float* v = nodes_ + nodeIndex(x, y, z);
     int inside = 0;
     for (int c = 0; c < 8; ++c)
       inside += surface_.inside(v[cornerStep(c)]);
@@ -97,10 +94,12 @@ private:
 
   void addLeafFace(const CellPlace& cell, int face, int owner_face, bool reversed)
   {
-    const float* v = values(cell);
     float chi[4];
-    for (int k = 0; k < 4; ++k)
-      chi[k] = v[cornerStep(face_corners[face][k])] - surface_.value;
+    for (int k = 0; k < 4; ++k) {
+      const int c = face_corners[face][k];
+      chi[k] = surface_.at(cell.depth, cell.brick, cell.x + (c & 1), cell.y + (c >> 1 & 1), cell.z + (c >> 2)) -
+               surface_.value;
+    }
     const FaceCrossings crossings = crossFace(chi);
     for (int s = 0; s < crossings.count; ++s) {
       int from = vertexOnSide(cell, face, crossings.from[s]), to = vertexOnSide(cell, face, crossings.to[s]);
@@ -123,6 +122,7 @@ private:
   const CrossedEdges& edges_;
   const Points& positions_;
   CellPolygons polygons_;
+  float nodes_[nodes_per_brick]; ///< chi in the brick that is marched
 };
 
 struct BrickPlace {
@@ -214,11 +214,9 @@ void join(std::vector<Part>& chunks, IsoSurface& surface, int threads)
     }
   }
 }
-} // namespace
-
-IsoSurface extractIsoSurface(const LevelSet& surface, int threads)
+/// Sets the vertices on edges. @returns the faces, in chunks of bricks
+std::vector<Part> marchLeaves(const LevelSet& surface, int threads, IsoSurface& result)
 {
-  IsoSurface result;
   const CrossedEdges edges(surface, threads);
   result.vertices.resize(3, edges.vertexCount());
   result.vertices_backing = FileBacking(result.vertices);
@@ -242,6 +240,16 @@ IsoSurface extractIsoSurface(const LevelSet& surface, int threads)
         bricks_per_part);
     chunks.push_back(joined(parts, threads));
   }
+  return chunks;
+}
+} // namespace
+
+IsoSurface extractIsoSurface(const Octree& tree, std::vector<NodeField>&& chi, float value, int threads)
+{
+  IsoSurface result;
+  std::vector<NodeField> values = std::move(chi);
+  std::vector<Part> chunks = marchLeaves({&tree, &values, value}, threads, result);
+  releaseMemory(values);
   join(chunks, result, threads);
   return result;
 }

@@ -20,5 +20,6 @@ struct IsoSurface {
 /// Marching cubes over the leaves of the octree. On the faces of a leaf it takes the polygons' sides from the finest
 /// leaves beyond (Kazhdan, Klein, Dalal & Hoppe 2007, "Unconstrained Isosurface Extraction on Arbitrary Octrees").
 /// Closed, 2-manifold and consistently oriented, except where the level set leaves the cube.
-IsoSurface extractIsoSurface(const LevelSet& surface, int threads);
+/// @param chi by depth, freed as soon as it is not needed any more. @param value of chi on the surface
+IsoSurface extractIsoSurface(const Octree& tree, std::vector<NodeField>&& chi, float value, int threads);
 } // namespace fresco::poisson

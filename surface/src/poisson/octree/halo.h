@@ -1,18 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include "poisson/octree/octree.h"
+#include "poisson/octree/node_field.h"
 #include <cstdint>
 namespace fresco::poisson {
 /// Nodes -1..4 of a brick on each axis, its own (0..3) and those around it: floats a row (padded to two vectors), a
 /// slice, in all.
 constexpr int halo_row = 8, halo_slice = 6 * halo_row, halo_size = 6 * halo_slice;
-/// Nodes of a brick that are not on its upper faces.
-constexpr int own_nodes = brick_cells * brick_cells * brick_cells;
 
 constexpr int haloIndex(int x, int y, int z) { return (x + 1) + halo_row * (y + 1) + halo_slice * (z + 1); }
 /// From a node to its neighbour `o` of offsetIndex().
 constexpr int haloStep(int o) { return (o % 3 - 1) + halo_row * (o / 3 % 3 - 1) + halo_slice * (o / 9 - 1); }
-constexpr int ownIndex(int x, int y, int z) { return x + brick_cells * (y + brick_cells * z); }
 
 /// Number of axes on which a node and its neighbour `o` of offsetIndex() differ.
 constexpr int axesOf(int o) { return (o % 3 != 1) + (o / 3 % 3 != 1) + (o / 9 != 1); }

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "poisson/octree/octree.h"
+#include "poisson/octree/node_field.h"
 #include "poisson/octree/radix_sort.h"
 #include "poisson/octree/select.h"
 #include <algorithm>
-#include <cstring>
 #include <fresco/core/morton.h>
 #include <fresco/core/parallel.h>
 #include <fresco/core/release.h>
@@ -120,14 +119,16 @@ std::vector<std::uint64_t> allBricks(int depth)
 void linkToParents(BrickLevel& coarse, BrickLevel& fine, int threads)
 {
   fine.parents.resize(fine.codes.size());
-  parallelRanges(fine.size(), threads, [&](Index begin, Index end) {
-    const auto first = std::lower_bound(coarse.codes.begin(), coarse.codes.end(), fine.codes[begin] >> 3);
-    int parent = first - coarse.codes.begin();
-    for (Index i = begin; i < end; ++i) {
-      while (coarse.codes[parent] != fine.codes[i] >> 3)
-        ++parent;
-      fine.parents[i] = parent;
-      coarse.children[parent][fine.octant(i)] = i;
+  coarse.first_children.resize(coarse.codes.size());
+  parallelRanges(coarse.size(), threads, [&](Index begin, Index end) {
+    const auto first = std::lower_bound(fine.codes.begin(), fine.codes.end(), coarse.codes[begin] << 3);
+    Index child = first - fine.codes.begin();
+    for (Index p = begin; p < end; ++p) {
+      coarse.first_children[p] = child;
+      for (; child < fine.size() && fine.codes[child] >> 3 == coarse.codes[p]; ++child) {
+        fine.parents[child] = p;
+        coarse.child_octants[p] |= 1 << fine.octant(child);
+      }
     }
   });
 }
@@ -140,7 +141,7 @@ std::array<int, 27> findNeighbors(const BrickLevel& coarse, int parent, int octa
     const int at = offsetIndex(x >> 1, y >> 1, z >> 1);
     const int uncle = coarse.neighbors[parent][at];
     const int child = (x & 1) | (y & 1) << 1 | (z & 1) << 2;
-    found[o] = uncle < 0 ? -1 : coarse.children[uncle][child];
+    found[o] = uncle < 0 ? -1 : coarse.child(uncle, child);
   }
   return found;
 }
@@ -148,8 +149,7 @@ std::array<int, 27> findNeighbors(const BrickLevel& coarse, int parent, int octa
 void linkLevel(Octree& tree, int depth, int threads)
 {
   BrickLevel& level = tree.levels[depth];
-  level.children.resize(level.codes.size());
-  parallelFor(level.size(), threads, [&](Index b) { level.children[b].fill(-1); });
+  level.child_octants.assign(level.codes.size(), 0);
   level.neighbors.resize(level.codes.size());
   const Array<std::uint32_t> blocks = runBegins(level.size(), threads, [&](Index b) { return level.codes[b] >> 6; });
   for (std::size_t i = 0; i + 1 < blocks.size(); ++i)
@@ -158,12 +158,13 @@ void linkLevel(Octree& tree, int depth, int threads)
     level.parents.assign(1, -1);
     level.neighbors[0].fill(-1);
     level.neighbors[0][offset_self] = 0;
-    return;
+  } else {
+    BrickLevel& coarse = tree.levels[depth - 1];
+    linkToParents(coarse, level, threads);
+    parallelFor(level.size(), threads,
+                [&](Index b) { level.neighbors[b] = findNeighbors(coarse, level.parents[b], level.octant(b)); });
   }
-  BrickLevel& coarse = tree.levels[depth - 1];
-  linkToParents(coarse, level, threads);
-  parallelFor(level.size(), threads,
-              [&](Index b) { level.neighbors[b] = findNeighbors(coarse, level.parents[b], level.octant(b)); });
+  findRims(level, threads);
 }
 } // namespace
 
@@ -219,66 +220,5 @@ std::vector<Index> countBricks(const Array<std::uint64_t>& cell_codes, int depth
     occupied = coarsen(occupied, threads);
   }
   return counts;
-}
-
-void NodeField::clear(int threads)
-{
-  parallelRanges(size_, threads, [&](Index begin, Index end) {
-    std::memset(brick(begin), 0, (end - begin) * brick_stride * sizeof(float));
-  });
-}
-
-NodePlace findNode(const BrickLevel& level, Index b, int x, int y, int z)
-{
-  const auto& neighbors = level.neighbors[b];
-  const int ox = x >> 2, oy = y >> 2, oz = z >> 2;
-  const int owner = neighbors[offsetIndex(ox, oy, oz)];
-  if (owner >= 0)
-    return {owner, nodeIndex(x & 3, y & 3, z & 3)};
-  const int mx = std::min(ox, (x - 1) >> 2), my = std::min(oy, (y - 1) >> 2), mz = std::min(oz, (z - 1) >> 2);
-  for (int m = 1; m < 8; ++m) { // the other bricks that touch the node
-    const int px = m & 1 ? mx : ox, py = m & 2 ? my : oy, pz = m & 4 ? mz : oz;
-    if (px < -1 || py < -1 || pz < -1)
-      continue;
-    const int holder = neighbors[offsetIndex(px, py, pz)];
-    if (holder >= 0)
-      return {holder, nodeIndex(x - 4 * px, y - 4 * py, z - 4 * pz)};
-  }
-  return {};
-}
-
-void sumFaces(const BrickLevel& level, NodeField& field, int threads)
-{
-  parallelFor(level.size(), threads, [&](Index b) {
-    const auto& neighbors = level.neighbors[b];
-    float* own = field.brick(b);
-    for (int o = 0; o < 8; ++o) { // bits: below in x, y, z
-      const int dx = o & 1, dy = o >> 1 & 1, dz = o >> 2;
-      const int n = neighbors[offsetIndex(-dx, -dy, -dz)];
-      if (o == 0 || n < 0)
-        continue;
-      const float* other = field.brick(n);
-      for (int z = 0; z < (dz ? 1 : brick_cells); ++z)
-        for (int y = 0; y < (dy ? 1 : brick_cells); ++y)
-          for (int x = 0; x < (dx ? 1 : brick_cells); ++x)
-            own[nodeIndex(x, y, z)] += other[nodeIndex(x + 4 * dx, y + 4 * dy, z + 4 * dz)];
-    }
-  });
-  syncFaces(level, field, threads);
-}
-
-void syncFaces(const BrickLevel& level, NodeField& field, int threads)
-{
-  parallelFor(level.size(), threads, [&](Index b) {
-    const auto& neighbors = level.neighbors[b];
-    float* own = field.brick(b);
-    for (int z = 0; z < brick_nodes; ++z)
-      for (int y = 0; y < brick_nodes; ++y)
-        for (int x = (y == 4 || z == 4) ? 0 : 4; x < brick_nodes; ++x) {
-          const int n = neighbors[offsetIndex(x >> 2, y >> 2, z >> 2)];
-          if (n >= 0)
-            own[nodeIndex(x, y, z)] = field.brick(n)[nodeIndex(x & 3, y & 3, z & 3)];
-        }
-  });
 }
 } // namespace fresco::poisson

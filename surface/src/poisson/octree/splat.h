@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include "poisson/octree/octree.h"
+#include "poisson/octree/node_field.h"
 #include <Eigen/Core>
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -77,7 +78,7 @@ public:
           const int n = neighbors[offsetIndex(dx, dy, dz)];
           if (n >= 0)
             forEachRow(dx, dy, dz, [&](int x, int y, int z, int count) {
-              float* to = field.brick(n) + nodeIndex(x & 3, y & 3, z & 3);
+              float* to = field.own(n) + ownIndex(x & 3, y & 3, z & 3);
               const float* from = &data_[index(x, y, z)];
               for (int i = 0; i < count; ++i)
                 to[i] += from[i];
@@ -107,8 +108,8 @@ private:
   void addAlone(const BrickLevel& level, Index brick, int x, int y, int z, NodeField& field) const
   {
     if (const float value = data_[index(x, y, z)]; value != 0.f)
-      if (const NodePlace place = findNode(level, brick, x, y, z); place.brick >= 0)
-        field.brick(place.brick)[place.index] += value;
+      if (const NodePlace place = findNode(level, brick, x, y, z); std::max(place.own, place.rim) >= 0)
+        field.at(place) += value;
   }
 
   std::array<float, side * side * side> data_;

@@ -11,24 +11,27 @@ Eigen::VectorXd gather(const BrickLevel& level, const NodeField& field, const De
   Eigen::VectorXd values = Eigen::VectorXd::Zero(shape.count());
   for (Index b = 0; b < level.size(); ++b) {
     const auto [cx, cy, cz] = level.corner(b);
+    float nodes[nodes_per_brick];
+    field.loadHeld(level, b, nodes);
     for (int z = 0; z < brick_nodes; ++z)
       for (int y = 0; y < brick_nodes; ++y)
         for (int x = 0; x < brick_nodes; ++x)
-          if (holdsNode(level, b, x, y, z))
-            values[shape.at(cx + x, cy + y, cz + z)] += field.brick(b)[nodeIndex(x, y, z)];
+          values[shape.at(cx + x, cy + y, cz + z)] += nodes[nodeIndex(x, y, z)];
   }
   return values;
 }
 
 NodeField scatter(const BrickLevel& level, const DenseGrid& grid)
 {
-  NodeField field(level.size());
+  NodeField field(level);
   for (Index b = 0; b < level.size(); ++b) {
     const auto [cx, cy, cz] = level.corner(b);
+    float nodes[nodes_per_brick];
     for (int z = 0; z < brick_nodes; ++z)
       for (int y = 0; y < brick_nodes; ++y)
         for (int x = 0; x < brick_nodes; ++x)
-          field.brick(b)[nodeIndex(x, y, z)] = grid.values[grid.at(cx + x, cy + y, cz + z)];
+          nodes[nodeIndex(x, y, z)] = grid.values[grid.at(cx + x, cy + y, cz + z)];
+    field.store(level, b, nodes);
   }
   return field;
 }

@@ -3,7 +3,8 @@
 #include "poisson/octree/splat.h"
 #include "poisson/solver/transfer.h"
 #include <algorithm>
-#include <cstring>
+#include <fresco/core/release.h>
+#include <utility>
 namespace fresco::poisson {
 namespace {
 /// Share of a sample that is splatted at octree depth d: the two depths around its own share it.
@@ -49,37 +50,33 @@ void splatLevel(const BrickLevel& level, const NormalField& normals, NodeField& 
         splatVector<Weights>(w * s.area * scale * scale * normals.vectors[i], s.position * scale - origin, block);
     }
   });
-  sumFaces(level, field, threads);
-}
-
-NodeField copyOf(const NodeField& field, int threads)
-{
-  NodeField copy(field.size());
-  parallelRanges(field.size(), threads, [&](Index begin, Index end) {
-    std::memcpy(copy.brick(begin), field.brick(begin), (end - begin) * brick_stride * sizeof(float));
-  });
-  return copy;
 }
 } // namespace
 
-Constraints splatNormals(const Octree& tree, const SampleLevel& samples, const Array<Eigen::Vector3f>& normals,
-                         int threads)
+Constraints splatNormals(const Octree& tree, const SampleLevel& samples, Array<Eigen::Vector3f>&& normals, int threads)
 {
-  const NormalField normal_field{samples, normals};
+  Array<Eigen::Vector3f> vectors = std::move(normals);
   Constraints constraints;
   constraints.fine.resize(tree.levels.size());
   constraints.own.resize(tree.levels.size());
-  for (int d = tree.depth; d >= 2; --d) {
-    const BrickLevel& level = tree.levels[d];
-    NodeField& field = constraints.fine[d];
-    field = NodeField(level.size(), threads);
-    if (d == tree.depth) {
-      splatLevel<TentWeights>(level, normal_field, field, threads);
-      continue;
-    }
-    splatLevel<BoxWeights>(level, normal_field, field, threads);
-    constraints.own[d] = copyOf(field, threads);
-    restrictLevel(tree.levels[d + 1], constraints.fine[d + 1], level, 0.5f, field, threads);
+  const auto splatted = [&](int d) {
+    NodeField field(tree.levels[d], threads);
+    if (d < tree.depth)
+      splatLevel<BoxWeights>(tree.levels[d], {samples, vectors}, field, threads);
+    else
+      splatLevel<TentWeights>(tree.levels[d], {samples, vectors}, field, threads);
+    return field;
+  };
+  for (int d = 2; d < tree.depth; ++d)
+    constraints.own[d] = splatted(d);
+  constraints.fine[tree.depth] = splatted(tree.depth);
+  releaseMemory(vectors);
+  for (int d = tree.depth - 1; d >= 2; --d) {
+    NodeField& finer = constraints.fine[d + 1];
+    constraints.fine[d] = constraints.own[d].copy(threads);
+    restrictLevel(tree.levels[d + 1], finer, tree.levels[d], 0.5f, constraints.fine[d], threads);
+    if (d + 1 > tree.full_depth)
+      finer.releaseRim();
   }
   return constraints;
 }
@@ -88,17 +85,13 @@ void addCoarser(const Octree& tree, int depth, int threads, Constraints& constra
 {
   if (depth == 2)
     return;
+  // Per unit volume the interpolated density is the same; a cell has 1/8 of the volume and 1/2 of the side.
+  constexpr float factor = 0.25f;
   const BrickLevel& level = tree.levels[depth];
-  const NodeField& coarse = constraints.own[depth - 1];
-  parallelFor(level.size(), threads, [&](Index b) {
-    float values[brick_stride] = {};
-    interpolateToChild(coarse.brick(level.parents[b]), level.octant(b), values);
-    // Per unit volume the interpolated density is the same; a cell has 1/8 of the volume and 1/2 of the side.
-    for (int k = 0; k < nodes_per_brick; ++k) {
-      constraints.fine[depth].brick(b)[k] += 0.25f * values[k];
-      if (depth < tree.depth)
-        constraints.own[depth].brick(b)[k] += 0.25f * values[k];
-    }
+  interpolateLevel(tree, depth, constraints.own[depth - 1], threads, [&](Index b, const float* values) {
+    constraints.fine[depth].add(level, b, factor, values);
+    if (depth < tree.depth)
+      constraints.own[depth].add(level, b, factor, values);
   });
   constraints.own[depth - 1] = NodeField();
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include "poisson/octree/octree.h"
+#include "poisson/octree/node_field.h"
 #include "poisson/samples.h"
 namespace fresco::poisson {
 /// Right-hand sides b_j = integral V . grad B_j of all depths (Kazhdan, Bolitho & Hoppe 2006, sections 4.2, 4.3 and
@@ -10,14 +10,14 @@ namespace fresco::poisson {
 /// that are sparse against the finest cells. Where they sustain the finest depth the field is spread twice. That hides
 /// the directions of the grid and costs no detail, because there the points themselves hold the surface.
 struct Constraints {
-  std::vector<NodeField> fine; ///< by depth: what was splatted at this depth or a finer one
-  std::vector<NodeField> own;  ///< by depth: what was splatted at this depth; empty at the finest
+  /// By depth: what was splatted at this depth or a finer one; without rims where the octree is not complete.
+  std::vector<NodeField> fine;
+  std::vector<NodeField> own; ///< by depth: what was splatted at this depth; empty at the finest
 };
 
 /// @param samples of the finest depth
-/// @param normals of the samples, unit
-Constraints splatNormals(const Octree& tree, const SampleLevel& samples, const Array<Eigen::Vector3f>& normals,
-                         int threads);
+/// @param normals of the samples, unit; freed as soon as they are not needed any more
+Constraints splatNormals(const Octree& tree, const SampleLevel& samples, Array<Eigen::Vector3f>&& normals, int threads);
 
 /// Adds to the right-hand side of a depth what was splatted at coarser ones, interpolated. These must be complete, so
 /// depths come in rising order. `own` of the next coarser depth is freed.

@@ -32,12 +32,18 @@ struct HatWeights {
 
   int nodeOf(int corner) const { return nodeIndex(x + (corner & 1), y + (corner >> 1 & 1), z + (corner >> 2)); }
 
-  float interpolate(const float* nodes) const
+  /// @param value_at of node (x, y, z)
+  template <typename ValueAt>
+  float interpolateWith(const ValueAt& value_at) const
   {
     float sum = 0;
     for (int i = 0; i < 8; ++i)
-      sum += value[i] * nodes[nodeOf(i)];
+      sum += value[i] * value_at(x + (i & 1), y + (i >> 1 & 1), z + (i >> 2));
     return sum;
+  }
+  float interpolate(const float* nodes) const
+  {
+    return interpolateWith([nodes](int i, int j, int k) { return nodes[nodeIndex(i, j, k)]; });
   }
 };
 } // namespace fresco::poisson

@@ -2,6 +2,7 @@
 #include "poisson/solver/level_system.h"
 #include "poisson/octree/splat.h"
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <fresco/core/parallel.h>
 namespace fresco::poisson {
@@ -9,6 +10,21 @@ namespace {
 /// Stencil of integral grad B_j . grad B_k for hat functions of a unit grid, by the number of axes on which j and k
 /// differ: products of their mass (2/3, 1/6) and stiffness (2, -1) on one axis.
 constexpr float laplacian[4] = {8.f / 3.f, 0.f, -1.f / 6.f, -1.f / 12.f};
+
+/// haloStep() of each neighbour.
+constexpr std::array<int, 27> steps = [] {
+  std::array<int, 27> all{};
+  for (int o = 0; o < 27; ++o)
+    all[o] = haloStep(o);
+  return all;
+}();
+
+/// By four bits: the nodes of a line whose bit is set.
+using Lanes [[gnu::vector_size(16)]] = int;
+constexpr Lanes fixed_lanes[16] = {{0, 0, 0, 0},   {-1, 0, 0, 0},   {0, -1, 0, 0},   {-1, -1, 0, 0},
+                                   {0, 0, -1, 0},  {-1, 0, -1, 0},  {0, -1, -1, 0},  {-1, -1, -1, 0},
+                                   {0, 0, 0, -1},  {-1, 0, 0, -1},  {0, -1, 0, -1},  {-1, -1, 0, -1},
+                                   {0, 0, -1, -1}, {-1, 0, -1, -1}, {0, -1, -1, -1}, {-1, -1, -1, -1}};
 } // namespace
 
 /// A brick with what lies around it, in the cache.
@@ -19,14 +35,17 @@ struct LevelSystem::Block {
   float right[own_nodes];
   std::uint64_t fixed; ///< see fixedNodes()
 
-  void sweep();
+  void sweep(int sweeps);
+  template <int count>
+  void relax(const int* lines);
   Norms residual() const;
 };
 
 LevelSystem::LevelSystem(const BrickLevel& level, const SampleLevel& samples, int finest, float point_weight,
                          int threads)
-    : level_(level), begin_(sampleRanges(level, samples.codes, samples.depth, threads)),
-      samples_(screenedSamples(level, samples, finest, point_weight, threads)), threads_(threads)
+    : level_(level), begin_(sampleRanges(level, samples.codes, samples.depth, threads)), samples_(samples),
+      scale_(std::ldexp(1.f, level.depth - finest)), weights_(screeningWeights(samples, scale_, point_weight, threads)),
+      threads_(threads)
 {
   for (int k = 0; k < 27; ++k)
     std::fill_n(laplacian_rows_[k], own_nodes, laplacian[axesOf(k)]);
@@ -42,9 +61,9 @@ void LevelSystem::assemble(Index brick, Block& block) const
     if (n < 0)
       continue;
     for (std::uint32_t i = begin_[n]; i < begin_[n + 1]; ++i) {
-      const Eigen::Vector3f position = samples_[i].position - origin;
-      if (position.x() >= -1.f && position.y() >= -1.f && position.z() >= -1.f && samples_[i].weight > 0.f)
-        addScreening(HatWeights(position), samples_[i].weight, block.rows);
+      const Eigen::Vector3f position = samples_.samples[i].position * scale_ - origin;
+      if (position.x() >= -1.f && position.y() >= -1.f && position.z() >= -1.f && weights_[i] > 0.f)
+        addScreening(HatWeights(position), weights_[i], block.rows);
     }
   }
   for (int i = 0; i < own_nodes; ++i)
@@ -53,35 +72,56 @@ void LevelSystem::assemble(Index brick, Block& block) const
 
 void LevelSystem::load(Index brick, const NodeField& b, const NodeField& x, Block& block) const
 {
-  const float* right = b.brick(brick);
-  for (int y_z = 0; y_z < brick_cells * brick_cells; ++y_z)
-    line(&block.right[y_z * brick_cells]) = line(&right[nodeIndex(0, y_z & 3, y_z >> 2)]);
+  std::copy_n(b.own(brick), own_nodes, block.right);
   loadHalo(level_, brick, x, block.x);
+  block.fixed = fixedNodes(level_, brick);
 }
 
-void LevelSystem::excludeFixed(Index brick, Block& block) const
+/// Relaxes lines of the brick that do not depend on each other, side by side: each sum is a chain of operations.
+template <int count>
+void LevelSystem::Block::relax(const int* lines)
 {
-  block.fixed = fixedNodes(level_, brick);
-  for (int i = 0; i < own_nodes && block.fixed >> i != 0; ++i) {
-    if (!(block.fixed >> i & 1))
-      continue;
-    for (auto& row : block.rows)
-      row[i] = 0.f;
-    block.inverse[i] = 1.f;
-    block.right[i] = block.x[haloIndex(i & 3, i >> 2 & 3, i >> 4)];
+  Line sum[count];
+  float* at[count];
+  for (int i = 0; i < count; ++i) {
+    at[i] = &x[haloIndex(0, lines[i] & 3, lines[i] >> 2)];
+    sum[i] = line(&right[lines[i] * brick_cells]);
+  }
+  for (int k = 0; k < 27; ++k)
+    if (k != offset_self)
+      for (int i = 0; i < count; ++i)
+        sum[i] -= line(&rows[k][lines[i] * brick_cells]) * line(at[i] + steps[k]);
+  for (int i = 0; i < count; ++i) {
+    const int own = lines[i] * brick_cells;
+    line(at[i]) = fixed_lanes[fixed >> own & 15] ? line(at[i]) : sum[i] * line(&inverse[own]);
   }
 }
 
-void LevelSystem::Block::sweep()
+/// Gauss-Seidel sweeps over the nodes of the brick, as if line by line in the order of y + 4 z. A line depends on those
+/// next to it only, so line (y, z) may be taken at step y + 2 z, and in the next sweep four steps later.
+void LevelSystem::Block::sweep(int sweeps)
 {
-  for (int y_z = 0; y_z < brick_cells * brick_cells; ++y_z) {
-    float* at = &x[haloIndex(0, y_z & 3, y_z >> 2)];
-    const int own = y_z * brick_cells;
-    Line sum = line(&right[own]);
-    for (int k = 0; k < 27; ++k)
-      if (k != offset_self)
-        sum -= line(&rows[k][own]) * line(at + haloStep(k));
-    line(at) = sum * line(&inverse[own]);
+  constexpr int steps_a_sweep = 3 + 2 * 3 + 1, delay = 4;
+  for (int step = 0; step < steps_a_sweep + delay * (sweeps - 1); ++step) {
+    int lines[4], count = 0;
+    for (int s = 0; s < sweeps; ++s)
+      for (int z = 0; z < brick_cells; ++z)
+        if (const int y = step - delay * s - 2 * z; y >= 0 && y < brick_cells)
+          lines[count++] = y + brick_cells * z;
+    switch (count) {
+    case 1:
+      relax<1>(lines);
+      break;
+    case 2:
+      relax<2>(lines);
+      break;
+    case 3:
+      relax<3>(lines);
+      break;
+    case 4:
+      relax<4>(lines);
+      break;
+    }
   }
 }
 
@@ -114,7 +154,6 @@ void LevelSystem::smooth(const NodeField& b, int iterations, NodeField& x) const
         for (int brick = run.begin; brick < run.end; ++brick)
           smoothBrick(brick, b, std::min(local_sweeps, iterations - done), x);
       });
-  syncFaces(level_, x, threads_);
 }
 
 void LevelSystem::smoothBrick(Index brick, const NodeField& b, int sweeps, NodeField& x) const
@@ -122,29 +161,29 @@ void LevelSystem::smoothBrick(Index brick, const NodeField& b, int sweeps, NodeF
   Block block;
   assemble(brick, block);
   load(brick, b, x, block);
-  excludeFixed(brick, block);
-  for (int s = 0; s < sweeps; ++s)
-    block.sweep();
-  float* nodes = x.brick(brick);
+  block.sweep(sweeps);
+  float* nodes = x.own(brick);
   for (int y_z = 0; y_z < brick_cells * brick_cells; ++y_z)
-    line(&nodes[nodeIndex(0, y_z & 3, y_z >> 2)]) = line(&block.x[haloIndex(0, y_z & 3, y_z >> 2)]);
+    line(&nodes[y_z * brick_cells]) = line(&block.x[haloIndex(0, y_z & 3, y_z >> 2)]);
 }
 
 void LevelSystem::addMultiplierUpdate(const NodeField& x, NodeField& right) const
 {
   splatBricks(level_, begin_, right, threads_, [&](SplatBlock<1>& block, int b) {
     const Eigen::Vector3f origin = level_.origin(b);
+    float nodes[nodes_per_brick];
+    x.load(level_, b, nodes);
     for (std::uint32_t i = begin_[b]; i < begin_[b + 1]; ++i) {
-      const ScreenedSample& s = samples_[i];
-      if (s.isolated * s.weight <= 0.f)
+      const CoarseSample& s = samples_.samples[i];
+      const float isolated = std::clamp(level_.depth + 1.f - s.depth, 0.f, 1.f);
+      if (isolated * weights_[i] <= 0.f)
         continue;
-      const HatWeights hat = HatWeights::inBrick(s.position - origin);
-      const float multiplier = -s.isolated * s.weight * hat.interpolate(x.brick(b));
+      const HatWeights hat = HatWeights::inBrick(s.position * scale_ - origin);
+      const float multiplier = -isolated * weights_[i] * hat.interpolate(nodes);
       for (int k = 0; k < 8; ++k)
         block.at(hat.x + (k & 1), hat.y + (k >> 1 & 1), hat.z + (k >> 2)) += multiplier * hat.value[k];
     }
   });
-  syncFaces(level_, right, threads_);
 }
 
 LevelSystem::Norms LevelSystem::residual(const NodeField& b, const NodeField& x) const
@@ -158,7 +197,6 @@ LevelSystem::Norms LevelSystem::residual(const NodeField& b, const NodeField& x)
           Block block;
           assemble(brick, block);
           load(brick, b, x, block);
-          excludeFixed(brick, block);
           sum = add(sum, block.residual());
         }
         return sum;

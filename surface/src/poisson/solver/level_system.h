@@ -13,7 +13,7 @@ public:
   LevelSystem(const BrickLevel& level, const SampleLevel& samples, int finest, float point_weight, int threads);
 
   /// Gauss-Seidel sweeps. The bricks of one colour are independent of each other, so the result does not depend on the
-  /// number of threads. Upper faces of `x` are up to date afterwards.
+  /// number of threads.
   void smooth(const NodeField& b, int iterations, NodeField& x) const;
 
   /// Squared norms of b - A x and of b over the unknowns.
@@ -32,11 +32,12 @@ private:
   void assemble(Index brick, Block& block) const;
   void load(Index brick, const NodeField& b, const NodeField& x, Block& block) const;
   void smoothBrick(Index brick, const NodeField& b, int sweeps, NodeField& x) const;
-  void excludeFixed(Index brick, Block& block) const;
 
   const BrickLevel& level_;
   Array<std::uint32_t> begin_; ///< see sampleRanges()
-  Array<ScreenedSample> samples_;
+  const SampleLevel& samples_;
+  float scale_;          ///< cells of the level per finest cell
+  Array<float> weights_; ///< see screeningWeights()
   MatrixRows laplacian_rows_;
   int threads_;
 };

@@ -3,7 +3,6 @@
 #include "poisson/octree/halo.h"
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <fresco/core/parallel.h>
 namespace fresco::poisson {
 namespace {
@@ -60,19 +59,18 @@ void LowPassFilter::apply(NodeField& chi, NodeField& spare) const
   const auto isActive = [&](Index b) { return b >= 0 && strengths_[b] > 0.f; };
   if (std::none_of(strengths_.begin(), strengths_.end(), [](float w) { return w > 0.f; }))
     return;
+  spare.releaseRim();
   parallelFor(level_.size(), threads_, [&](Index b) {
-    float* to = spare.brick(b);
-    std::memset(to, 0, brick_stride * sizeof(float));
+    float* to = spare.own(b);
+    std::fill_n(to, own_nodes, 0.f);
     const auto& around = level_.neighbors[b];
     if (std::any_of(around.begin(), around.end(), isActive))
       addHighPass(b, chi, 1.f, to);
   });
-  syncFaces(level_, spare, threads_);
   parallelFor(level_.size(), threads_, [&](Index b) {
     if (isActive(b))
-      addHighPass(b, spare, -strengths_[b], chi.brick(b));
+      addHighPass(b, spare, -strengths_[b], chi.own(b));
   });
-  syncFaces(level_, chi, threads_);
 }
 
 void LowPassFilter::addHighPass(Index brick, const NodeField& field, float factor, float* result) const
@@ -88,7 +86,7 @@ void LowPassFilter::addHighPass(Index brick, const NodeField& field, float facto
       smooth += line(at + haloStep(o)) * (1.f / (8 << axesOf(o)));
     for (int x = 0; x < brick_cells; ++x)
       if (!(fixed >> ownIndex(x, y, z) & 1))
-        result[nodeIndex(x, y, z)] += factor * (at[x] - smooth[x]);
+        result[ownIndex(x, y, z)] += factor * (at[x] - smooth[x]);
   }
 }
 } // namespace fresco::poisson

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include "poisson/octree/octree.h"
+#include "poisson/octree/node_field.h"
 #include "poisson/samples.h"
 #include <vector>
 namespace fresco::poisson {

@@ -18,13 +18,6 @@
 // of the scale, is gone. The system stays symmetric and gains positive entries on its diagonal; with alpha = 0 it is
 // the one of Kazhdan, Bolitho & Hoppe 2006.
 namespace fresco::poisson {
-/// A sample at one depth, as the term needs it.
-struct ScreenedSample {
-  Eigen::Vector3f position; ///< p_i, in cells of the depth
-  float weight;             ///< alpha f_i s_i
-  float isolated;           ///< 1 if the data sustain no more than this depth here, 0 if they sustain a finer one
-};
-
 /// s_i: noisy samples hold chi less.
 /// @param noise in cells of the depth that is solved
 inline float screeningWeight(float noise)
@@ -34,9 +27,8 @@ inline float screeningWeight(float noise)
   return gain / (1.f + noise * noise / (tolerated * tolerated));
 }
 
-/// @param finest depth whose cells are the unit of the samples' positions
-Array<ScreenedSample> screenedSamples(const BrickLevel& level, const SampleLevel& samples, int finest,
-                                      float point_weight, int threads);
+/// alpha f_i s_i at a depth. @param scale cells of the depth per finest cell
+Array<float> screeningWeights(const SampleLevel& samples, float scale, float point_weight, int threads);
 
 /// alpha f_i s_i on the complete grid of a coarse depth. @param scale cells of the grid per finest cell
 inline double screeningFactor(const CoarseSample& sample, double scale, double point_weight)
@@ -50,7 +42,7 @@ using MatrixRows = float[27][own_nodes];
 /// Adds alpha f_i s_i B_j(p_i) B_k(p_i) for the eight nodes j around a sample, as far as the brick owns them, and the
 /// eight nodes k.
 /// @param hat    B at the sample, in the cells of the brick
-/// @param weight ScreenedSample::weight
+/// @param weight alpha f_i s_i
 inline void addScreening(const HatWeights& hat, float weight, MatrixRows& rows)
 {
   for (int j = 0; j < 8; ++j) {

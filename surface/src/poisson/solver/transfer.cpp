@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "poisson/solver/transfer.h"
 #include <cstring>
-#include <fresco/core/parallel.h>
 namespace fresco::poisson {
 namespace {
 /// Index of the parent's node at the lower corner of an octant.
@@ -67,25 +66,32 @@ void restrictToParent(const float* child, int octant, float factor, float* paren
 void restrictLevel(const BrickLevel& fine_level, const NodeField& fine, const BrickLevel& coarse_level, float factor,
                    NodeField& coarse, int threads)
 {
+  constexpr int stride = 64; // upper_nodes in whole cache lines
+  Array<float> upper(coarse_level.codes.size() * stride);
   parallelFor(coarse_level.size(), threads, [&](Index p) {
-    float* parent = coarse.brick(p);
-    for (int z = 0; z < brick_nodes; ++z) // copies count once
-      for (int y = 0; y < brick_nodes; ++y)
-        for (int x = 0; x < brick_nodes; ++x)
-          if (!holdsNode(coarse_level, p, x, y, z))
-            parent[nodeIndex(x, y, z)] = 0.f;
-    for (int octant = 0; octant < 8; ++octant) {
-      const int c = coarse_level.children[p][octant];
-      if (c < 0)
+    float parent[nodes_per_brick], held[nodes_per_brick];
+    coarse.loadHeld(coarse_level, p, parent);
+    for (int octant = 0; octant < 8; ++octant)
+      if (const int c = coarse_level.child(p, octant); c >= 0) {
+        fine.loadHeld(fine_level, c, held);
+        restrictToParent(held, octant, factor, parent);
+      }
+    coarse.store(coarse_level, p, parent);
+    copyUpperNodes(parent, &upper[p * stride]);
+  });
+  parallelFor(coarse_level.size(), threads, [&](Index p) {
+    float* own = coarse.own(p);
+    for (int axes = 1; axes < 8; ++axes) { // what the neighbours below have on their upper faces
+      const int dx = axes & 1, dy = axes >> 1 & 1, dz = axes >> 2;
+      const int n = coarse_level.neighbors[p][offsetIndex(-dx, -dy, -dz)];
+      if (n < 0)
         continue;
-      float held[brick_stride];
-      for (int z = 0; z < brick_nodes; ++z)
-        for (int y = 0; y < brick_nodes; ++y)
-          for (int x = 0; x < brick_nodes; ++x)
-            held[nodeIndex(x, y, z)] = holdsNode(fine_level, c, x, y, z) ? fine.brick(c)[nodeIndex(x, y, z)] : 0.f;
-      restrictToParent(held, octant, factor, parent);
+      const float* part = &upper[n * stride + upperPart(axes)];
+      for (int z = 0; z < (dz ? 1 : brick_cells); ++z)
+        for (int y = 0; y < (dy ? 1 : brick_cells); ++y)
+          for (int x = 0; x < (dx ? 1 : brick_cells); ++x)
+            own[ownIndex(x, y, z)] += part[rimIndex(axes, x, y, z)];
     }
   });
-  sumFaces(coarse_level, coarse, threads);
 }
 } // namespace fresco::poisson
