@@ -79,7 +79,7 @@ private:
   {
     std::vector<Channels> nodes(nodes_per_brick, Channels::Zero());
     const BrickLevel& level = tree_.levels.back();
-    for (const int n : level.neighbors[brick]) {
+    for (const int n : level.neighborsOf(brick)) {
       if (n < 0)
         continue;
       for (std::uint32_t i = begin_[n]; i < begin_[n + 1]; ++i) {

@@ -36,7 +36,7 @@ CellPlace normalized(const Octree& tree, CellPlace c)
 {
   const int o = offsetIndex(c.x >> 2, c.y >> 2, c.z >> 2);
   if (o != offset_self)
-    c.brick = tree.levels[c.depth].neighbors[c.brick][o];
+    c.brick = tree.levels[c.depth].neighbor(c.brick, o);
   c.x &= 3;
   c.y &= 3;
   c.z &= 3;
@@ -151,7 +151,6 @@ EdgePlace CrossedEdges::ownerOfFaceEdge(const EdgePlace& edge) const
   const int first = edge.axis == 0 ? 1 : 0, second = edge.axis == 2 ? 1 : 2;
   const int at[3] = {edge.x, edge.y, edge.z};
   const BrickLevel& level = surface_->tree->levels[edge.depth];
-  const auto& neighbors = level.neighbors[edge.brick];
   // Offsets of the upper bricks on both axes; the lower ones are one less where the edge lies between two bricks.
   const int up_first = at[first] == brick_cells, up_second = at[second] == brick_cells;
   const int down_first = up_first - (at[first] % brick_cells == 0),
@@ -161,7 +160,7 @@ EdgePlace CrossedEdges::ownerOfFaceEdge(const EdgePlace& edge) const
       int offset[3] = {0, 0, 0};
       offset[first] = p;
       offset[second] = q;
-      const int n = neighbors[offsetIndex(offset[0], offset[1], offset[2])];
+      const int n = level.neighbor(edge.brick, offsetIndex(offset[0], offset[1], offset[2]));
       if (n >= 0)
         return {edge.depth,
                 n,

@@ -36,7 +36,7 @@ inline void copyPart(const Part& part, const float* from, int step_y, int step_z
 }
 
 /// The same from the rim of a brick that has the nodes on its upper faces, if there is one.
-void copyRim(const BrickLevel& level, Index brick, const NodeField& field, const int d[3], float* halo)
+void copyRim(const BrickLevel& level, const Neighbors& neighbors, const NodeField& field, const int d[3], float* halo)
 {
   const int above = (d[0] > 0) | (d[1] > 0) << 1 | (d[2] > 0) << 2;
   const Part part = partAt(d);
@@ -49,7 +49,7 @@ void copyRim(const BrickLevel& level, Index brick, const NodeField& field, const
       h[a] = axes >> a & 1 ? 0 : d[a];
       at[a] = part.first[a] - brick_cells * h[a];
     }
-    const int holder = level.neighbors[brick][offsetIndex(h[0], h[1], h[2])];
+    const int holder = neighbors[offsetIndex(h[0], h[1], h[2])];
     if (holder < 0)
       continue;
     const float* rim = field.rim(level, holder, axes);
@@ -60,31 +60,31 @@ void copyRim(const BrickLevel& level, Index brick, const NodeField& field, const
 }
 /// The part in the brick at an offset; unrolled, because the offset is known to the compiler.
 template <int offset>
-inline void loadPart(const BrickLevel& level, Index brick, const NodeField& field, float* halo)
+inline void loadPart(const BrickLevel& level, const Neighbors& neighbors, const NodeField& field, float* halo)
 {
   constexpr int d[3] = {offset % 3 - 1, offset / 3 % 3 - 1, offset / 9 - 1};
-  const int n = level.neighbors[brick][offset];
+  const int n = neighbors[offset];
   if (n < 0)
-    return copyRim(level, brick, field, d, halo);
+    return copyRim(level, neighbors, field, d, halo);
   constexpr Part part = partAt(d);
   constexpr int first = ownIndex(part.first[0] & 3, part.first[1] & 3, part.first[2] & 3);
   copyPart(part, field.own(n) + first, brick_cells, brick_cells * brick_cells, halo);
 }
 
 template <int... offsets>
-void loadParts(const BrickLevel& level, Index brick, const NodeField& field, float* halo,
+void loadParts(const BrickLevel& level, const Neighbors& neighbors, const NodeField& field, float* halo,
                std::integer_sequence<int, offsets...>)
 {
-  (loadPart<offsets>(level, brick, field, halo), ...);
+  (loadPart<offsets>(level, neighbors, field, halo), ...);
 }
 } // namespace
 
-void loadHalo(const BrickLevel& level, Index brick, const NodeField& field, float* halo)
+void loadHalo(const BrickLevel& level, const Neighbors& neighbors, const NodeField& field, float* halo)
 {
-  loadParts(level, brick, field, halo, std::make_integer_sequence<int, 27>());
+  loadParts(level, neighbors, field, halo, std::make_integer_sequence<int, 27>());
 }
 
-std::uint64_t fixedNodes(const BrickLevel& level, Index brick)
+std::uint64_t fixedNodes(const Neighbors& neighbors)
 {
   // Own nodes on the lower faces of the axes in o's bits.
   static const auto on_lower_faces = [] {
@@ -95,7 +95,6 @@ std::uint64_t fixedNodes(const BrickLevel& level, Index brick)
           masks[o] |= std::uint64_t(1) << i;
     return masks;
   }();
-  const auto& neighbors = level.neighbors[brick];
   std::uint64_t fixed = 0;
   for (int o = 1; o < 8; ++o)
     if (neighbors[offsetIndex(-(o & 1), -(o >> 1 & 1), -(o >> 2))] < 0)

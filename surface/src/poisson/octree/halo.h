@@ -20,9 +20,9 @@ inline Line& line(float* p) { return *reinterpret_cast<Line*>(p); }
 inline const Line& line(const float* p) { return *reinterpret_cast<const Line*>(p); }
 
 /// Values of the nodes in and around a brick; 0 where no brick holds a node.
-/// @param halo halo_size floats
-void loadHalo(const BrickLevel& level, Index brick, const NodeField& field, float* halo);
+/// @param neighbors of the brick. @param halo halo_size floats
+void loadHalo(const BrickLevel& level, const Neighbors& neighbors, const NodeField& field, float* halo);
 
 /// Bit ownIndex(): the node has a missing cell around it, so its value comes from the coarser depth.
-std::uint64_t fixedNodes(const BrickLevel& level, Index brick);
+std::uint64_t fixedNodes(const Neighbors& neighbors);
 } // namespace fresco::poisson

@@ -88,9 +88,10 @@ void findRims(BrickLevel& level, int threads)
       level.size(), threads,
       [&](Index begin, Index end) {
         for (Index b = begin; b < end; ++b) {
+          const Neighbors neighbors = level.neighborsOf(b);
           unsigned parts = 0;
           for (int axes = 1; axes < 8; ++axes)
-            parts |= (upperNeighbor(level, b, axes) < 0 ? 1u : 0u) << axes;
+            parts |= (neighbors[upperOffset(axes)] < 0 ? 1u : 0u) << axes;
           level.rims[b].parts = parts;
           first[begin / chunk] += part_places[parts][0];
         }
@@ -136,9 +137,9 @@ float NodeField::value(const BrickLevel& level, Index b, int x, int y, int z) co
   const int axes = upperAxes(x, y, z);
   if (axes == 0)
     return own(b)[ownIndex(x, y, z)];
-  if (const int n = upperNeighbor(level, b, axes); n >= 0)
-    return own(n)[ownIndex(x & 3, y & 3, z & 3)];
-  return rim(level, b, axes)[rimIndex(axes, x, y, z)];
+  if (level.rims[b].parts >> axes & 1)
+    return rim(level, b, axes)[rimIndex(axes, x, y, z)];
+  return own(level.neighbor(b, upperOffset(axes)))[ownIndex(x & 3, y & 3, z & 3)];
 }
 
 void NodeField::load(const BrickLevel& level, Index b, float* nodes) const
@@ -147,14 +148,14 @@ void NodeField::load(const BrickLevel& level, Index b, float* nodes) const
   for (int axes = 1; axes < 8; ++axes) {
     const int count = upper.count[axes];
     const auto& place = upper.of[axes];
-    if (const int n = upperNeighbor(level, b, axes); n >= 0) {
-      const float* from = own(n);
-      for (int i = 0; i < count; ++i)
-        nodes[place[i].node] = from[place[i].own];
-    } else {
+    if (level.rims[b].parts >> axes & 1) {
       const float* from = rim(level, b, axes);
       for (int i = 0; i < count; ++i)
         nodes[place[i].node] = from[i];
+    } else {
+      const float* from = own(level.neighbor(b, upperOffset(axes)));
+      for (int i = 0; i < count; ++i)
+        nodes[place[i].node] = from[place[i].own];
     }
   }
 }
@@ -188,9 +189,8 @@ void NodeField::add(const BrickLevel& level, Index b, float factor, const float*
 
 NodePlace findNodeAround(const BrickLevel& level, Index b, int x, int y, int z)
 {
-  const auto& neighbors = level.neighbors[b];
   const int ox = x >> 2, oy = y >> 2, oz = z >> 2;
-  const int owner = neighbors[offsetIndex(ox, oy, oz)];
+  const int owner = level.neighbor(b, offsetIndex(ox, oy, oz));
   if (owner >= 0)
     return {Index(owner) * own_nodes + ownIndex(x & 3, y & 3, z & 3), -1};
   const int mx = std::min(ox, (x - 1) >> 2), my = std::min(oy, (y - 1) >> 2), mz = std::min(oz, (z - 1) >> 2);
@@ -198,7 +198,7 @@ NodePlace findNodeAround(const BrickLevel& level, Index b, int x, int y, int z)
     const int px = m & 1 ? mx : ox, py = m & 2 ? my : oy, pz = m & 4 ? mz : oz;
     if (px < -1 || py < -1 || pz < -1)
       continue;
-    const int holder = neighbors[offsetIndex(px, py, pz)];
+    const int holder = level.neighbor(b, offsetIndex(px, py, pz));
     if (holder < 0)
       continue;
     const int hx = x - 4 * px, hy = y - 4 * py, hz = z - 4 * pz, axes = upperAxes(hx, hy, hz);

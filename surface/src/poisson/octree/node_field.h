@@ -6,17 +6,14 @@ namespace fresco::poisson {
 /// neighbour in that direction where there is one.
 constexpr int upperAxes(int x, int y, int z) { return x >> 2 | y >> 2 << 1 | z >> 2 << 2; }
 
-/// Neighbour in the direction of upperAxes(), -1 where there is none.
-inline int upperNeighbor(const BrickLevel& level, Index b, int axes)
-{
-  return level.neighbors[b][offsetIndex(axes & 1, axes >> 1 & 1, axes >> 2)];
-}
+/// Offset of the neighbour in the direction of upperAxes().
+constexpr int upperOffset(int axes) { return offsetIndex(axes & 1, axes >> 1 & 1, axes >> 2); }
 
 /// Whether brick `b` is the one that holds its node (x, y, z), each 0..4.
 inline bool holdsNode(const BrickLevel& level, Index b, int x, int y, int z)
 {
   const int axes = upperAxes(x, y, z);
-  return axes == 0 || upperNeighbor(level, b, axes) < 0;
+  return axes == 0 || (level.rims[b].parts >> axes & 1) != 0;
 }
 
 /// From the first node of a part of the rim, those with the same upperAxes(), to (x, y, z); x is fastest.

@@ -133,40 +133,82 @@ void linkToParents(BrickLevel& coarse, BrickLevel& fine, int threads)
   });
 }
 
-std::array<int, 27> findNeighbors(const BrickLevel& coarse, int parent, int octant)
+/// Where a child looks for its neighbours among the children of one neighbour of its parent.
+struct Cousins {
+  int uncle = 0; ///< offsetIndex() from the parent
+  int count = 0;
+  std::array<std::uint8_t, 8> octant{}, offset{}; ///< of that neighbour, from the child
+};
+
+/// By the octant of the child.
+using CousinTable = std::array<std::array<Cousins, 8>, 8>;
+
+constexpr CousinTable cousinTable()
 {
-  std::array<int, 27> found;
-  for (int o = 0; o < 27; ++o) {
-    const int x = (octant & 1) + o % 3 - 1, y = (octant >> 1 & 1) + o / 3 % 3 - 1, z = (octant >> 2) + o / 9 - 1;
-    const int at = offsetIndex(x >> 1, y >> 1, z >> 1);
-    const int uncle = coarse.neighbors[parent][at];
-    const int child = (x & 1) | (y & 1) << 1 | (z & 1) << 2;
-    found[o] = uncle < 0 ? -1 : coarse.child(uncle, child);
-  }
-  return found;
+  CousinTable table{};
+  for (int octant = 0; octant < 8; ++octant)
+    for (int o = 0; o < 27; ++o) {
+      const int x = (octant & 1) + o % 3 - 1, y = (octant >> 1 & 1) + o / 3 % 3 - 1, z = (octant >> 2) + o / 9 - 1;
+      const int beyond = ((x & ~1) != 0 ? 1 : 0) | ((y & ~1) != 0 ? 2 : 0) | ((z & ~1) != 0 ? 4 : 0);
+      Cousins& cousins = table[octant][beyond];
+      cousins.uncle = offsetIndex(x >> 1, y >> 1, z >> 1);
+      cousins.octant[cousins.count] = static_cast<std::uint8_t>((x & 1) | (y & 1) << 1 | (z & 1) << 2);
+      cousins.offset[cousins.count++] = static_cast<std::uint8_t>(o);
+    }
+  return table;
 }
+
+constexpr CousinTable cousin_table = cousinTable();
 
 void linkLevel(Octree& tree, int depth, int threads)
 {
   BrickLevel& level = tree.levels[depth];
   level.child_octants.assign(level.codes.size(), 0);
-  level.neighbors.resize(level.codes.size());
   const Array<std::uint32_t> blocks = runBegins(level.size(), threads, [&](Index b) { return level.codes[b] >> 6; });
   for (std::size_t i = 0; i + 1 < blocks.size(); ++i)
     level.colors[level.codes[blocks[i]] >> 6 & 7].push_back({int(blocks[i]), int(blocks[i + 1])});
   if (depth == 2) {
     level.parents.assign(1, -1);
+    level.neighbors.resize(1);
     level.neighbors[0].fill(-1);
     level.neighbors[0][offset_self] = 0;
   } else {
     BrickLevel& coarse = tree.levels[depth - 1];
+    level.coarser = &coarse;
     linkToParents(coarse, level, threads);
-    parallelFor(level.size(), threads,
-                [&](Index b) { level.neighbors[b] = findNeighbors(coarse, level.parents[b], level.octant(b)); });
+    if (depth < tree.depth) {
+      Array<Neighbors> found(level.codes.size());
+      parallelFor(level.size(), threads, [&](Index b) { found[b] = level.neighborsByParent(b); });
+      level.neighbors.swap(found);
+    }
   }
   findRims(level, threads);
 }
 } // namespace
+
+Neighbors BrickLevel::neighborsByParent(Index b) const
+{
+  Neighbors found;
+  const int parent = parents[b];
+  for (const Cousins& cousins : cousin_table[octant(b)]) {
+    const int uncle = coarser->neighbors[parent][cousins.uncle];
+    const unsigned octants = uncle < 0 ? 0 : coarser->child_octants[uncle];
+    const int first = uncle < 0 ? 0 : coarser->first_children[uncle];
+    for (int i = 0; i < cousins.count; ++i) {
+      const unsigned bit = 1u << cousins.octant[i];
+      found[cousins.offset[i]] = octants & bit ? first + bitCount(octants & (bit - 1)) : -1;
+    }
+  }
+  return found;
+}
+
+int BrickLevel::neighborByParent(Index b, int offset) const
+{
+  const int o = octant(b);
+  const int x = (o & 1) + offset % 3 - 1, y = (o >> 1 & 1) + offset / 3 % 3 - 1, z = (o >> 2) + offset / 9 - 1;
+  const int uncle = coarser->neighbors[parents[b]][offsetIndex(x >> 1, y >> 1, z >> 1)];
+  return uncle < 0 ? -1 : coarser->child(uncle, (x & 1) | (y & 1) << 1 | (z & 1) << 2);
+}
 
 std::array<int, 3> BrickLevel::corner(Index b) const
 {

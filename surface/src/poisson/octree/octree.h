@@ -28,6 +28,9 @@ constexpr int offset_self = offsetIndex(0, 0, 0);
 /// Octant (bits x, y, z) of the brick that holds cell (x, y, z), each 0..3.
 constexpr int octantOf(int x, int y, int z) { return (x >> 1) | (y >> 1) << 1 | (z >> 1) << 2; }
 
+/// Indices of the bricks around one, and its own, by offsetIndex(); -1 where there is none.
+using Neighbors = std::array<int, 27>;
+
 /// Consecutive bricks begin..end - 1.
 struct BrickRun {
   int begin, end;
@@ -42,11 +45,12 @@ struct Rim {
 /// The bricks of one octree depth, sorted by Morton code. A brick covers 4^3 cells of side 1 / 2^depth.
 struct BrickLevel {
   int depth = 0;
-  std::vector<std::uint64_t> codes;     ///< Morton code of the brick's coordinates
-  Array<std::array<int, 27>> neighbors; ///< by offsetIndex(); -1 where there is none
-  Array<int> parents;                   ///< index into the coarser level; -1 at the coarsest
-  Array<int> first_children;            ///< index into the finer level; the others follow it, by octant
-  Array<std::uint8_t> child_octants;    ///< bits; where there is no child, the cells are leaves
+  std::vector<std::uint64_t> codes;    ///< Morton code of the brick's coordinates
+  Array<Neighbors> neighbors;          ///< empty at the finest level, which has the most: see neighborsOf()
+  const BrickLevel* coarser = nullptr; ///< in the same octree
+  Array<int> parents;                  ///< index into the coarser level; -1 at the coarsest
+  Array<int> first_children;           ///< index into the finer level; the others follow it, by octant
+  Array<std::uint8_t> child_octants;   ///< bits; where there is no child, the cells are leaves
   Array<Rim> rims;
   Index rim_nodes = 0; ///< of all bricks
   /// Blocks of 4^3 bricks, by the octant that a block is in the block of 8^3 around it. Those of one colour never
@@ -62,6 +66,14 @@ struct BrickLevel {
     const unsigned octants = child_octants[b];
     return octants >> octant & 1 ? first_children[b] + bitCount(octants & ((1u << octant) - 1)) : -1;
   }
+  Neighbors neighborsOf(Index b) const { return neighbors.empty() ? neighborsByParent(b) : neighbors[b]; }
+  int neighbor(Index b, int offset) const
+  {
+    return neighbors.empty() ? neighborByParent(b, offset) : neighbors[b][offset];
+  }
+  /// The same through the parents.
+  Neighbors neighborsByParent(Index b) const;
+  int neighborByParent(Index b, int offset) const;
   /// Coordinates of the lower node of brick `b`, in cells of this depth.
   std::array<int, 3> corner(Index b) const;
   Eigen::Vector3f origin(Index b) const;
@@ -71,6 +83,10 @@ struct BrickLevel {
 struct Octree {
   int depth = 0, full_depth = 0;
   std::vector<BrickLevel> levels;
+
+  Octree() = default;
+  Octree(Octree&&) = default; // the levels, which point to each other, stay where they are
+  Octree& operator=(Octree&&) = default;
 };
 
 /// @param cell_codes sorted Morton codes of the finest cells that hold samples

@@ -71,7 +71,7 @@ public:
   float& at(int x, int y, int z) { return data_[index(x, y, z)]; }
   void addTo(const BrickLevel& level, Index brick, NodeField& field) const
   {
-    const auto& neighbors = level.neighbors[brick];
+    const Neighbors neighbors = level.neighborsOf(brick);
     for (int dz = -1; dz <= 1; ++dz)
       for (int dy = -1; dy <= 1; ++dy)
         for (int dx = -1; dx <= 1; ++dx) {

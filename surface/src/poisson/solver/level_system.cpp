@@ -51,10 +51,9 @@ LevelSystem::LevelSystem(const BrickLevel& level, const SampleLevel& samples, in
     std::fill_n(laplacian_rows_[k], own_nodes, laplacian[axesOf(k)]);
 }
 
-void LevelSystem::assemble(Index brick, Block& block) const
+void LevelSystem::assemble(Index brick, const Neighbors& neighbors, Block& block) const
 {
   std::memcpy(block.rows, laplacian_rows_, sizeof(block.rows));
-  const auto& neighbors = level_.neighbors[brick];
   const Eigen::Vector3f origin = level_.origin(brick);
   for (int o = 0; o < 8; ++o) {
     const int n = neighbors[offsetIndex(-(o & 1), -(o >> 1 & 1), -(o >> 2))];
@@ -72,9 +71,11 @@ void LevelSystem::assemble(Index brick, Block& block) const
 
 void LevelSystem::load(Index brick, const NodeField& b, const NodeField& x, Block& block) const
 {
+  const Neighbors neighbors = level_.neighborsOf(brick);
+  assemble(brick, neighbors, block);
   std::copy_n(b.own(brick), own_nodes, block.right);
-  loadHalo(level_, brick, x, block.x);
-  block.fixed = fixedNodes(level_, brick);
+  loadHalo(level_, neighbors, x, block.x);
+  block.fixed = fixedNodes(neighbors);
 }
 
 /// Relaxes lines of the brick that do not depend on each other, side by side: each sum is a chain of operations.
@@ -159,7 +160,6 @@ void LevelSystem::smooth(const NodeField& b, int iterations, NodeField& x) const
 void LevelSystem::smoothBrick(Index brick, const NodeField& b, int sweeps, NodeField& x) const
 {
   Block block;
-  assemble(brick, block);
   load(brick, b, x, block);
   block.sweep(sweeps);
   float* nodes = x.own(brick);
@@ -195,7 +195,6 @@ LevelSystem::Norms LevelSystem::residual(const NodeField& b, const NodeField& x)
         Norms sum;
         for (Index brick = begin; brick < end; ++brick) {
           Block block;
-          assemble(brick, block);
           load(brick, b, x, block);
           sum = add(sum, block.residual());
         }

@@ -29,7 +29,7 @@ public:
 
 private:
   struct Block;
-  void assemble(Index brick, Block& block) const;
+  void assemble(Index brick, const Neighbors& neighbors, Block& block) const;
   void load(Index brick, const NodeField& b, const NodeField& x, Block& block) const;
   void smoothBrick(Index brick, const NodeField& b, int sweeps, NodeField& x) const;
 

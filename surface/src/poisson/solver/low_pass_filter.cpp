@@ -45,7 +45,7 @@ LowPassFilter::LowPassFilter(const BrickLevel& level, const SampleLevel& samples
   });
   parallelFor(level.size(), threads, [&](Index b) {
     BrickSums around;
-    for (const int n : level_.neighbors[b])
+    for (const int n : level_.neighborsOf(b))
       if (n >= 0) {
         const BrickSums& part = sums[n];
         around = {around.area + part.area, around.missing_depth + part.missing_depth, around.noise + part.noise};
@@ -63,21 +63,21 @@ void LowPassFilter::apply(NodeField& chi, NodeField& spare) const
   parallelFor(level_.size(), threads_, [&](Index b) {
     float* to = spare.own(b);
     std::fill_n(to, own_nodes, 0.f);
-    const auto& around = level_.neighbors[b];
+    const Neighbors around = level_.neighborsOf(b);
     if (std::any_of(around.begin(), around.end(), isActive))
-      addHighPass(b, chi, 1.f, to);
+      addHighPass(around, chi, 1.f, to);
   });
   parallelFor(level_.size(), threads_, [&](Index b) {
     if (isActive(b))
-      addHighPass(b, spare, -strengths_[b], chi.own(b));
+      addHighPass(level_.neighborsOf(b), spare, -strengths_[b], chi.own(b));
   });
 }
 
-void LowPassFilter::addHighPass(Index brick, const NodeField& field, float factor, float* result) const
+void LowPassFilter::addHighPass(const Neighbors& neighbors, const NodeField& field, float factor, float* result) const
 {
   float halo[halo_size];
-  loadHalo(level_, brick, field, halo);
-  const std::uint64_t fixed = fixedNodes(level_, brick);
+  loadHalo(level_, neighbors, field, halo);
+  const std::uint64_t fixed = fixedNodes(neighbors);
   for (int y_z = 0; y_z < brick_cells * brick_cells; ++y_z) {
     const int y = y_z & 3, z = y_z >> 2;
     const float* at = halo + haloIndex(0, y, z);

@@ -25,8 +25,8 @@ public:
   const std::vector<float>& strengths() const { return strengths_; }
 
 private:
-  /// result += factor (1 - S) field
-  void addHighPass(Index brick, const NodeField& field, float factor, float* result) const;
+  /// result += factor (1 - S) field at the own nodes of a brick
+  void addHighPass(const Neighbors& neighbors, const NodeField& field, float factor, float* result) const;
   const BrickLevel& level_;
   int threads_;
   std::vector<float> strengths_;

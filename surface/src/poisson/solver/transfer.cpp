@@ -81,9 +81,10 @@ void restrictLevel(const BrickLevel& fine_level, const NodeField& fine, const Br
   });
   parallelFor(coarse_level.size(), threads, [&](Index p) {
     float* own = coarse.own(p);
+    const Neighbors neighbors = coarse_level.neighborsOf(p);
     for (int axes = 1; axes < 8; ++axes) { // what the neighbours below have on their upper faces
       const int dx = axes & 1, dy = axes >> 1 & 1, dz = axes >> 2;
-      const int n = coarse_level.neighbors[p][offsetIndex(-dx, -dy, -dz)];
+      const int n = neighbors[offsetIndex(-dx, -dy, -dz)];
       if (n < 0)
         continue;
       const float* part = &upper[n * stride + upperPart(axes)];
