@@ -37,14 +37,6 @@ Neighbor ScanLevel::nearest(const Eigen::Vector3f& query, float max_distance) co
   return near ? found[0] : Neighbor{-1, 0.f};
 }
 
-void ScanLevel::nearest(const Eigen::Vector3f& query, int k, std::vector<Neighbor>& found) const
-{
-  if (search)
-    search->nearest(query, k, found);
-  else
-    tree->nearest(query, k, found);
-}
-
 void distrustViewpoint(PreparedScan& scan, const std::string& reason)
 {
   scan.viewpoint_problem = reason;

@@ -25,8 +25,6 @@ struct ScanLevel {
   void prepareSearch() const;
   /// The nearest point closer than `max_distance`; index -1 where there is none.
   Neighbor nearest(const Eigen::Vector3f& query, float max_distance) const;
-  /// The k nearest points, by distance.
-  void nearest(const Eigen::Vector3f& query, int k, std::vector<Neighbor>& found) const;
 };
 
 /// A motion other than the identity that maps a part of a scan onto another part of it: two places that look alike.

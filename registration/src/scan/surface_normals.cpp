@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <fresco/core/parallel.h>
+#include <fresco/search/batch_knn.h>
 namespace fresco::registration {
 namespace {
 struct LocalPlane {
@@ -12,17 +13,18 @@ struct LocalPlane {
   float surface_variation = 1.f / 3.f; // its largest value: no plane
 };
 
-LocalPlane fitPlane(const Points& points, const Eigen::Vector3f& center, const std::vector<Neighbor>& hits, float reach)
+/// @param hits columns of `points`, by distance from `center`
+LocalPlane fitPlane(const Points& points, const Eigen::Vector3f& center, const std::vector<int>& hits, float reach)
 {
   constexpr int fewest_neighbors = 5; // two more than span a plane: its residual then says something
   constexpr float line_limit = 0.02f; // second / largest eigenvalue: a strip seven times as long as wide, a scan line
   Eigen::Vector3f sum = Eigen::Vector3f::Zero();
   Eigen::Matrix3f squares = Eigen::Matrix3f::Zero();
   int count = 0;
-  for (const Neighbor& hit : hits) {
-    if (hit.squared_distance > reach * reach)
+  for (const int hit : hits) {
+    const Eigen::Vector3f d = points.col(hit) - center;
+    if (d.squaredNorm() > reach * reach)
       break;
-    const Eigen::Vector3f d = points.col(hit.index) - center;
     sum += d;
     squares += d * d.transpose();
     ++count;
@@ -37,6 +39,30 @@ LocalPlane fitPlane(const Points& points, const Eigen::Vector3f& center, const s
   if (!(values[1] > line_limit * values[2]))
     return {};
   return {solver.eigenvectors().col(0), values[0] / values.sum()};
+}
+
+/// use(i, hits) for every point of a level, with its `k` nearest points by distance, itself first. In parallel.
+template <typename Use>
+void forNeighborhoods(const ScanLevel& level, int k, int threads, const Use& use)
+{
+  if (!level.search) {
+    const std::vector<int>& columns = level.tree->columns();
+    forNearest(*level.tree, k, threads, [&](Index position, const int* found, Index count) {
+      std::vector<int> hits(count);
+      std::transform(found, found + count, hits.begin(), [&](int place) { return columns[place]; });
+      use(columns[position], hits);
+    });
+    return;
+  }
+  parallelRanges(level.points.cols(), threads, [&](Index begin, Index end) {
+    std::vector<Neighbor> found;
+    for (Index i = begin; i < end; ++i) {
+      level.search->nearest(level.points.col(i), k, found);
+      std::vector<int> hits(found.size());
+      std::transform(found.begin(), found.end(), hits.begin(), [](const Neighbor& hit) { return hit.index; });
+      use(i, hits);
+    }
+  });
 }
 
 // Direction of a normal, its sign ignored, as one of 5 x 5 x 5 cells.
@@ -66,18 +92,14 @@ void estimateNormals(ScanLevel& level, int threads)
   level.normals.resize(3, n);
   level.surface_variation.resize(n);
   level.around.setConstant(level.around.rows(), n, -1);
-  parallelRanges(n, threads, [&](Index begin, Index end) {
-    std::vector<Neighbor> hits;
-    for (Index i = begin; i < end; ++i) {
-      const Eigen::Vector3f point = level.points.col(i);
-      level.nearest(point, neighbor_count, hits);
-      for (std::size_t k = 0; k < std::min<std::size_t>(hits.size(), level.around.rows()); ++k)
-        level.around(k, i) = hits[k].index;
-      const LocalPlane plane = fitPlane(level.points, point, hits, widest_neighborhood * level.voxel);
-      const bool away = plane.normal.dot(level.viewpoints.col(i) - point) < 0.f;
-      level.normals.col(i) = away ? Eigen::Vector3f(-plane.normal) : plane.normal;
-      level.surface_variation[i] = plane.surface_variation;
-    }
+  forNeighborhoods(level, neighbor_count, threads, [&](Index i, const std::vector<int>& hits) {
+    const Eigen::Vector3f point = level.points.col(i);
+    for (std::size_t k = 0; k < std::min<std::size_t>(hits.size(), level.around.rows()); ++k)
+      level.around(k, i) = hits[k];
+    const LocalPlane plane = fitPlane(level.points, point, hits, widest_neighborhood * level.voxel);
+    const bool away = plane.normal.dot(level.viewpoints.col(i) - point) < 0.f;
+    level.normals.col(i) = away ? Eigen::Vector3f(-plane.normal) : plane.normal;
+    level.surface_variation[i] = plane.surface_variation;
   });
 }
 
