@@ -30,7 +30,6 @@ Density::Density(const Octree& tree, const Samples& samples, int threads) : tree
 {
   fields_.resize(tree.levels.size());
   SampleLevel level = finestLevel(samples, threads);
-  total_weight_ = parallelSum(level.samples.size(), threads, 0.f, [&](Index i) { return level.samples[i].area; });
   for (int d = std::max(2, tree.depth - 1); d >= 2; --d) {
     const BrickLevel& bricks = tree.levels[d];
     NodeField& field = fields_[d];
@@ -66,6 +65,7 @@ Density::Estimate Density::at(int depth, Index brick, const Eigen::Vector3f& pos
   constexpr float plane_weight = 0.55f;
   constexpr float least_weight = 2.f;        // about twenty samples within the kernel; fewer are no estimate
   constexpr float negligible_weight = 0.02f; // as good as no samples
+  constexpr float smallest_weight = 1e-6f;   // a point's is 1 on average; 0 has no logarithm
   float weight = 0, finer_weight = 0;
   int d = depth;
   for (;; --d) {
@@ -77,7 +77,7 @@ Density::Estimate Density::at(int depth, Index brick, const Eigen::Vector3f& pos
     }
     brick = tree_->levels[d].parents[brick];
   }
-  weight = std::max(weight, 1e-6f * total_weight_);
+  weight = std::max(weight, smallest_weight);
   const float per_face = weight / plane_weight; // samples per face of a cell of depth d
   Estimate estimate;
   estimate.depth = d + 0.5f * std::log2(per_face);

@@ -23,7 +23,6 @@ private:
   float weightAt(int depth, Index brick, const Eigen::Vector3f& position) const;
   const Octree* tree_;
   std::vector<NodeField> fields_; ///< by depth
-  float total_weight_ = 0;
 };
 
 /// Sets depth and area (until now the weight) of each sample.

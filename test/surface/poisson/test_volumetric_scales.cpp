@@ -24,6 +24,23 @@ PointSet unevenSphere(Index count)
   return selectPoints(even, kept);
 }
 
+/// However many points a cloud has elsewhere: a bound that grew with them took the density of all but the densest
+/// places.
+TEST(VolumetricScales, DensityDoesNotDependOnPointsFarAway)
+{
+  Samples samples = gatherSamples(sphere(3000), atDepth(6));
+  const Octree tree = buildOctree(samples.codes, 6, 2, 1);
+  const auto atLast = [&] {
+    const Eigen::Vector3f place = samples.samples.back().position;
+    return Density(tree, samples, 1).at(6, tree.levels[6].size() - 1, place);
+  };
+  const Density::Estimate before = atLast();
+  samples.samples.front().area = 1e9f;
+  EXPECT_EQ(atLast().depth, before.depth);
+  EXPECT_EQ(atLast().area, before.area);
+  EXPECT_EQ(atLast().support, before.support);
+}
+
 /// Sum over the nodes, each counted once, of the field times visit(node in cells).
 template <typename Function>
 double momentOf(const BrickLevel& level, const NodeField& field, const Function& function)
