@@ -195,7 +195,8 @@ VolumetricResult reconstruct(Samples&& samples, const VolumetricOptions& options
     result.trim_depth = trim;
     constexpr double trim_patch = 16; // faces of such cells: smaller gaps and islands are below what the depth resolves
     const double trim_cell = samples.cube.side / std::exp2(result.trim_depth);
-    result.mesh = trimMesh(result.mesh, result.mesh.fields["support"], trim, trim_patch * trim_cell * trim_cell);
+    result.mesh = trimMesh(result.mesh, result.mesh.fields["support"],
+                           {trim, trim_patch * trim_cell * trim_cell, TrimmingOptions{}.rounds, options.threads});
   }
   report(progress, "done", 1.0);
   return result;
@@ -254,10 +255,10 @@ VolumetricResult reconstructVolumetric(std::unique_ptr<PointStream> points, cons
 
 VolumetricEstimate estimateVolumetric(const PointStream& points, const VolumetricOptions& options)
 {
-  // What the solver holds at its peak: 0.91 to 1 of this sum from 1 to 1000 million points at depths 8 to 12, measured in
-  // docs/scale.md.
-  constexpr std::size_t bytes_per_brick = 1300, bytes_per_sample = 65, bytes_per_attribute = 32;
+  // What the solver holds at its peak, or the surface while its faces are joined; measured in docs/scale.md.
+  constexpr std::size_t bytes_per_brick = 800, bytes_per_sample = 36, bytes_per_attribute = 32;
   constexpr std::size_t bytes_per_point = 60, most_points_at_once = 2'000'000; // while they are read and sorted
+  constexpr std::size_t bytes_per_sum = 58;                                    // of points that come in several pieces
   // Passes over one point that a brick costs, and passes over all points, in all and here. docs/scale.md has both times.
   constexpr double passes_per_brick = 350, passes = 3, passes_here = 2;
   validateVolumetricOptions(options);
@@ -270,9 +271,10 @@ VolumetricEstimate estimateVolumetric(const PointStream& points, const Volumetri
   for (const Index n : countBricks(codes, depth, std::min(options.min_depth, depth), options.threads))
     bricks += n;
   const double seconds_per_pass = here.count() / passes_here;
-  const std::size_t per_sample = bytes_per_sample + (extent.colors || extent.intensities ? bytes_per_attribute : 0);
-  const std::size_t reading = bytes_per_point * std::min<std::size_t>(extent.all, most_points_at_once);
-  return {std::max(reading, bricks * bytes_per_brick + codes.size() * per_sample),
+  const std::size_t more = extent.colors || extent.intensities ? bytes_per_attribute : 0;
+  const std::size_t reading = bytes_per_point * std::min<std::size_t>(extent.all, most_points_at_once) +
+                              (isOnePiece(extent) ? 0 : codes.size() * (bytes_per_sum + more));
+  return {std::max(reading, bricks * bytes_per_brick + codes.size() * (bytes_per_sample + more)),
           seconds_per_pass * (passes + passes_per_brick * bricks / std::max<Index>(1, extent.all))};
 }
 

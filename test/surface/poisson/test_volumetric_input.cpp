@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "surface/poisson/volumetric_shapes.h"
+#include <fresco/surface/core/mesh_trimming.h>
 #include <gtest/gtest.h>
 #include <limits>
 namespace fresco::test {
@@ -179,6 +180,28 @@ TEST(VolumetricInput, TrimmingKeepsWhatTheDataSustain)
   EXPECT_NEAR(surfaceArea(open), 2 * pi, 2 * pi * margin);
   EXPECT_GT(open.vertices.row(2).minCoeff(), -margin);
   EXPECT_EQ(open.fields.at("support").size(), open.vertexCount());
+}
+
+TEST(VolumetricInput, TrimmedMeshEndsAtTheLevelLineForAnyNumberOfThreads)
+{
+  TriangleMesh mesh = reconstructVolumetric(sphere(20000), atDepth(7)).mesh;
+  const Eigen::VectorXf height = mesh.vertices.row(2).transpose();
+  mesh.fields["height"] = height;
+  TriangleMesh trimmed[2];
+  for (const int threads : {1, 3})
+    trimmed[threads / 3] = trimMesh(mesh, height, {0.25f, 0.01, 0, threads});
+  const TriangleMesh& cap = trimmed[0];
+  EXPECT_EQ(cap.vertices, trimmed[1].vertices);
+  EXPECT_EQ(cap.faces, trimmed[1].faces);
+  EXPECT_EQ(cap.fields.at("height"), trimmed[1].fields.at("height"));
+  EXPECT_EQ(meshTopology(cap).euler, 1);
+  EXPECT_EQ(meshTopology(cap).referenced_vertices, cap.vertexCount());
+  EXPECT_GE(cap.vertices.row(2).minCoeff(), 0.25f - 1e-4f);
+  EXPECT_LT((cap.fields.at("height").transpose() - cap.vertices.row(2)).cwiseAbs().maxCoeff(), 1e-5f);
+  EXPECT_NEAR(surfaceArea(cap), 2 * pi * 0.75, 0.05);
+  EXPECT_EQ(trimMesh(mesh, height, {2.f}).faceCount(), 0);
+  EXPECT_EQ(trimMesh(mesh, height, {-2.f}).faces, mesh.faces);
+  EXPECT_THROW(trimMesh(mesh, height.head(5), {}), std::invalid_argument);
 }
 
 TEST(VolumetricInput, ProgressRisesAndCancels)
