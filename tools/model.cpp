@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "support/args.h"
+#include "support/ranks.h"
 #include "support/tool.h"
 #include <fresco/model/build_model.h>
 int main(int argc, char** argv)
 {
-  return fresco::runTool("fresco_model", [&] {
+  return fresco::runRanks("fresco_model", argc, argv, [&](const std::string& program, fresco::Exchange& ranks) {
     fresco::ModelOptions options; // its defaults are the tool's defaults
     fresco::CommonOptions common;
     fresco::Args args(
-        "fresco_model INPUT OUT_DIR [options]",
+        program + " INPUT OUT_DIR [options]",
         "Makes a textured model of a room: points and normals, poses, surface, texture, pictures, report.\n"
         "INPUT is a folder of scans (scans/*.pcd), alone, with panoramas named as the scans (panoramas/*.jpg) or\n"
         "with photographs (cameras/ as COLMAP model, images/, and poses.txt, of which only the first pose is used\n"
@@ -51,9 +52,10 @@ int main(int argc, char** argv)
     for (const char* part : {"", "/scans", "/panoramas", "/images", "/cameras"})
       fresco::requireDistinct({words[1]}, {words[0] + part});
     options.threads = common.threads;
+    common.quiet |= ranks.rank() > 0;
     fresco::inform(common.quiet, "input: " + fresco::describeInput(words[0]));
     const fresco::ModelReport report =
-        fresco::buildModel(words[0], words[1], options, fresco::printProgress(common.quiet));
+        fresco::buildModel({words[0], words[1]}, options, fresco::printProgress(common.quiet), ranks);
     for (const fresco::ModelStage& stage : report.stages) {
       fresco::inform(common.quiet, fresco::stageSummary(stage));
       for (const std::string& warning : stage.warnings)

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <fresco/core/require.h>
 #include <fresco/io/file.h>
+#include <fresco/io/shared_files.h>
 namespace fresco {
 namespace {
 using namespace model;
@@ -31,7 +32,7 @@ void validate(const ModelInput& input, const ModelOptions& options)
 /// The steps of the chain, each with the options that its outputs depend on besides the steps before it.
 std::vector<Stage> stagesOf(const Job& job)
 {
-  const auto& [input, files, options] = job;
+  const auto& [input, files, options, ranks] = job;
   const auto step = [&job](Figures (*make)(const Job&, const Progress&)) {
     return [&job, make](const Progress& progress) { return make(job, progress); };
   };
@@ -45,7 +46,8 @@ std::vector<Stage> stagesOf(const Job& job)
   add({"points",
        concat(options.use_poses, " ", options.fuse, " ", options.fuse > 0 ? 0.0 : options.cell, " ", options.bilateral),
        {files.points, files.poses},
-       step(makePoints)});
+       step(makePoints),
+       !input.rgbd});
   if (input.alignsCameras())
     add({"alignment", "", {files.cameras + "/images.txt"}, step(model::alignCameras)});
   add({"surface", concat(options.cell, " ", options.trim_levels), {files.surface}, step(makeSurface)});
@@ -63,7 +65,19 @@ std::vector<Stage> stagesOf(const Job& job)
 ModelReport buildModel(const std::string& input_folder, const std::string& output_folder, const ModelOptions& options,
                        const Progress& progress)
 {
-  const Job job{readModelInput(input_folder), ModelFiles{output_folder}, options};
+  Exchange alone;
+  return buildModel({input_folder, output_folder}, options, progress, alone);
+}
+
+ModelReport buildModel(const ModelFolders& folders, const ModelOptions& options, const Progress& progress,
+                       Exchange& ranks)
+{
+  const Job job{readModelInput(folders.input), ModelFiles{folders.output}, options, ranks};
+  requireSameFiles(job.input.files(), folders.input, ranks);
+  if (ranks.rank() > 0) {
+    followStages(stagesOf(job), ranks, progress);
+    return {};
+  }
   validate(job.input, options);
   const auto start = std::chrono::steady_clock::now();
   report(progress, "photographs", 0.0);
@@ -72,10 +86,11 @@ ModelReport buildModel(const std::string& input_folder, const std::string& outpu
   const FolderLock lock(job.files.work, "fresco_model");
   makeFolder(job.files.snapshots);
   StageLog log(job.files.work, fingerprint(job.input.files()) + fingerprint(programFiles()), options.resume, progress);
+  log.shareWith(ranks);
   for (const Stage& stage : stagesOf(job))
     log.run(stage);
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  Report report = makeReport(input_folder, log.records(), seconds);
+  Report report = makeReport(folders.input, log.records(), seconds);
   report.kind = describe(job.input);
   writeReport(report, job.files);
   return publicReport(report);

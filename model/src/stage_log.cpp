@@ -2,6 +2,7 @@
 #include "stage_log.h"
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <fresco/core/require.h>
@@ -62,6 +63,35 @@ double cpuSeconds()
   }
   return seconds;
 }
+
+StageRecord runMeasured(const Stage& stage, const Progress& progress)
+{
+  resetPeakMemory();
+  const auto start = std::chrono::steady_clock::now();
+  const double cpu_start = cpuSeconds();
+  StageRecord record{stage.name, 0, 0, 0, false, stage.body(progress)};
+  record.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  record.cpu_seconds = cpuSeconds() - cpu_start;
+  record.peak_megabytes = peakMegabytes();
+  return record;
+}
+
+/// Processor time of all ranks, memory of the one that needed most.
+void addCosts(StageRecord& record, Exchange& ranks)
+{
+  std::int64_t microseconds = std::llround(1e6 * record.cpu_seconds);
+  ranks.sum(&microseconds, 1);
+  record.cpu_seconds = 1e-6 * static_cast<double>(microseconds);
+  ranks.largest(&record.peak_megabytes, 1);
+}
+
+/// What rank 0 knows, the others get to know.
+bool tellRanks(bool known, Exchange& ranks)
+{
+  std::int64_t sum = ranks.rank() == 0 && known;
+  ranks.sum(&sum, 1);
+  return sum != 0;
+}
 } // namespace
 
 std::string fingerprint(const std::vector<std::string>& files)
@@ -116,22 +146,21 @@ void StageLog::run(const Stage& stage)
   key_ = hashed(key_ + "\n" + stage.name + "\n" + stage.options);
   const std::string file = folder_ + "/" + stage.name + ".json";
   report(progress_, stage.name, 0.0);
-  if (takeOver(stage, file)) {
+  const bool taken_over = takeOver(stage, file);
+  if (stage.shared)
+    tellRanks(taken_over, *ranks_);
+  if (taken_over) {
     report(progress_, stage.name + ": taken from an earlier run", 1.0);
     return;
   }
   resume_ = false; // what follows depends on what is made anew here
   std::error_code error;
   std::filesystem::remove(file, error);
-  resetPeakMemory();
-  const auto start = std::chrono::steady_clock::now();
-  const double cpu_start = cpuSeconds();
-  StageRecord record{stage.name, 0, 0, 0, false, stage.body([&](std::string_view step, double fraction) {
-                       return !progress_ || progress_(stage.name + ": " + std::string(step), std::min(fraction, 0.999));
-                     })};
-  record.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  record.cpu_seconds = cpuSeconds() - cpu_start;
-  record.peak_megabytes = peakMegabytes();
+  StageRecord record = runMeasured(stage, [&](std::string_view step, double fraction) {
+    return !progress_ || progress_(stage.name + ": " + std::string(step), std::min(fraction, 0.999));
+  });
+  if (stage.shared)
+    addCosts(record, *ranks_);
   writeFile(file, jsonText(Json{{"key", key_},
                                 {"files", fileCount(stage.outputs)},
                                 {"seconds", record.seconds},
@@ -141,5 +170,14 @@ void StageLog::run(const Stage& stage)
                            2));
   records_.push_back(std::move(record));
   report(progress_, stage.name + ": done", 1.0);
+}
+
+void followStages(const std::vector<Stage>& stages, Exchange& ranks, const Progress& progress)
+{
+  for (const Stage& stage : stages)
+    if (stage.shared && !tellRanks(false, ranks)) {
+      StageRecord record = runMeasured(stage, progress);
+      addCosts(record, ranks);
+    }
 }
 } // namespace fresco::model

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "graph/global_alignment.h"
+#include "graph/scan_exchange.h"
 #include "refinement/registration_result.h"
 #include "scan/scan_survey.h"
 #include <algorithm>
@@ -37,11 +38,17 @@ Eigen::Isometry3d workingToScan(const PreparedScan& scan)
   return Eigen::Isometry3d(Eigen::Translation3d(scan.center));
 }
 
+struct ScanSet {
+  const ScanSource& scans;
+  const ScanSurvey& survey;
+  Exchange& ranks;
+};
+
 // All but those that cannot be read and duplicates.
-std::vector<PreparedScan> prepareAll(const ScanSource& scans, const ScanSurvey& survey,
-                                     const ScanRegistrationOptions& options, const Thinning& thinning,
-                                     const Progress& progress)
+std::vector<PreparedScan> prepareAll(const ScanSet& set, const ScanRegistrationOptions& options,
+                                     const Thinning& thinning, const Progress& progress)
 {
+  const auto& [scans, survey, ranks] = set;
   std::vector<PreparedScan> prepared(scans.count);
   for (Index i = 0; i < scans.count; ++i) {
     report(progress, "prepare", 1.0 * i / scans.count);
@@ -49,9 +56,10 @@ std::vector<PreparedScan> prepareAll(const ScanSource& scans, const ScanSurvey& 
     prepared[i].duplicate_of = survey.duplicates[i];
     if (survey.duplicates[i] >= 0)
       prepared[i].problem = "the same points as " + scanName(options, survey.duplicates[i]);
-    if (prepared[i].problem.empty())
+    if (prepared[i].problem.empty() && isOwn(ranks, i))
       prepared[i] = prepareScan(scans.read(i), thinning, options.threads);
   }
+  shareScans(ranks, prepared, options.threads);
   return prepared;
 }
 
@@ -70,18 +78,17 @@ ScanCluster startCluster(const std::vector<PreparedScan>& scans, const std::vect
 }
 
 // Start poses where all scans have one, else what global alignment finds.
-GlobalAlignment findClusters(std::vector<PreparedScan>& scans, const std::vector<Pose>& start,
-                             const ScanRegistrationOptions& options, const Progress& progress)
+GlobalAlignment findClusters(const AlignmentInput& input, const ScanRegistrationOptions& options,
+                             const Progress& progress)
 {
-  const ScanCluster known = startCluster(scans, start);
-  const Index usable =
-      std::count_if(scans.begin(), scans.end(), [](const PreparedScan& scan) { return scan.problem.empty(); });
-  const Index started = known.scans.size();
+  const Index usable = std::count_if(input.scans.begin(), input.scans.end(),
+                                     [](const PreparedScan& scan) { return scan.problem.empty(); });
+  const Index started = input.known.scans.size();
   if (started < usable)
-    return alignGlobally(scans, known, options, progress);
+    return alignGlobally(input, options, progress);
   GlobalAlignment alignment;
   if (usable > 0)
-    alignment.graph.clusters.push_back(known);
+    alignment.graph.clusters.push_back(input.known);
   return alignment;
 }
 
@@ -126,7 +133,9 @@ ScanRegistrationResult registerScans(const ScanSource& scans, const std::vector<
 {
   constexpr float distance_voxels = 20.f; // the reach of refinement, a fifth of the scans' range
   validate(scans, start, given);
-  ScanSurvey survey = surveyScans(scans, given);
+  Exchange alone;
+  Exchange& ranks = scans.ranks ? *scans.ranks : alone;
+  ScanSurvey survey = surveyScans(scans, ranks, given);
   survey.duplicates = findDuplicates(survey, start);
   const double size = commonSize(survey.sizes, given);
   ScanRegistrationOptions options = given;
@@ -135,9 +144,11 @@ ScanRegistrationResult registerScans(const ScanSource& scans, const std::vector<
   if (!(options.max_distance > 0.f))
     options.max_distance = distance_voxels * options.voxel;
   const Thinning thinning(options.voxel, size, survey.narrowness);
-  std::vector<PreparedScan> prepared = prepareAll(scans, survey, options, thinning, subProgress(progress, 0.0, 0.3));
+  std::vector<PreparedScan> prepared =
+      prepareAll({scans, survey, ranks}, options, thinning, subProgress(progress, 0.0, 0.3));
 
-  GlobalAlignment alignment = findClusters(prepared, start, options, subProgress(progress, 0.3, 0.6));
+  const ScanCluster known = startCluster(prepared, start);
+  GlobalAlignment alignment = findClusters({prepared, known, ranks}, options, subProgress(progress, 0.3, 0.6));
   RegistrationState state{prepared, start, options, {}, std::move(alignment.pairs)};
   const double step = 1.0 / alignment.graph.clusters.size();
   for (const ScanCluster& cluster : alignment.graph.clusters) {

@@ -21,7 +21,7 @@
 #include <system_error>
 #include <thread>
 #include <unistd.h>
-extern "C" void __sanitizer_set_report_fd(void* descriptor) __attribute__((weak));
+extern "C" void __sanitizer_set_report_fd(void* descriptor) __attribute__((weak)); // NOLINT: not our name
 
 namespace fresco {
 namespace {
@@ -82,11 +82,21 @@ void printLine(const std::string& text)
   }
 }
 
+std::string tool_name; ///< for what has no way to be told
+JobEnd job_end;
+std::atomic<bool> in_job{false}; ///< job_end is set
+
+std::string errorLine(const std::string& reason)
+{
+  return tool_name + ": " + reason + (job_end.place.empty() ? "" : " (" + job_end.place + ")");
+}
+
 /// Ends the process without half files and without the memory being given back piece by piece.
-[[noreturn]] void leave(const std::string& line)
+[[noreturn]] void leave(const std::string& reason)
 {
   abandonUnfinishedFiles();
-  printLine(line);
+  if (!reason.empty())
+    printLine(errorLine(reason));
   _exit(1);
 }
 
@@ -105,18 +115,16 @@ std::string reasonOfException(const std::string& otherwise)
   return otherwise;
 }
 
-std::string tool_name; ///< for what has no way to be told
-
 /// An exception left a thread of a library, or a destructor: nobody can catch it any more.
-[[noreturn]] void endAfterUncaught() { leave(tool_name + ": " + reasonOfException("ended by a library")); }
+[[noreturn]] void endAfterUncaught() { leave(reasonOfException("ended by a library")); }
 
 /// Ends the process where a step goes on for long after the user has asked to stop, without half files.
 class Guard {
 public:
-  explicit Guard(const std::string& name)
+  Guard()
   {
     try {
-      thread_ = std::thread([this, name] { watch(name); });
+      thread_ = std::thread([this] { watch(); });
     } catch (const std::system_error&) { // no thread to be had: a step then ends when it ends
     }
   }
@@ -134,7 +142,7 @@ public:
   Guard& operator=(const Guard&) = delete;
 
 private:
-  void watch(const std::string& name)
+  void watch()
   {
     using namespace std::chrono_literals;
     std::unique_lock<std::mutex> lock(mutex_);
@@ -147,7 +155,7 @@ private:
         return;
     const std::lock_guard<std::mutex> end(ending);
     if (!outputs_whole)
-      leave(name + ": cancelled");
+      leave(in_job ? "" : "cancelled");
   }
 
   std::mutex mutex_;
@@ -271,14 +279,30 @@ void writeOutputs(const std::function<void()>& write)
   outputs_whole = true;
 }
 
+void joinJob(JobEnd end)
+{
+  job_end = std::move(end);
+  in_job = true;
+}
+
 namespace {
 /// What was printed on stdout is there, or that is an error. @return exit status
-int finish(const std::string& name)
+int finish()
 {
   if (std::cout.flush())
     return 0;
-  printLine(name + ": standard output cannot be written");
+  printLine(errorLine("standard output cannot be written"));
   return 1;
+}
+
+/// @return `status`, unless the whole job ends here
+int fail(const std::string& line, int status)
+{
+  removeEmptyFolders();
+  if (in_job)
+    job_end.endAll(status, [&] { printLine(line); });
+  printLine(line);
+  return status;
 }
 } // namespace
 
@@ -291,17 +315,16 @@ try {
   if (std::signal(SIGHUP, askToStop) == SIG_IGN) // nohup
     std::signal(SIGHUP, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN); // a file that grows beyond its limit is an error like a full disk
-  const Guard guard(name);
+  const Guard guard;
   body();
-  return finish(name);
+  return finish();
 } catch (const HelpShown&) {
-  return finish(name);
+  return finish();
 } catch (const UsageError& error) {
-  printLine(name + ": " + error.what() + " (see " + name + " -h)");
-  return 2;
+  return fail(name + ": " + error.what() + " (see " + name + " -h)", 2);
 } catch (...) {
-  printLine(name + ": " + reasonOfException("unknown error"));
-  removeEmptyFolders();
-  return 1;
+  if (in_job && mustStop())
+    leave("");
+  return fail(errorLine(reasonOfException("unknown error")), 1);
 }
 } // namespace fresco

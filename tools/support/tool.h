@@ -32,6 +32,17 @@ std::string format(const char* pattern, Values... values)
 /// no longer be asked to stop, or none is.
 void writeOutputs(const std::function<void()>& write);
 
+/// For a program that is one of several processes of a job: how it ends where it cannot do its part.
+struct JobEnd {
+  std::string place; ///< of this process, behind each error: "rank 2 on HOST"; empty = the only one
+  /// Ends all processes with a status, after one of them has spoken.
+  std::function<void(int status, const std::function<void()>& say)> endAll;
+};
+
+/// To be called by the body of runTool(). From then on a process that is asked to stop ends without a word: what started
+/// the job, such as mpirun, speaks and asks all of them.
+void joinJob(JobEnd end);
+
 /// Runs `body` and turns its end into an exit status: 0 done; 1 could not do it, with one line on stderr
 /// "NAME: reason"; 2 wrong usage, with one line and a hint at -h. SIGINT, SIGTERM and SIGHUP ask `body` to stop; where
 /// it does not within a third of a second, and where an exception leaves another thread, the process ends with 1 and

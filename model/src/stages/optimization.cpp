@@ -7,7 +7,7 @@
 namespace fresco::model {
 Figures makeOptimizedSurface(const Job& job, const Progress& progress)
 {
-  const auto& [input, files, options] = job;
+  const auto& [input, files, options, ranks] = job;
   report(progress, "read", 0.0);
   const TriangleMesh surface = readMesh(files.surface);
   // Of fused depth images no edge is sharper than the sensor saw it, and round things would get facets:

@@ -153,7 +153,7 @@ PictureOptions optionsFor(Shading shading, const ModelOptions& options, const Te
 
 Figures makePictures(const Job& job, const Progress& progress)
 {
-  const auto& [input, files, options] = job;
+  const auto& [input, files, options, ranks] = job;
   const TexturedMesh model = readTexturedMesh(files.model_obj);
   const Eigen::Vector3d up = uprightOf(job).value_or(Eigen::Vector3d::UnitZ());
   const IndoorOptions indoor{uprightOf(job), static_cast<double>(options.width) / options.height, options.threads};

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "stages/placed_points.h"
+#include <algorithm>
+#include <chrono>
 #include <filesystem>
 #include <fresco/core/require.h>
 #include <fresco/io/file.h>
@@ -7,6 +9,7 @@
 #include <fresco/io/point_io.h>
 #include <iomanip>
 #include <sstream>
+#include <thread>
 namespace fresco::model {
 void PlacedPoints::clear() const
 {
@@ -22,6 +25,20 @@ void PlacedPoints::write(Index scan, const PointSet& points) const
   std::ostringstream name; // as long for all, so that the order of names is that of the scans
   name << folder_ << "/scan_" << std::setw(6) << std::setfill('0') << scan << ".pcd";
   writePoints(name.str(), points);
+}
+
+void PlacedPoints::await(Index count) const
+{
+  constexpr std::chrono::milliseconds pause(300), patience(90000); // NFS keeps what it knows of a folder for 60 s
+  const auto is_file = [](const auto& entry) { return entry.path().filename().string()[0] != '.'; };
+  for (std::chrono::milliseconds waited(0);; waited += pause) {
+    const std::filesystem::directory_iterator entries(folder_);
+    if (std::count_if(entries, {}, is_file) >= count)
+      return;
+    if (waited > patience)
+      throw std::runtime_error(folder_ + ": what other ranks wrote is not there; all must see the same folder");
+    std::this_thread::sleep_for(pause);
+  }
 }
 
 std::vector<std::string> PlacedPoints::files() const { return pointFilesIn({folder_}); }

@@ -19,6 +19,10 @@ public:
   /// @param scan its number, >= 0; the others' files stay
   void write(Index scan, const PointSet& points) const;
 
+  /// Waits for files that other ranks have written: a network drive may show them late.
+  /// @throws std::runtime_error if there are fewer than `count` after a minute and a half
+  void await(Index count) const;
+
   /// All points in windows, without viewpoints. @throws std::runtime_error if there is no file
   std::unique_ptr<PointStream> stream() const;
 

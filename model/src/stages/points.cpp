@@ -3,6 +3,7 @@
 #include "stages/stages.h"
 #include <Eigen/LU>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <fresco/core/constants.h>
 #include <fresco/core/require.h>
@@ -10,6 +11,7 @@
 #include <fresco/filters/core/mixed_pixels.h>
 #include <fresco/filters/core/oriented_normals.h>
 #include <fresco/filters/core/outliers.h>
+#include <fresco/io/packing.h>
 #include <fresco/io/point_io.h>
 #include <fresco/io/pose_file.h>
 #include <fresco/registration/core/scan_registration.h>
@@ -66,9 +68,9 @@ PointSet preparedScan(PointSet read, const ModelOptions& options, const Progress
 /// World from scan. Without -use_poses all scans are registered from scratch, as they were measured: what cleaning takes
 /// from a sparse scan is what its place would be known by. The folder's first pose then only ties the result to the
 /// frame of the photographs.
-std::vector<Pose> placeScans(const ModelInput& input, const ModelOptions& options, const Progress& progress,
-                             Figures& figures)
+std::vector<Pose> placeScans(const Job& job, const Progress& progress, Figures& figures)
 {
+  const auto& [input, files, options, ranks] = job;
   if (options.use_poses) {
     figures["registration"] = "given poses";
     return input.poses;
@@ -78,7 +80,8 @@ std::vector<Pose> placeScans(const ModelInput& input, const ModelOptions& option
   for (const ScanPath& scan : input.scans)
     registration.names.push_back(scan.name());
   const Index count = input.scans.size();
-  const ScanSource scans{count, [&](Index i) { return readPoints(input.scans[i]); }};
+  ScanSource scans{count, [&, &paths = input.scans](Index i) { return readPoints(paths[i]); }};
+  scans.ranks = &ranks;
   const ScanRegistrationResult result = registerScans(scans, {}, registration, progress);
   std::vector<Pose> poses = result.poses;
   figures["registration"] = "found";
@@ -98,39 +101,63 @@ std::vector<Pose> placeScans(const ModelInput& input, const ModelOptions& option
   return poses;
 }
 
+/// What is counted over the scans that have a place.
+struct ScanCounts {
+  std::int64_t read = 0, raw = 0, written = 0, points = 0, colored = 0, with_intensities = 0;
+};
+
+/// Writes the scans with a place, each rank its own, into an empty folder.
+ScanCounts writeScans(const Job& job, const std::vector<Pose>& poses, const Progress& progress)
+{
+  ScanCounts counts;
+  const Index count = job.input.scans.size();
+  const double step = 1.0 / static_cast<double>(count);
+  const auto prepared = [&](Index s) {
+    report(progress, concat("scan ", s + 1, " of ", count), step * s);
+    PointSet scan = readPoints(job.input.scans[s]);
+    counts.raw += scan.size();
+    ++counts.read;
+    counts.colored += scan.colors.cols() > 0;
+    counts.with_intensities += scan.intensities.size() > 0;
+    return preparedScan(std::move(scan), job.options, subProgress(progress, step * s, step * (s + 1)));
+  };
+  const PlacedPoints placed(job.files.points);
+  if (job.ranks.rank() == 0)
+    placed.clear();
+  awaitAll(job.ranks);
+  const auto keep = [&](Index s, const PointSet& scan) {
+    ++counts.written;
+    counts.points += scan.size();
+    placed.write(s, scan);
+  };
+  ScanSource scans{count, prepared};
+  scans.ranks = &job.ranks;
+  forEachPlacedScan(scans, poses, keep, job.options.threads);
+  std::array<std::int64_t, 6> all{counts.read,   counts.raw,     counts.written,
+                                  counts.points, counts.colored, counts.with_intensities};
+  job.ranks.sum(all.data(), all.size()); // all files are there, too
+  if (job.ranks.rank() == 0)
+    placed.await(all[2]);
+  return {all[0], all[1], all[2], all[3], all[4], all[5]};
+}
+
 Figures pointsFromScans(const Job& job, const Progress& progress)
 {
   Figures figures;
-  const Index count = job.input.scans.size();
-  const std::vector<Pose> poses = placeScans(job.input, job.options, subProgress(progress, 0.0, 0.4), figures);
-  Index raw = 0, colored = 0, with_intensities = 0, read = 0;
-  const double step = 0.6 / count;
-  const auto prepared = [&](Index s) {
-    const double begin = 0.4 + step * s;
-    report(progress, concat("scan ", s + 1, " of ", count), begin);
-    PointSet scan = readPoints(job.input.scans[s]);
-    raw += scan.size();
-    ++read;
-    colored += scan.colors.cols() > 0;
-    with_intensities += scan.intensities.size() > 0;
-    return preparedScan(std::move(scan), job.options, subProgress(progress, begin, begin + step));
-  };
-  const PlacedPoints placed(job.files.points);
-  placed.clear();
-  Index points = 0;
-  const auto keep = [&](Index s, const PointSet& scan) {
-    points += scan.size();
-    placed.write(s, scan);
-  };
-  forEachPlacedScan({count, prepared}, poses, keep, job.options.threads);
+  std::vector<Pose> poses = placeScans(job, subProgress(progress, 0.0, 0.4), figures);
+  poses = gatherValues(job.ranks, poses)[0];
+  const ScanCounts counts = writeScans(job, poses, subProgress(progress, 0.4, 1.0));
+  if (job.ranks.rank() > 0)
+    return figures;
   writePoses(job.files.poses, poses);
-  figures["scans"] = count;
-  figures["raw_points"] = raw; // of the scans that have a place
-  figures["points"] = points;
+  figures["scans"] = job.input.scans.size();
+  figures["raw_points"] = counts.raw; // of the scans that have a place
+  figures["points"] = counts.points;
   figures["unplaced_scans"] = std::count(poses.begin(), poses.end(), std::nullopt);
-  for (const auto& [having, what] : {std::pair{colored, "colours"}, {with_intensities, "intensities"}})
-    if (having > 0 && having < read && !job.input.hasPictures())
-      figures["warnings"].push_back(concat(what, " of ", having, " scans are not used: ", read - having, " have none"));
+  for (const auto& [having, what] : {std::pair{counts.colored, "colours"}, {counts.with_intensities, "intensities"}})
+    if (having > 0 && having < counts.read && !job.input.hasPictures())
+      figures["warnings"].push_back(
+          concat(what, " of ", having, " scans are not used: ", counts.read - having, " have none"));
   return figures;
 }
 
@@ -147,7 +174,7 @@ std::pair<double, double> rmsMoves(const std::vector<Eigen::Isometry3d>& from, c
 
 Figures pointsFromFrames(const Job& job, const Progress& progress)
 {
-  const auto& [input, files, options] = job;
+  const auto& [input, files, options, ranks] = job;
   Figures figures;
   std::vector<Pose> poses = input.poses; // of all frames; those of `rgbd` have one
   RgbdFolder rgbd = *input.rgbd;

@@ -14,6 +14,7 @@ struct Job {
   ModelInput input;
   ModelFiles files;
   ModelOptions options;
+  Exchange& ranks; ///< that make the points of scans together
 };
 
 /// Finest cell of the surface, metres: ModelOptions::cell, or what the data sustain.

@@ -34,7 +34,7 @@ std::vector<char> farFromPoints(const TriangleMesh& mesh, const PlacedPoints& pl
 
 FreeSpace askAllViews(const Points& places, const Job& job, double cell)
 {
-  const auto& [input, files, options] = job;
+  const auto& [input, files, options, ranks] = job;
   FreeSpace space(places, cell, options.threads);
   const std::vector<Pose> poses = readPoses(files.poses);
   if (input.rgbd)
@@ -76,7 +76,7 @@ std::vector<char> inFreeSpace(const TriangleMesh& mesh, const PlacedPoints& plac
 
 Figures makeSurface(const Job& job, const Progress& progress)
 {
-  const auto& [input, files, options] = job;
+  const auto& [input, files, options, ranks] = job;
   report(progress, "read", 0.0);
   const PlacedPoints placed(files.points);
   VolumetricOptions volumetric;

@@ -2,6 +2,7 @@
 #include "graph/global_alignment.h"
 #include "graph/pair_ranking.h"
 #include "graph/pose_graph.h"
+#include "graph/scan_exchange.h"
 #include "graph/viewpoint_check.h"
 #include "pair/partial_alias.h"
 #include "pair/self_alignment.h"
@@ -28,13 +29,20 @@ std::vector<RankedPair> possiblePairs(const std::vector<PreparedScan>& scans, co
 
 class GlobalAligner {
 public:
-  GlobalAligner(std::vector<PreparedScan>& scans, const ScanCluster& known, const ScanRegistrationOptions& options)
-      : scans_(scans), known_(known), options_(options)
+  GlobalAligner(const AlignmentInput& input, const ScanRegistrationOptions& options)
+      : scans_(input.scans), known_(input.known), ranks_(input.ranks), options_(options)
   {}
 
   GlobalAlignment run(const Progress& progress);
 
 private:
+  /// body(k) for those of 0..n-1 that this rank has.
+  template <typename Body>
+  void forOwn(Index n, const Body& body) const
+  {
+    const Index step = ranks_.size(), first = ranks_.rank();
+    parallelFor((n - first + step - 1) / step, options_.threads, [&](Index k) { body(first + k * step); }, 1);
+  }
   void describe(const Progress& progress);
   void alignPairs(const std::vector<RankedPair>& round);
   void correctViewpoints();
@@ -44,6 +52,7 @@ private:
 
   std::vector<PreparedScan>& scans_;
   const ScanCluster& known_;
+  Exchange& ranks_;
   const ScanRegistrationOptions& options_;
   std::vector<ScanFeatures> features_;
   GlobalAlignment result_;
@@ -53,13 +62,19 @@ void GlobalAligner::describe(const Progress& progress)
 {
   FeatureOptions options;
   options.threads = options_.threads;
-  const double count = scans_.size();
-  for (const PreparedScan& scan : scans_) {
-    report(progress, "describe", 0.3 * features_.size() / count);
-    features_.push_back(scan.problem.empty() ? describeScan(scan, options) : ScanFeatures{});
+  const Index count = scans_.size();
+  features_.resize(scans_.size());
+  for (Index k = 0; k < count; ++k) {
+    report(progress, "describe", 0.3 * static_cast<double>(k) / static_cast<double>(count));
+    if (isOwn(ranks_, k) && scans_[k].problem.empty())
+      features_[k] = describeScan(scans_[k], options);
   }
-  parallelFor(
-      scans_.size(), options_.threads, [&](Index k) { scans_[k].aliases = findAliases(scans_[k], features_[k]); }, 1);
+  std::vector<ScanAliases> aliases(scans_.size());
+  forOwn(count, [&](Index k) { aliases[k] = findAliases(scans_[k], features_[k]); });
+  shareItems(ranks_, features_);
+  shareItems(ranks_, aliases);
+  for (Index k = 0; k < count; ++k)
+    scans_[k].aliases = std::move(aliases[k]);
 }
 
 void GlobalAligner::alignPairs(const std::vector<RankedPair>& round)
@@ -69,15 +84,13 @@ void GlobalAligner::alignPairs(const std::vector<RankedPair>& round)
   options.verification.max_violation = options_.max_violation;
   options.upright = options_.upright;
   std::vector<PairAlignment> aligned(round.size());
-  parallelFor(
-      round.size(), options_.threads,
-      [&](Index k) {
-        const Index a = round[k].a, b = round[k].b;
-        aligned[k] = alignPair({scans_[a], features_[a]}, {scans_[b], features_[b]}, options);
-        aligned[k].a = a;
-        aligned[k].b = b;
-      },
-      1);
+  forOwn(round.size(), [&](Index k) {
+    const Index a = round[k].a, b = round[k].b;
+    aligned[k] = alignPair({scans_[a], features_[a]}, {scans_[b], features_[b]}, options);
+    aligned[k].a = a;
+    aligned[k].b = b;
+  });
+  shareItems(ranks_, aligned);
   result_.pairs.insert(result_.pairs.end(), aligned.begin(), aligned.end());
   std::sort(result_.pairs.begin(), result_.pairs.end(),
             [](const PairAlignment& x, const PairAlignment& y) { return std::pair(x.a, x.b) < std::pair(y.a, y.b); });
@@ -177,9 +190,9 @@ GlobalAlignment GlobalAligner::run(const Progress& progress)
 }
 } // namespace
 
-GlobalAlignment alignGlobally(std::vector<PreparedScan>& scans, const ScanCluster& known,
-                              const ScanRegistrationOptions& options, const Progress& progress)
+GlobalAlignment alignGlobally(const AlignmentInput& input, const ScanRegistrationOptions& options,
+                              const Progress& progress)
 {
-  return GlobalAligner(scans, known, options).run(progress);
+  return GlobalAligner(input, options).run(progress);
 }
 } // namespace fresco::registration

@@ -3,6 +3,7 @@
 #include <fresco/core/require.h>
 #include <fresco/filters/core/normal_orientation.h>
 #include <fresco/filters/core/oriented_normals.h>
+#include <fresco/io/packing.h>
 #include <fresco/registration/core/scan_registration.h>
 #include <optional>
 #include <utility>
@@ -58,6 +59,32 @@ PointSet placedScan(const PointSet& scan, const Eigen::Matrix4d& T_world_scan, c
   own.origin = origin;
   return own;
 }
+
+std::vector<Index> placedScans(const std::vector<Pose>& poses)
+{
+  std::vector<Index> placed;
+  const Index count = poses.size();
+  for (Index i = 0; i < count; ++i)
+    if (poses[i])
+      placed.push_back(i);
+  return placed;
+}
+
+PointSet readSound(const ScanSource& scans, Index scan)
+{
+  PointSet points = scans.read(scan);
+  validatePointSet(points);
+  return points;
+}
+
+// That of the lowest rank that has one.
+std::optional<Eigen::Vector3d> firstOrigin(Exchange& ranks, const std::optional<Eigen::Vector3d>& own)
+{
+  for (const std::optional<Eigen::Vector3d>& origin : gatherValues(ranks, own))
+    if (origin)
+      return origin;
+  return {};
+}
 } // namespace
 
 PointSet mergeScans(const std::vector<PointSet>& scans, const std::vector<Pose>& poses, int threads)
@@ -67,9 +94,11 @@ PointSet mergeScans(const std::vector<PointSet>& scans, const std::vector<Pose>&
 
 PointSet mergeScans(const ScanSource& scans, const std::vector<Pose>& poses, int threads)
 {
+  ScanSource all = scans;
+  all.ranks = nullptr;
   PointSet merged;
   forEachPlacedScan(
-      scans, poses,
+      all, poses,
       [&](Index, PointSet placed) {
         if (merged.size() == 0)
           merged = std::move(placed);
@@ -87,18 +116,20 @@ void forEachPlacedScan(const ScanSource& scans, const std::vector<Pose>& poses,
 {
   const Index count = poses.size();
   require(scans.count == count, "merge: ", scans.count, " scans, ", poses.size(), " poses");
-  std::optional<Eigen::Vector3d> origin;
-  for (Index i = 0; i < count; ++i) {
-    if (!poses[i])
-      continue;
-    const PointSet scan = scans.read(i);
-    validatePointSet(scan);
+  Exchange alone;
+  Exchange& ranks = scans.ranks ? *scans.ranks : alone;
+  const std::vector<Index> placed = placedScans(poses);
+  const Index n = placed.size();
+  std::optional<Eigen::Vector3d> origin; // by the first scan that has points
+  for (Index begin = 0; begin < n; begin += ranks.size()) {
+    const Index own = begin + ranks.rank();
+    const PointSet scan = own < n ? readSound(scans, placed[own]) : PointSet();
+    if (!origin)
+      origin = firstOrigin(ranks, scan.size() > 0 ? std::optional(originFor(scan, *poses[placed[own]])) : std::nullopt);
     if (scan.size() == 0)
       continue;
-    if (!origin)
-      origin = originFor(scan, *poses[i]);
-    if (PointSet placed = placedScan(scan, *poses[i], *origin, threads); placed.size() > 0)
-      receive(i, std::move(placed));
+    if (PointSet in_world = placedScan(scan, *poses[placed[own]], *origin, threads); in_world.size() > 0)
+      receive(placed[own], std::move(in_world));
   }
 }
 } // namespace fresco

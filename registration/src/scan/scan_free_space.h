@@ -40,11 +40,23 @@ public:
   /// ones.
   double coherence() const { return coherence_; }
 
+  /// See Packer.
+  template <typename Archive>
+  friend void fields(Archive& archive, ScanFreeSpace& space)
+  {
+    archive(space.maps_, space.side_, space.grain_, space.coherence_, space.coverage_);
+  }
+
 private:
   struct Map {
     Eigen::Vector3f center;
     std::vector<float> nearest, farthest; ///< per cell; nearest = +inf in cells without a measurement
   };
+  template <typename Archive>
+  friend void fields(Archive& archive, Map& map)
+  {
+    archive(map.center, map.nearest, map.farthest);
+  }
   Map buildMap(const Points& points, const std::vector<Index>& members, const Eigen::Vector3f& center, double reach);
   std::vector<Map> maps_;
   int side_ = 0; ///< cells per edge of a cube face

@@ -5,6 +5,7 @@
 #include <cstring>
 #include <fresco/core/require.h>
 #include <fresco/core/statistics.h>
+#include <fresco/io/packing.h>
 namespace fresco::registration {
 namespace {
 // FNV-1a (Fowler, Noll, Vo) over words of 32 bits.
@@ -24,33 +25,64 @@ std::uint64_t hashOf(const PointSet& scan)
 }
 
 // Messages of readers begin with the name of the file.
-std::string withoutName(std::string message, const std::string& name)
+std::string withoutName(const std::string& message, const std::string& name)
 {
   return message.rfind(name + ": ", 0) == 0 ? message.substr(name.size() + 2) : message;
 }
+
+// What is known of one scan.
+struct Sketch {
+  std::string problem;
+  double size = 0.0, narrowness = 0.0, voxel = 0.0;
+  std::uint64_t hash = 0;
+  bool has_points = false;
+};
+
+template <typename Archive>
+void fields(Archive& archive, Sketch& sketch)
+{
+  archive(sketch.problem, sketch.size, sketch.narrowness, sketch.voxel, sketch.hash, sketch.has_points);
+}
+
+Sketch sketchOf(const ScanSource& scans, Index i, const ScanRegistrationOptions& options)
+{
+  Sketch sketch;
+  PointSet scan;
+  try {
+    scan = scans.read(i);
+  } catch (const Cancelled&) {
+    throw;
+  } catch (const std::runtime_error& error) {
+    sketch.problem = "left out: " + withoutName(error.what(), scanName(options, i));
+  }
+  validatePointSet(scan);
+  sketch.size = scanSize(scan);
+  sketch.narrowness = narrowness(scan);
+  sketch.has_points = scan.size() > 0;
+  if (sketch.size > 0.0)
+    sketch.voxel = fittingVoxel(scan, sketch.size / voxels_per_size);
+  if (sketch.has_points)
+    sketch.hash = hashOf(scan);
+  return sketch;
+}
 } // namespace
 
-ScanSurvey surveyScans(const ScanSource& scans, const ScanRegistrationOptions& options)
+ScanSurvey surveyScans(const ScanSource& scans, Exchange& ranks, const ScanRegistrationOptions& options)
 {
+  std::vector<Sketch> sketches(scans.count);
+  for (Index i = 0; i < scans.count; ++i)
+    if (isOwn(ranks, i))
+      sketches[i] = sketchOf(scans, i, options);
+  shareItems(ranks, sketches);
   ScanSurvey survey;
   Index counted = 0;
-  for (Index i = 0; i < scans.count; ++i) {
-    PointSet scan;
-    survey.problems.emplace_back();
-    try {
-      scan = scans.read(i);
-    } catch (const Cancelled&) {
-      throw;
-    } catch (const std::runtime_error& error) {
-      survey.problems.back() = "left out: " + withoutName(error.what(), scanName(options, i));
-    }
-    validatePointSet(scan);
-    survey.sizes.push_back(scanSize(scan));
-    const double size = survey.sizes.back();
-    survey.narrowness += narrowness(scan);
-    counted += scan.size() > 0 ? 1 : 0;
-    survey.voxels.push_back(size > 0.0 ? fittingVoxel(scan, size / voxels_per_size) : 0.0);
-    survey.hashes.push_back(scan.size() > 0 ? hashOf(scan) : 0);
+  for (const Sketch& sketch : sketches) {
+    survey.problems.push_back(sketch.problem);
+    survey.sizes.push_back(sketch.size);
+    survey.voxels.push_back(sketch.voxel);
+    survey.hashes.push_back(sketch.hash);
+    survey.narrowness += sketch.narrowness;
+    counted += sketch.has_points ? 1 : 0;
   }
   survey.narrowness /= std::max<Index>(1, counted);
   return survey;

@@ -12,8 +12,9 @@ struct ScanSurvey {
   double narrowness = 0.0;           ///< mean over the scans that have points, 0..1
 };
 
+/// @param ranks that share out the scans
 /// @throws std::invalid_argument if an attribute is malformed
-ScanSurvey surveyScans(const ScanSource& scans, const ScanRegistrationOptions& options);
+ScanSurvey surveyScans(const ScanSource& scans, Exchange& ranks, const ScanRegistrationOptions& options);
 
 /// Per scan without a start pose, another scan that has the same points: one with a start pose, else the first; else -1.
 std::vector<Index> findDuplicates(const ScanSurvey& survey, const std::vector<Pose>& start);

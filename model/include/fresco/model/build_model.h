@@ -6,6 +6,8 @@
 #include <utility>
 #include <vector>
 namespace fresco {
+class Exchange;
+
 /// Options of buildModel(). Lengths in metres.
 struct ModelOptions {
   bool resume = false;            ///< go on after the last stage that an earlier run finished
@@ -62,6 +64,18 @@ struct ModelReport {
 /// @throws Cancelled if `progress` asks to stop
 FRESCO_EXPORT ModelReport buildModel(const std::string& input_folder, const std::string& output_folder,
                                      const ModelOptions& options = {}, const Progress& progress = {});
+
+/// Both as buildModel() takes them.
+struct ModelFolders {
+  std::string input, output;
+};
+
+/// The same by several ranks, which must see the same folders: the scans are shared out when they are cleaned, get their
+/// normals and are registered. All else is made by rank 0. The same files come out.
+/// @return nothing on other ranks than 0
+/// @throws as above, also on one rank alone
+FRESCO_EXPORT ModelReport buildModel(const ModelFolders& folders, const ModelOptions& options, const Progress& progress,
+                                     Exchange& ranks);
 
 /// What kind of input a folder or file is: "6 scans, 60 photographs".
 /// @throws std::runtime_error as buildModel()

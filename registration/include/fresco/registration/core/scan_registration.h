@@ -10,6 +10,8 @@
 #include <utility>
 #include <vector>
 namespace fresco {
+class Exchange;
+
 /// Registration of many scans: global alignment of scans without a start pose, then joint point-to-plane refinement.
 struct ScanRegistrationOptions {
   float voxel = 0.f;           ///< edge of the finest thinning cells, length; 0 = median range of the scans / 100
@@ -27,6 +29,9 @@ struct ScanRegistrationOptions {
 struct ScanSource {
   Index count;
   std::function<PointSet(Index)> read; ///< for one scan after the other; called more than once for each
+  /// That share out the scans, and the pairs of them, and all come to the result that one would; null = this process
+  /// alone. Each reads its own scans only.
+  Exchange* ranks = nullptr;
 
   ScanSource(Index scan_count, std::function<PointSet(Index)> reader) : count(scan_count), read(std::move(reader)) {}
 };
@@ -126,7 +131,7 @@ FRESCO_EXPORT PointSet mergeScans(const std::vector<PointSet>& scans, const std:
 FRESCO_EXPORT PointSet mergeScans(const ScanSource& scans, const std::vector<Pose>& poses, int threads = 0);
 
 /// The parts of the above one at a time, where all together are more than memory holds. They have one origin; each keeps
-/// the attributes that its scan has.
+/// the attributes that its scan has. Of several ranks each gets its own scans.
 /// @param receive gets the scan's number and its points, at least one
 FRESCO_EXPORT void forEachPlacedScan(const ScanSource& scans, const std::vector<Pose>& poses,
                                      const std::function<void(Index, PointSet)>& receive, int threads = 0);

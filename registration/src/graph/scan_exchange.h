@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include "pair/pair_alignment.h"
+#include <fresco/io/packing.h>
+namespace fresco::registration {
+// What ranks tell each other of scans and pairs, see Packer.
+
+/// All but the caller's own search and the tree, which its receiver makes anew: shareScans().
+template <typename Archive>
+void fields(Archive& archive, ScanLevel& level)
+{
+  archive(level.voxel, level.points, level.viewpoints, level.colors, level.normals, level.around,
+          level.surface_variation, level.samples);
+}
+
+template <typename Archive>
+void fields(Archive& archive, ScanAlias& alias)
+{
+  archive(alias.T, alias.certain, alias.likeness, alias.violation, alias.partial);
+}
+
+template <typename Archive>
+void fields(Archive& archive, PreparedScan& scan)
+{
+  archive(scan.problem, scan.duplicate_of, scan.center, scan.viewpoint_given, scan.viewpoint_found, scan.blind,
+          scan.viewpoint_problem, scan.size, scan.oriented, scan.levels, scan.free_space, scan.aliases);
+}
+
+template <typename Archive>
+void fields(Archive& archive, PlaneHistogram& histogram)
+{
+  archive(histogram.first, histogram.weights);
+}
+
+template <typename Archive>
+void fields(Archive& archive, ScanPlanes& planes)
+{
+  archive(planes.axes, planes.bin, planes.histograms);
+}
+
+template <typename Archive>
+void fields(Archive& archive, ScanFeatures& features)
+{
+  archive(features.points, features.normals, features.descriptors, features.planes);
+}
+
+template <typename Archive>
+void fields(Archive& archive, VerifiedHypothesis& hypothesis)
+{
+  archive(hypothesis.T_a_b, hypothesis.check, hypothesis.votes, hypothesis.support, hypothesis.score,
+          hypothesis.has_alias);
+}
+
+template <typename Archive>
+void fields(Archive& archive, PairAlignment& pair)
+{
+  archive(pair.a, pair.b, pair.hypotheses, pair.ambiguous, pair.rejected);
+}
+
+/// As shareItems().
+void shareScans(Exchange& ranks, std::vector<PreparedScan>& scans, int threads);
+} // namespace fresco::registration
