@@ -21,7 +21,7 @@ class Transfer {
 public:
   Transfer(const Octree& tree, const AttributedSamples& samples, int threads)
       : tree_(tree), samples_(samples),
-        begin_(sampleRanges(tree.levels.back(), samples.level.codes, tree.depth, threads)), fields_(tree.levels.size())
+        ranges_(sampleRanges(tree.levels.back(), samples.level.codes, tree.depth, threads)), fields_(tree.levels.size())
   {
     for (int d = tree.depth - 1; d >= 2; --d)
       makeFields(d, threads);
@@ -57,21 +57,22 @@ private:
   {
     const BrickLevel& level = tree_.levels[d];
     Fields& fields = fields_[d];
-    const Array<std::uint32_t> begin = sampleRanges(level, samples_.level.codes, tree_.depth, threads);
+    const SampleRanges ranges = sampleRanges(level, samples_.level.codes, tree_.depth, threads);
     for (int c = 0; c < channel_count; ++c) {
       fields[c] = NodeField(level, threads);
       if (d < tree_.depth - 1) {
         restrictLevel(tree_.levels[d + 1], fields_[d + 1][c], level, 1.f, fields[c], threads);
         continue;
       }
-      splatBricks(level, begin, fields[c], threads, [&](SplatBlock<1>& block, int b) {
-        for (std::uint32_t i = begin[b]; i < begin[b + 1]; ++i) {
+      splatBricks(level, ranges, fields[c], threads, [&](SplatBlock<1>& block, int b) {
+        for (const std::uint32_t i : ranges[b]) {
           const HatWeights w(toBrick(samples_.level.samples[i].position, d, b));
           const float value = channelsOf(samples_, i)[c];
           for (int k = 0; k < 8; ++k)
             block.at(w.x + (k & 1), w.y + (k >> 1 & 1), w.z + (k >> 2)) += value * w.value[k];
         }
       });
+      refreshGhosts(level, fields[c]);
     }
   }
 
@@ -82,7 +83,7 @@ private:
     for (const int n : level.neighborsOf(brick)) {
       if (n < 0)
         continue;
-      for (std::uint32_t i = begin_[n]; i < begin_[n + 1]; ++i) {
+      for (const std::uint32_t i : ranges_[n]) {
         const Eigen::Vector3f p = toBrick(samples_.level.samples[i].position, tree_.depth, brick);
         if (p.minCoeff() <= -1.f || p.maxCoeff() >= brick_nodes)
           continue;
@@ -117,7 +118,7 @@ private:
 
   const Octree& tree_;
   const AttributedSamples& samples_;
-  Array<std::uint32_t> begin_;
+  SampleRanges ranges_;
   std::vector<Fields> fields_; ///< by depth, coarser than the finest
 };
 } // namespace

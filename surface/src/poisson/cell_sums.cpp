@@ -41,12 +41,18 @@ Eigen::Vector3d cellOf(std::uint64_t code)
   return {double(x), double(y), double(z)};
 }
 
-/// First point of each cell, and their count at the end.
+/// Cells of a brick that hold points and come before one of its cells.
+int cellsBefore(const OccupiedBrick& brick, std::uint64_t code)
+{
+  return __builtin_popcountll(brick.cells & ((std::uint64_t(1) << (code & 63)) - 1));
+}
+
+} // namespace
+
 Array<std::uint32_t> cellBegins(const SortedPoints& points, int threads)
 {
   return runBegins(points.size(), threads, [&](Index k) { return points.code(k); });
 }
-} // namespace
 
 PointSums::PointSums(const Extent& extent)
     : extent_(extent), intensity_unit_(std::exp2(std::ceil(std::log2(std::max(extent.largest_intensity, 1e-30f)))))
@@ -167,13 +173,31 @@ void CellSums::add(const SortedPoints& points, int threads)
       const std::uint64_t code = points.code(begins[c]);
       while (brick->code != code >> 6)
         ++brick;
-      const std::uint64_t cells_before = brick->cells & ((std::uint64_t(1) << (code & 63)) - 1);
-      const std::uint32_t number = first_[brick - bricks.begin()] + __builtin_popcountll(cells_before);
+      const std::uint32_t number = first_[brick - bricks.begin()] + cellsBefore(*brick, code);
       points_.add(points, begins[c], begins[c + 1], at(sums_, number));
       if (points_.hasAttributes())
         points_.addAttributes(points, begins[c], begins[c + 1], at(attribute_sums_, number));
     }
   });
+}
+
+void CellSums::add(std::uint64_t code, const CellSum& sum, const AttributeSum& attributes)
+{
+  const auto before = [](const OccupiedBrick& brick, std::uint64_t c) { return brick.code < c; };
+  const auto brick = std::lower_bound(cells_.bricks().begin(), cells_.bricks().end(), code >> 6, before);
+  const std::uint32_t number = first_[brick - cells_.bricks().begin()] + cellsBefore(*brick, code);
+  CellSum& to = at(sums_, number);
+  to.weight += sum.weight;
+  for (int axis = 0; axis < 3; ++axis) {
+    to.position[axis] += sum.position[axis];
+    to.normal[axis] += sum.normal[axis];
+  }
+  if (!points_.hasAttributes())
+    return;
+  AttributeSum& attributes_to = at(attribute_sums_, number);
+  for (int channel = 0; channel < 3; ++channel)
+    attributes_to.color[channel] += attributes.color[channel];
+  attributes_to.intensity += attributes.intensity;
 }
 
 Samples CellSums::takeSamples(int threads)

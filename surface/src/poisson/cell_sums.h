@@ -34,6 +34,9 @@ private:
   double intensity_unit_; ///< power of two, at least the largest intensity
 };
 
+/// First point of each cell, and their count at the end.
+Array<std::uint32_t> cellBegins(const SortedPoints& points, int threads);
+
 /// Samples of points that are one piece.
 Samples samplesOf(const SortedPoints& points, const Extent& extent, int threads);
 
@@ -42,6 +45,8 @@ class CellSums {
 public:
   CellSums(OccupiedCells cells, const Extent& extent, int threads);
   void add(const SortedPoints& points, int threads);
+  /// Adds what another rank has added up.
+  void add(std::uint64_t code, const CellSum& sum, const AttributeSum& attributes);
 
   /// Means of the points of each cell; the sums are given back piece by piece.
   Samples takeSamples(int threads);

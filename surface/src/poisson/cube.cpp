@@ -25,7 +25,43 @@ struct Totals {
     weight.add(other.weight);
     largest_intensity = std::max(largest_intensity, other.largest_intensity);
   }
+
+  /// Adds those of the other ranks.
+  void share(Exchange& exchange)
+  {
+    exchange.sum(&usable, 1);
+    weight.share(exchange);
+    Eigen::Matrix<double, 7, 1> largest;
+    largest << box.max(), -box.min(), largest_intensity;
+    exchange.largest(largest.data(), largest.size());
+    box = Box(-largest.segment<3>(3), largest.head<3>());
+    largest_intensity = static_cast<float>(largest[6]);
+  }
 };
+
+/// Ranks without points learn what points have.
+/// @throws std::invalid_argument if those of the ranks are unlike
+void shareKind(Exchange& exchange, Extent& extent)
+{
+  constexpr int n = 6;
+  using Numbers = Eigen::Matrix<double, n, 1>;
+  constexpr double lowest = -std::numeric_limits<double>::infinity();
+  Eigen::Matrix<double, n, 2> kind = Eigen::Matrix<double, n, 2>::Constant(lowest);
+  if (extent.all > 0) {
+    Numbers own;
+    own << extent.colors, extent.intensities, static_cast<int>(extent.weights.source), extent.origin;
+    kind << own, -own;
+  }
+  exchange.largest(kind.data(), kind.size());
+  require(kind.col(0) == -kind.col(1) || kind.col(0)[0] == lowest,
+          "volumetric reconstruction: the points of the ranks have unlike attributes or origins");
+  if (kind.col(0)[0] == lowest)
+    return;
+  extent.colors = kind(0, 0) > 0;
+  extent.intensities = kind(1, 0) > 0;
+  extent.weights.source = static_cast<Weights::Source>(static_cast<int>(kind(2, 0)));
+  extent.origin = kind.col(0).tail<3>();
+}
 
 /// Of the usable points of a window.
 Totals totalsOf(const PointSet& set, const Extent& extent, int threads)
@@ -65,7 +101,8 @@ void lookAt(const PointSet& set, const VolumetricOptions& options, Extent& exten
 }
 
 /// Reads the points that `extent` lets through. @param sketch receives them, too, unless nullptr
-Totals readTotals(const PointStream& points, const VolumetricOptions& options, Extent& extent, PointSketch* sketch)
+Totals readTotals(const PointStream& points, const VolumetricOptions& options, Exchange& exchange, Extent& extent,
+                  PointSketch* sketch)
 {
   const int threads = options.threads;
   Totals totals;
@@ -81,6 +118,12 @@ Totals readTotals(const PointStream& points, const VolumetricOptions& options, E
       sketch->add(
           set, [&](Index i) { return extent.isUsable(set, i); }, threads);
   });
+  if (exchange.size() > 1) {
+    shareKind(exchange, extent);
+    totals.share(exchange);
+    exchange.sum(&extent.all, 1);
+    exchange.sum(&extent.windows, 1);
+  }
   return totals;
 }
 
@@ -134,18 +177,19 @@ float Weights::given(const PointSet& set, Index i) const
   return std::isfinite(w) ? w : 0.f;
 }
 
-Extent findExtent(const PointStream& points, const VolumetricOptions& options)
+Extent findExtent(const PointStream& points, const VolumetricOptions& options, Exchange& exchange)
 {
   Extent extent;
   PointSketch sketch;
-  Totals totals = readTotals(points, options, extent, &sketch);
+  Totals totals = readTotals(points, options, exchange, extent, &sketch);
+  sketch.share(exchange);
   requireEnough(extent, totals.usable);
   const Box inner = innerBox(sketch);
   const double margin = inner.sizes().maxCoeff(); // an outlier is farther off the others than they extend
   const Box allowed(inner.min().array() - margin, inner.max().array() + margin);
   if (margin > 0 && !allowed.contains(totals.box)) {
     extent.allowed = allowed;
-    totals = readTotals(points, options, extent, nullptr);
+    totals = readTotals(points, options, exchange, extent, nullptr);
     requireEnough(extent, totals.usable);
   }
   require(totals.box.sizes().maxCoeff() > 1e-30, "volumetric reconstruction: all ", totals.usable,

@@ -38,5 +38,6 @@ struct Extent {
 
 /// Reads the points once, or twice if there are far outliers.
 /// @throws std::invalid_argument as reconstructVolumetric()
-Extent findExtent(const PointStream& points, const VolumetricOptions& options);
+/// @param points of this rank; the extent is that of all ranks' points
+Extent findExtent(const PointStream& points, const VolumetricOptions& options, Exchange& exchange = onlyRank());
 } // namespace fresco::poisson

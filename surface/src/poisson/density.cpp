@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "poisson/density.h"
 #include "poisson/octree/splat.h"
+#include "poisson/ranks/sample_ghosts.h"
 #include <algorithm>
 namespace fresco::poisson {
 namespace {
 void splatWeights(const BrickLevel& level, const SampleLevel& samples, int finest, NodeField& field, int threads)
 {
-  const Array<std::uint32_t> begin = sampleRanges(level, samples.codes, samples.depth, threads);
+  const SampleRanges ranges = sampleRanges(level, samples.codes, samples.depth, threads);
   const float scale = std::ldexp(1.f, level.depth - finest);
-  splatBricks(level, begin, field, threads, [&](SplatBlock<1>& block, int b) {
+  splatBricks(level, ranges, field, threads, [&](SplatBlock<1>& block, int b) {
     const Eigen::Vector3f origin = level.origin(b);
-    for (std::uint32_t i = begin[b]; i < begin[b + 1]; ++i) {
+    for (const std::uint32_t i : ranges[b]) {
       const CoarseSample& s = samples.samples[i];
       const QuadraticWeights x(s.position.x() * scale - origin.x());
       const QuadraticWeights y(s.position.y() * scale - origin.y());
@@ -30,12 +31,14 @@ Density::Density(const Octree& tree, const Samples& samples, int threads) : tree
 {
   fields_.resize(tree.levels.size());
   SampleLevel level = finestLevel(samples, threads);
+  SampleGhosts(tree, level.codes, threads).addTo(level);
   for (int d = std::max(2, tree.depth - 1); d >= 2; --d) {
     const BrickLevel& bricks = tree.levels[d];
     NodeField& field = fields_[d];
     field = NodeField(bricks, threads);
     splatWeights(bricks, level, tree.depth, field, threads);
-    level = coarsen(level, threads);
+    refreshGhosts(bricks, field);
+    level = coarsen(level, tree, threads);
   }
 }
 
@@ -92,10 +95,10 @@ Density::Estimate Density::at(int depth, Index brick, const Eigen::Vector3f& pos
 void estimateDensity(const Octree& tree, const Density& density, float samples_per_node, Samples& samples, int threads)
 {
   const BrickLevel& finest = tree.levels.back();
-  const Array<std::uint32_t> begin = sampleRanges(finest, samples.codes, tree.depth, threads);
+  const SampleRanges ranges = sampleRanges(finest, samples.codes, tree.depth, threads);
   const float shift = 0.5f * std::log2(samples_per_node);
   parallelFor(finest.size(), threads, [&](Index b) {
-    for (std::uint32_t i = begin[b]; i < begin[b + 1]; ++i) {
+    for (const std::uint32_t i : ranges[b]) {
       Sample& s = samples.samples[i];
       const Density::Estimate estimate = density.at(tree.depth, b, s.position);
       s.depth = estimate.depth - shift;

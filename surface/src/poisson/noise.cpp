@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "poisson/noise.h"
+#include "poisson/ranks/bytes.h"
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -95,19 +96,89 @@ float noiseOf(const Offsets& own, const std::array<Offsets, 3>& around)
   const double growth = std::max(0.0, distant - errors_of_normals * close);
   return pairs > 0 ? std::sqrt(own.squared_distance * std::max(0.0, close - growth) / pairs) : 0.0;
 }
+/// What the runs lie off, of the samples of all ranks behind each other: those that begin among the own samples, and
+/// those next to them.
+class Runs {
+public:
+  Runs(const Array<Sample>& samples, Exchange& exchange, int threads)
+  {
+    const Index n = samples.size();
+    first_sample_ = exchange.sumBefore(n);
+    first_ = (first_sample_ + run_length - 1) / run_length;
+    last_ = (sumOfAll(exchange, n) - 1) / run_length;
+    const Index begin = first_ * run_length - first_sample_; // of the first run, which may lie behind all own samples
+    offsets_.resize(begin < n ? (n - begin + run_length - 1) / run_length : 0);
+    const Array<Sample> cut = lastRun(samples, begin, exchange);
+    parallelFor(
+        offsets_.size(), threads,
+        [&](Index r) {
+          const Index from = begin + r * run_length;
+          offsets_[r] =
+              from + run_length > n ? offsetsOfRun(cut, 0, cut.size()) : offsetsOfRun(samples, from, from + run_length);
+        },
+        1);
+    if (exchange.size() > 1)
+      addNeighbors(exchange);
+  }
+
+  Index firstSample() const { return first_sample_; }
+  Index last() const { return last_; }
+  const Offsets& operator[](Index run) const { return offsets_[run - first_]; }
+
+private:
+  /// Samples of the run that the end of the own ones cuts, also those of higher ranks; empty if there is none.
+  static Array<Sample> lastRun(const Array<Sample>& samples, Index begin, Exchange& exchange)
+  {
+    const Index n = samples.size();
+    Array<Sample> cut;
+    if (begin < n)
+      cut.assign(samples.end() - (n - begin) % run_length, samples.end());
+    if (exchange.size() == 1)
+      return cut;
+    Bytes message;
+    append(message, samples.data(), std::min(n, run_length - 1));
+    const std::vector<Bytes> heads = exchange.gatherAll(std::move(message));
+    for (int r = exchange.rank() + 1; r < exchange.size() && !cut.empty(); ++r)
+      appendTo(cut, heads[r]);
+    cut.resize(std::min<Index>(cut.size(), run_length));
+    return cut;
+  }
+
+  /// The two runs before the own ones and the one behind them, which count for own samples, too.
+  void addNeighbors(Exchange& exchange)
+  {
+    struct Numbered {
+      Index run;
+      Offsets offsets;
+    };
+    std::vector<Numbered> ends;
+    const Index n = offsets_.size();
+    for (Index r = 0; r < n; ++r)
+      if (r < 1 || r + 2 >= n)
+        ends.push_back({first_ + r, offsets_[r]});
+    const Array<Numbered> all = gatherAll(exchange, ends.data(), ends.size());
+    const Index from = std::max<Index>(first_ - 2, 0), to = std::min(first_ + n, last_);
+    std::vector<Offsets> extended(to + 1 - from);
+    std::copy(offsets_.begin(), offsets_.end(), extended.begin() + (first_ - from));
+    for (const Numbered& other : all)
+      if (other.run >= from && other.run <= to)
+        extended[other.run - from] = other.offsets;
+    offsets_ = std::move(extended);
+    first_ = from;
+  }
+
+  Index first_sample_ = 0, first_ = 0, last_ = 0; ///< `first_` of offsets_
+  std::vector<Offsets> offsets_;
+};
 } // namespace
 
-void estimateNoise(Samples& samples, int threads)
+void estimateNoise(Samples& samples, Exchange& exchange, int threads)
 {
   constexpr float tolerated_mean_noise = 1.f; // of a cell's samples, in cells; less costs detail: docs/measurements
-  const Index n = samples.samples.size();
-  std::vector<Offsets> runs((n + run_length - 1) / run_length);
-  parallelRanges(
-      n, threads, [&](Index begin, Index end) { runs[begin / run_length] = offsetsOfRun(samples.samples, begin, end); },
-      run_length);
+  const Runs runs(samples.samples, exchange, threads);
   const float finest = samples.cube.depth;
-  parallelFor(n, threads, [&](Index i) {
-    const Index run = i / run_length, last = runs.size() - 1;
+  parallelFor(samples.samples.size(), threads, [&](Index i) {
+    const Index run = (runs.firstSample() + i) / run_length, last = runs.last();
     Sample& s = samples.samples[i];
     s.noise = noiseOf(runs[run], {runs[std::max<Index>(run - 1, 0)], runs[run], runs[std::min(run + 1, last)]});
     const float cell_squared = s.noise * std::sqrt(s.area) / tolerated_mean_noise;

@@ -6,5 +6,6 @@ namespace fresco::poisson {
 /// planes: the median over close pairs of a run of samples, less what distant pairs lie off beyond it. So neither edges
 /// nor shape count as noise. Lowers the sample's depth to where the noise of the samples in a cell averages out to the
 /// size of the cell. Needs areas and depths.
-void estimateNoise(Samples& samples, int threads);
+/// @param samples of this rank; the curve runs through those of all
+void estimateNoise(Samples& samples, Exchange& exchange, int threads);
 } // namespace fresco::poisson

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include "poisson/sorted_points.h"
+#include <utility>
 namespace fresco::poisson {
 /// A brick of 4^3 finest cells with those of them that hold points, a bit each in Morton order.
 struct OccupiedBrick {
@@ -10,6 +11,9 @@ struct OccupiedBrick {
 /// The finest cells that hold points: two bytes each where points are dense.
 class OccupiedCells {
 public:
+  OccupiedCells() = default;
+  explicit OccupiedCells(Array<OccupiedBrick> bricks) : bricks_(std::move(bricks)) {}
+
   void add(const SortedPoints& points, int threads);
 
   const Array<OccupiedBrick>& bricks() const { return bricks_; } ///< codes strictly rising

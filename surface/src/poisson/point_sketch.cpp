@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "poisson/point_sketch.h"
+#include "poisson/ranks/bytes.h"
 #include <algorithm>
 #include <cstring>
 #include <fresco/core/parallel.h>
@@ -54,6 +55,22 @@ void PointSketch::keepLowest()
   std::nth_element(entries_.begin(), entries_.begin() + (most_entries - 1), entries_.end(), less);
   entries_.resize(most_entries);
   highest_ = entries_.back().hash;
+}
+
+void PointSketch::share(Exchange& exchange)
+{
+  if (exchange.size() == 1)
+    return;
+  if (entries_.size() > most_entries)
+    keepLowest();
+  Bytes message;
+  append(message, entries_.data(), entries_.size());
+  entries_.clear();
+  for (const Bytes& part : exchange.gatherAll(std::move(message))) {
+    appendTo(entries_, part);
+    if (entries_.size() > most_entries)
+      keepLowest();
+  }
 }
 
 std::vector<float> PointSketch::coordinates(int axis) const

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include <cstdint>
+#include <fresco/core/exchange.h>
 #include <fresco/core/point_set.h>
 #include <functional>
 #include <vector>
@@ -11,6 +12,9 @@ class PointSketch {
 public:
   /// Adds the points i with takes(i).
   void add(const PointSet& set, const std::function<bool(Index)>& takes, int threads);
+
+  /// Adds those of the other ranks.
+  void share(Exchange& exchange);
 
   /// Coordinates on one axis, in no order.
   std::vector<float> coordinates(int axis) const;

@@ -74,20 +74,28 @@ SampleLevel coarsen(const SampleLevel& fine, int threads)
   return coarse;
 }
 
-Array<std::uint32_t> sampleRanges(const BrickLevel& level, const Array<std::uint64_t>& codes, int depth, int threads)
+SampleRanges sampleRanges(const BrickLevel& level, const Array<std::uint64_t>& codes, int depth, int threads)
 {
   const int shift = 3 * (depth - level.depth + 2);
-  Array<std::uint32_t> begin(level.codes.size() + 1);
+  SampleRanges ranges;
+  ranges.begin.resize(level.codes.size() + 1);
+  if (level.ghosts.isDivided())
+    ranges.end.resize(level.codes.size());
   parallelRanges(level.size(), threads, [&](Index first, Index last) {
     const auto isBefore = [&](std::uint64_t code, std::uint64_t brick) { return code >> shift < brick; };
     auto at = std::lower_bound(codes.begin(), codes.end(), level.codes[first], isBefore);
     for (Index b = first; b < last; ++b) {
       while (at != codes.end() && isBefore(*at, level.codes[b]))
         ++at;
-      begin[b] = at - codes.begin();
+      ranges.begin[b] = at - codes.begin();
+      if (ranges.end.empty())
+        continue;
+      while (at != codes.end() && isBefore(*at, level.codes[b] + 1))
+        ++at;
+      ranges.end[b] = at - codes.begin();
     }
   });
-  begin.back() = codes.size();
-  return begin;
+  ranges.begin.back() = codes.size();
+  return ranges;
 }
 } // namespace fresco::poisson

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include "poisson/octree/octree.h"
+#include "poisson/octree/sample_ranges.h"
 #include <Eigen/Geometry>
 #include <cmath>
 #include <fresco/core/array.h>
@@ -75,7 +76,6 @@ SampleLevel finestLevel(const Samples& samples, int threads);
 Array<Eigen::Vector3f> normalsOf(const Samples& samples, int threads);
 SampleLevel coarsen(const SampleLevel& fine, int threads);
 
-/// First sample of each brick of `level` among sorted codes of a depth no coarser than the level's, and their count at
-/// the end: those of brick b are begin[b] .. begin[b + 1] - 1.
-Array<std::uint32_t> sampleRanges(const BrickLevel& level, const Array<std::uint64_t>& codes, int depth, int threads);
+/// Samples of each brick of `level` among sorted codes of a depth no coarser than the level's.
+SampleRanges sampleRanges(const BrickLevel& level, const Array<std::uint64_t>& codes, int depth, int threads);
 } // namespace fresco::poisson

@@ -23,26 +23,6 @@ void compactVertices(const std::vector<int>& new_index, IsoSurface& surface)
     for (int k = 0; k < 3; ++k)
       surface.faces(k, f) = new_index[surface.faces(k, f)];
 }
-using Counter = std::atomic<std::uint32_t>;
-
-/// Number of faces of each component, at its lowest vertex.
-Array<Counter> facesByRoot(const IsoSurface& surface, ConcurrentUnionFind& components, int threads)
-{
-  Array<Counter> faces(surface.vertices.cols());
-  parallelFor(surface.vertices.cols(), threads, [&](Index v) { faces[v].store(0, std::memory_order_relaxed); });
-  parallelRanges(surface.faces.cols(), threads, [&](Index begin, Index end) {
-    Index root = components.root(surface.faces(0, begin));
-    std::uint32_t count = 0; // most faces follow one of the same component
-    for (Index f = begin; f < end; ++f) {
-      const Index own = components.root(surface.faces(0, f));
-      if (own != root)
-        faces[std::exchange(root, own)].fetch_add(std::exchange(count, 0), std::memory_order_relaxed);
-      ++count;
-    }
-    faces[root].fetch_add(count, std::memory_order_relaxed);
-  });
-  return faces;
-}
 
 /// Faces of the components.
 struct SizeRange {
@@ -50,44 +30,69 @@ struct SizeRange {
 };
 } // namespace
 
-void removeSmallComponents(IsoSurface& surface, int threads)
+Components::Components(const IsoSurface& surface, int threads)
+    : sets_(surface.vertices.cols(), threads), faces_(surface.vertices.cols()), threads_(threads)
+{
+  parallelFor(surface.faces.cols(), threads, [&](Index f) {
+    sets_.join(surface.faces(0, f), surface.faces(1, f));
+    sets_.join(surface.faces(0, f), surface.faces(2, f));
+  });
+  parallelFor(surface.vertices.cols(), threads, [&](Index v) { setFaces(v, 0); });
+  parallelRanges(surface.faces.cols(), threads, [&](Index begin, Index end) {
+    Index root = sets_.root(surface.faces(0, begin));
+    std::uint32_t count = 0; // most faces follow one of the same component
+    for (Index f = begin; f < end; ++f) {
+      const Index own = sets_.root(surface.faces(0, f));
+      if (own != root)
+        faces_[std::exchange(root, own)].fetch_add(std::exchange(count, 0), std::memory_order_relaxed);
+      ++count;
+    }
+    faces_[root].fetch_add(count, std::memory_order_relaxed);
+  });
+}
+
+bool Components::isSmallCount(std::uint32_t faces) const
 {
   constexpr unsigned least_faces = 150; // of a ball four cells across: a ripple around a sample reaches no farther
   constexpr double least_share = 0.01;  // of the largest component's faces: a small scan may be all there is
-  ConcurrentUnionFind components(surface.vertices.cols(), threads);
-  parallelFor(surface.faces.cols(), threads, [&](Index f) {
-    components.join(surface.faces(0, f), surface.faces(1, f));
-    components.join(surface.faces(0, f), surface.faces(2, f));
-  });
-  const Array<Counter> faces = facesByRoot(surface, components, threads);
-  const auto numberOf = [&](Index v) { return faces[v].load(std::memory_order_relaxed); };
+  return faces < least_faces && faces < least_share * largest_;
+}
+
+bool Components::findSmall(Exchange& exchange)
+{
   const auto map = [&](Index begin, Index end) {
     SizeRange sizes;
     for (Index v = begin; v < end; ++v)
-      if (const std::uint32_t n = numberOf(v); n > 0)
+      if (const std::uint32_t n = faces(v); n > 0)
         sizes = {std::min(sizes.least, n), std::max(sizes.largest, n)};
     return sizes;
   };
   const auto join = [](const SizeRange& a, const SizeRange& b) {
     return SizeRange{std::min(a.least, b.least), std::max(a.largest, b.largest)};
   };
-  const Index vertices = surface.vertices.cols();
-  const SizeRange sizes = parallelReduce(vertices, threads, SizeRange(), map, join);
-  const auto isSmall = [&](std::uint32_t n) { return n < least_faces && n < least_share * sizes.largest; };
-  if (!isSmall(sizes.least))
+  const SizeRange own = parallelReduce(Index(faces_.size()), threads_, SizeRange(), map, join);
+  double sizes[2] = {-static_cast<double>(own.least), static_cast<double>(own.largest)};
+  exchange.largest(sizes, 2);
+  largest_ = sizes[1];
+  return isSmallCount(static_cast<std::uint32_t>(-sizes[0]));
+}
+
+void removeSmallComponents(IsoSurface& surface, int threads)
+{
+  Components components(surface, threads);
+  if (!components.findSmall(onlyRank()))
     return;
-  const auto isRemoved = [&](Index v) { return isSmall(numberOf(components.root(v))); };
   Index kept = 0;
   for (Index f = 0; f < surface.faces.cols(); ++f)
-    if (!isRemoved(surface.faces(0, f)))
+    if (!components.isSmall(surface.faces(0, f)))
       surface.faces.col(kept++) = surface.faces.col(f).eval();
   surface.faces_backing = FileBacking();
   surface.faces.conservativeResize(3, kept);
-  std::vector<int> new_index(vertices);
+  std::vector<int> new_index(surface.vertices.cols());
   int count = 0;
   for (const VertexRange& range : surface.ranges)
     for (Index v = range.first; v < range.first + range.count; ++v)
-      new_index[v] = isRemoved(v) ? -1 : count++;
+      new_index[v] = components.isSmall(v) ? -1 : count++;
   compactVertices(new_index, surface);
 }
 } // namespace fresco::poisson

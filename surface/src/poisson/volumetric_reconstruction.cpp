@@ -1,9 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "poisson/attributes.h"
 #include "poisson/density.h"
+#include "poisson/exact_sum.h"
 #include "poisson/isosurface/isosurface.h"
 #include "poisson/noise.h"
 #include "poisson/occupied_cells.h"
+#include "poisson/ranks/bytes.h"
+#include "poisson/ranks/reconstruct_part.h"
+#include "poisson/ranks/sample_ghosts.h"
+#include "poisson/ranks/surface_part.h"
 #include "poisson/small_components.h"
 #include "poisson/solver/base_solver.h"
 #include "poisson/solver/constraints.h"
@@ -19,6 +24,7 @@
 #include <fresco/core/statistics.h>
 #include <fresco/surface/core/mesh_trimming.h>
 #include <fresco/surface/core/volumetric_reconstruction.h>
+#include <iterator>
 namespace fresco {
 namespace {
 using namespace poisson;
@@ -33,12 +39,12 @@ void validate(const PointSet& points, const VolumetricOptions& options)
 /// Samples joined in the cells of each depth, by depth.
 using SampleLevels = std::vector<SampleLevel>;
 
-SampleLevels sampleLevels(SampleLevel&& finest, int threads)
+SampleLevels sampleLevels(SampleLevel&& finest, const Octree& tree, int threads)
 {
   SampleLevels levels(finest.depth + 1);
   levels.back() = std::move(finest);
   for (int d = levels.back().depth; d > 2; --d)
-    levels[d - 1] = coarsen(levels[d], threads);
+    levels[d - 1] = coarsen(levels[d], tree, threads);
   return levels;
 }
 
@@ -55,7 +61,11 @@ Solution solve(const Octree& tree, Constraints& constraints, SampleLevels& level
   solution.chi.resize(tree.levels.size());
   for (int d = 2; d <= tree.full_depth; ++d)
     addCoarser(tree, d, options.threads, constraints);
-  solution.chi[tree.full_depth] = solveBase(tree, constraints.fine, levels, options.point_weight, options.threads);
+  NodeField& base = solution.chi[tree.full_depth];
+  if (tree.exchange().rank() == 0)
+    base = solveBase(tree, constraints.fine, levels, options.point_weight, options.threads);
+  if (tree.partition)
+    broadcastNodes(tree.exchange(), tree.levels[tree.full_depth], base);
   for (int d = 2; d <= std::min(tree.full_depth + 1, tree.depth - 1); ++d)
     levels[d] = SampleLevel();
   for (int d = tree.full_depth + 1; d <= tree.depth; ++d) {
@@ -87,15 +97,17 @@ Solution solve(const Octree& tree, Constraints& constraints, SampleLevels& level
 float levelSetValue(const Octree& tree, const NodeField& chi, const SampleLevel& samples, int threads)
 {
   const BrickLevel& level = tree.levels.back();
-  const Array<std::uint32_t> begin = sampleRanges(level, samples.codes, tree.depth, threads);
-  const Eigen::Array2d sums = parallelSum(level.size(), threads, Eigen::Array2d(0, 0), [&](Index b) {
+  const SampleRanges ranges = sampleRanges(level, samples.codes, tree.depth, threads);
+  const BrickRun own = level.own();
+  const Eigen::Array2d sums = exactSums(tree.exchange(), own.end - own.begin, threads, [&](Index k) {
     Eigen::Array2d sum(0, 0);
-    if (begin[b] == begin[b + 1])
+    const Index b = own.begin + k;
+    if (ranges[b].empty())
       return sum;
     const Eigen::Vector3f origin = level.origin(b);
     float nodes[nodes_per_brick];
     chi.load(level, b, nodes);
-    for (std::uint32_t i = begin[b]; i < begin[b + 1]; ++i) {
+    for (const std::uint32_t i : ranges[b]) {
       const CoarseSample& s = samples.samples[i];
       const double value = HatWeights::inBrick(s.position - origin).interpolate(nodes);
       sum += Eigen::Array2d(s.area * value, s.area);
@@ -149,89 +161,170 @@ float trimDepth(const Eigen::VectorXf& support, int depth, const VolumetricOptio
   return std::max(options.trim, std::min<float>(upper_quartile, depth) - options.trim_levels);
 }
 
-VolumetricResult reconstruct(Samples&& samples, const VolumetricOptions& options, const Progress& progress)
+/// Cells of all depths, each counted by one rank.
+Index countCells(const Octree& tree)
 {
-  VolumetricResult result;
+  Index cells = 0;
+  for (const BrickLevel& level : tree.levels) {
+    Index bricks = level.own().end - level.own().begin;
+    if (level.ghosts.isDivided())
+      bricks = sumOfAll(*level.ghosts.exchange, bricks);
+    cells += bricks * brick_cells * brick_cells * brick_cells;
+  }
+  return cells;
+}
+
+/// The surface without small components; of several ranks this one's part.
+SurfacePart extractSurface(const Octree& tree, std::vector<NodeField>&& chi, float level_set, int threads)
+{
+  if (tree.partition)
+    return extractSurfacePart(tree, std::move(chi), level_set, threads);
+  SurfacePart whole;
+  whole.surface = extractIsoSurface(tree, std::move(chi), level_set, threads);
+  removeSmallComponents(whole.surface, threads);
+  return whole;
+}
+
+void trim(const Cube& cube, const VolumetricOptions& options, VolumetricResult& result)
+{
+  const Eigen::VectorXf& support = result.mesh.fields["support"];
+  const float depth = trimDepth(support, result.depth, options);
+  if (depth <= 0)
+    return;
+  result.trim_depth = depth;
+  constexpr double trim_patch = 16; // faces of such cells: smaller gaps and islands are below what the depth resolves
+  const double trim_cell = cube.side / std::exp2(result.trim_depth);
+  result.mesh = trimMesh(result.mesh, support,
+                         {depth, trim_patch * trim_cell * trim_cell, TrimmingOptions{}.rounds, options.threads});
+}
+
+/// @param partition nullptr: there is one rank
+VolumetricPart reconstruct(Samples&& samples, const VolumetricOptions& options, const Progress& progress,
+                           const Partition* partition = nullptr)
+{
+  VolumetricPart part;
+  VolumetricResult& result = part.result;
   result.used_points = samples.used_points;
   result.left_out_points = samples.left_out_points;
   result.depth = samples.cube.depth;
   result.cell_size = samples.cube.cell();
   report(progress, "octree", 0.1);
   const Octree tree =
-      buildOctree(samples.codes, result.depth, std::min(options.min_depth, result.depth), options.threads);
-  for (const BrickLevel& level : tree.levels)
-    result.cells += level.size() * brick_cells * brick_cells * brick_cells;
+      buildOctree(samples.codes, result.depth, std::min(options.min_depth, result.depth), options.threads, partition);
+  result.cells = countCells(tree);
   report(progress, "density", 0.15);
   const Density density(tree, samples, options.threads);
   estimateDensity(tree, density, options.samples_per_node, samples, options.threads);
-  estimateNoise(samples, options.threads);
+  estimateNoise(samples, tree.exchange(), options.threads);
   report(progress, "normal field", 0.25);
+  const SampleGhosts ghosts(tree, samples.codes, options.threads);
   Array<Eigen::Vector3f> normals = normalsOf(samples, options.threads);
+  ghosts.addTo(normals);
   SampleLevel finest = finestLevel(samples, options.threads);
   releaseMemory(samples.samples);
   releaseMemory(samples.codes);
+  ghosts.addTo(finest);
   Constraints constraints = splatNormals(tree, finest, std::move(normals), options.threads);
-  SampleLevels levels = sampleLevels(std::move(finest), options.threads);
+  SampleLevels levels = sampleLevels(std::move(finest), tree, options.threads);
   Solution solution = solve(tree, constraints, levels, options, progress);
   result.residual = solution.residual;
   report(progress, "surface", 0.7);
   const float level_set = levelSetValue(tree, solution.chi.back(), levels.back(), options.threads);
-  if (samples.attributes.empty())
+  if (!samples.has_colors && !samples.has_intensities)
     levels.clear(); // the vertices need them for their attributes only
-  IsoSurface surface = extractIsoSurface(tree, std::move(solution.chi), level_set, options.threads);
-  removeSmallComponents(surface, options.threads);
+  SurfacePart own = extractSurface(tree, std::move(solution.chi), level_set, options.threads);
+  part.vertices = std::move(own.vertices);
+  part.faces = std::move(own.faces);
+  part.vertex_count = own.vertex_count;
+  part.face_count = own.face_count;
   report(progress, "attributes", 0.9);
-  Eigen::VectorXf support = vertexSupport(density, surface, options.samples_per_node, options.threads);
+  Eigen::VectorXf support = vertexSupport(density, own.surface, options.samples_per_node, options.threads);
   Eigen::Matrix4Xf attributes;
-  if (!samples.attributes.empty())
-    attributes = vertexAttributes(tree, {levels.back(), samples.attributes}, surface, options.threads);
-  result.mesh = toMesh(samples, surface, options.threads);
-  if (attributes.cols() > 0)
-    addAttributes(samples, attributes, result.mesh);
-  const float trim = trimDepth(support, result.depth, options);
-  result.mesh.fields["support"].swap(support);
-  if (trim > 0) {
-    surface = IsoSurface(); // what backs the mesh ends before it is freed
-    result.trim_depth = trim;
-    constexpr double trim_patch = 16; // faces of such cells: smaller gaps and islands are below what the depth resolves
-    const double trim_cell = samples.cube.side / std::exp2(result.trim_depth);
-    result.mesh = trimMesh(result.mesh, result.mesh.fields["support"],
-                           {trim, trim_patch * trim_cell * trim_cell, TrimmingOptions{}.rounds, options.threads});
+  if (samples.has_colors || samples.has_intensities) {
+    ghosts.addTo(samples.attributes);
+    attributes = vertexAttributes(tree, {levels.back(), samples.attributes}, own.surface, options.threads);
   }
+  result.mesh = toMesh(samples, own.surface, options.threads);
+  addAttributes(samples, attributes, result.mesh);
+  result.mesh.fields["support"].swap(support);
+  own = SurfacePart(); // what backs the mesh ends before it is freed
+  trim(samples.cube, options, result);
   report(progress, "done", 1.0);
-  return result;
+  return part;
+}
+
+/// What rank 0 tells the others of a mesh that it makes alone.
+void tellOthers(Exchange& exchange, VolumetricPart& part)
+{
+  VolumetricResult& result = part.result;
+  double numbers[] = {result.residual, result.trim_depth};
+  std::int64_t counts[] = {result.cells, part.vertex_count, part.face_count};
+  broadcast(exchange, numbers, std::size(numbers));
+  broadcast(exchange, counts, std::size(counts));
+  result.residual = numbers[0];
+  result.trim_depth = numbers[1];
+  result.cells = counts[0];
+  part.vertex_count = counts[1];
+  part.face_count = counts[2];
+}
+
+/// Rank 0 makes the whole, the others have no part in it.
+VolumetricPart reconstructAlone(Samples&& samples, const VolumetricOptions& options, const Progress& progress,
+                                Exchange& exchange)
+{
+  VolumetricPart part;
+  part.result.used_points = samples.used_points;
+  part.result.left_out_points = samples.left_out_points;
+  part.result.depth = samples.cube.depth;
+  part.result.cell_size = samples.cube.cell();
+  TriangleMesh& mesh = part.result.mesh;
+  mesh.origin = samples.origin;
+  if (samples.has_intensities)
+    mesh.fields["intensity"].resize(0);
+  mesh.fields["support"].resize(0);
+  if (exchange.rank() == 0) {
+    part = reconstruct(std::move(samples), options, progress);
+    part.vertex_count = mesh.vertexCount();
+    part.face_count = mesh.faceCount();
+    part.vertices = {{0, part.vertex_count}};
+    part.faces = {{0, part.face_count}};
+  }
+  tellOthers(exchange, part);
+  return part;
 }
 } // namespace
 
-void validateVolumetricOptions(const VolumetricOptions& options)
+namespace poisson {
+VolumetricPart reconstructPart(std::unique_ptr<PointStream> points, const VolumetricOptions& options,
+                               const Progress& progress, const RankOptions& ranks, Exchange& exchange)
 {
-  require(options.depth >= 2 && options.depth <= 16, "volumetric reconstruction: depth ", options.depth,
-          " is not in 2..16");
-  require(options.cell_size >= 0 && std::isfinite(options.cell_size), "volumetric reconstruction: cell size ",
-          options.cell_size, " is negative or not finite");
-  require(options.min_depth >= 2 && options.min_depth <= 8, "volumetric reconstruction: minimum depth ",
-          options.min_depth, " is not in 2..8");
-  require(options.point_weight >= 0 && std::isfinite(options.point_weight), "volumetric reconstruction: point weight ",
-          options.point_weight, " is negative or not finite");
-  require(options.scale >= 1 && options.scale <= 100, "volumetric reconstruction: scale ", options.scale,
-          " is not in 1..100");
-  require(options.samples_per_node > 0 && std::isfinite(options.samples_per_node),
-          "volumetric reconstruction: samples per node ", options.samples_per_node, " is not positive");
-  require(options.trim >= 0 && std::isfinite(options.trim), "volumetric reconstruction: trimming depth ", options.trim,
-          " is negative or not finite");
-  require(options.trim_levels >= 0 && std::isfinite(options.trim_levels),
-          "volumetric reconstruction: ", options.trim_levels, " levels of trimming are negative or not finite");
-  require(options.iterations >= 1 && options.iterations <= 1000, "volumetric reconstruction: ", options.iterations,
-          " iterations are not in 1..1000");
-  threadCount(options.threads);
+  validateVolumetricOptions(options);
+  report(progress, "sort points", 0.0);
+  if (exchange.size() == 1) {
+    Samples samples = gatherSamples(*points, options);
+    points.reset();
+    return reconstructAlone(std::move(samples), options, progress, exchange);
+  }
+  SampleShare share = gatherShare(*points, options, ranks, exchange);
+  points.reset();
+  if (!isDivided(share.samples.cube.depth, ranks))
+    return reconstructAlone(std::move(share.samples), options, progress, exchange);
+  require(options.trim <= 0 && options.trim_levels <= 0,
+          "volumetric reconstruction: several ranks do not trim octrees of depth ", ranks.shared_depth + 2,
+          " and more");
+  require(options.min_depth >= Partition::atomDepth(ranks.shared_depth) && options.min_depth <= ranks.shared_depth,
+          "volumetric reconstruction: of several ranks the minimum depth ", options.min_depth, " is below ",
+          Partition::atomDepth(ranks.shared_depth));
+  return reconstruct(std::move(share.samples), options, progress, &share.partition);
 }
+} // namespace poisson
 
 VolumetricResult reconstructVolumetric(const PointSet& points, const VolumetricOptions& options,
                                        const Progress& progress)
 {
   validate(points, options);
   report(progress, "sort points", 0.0);
-  return reconstruct(gatherSamples(points, options), options, progress);
+  return reconstruct(gatherSamples(points, options), options, progress).result;
 }
 
 VolumetricResult reconstructVolumetric(PointSet&& points, const VolumetricOptions& options, const Progress& progress)
@@ -240,7 +333,7 @@ VolumetricResult reconstructVolumetric(PointSet&& points, const VolumetricOption
   report(progress, "sort points", 0.0);
   Samples samples = gatherSamples(points, options);
   points = PointSet();
-  return reconstruct(std::move(samples), options, progress);
+  return reconstruct(std::move(samples), options, progress).result;
 }
 
 VolumetricResult reconstructVolumetric(std::unique_ptr<PointStream> points, const VolumetricOptions& options,
@@ -250,7 +343,13 @@ VolumetricResult reconstructVolumetric(std::unique_ptr<PointStream> points, cons
   report(progress, "sort points", 0.0);
   Samples samples = gatherSamples(*points, options);
   points.reset();
-  return reconstruct(std::move(samples), options, progress);
+  return reconstruct(std::move(samples), options, progress).result;
+}
+
+VolumetricPart reconstructVolumetricPart(std::unique_ptr<PointStream> points, const VolumetricOptions& options,
+                                         const Progress& progress, Exchange& exchange)
+{
+  return reconstructPart(std::move(points), options, progress, RankOptions(), exchange);
 }
 
 VolumetricEstimate estimateVolumetric(const PointStream& points, const VolumetricOptions& options)

@@ -119,7 +119,7 @@ double medianNoise(const PointSet& points, int depth)
   Samples samples = gatherSamples(points, atDepth(depth));
   const Octree tree = buildOctree(samples.codes, depth, 5, 2);
   estimateDensity(tree, Density(tree, samples, 2), 1.f, samples, 2);
-  estimateNoise(samples, 2);
+  estimateNoise(samples, onlyRank(), 2);
   std::vector<float> noise;
   for (const Sample& s : samples.samples)
     noise.push_back(s.noise);

@@ -29,7 +29,8 @@ bool LevelSet::hasLeaves(int depth, Index brick) const
 {
   if ((*chi)[depth].size() == 0)
     return false;
-  return tree->levels[depth].child_octants[brick] != 0xff;
+  const BrickLevel& level = tree->levels[depth];
+  return (level.child_octants[brick] | level.remoteChildren(brick)) != 0xff;
 }
 
 CellPlace normalized(const Octree& tree, CellPlace c)
@@ -72,11 +73,14 @@ CrossedEdges::CrossedEdges(const LevelSet& surface, int threads) : surface_(&sur
   for (int d = 2; d <= tree.depth; ++d) {
     if ((*surface.chi)[d].size() == 0)
       continue;
-    bricks_[d].resize(tree.levels[d].codes.size());
-    parallelFor(tree.levels[d].size(), threads, [&](Index b) {
+    const BrickLevel& level = tree.levels[d];
+    bricks_[d].resize(level.codes.size());
+    parallelFor(level.size(), threads, [&](Index b) {
       bricks_[d][b] = BrickEdges();
-      findCrossings(d, b);
+      if (level.owns(b))
+        findCrossings(d, b);
     });
+    level.ghosts.refresh(bricks_[d].data());
     numberEdges(bricks_[d], threads);
   }
   requireVertices(count_);
@@ -139,7 +143,7 @@ bool CrossedEdges::isSubdivided(const EdgePlace& edge) const
   for (int k = 0; k < 4; ++k) {
     const auto [dx, dy, dz] = offsetAround(edge.axis, k);
     const CellPlace cell = normalized(tree, {edge.depth, edge.brick, edge.x - dx, edge.y - dy, edge.z - dz});
-    if (cell.brick >= 0 && childBrick(tree, cell) >= 0)
+    if (cell.brick >= 0 && !tree.levels[cell.depth].isLeaf(cell.brick, octantOf(cell.x, cell.y, cell.z)))
       return true;
   }
   return false;

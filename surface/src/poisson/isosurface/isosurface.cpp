@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "poisson/isosurface/isosurface.h"
 #include "poisson/isosurface/polygon.h"
+#include "poisson/octree/halo.h"
 #include "poisson/octree/select.h"
 #include <algorithm>
+#include <fresco/core/morton.h>
 #include <fresco/core/parallel.h>
 #include <fresco/core/release.h>
 namespace fresco::poisson {
@@ -15,7 +17,8 @@ constexpr Index bricks_per_part = 128, bricks_per_chunk = 1024 * bricks_per_part
 struct Part {
   Array<int> faces;
   Array<Eigen::Vector3f> extra;
-  std::vector<VertexRange> extra_ranges; ///< `first` counts within `extra`
+  std::vector<VertexRange> extra_ranges;       ///< `first` counts within `extra`
+  std::vector<KeyedRun> extra_runs, face_runs; ///< with several ranks, see OwnParts
 };
 
 class CellMarcher {
@@ -32,13 +35,36 @@ public:
     for (int z = 0; z < brick_cells; ++z)
       for (int y = 0; y < brick_cells; ++y)
         for (int x = 0; x < brick_cells; ++x)
-          if (const CellPlace cell{depth, b, x, y, z}; isCrossed(x, y, z) && childBrick(tree_, cell) < 0)
+          if (const CellPlace cell{depth, b, x, y, z};
+              isCrossed(x, y, z) && childBrick(tree_, cell) < 0 && isOwn(cell)) {
+            const Index faces = part.faces.size() / 3, extra = part.extra.size();
             marchCell(cell, part);
+            if (tree_.partition)
+              addRuns(cell, part.faces.size() / 3 - faces, part.extra.size() - extra, part);
+          }
     if (const Index n = part.extra.size() - extra_before; n > 0)
       part.extra_ranges.push_back({depth, brick, extra_before, n});
   }
 
 private:
+  bool isOwn(const CellPlace& cell) const
+  {
+    if (!tree_.partition || tree_.isDivided(cell.depth)) // then the whole brick is
+      return true;
+    const auto [x, y, z] = tree_.levels[cell.depth].corner(cell.brick);
+    return tree_.partition->owns(cell.depth, mortonCode(x + cell.x, y + cell.y, z + cell.z));
+  }
+
+  /// A brick two depths coarser than the shared one lies on several ranks: its cells are runs of their own.
+  void addRuns(const CellPlace& cell, Index faces, Index extra, Part& part) const
+  {
+    const bool is_whole = cell.depth - 2 >= tree_.partition->atomDepth();
+    const std::uint64_t number = std::uint64_t(cell.brick) * own_nodes + ownIndex(cell.x, cell.y, cell.z);
+    const std::uint64_t key = OwnParts::keyOfDepth(cell.depth, is_whole ? tree_.partition->rank() : number);
+    addToRuns(part.face_runs, key, faces);
+    addToRuns(part.extra_runs, key, extra);
+  }
+
   static int cornerStep(int corner) { return nodeIndex(corner & 1, corner >> 1 & 1, corner >> 2); }
 
   /// Whether the surface passes through a cell of the brick that is marched.
@@ -134,8 +160,9 @@ std::vector<BrickPlace> bricksWithLeaves(const LevelSet& surface, int threads)
 {
   std::vector<BrickPlace> bricks;
   for (int d = 2; d <= surface.tree->depth; ++d)
-    for (const std::uint32_t b : selectIndices(surface.tree->levels[d].size(), threads,
-                                               [&](Index brick) { return surface.hasLeaves(d, brick); }))
+    for (const std::uint32_t b : selectIndices(surface.tree->levels[d].size(), threads, [&](Index brick) {
+           return surface.tree->levels[d].owns(brick) && surface.hasLeaves(d, brick);
+         }))
       bricks.push_back({d, b});
   return bricks;
 }
@@ -184,6 +211,10 @@ Part joined(std::vector<Part>& parts, int threads)
       chunk.extra_ranges.push_back(range);
     }
     chunk.extra.insert(chunk.extra.end(), parts[p].extra.begin(), parts[p].extra.end());
+    for (const KeyedRun& run : parts[p].face_runs)
+      addToRuns(chunk.face_runs, run.key, run.count);
+    for (const KeyedRun& run : parts[p].extra_runs)
+      addToRuns(chunk.extra_runs, run.key, run.count);
   }
   return chunk;
 }
@@ -215,7 +246,7 @@ void join(std::vector<Part>& chunks, IsoSurface& surface, int threads)
   }
 }
 /// Sets the vertices on edges. @returns the faces, in chunks of bricks
-std::vector<Part> marchLeaves(const LevelSet& surface, int threads, IsoSurface& result)
+std::vector<Part> marchLeaves(const LevelSet& surface, int threads, IsoSurface& result, OwnParts& own)
 {
   const CrossedEdges edges(surface, threads);
   result.vertices.resize(3, edges.vertexCount());
@@ -239,16 +270,27 @@ std::vector<Part> marchLeaves(const LevelSet& surface, int threads, IsoSurface& 
         },
         bricks_per_part);
     chunks.push_back(joined(parts, threads));
+    for (const KeyedRun& run : chunks.back().face_runs)
+      addToRuns(own.faces, run.key, run.count);
+    for (const KeyedRun& run : chunks.back().extra_runs)
+      addToRuns(own.extras, run.key, run.count);
   }
+  own.edge_vertices = edges.vertexCount();
   return chunks;
 }
 } // namespace
 
 IsoSurface extractIsoSurface(const Octree& tree, std::vector<NodeField>&& chi, float value, int threads)
 {
+  OwnParts all;
+  return extractIsoSurface(tree, std::move(chi), value, threads, all);
+}
+
+IsoSurface extractIsoSurface(const Octree& tree, std::vector<NodeField>&& chi, float value, int threads, OwnParts& own)
+{
   IsoSurface result;
   std::vector<NodeField> values = std::move(chi);
-  std::vector<Part> chunks = marchLeaves({&tree, &values, value}, threads, result);
+  std::vector<Part> chunks = marchLeaves({&tree, &values, value}, threads, result, own);
   releaseMemory(values);
   join(chunks, result, threads);
   return result;

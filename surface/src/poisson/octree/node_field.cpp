@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "poisson/octree/node_field.h"
+#include "poisson/ranks/bytes.h"
 #include <algorithm>
 #include <cstring>
 #include <fresco/core/parallel.h>
 #include <fresco/core/release.h>
+#include <limits>
 #include <utility>
 namespace fresco::poisson {
 namespace {
@@ -185,6 +187,56 @@ void NodeField::add(const BrickLevel& level, Index b, float factor, const float*
     return;
   float* to = rim_.data() + level.rims[b].first;
   forEachRimNode(level.rims[b].parts, [&](int i, int node) { to[i] += factor * nodes[node]; });
+}
+
+void poisonGhosts(const BrickLevel& level, NodeField& field, int color)
+{
+  if (!Ghosts::poison || !level.ghosts.isDivided())
+    return;
+  for (const Ghosts::Peer& peer : level.ghosts.peers)
+    for (const int b : peer.receive.bricks)
+      if (color < 0 || static_cast<int>(level.codes[b] >> 6 & 7) == color)
+        std::fill_n(field.own(b), own_nodes, std::numeric_limits<float>::quiet_NaN());
+}
+
+void refreshOwnNodes(const BrickLevel& level, NodeField& field, int color)
+{
+  constexpr std::size_t bytes = own_nodes * sizeof(float);
+  poisonGhosts(level, field, color);
+  level.ghosts.swap(
+      bytes, [&](int b, std::byte* message) { std::memcpy(message, field.own(b), bytes); },
+      [&](int b, const std::byte* message) { std::memcpy(field.own(b), message, bytes); }, color);
+}
+
+/// Own nodes first: those on the upper faces of a brick may be a third rank's.
+void refreshGhosts(const BrickLevel& level, NodeField& field)
+{
+  refreshOwnNodes(level, field);
+  using Nodes = std::array<float, nodes_per_brick>;
+  Nodes nodes;
+  level.ghosts.swap(
+      sizeof(nodes),
+      [&](int b, std::byte* message) {
+        field.load(level, b, nodes.data());
+        std::memcpy(message, nodes.data(), sizeof(nodes));
+      },
+      [&](int b, const std::byte* message) {
+        std::memcpy(nodes.data(), message, sizeof(nodes));
+        field.store(level, b, nodes.data());
+      });
+}
+
+void broadcastNodes(Exchange& exchange, const BrickLevel& level, NodeField& field)
+{
+  using Nodes = std::array<float, nodes_per_brick>;
+  std::vector<Nodes> bricks(level.codes.size());
+  if (exchange.rank() == 0)
+    for (Index b = 0; b < level.size(); ++b)
+      field.load(level, b, bricks[b].data());
+  broadcast(exchange, bricks.data(), bricks.size());
+  field = NodeField(level);
+  for (Index b = 0; b < level.size(); ++b)
+    field.store(level, b, bricks[b].data());
 }
 
 NodePlace findNodeAround(const BrickLevel& level, Index b, int x, int y, int z)

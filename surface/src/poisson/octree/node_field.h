@@ -83,6 +83,16 @@ private:
   Array<float> own_, rim_;
 };
 
+/// Fills the ghosts from their owners: all nodes.
+void refreshGhosts(const BrickLevel& level, NodeField& field);
+/// Own nodes of the ghosts become NaN if Ghosts::poison says so. @param color of BrickLevel::colors, -1 = all
+void poisonGhosts(const BrickLevel& level, NodeField& field, int color = -1);
+/// Only their own nodes. @param color of BrickLevel::colors, -1 = all
+void refreshOwnNodes(const BrickLevel& level, NodeField& field, int color = -1);
+
+/// Gives a field of a depth that all ranks have from rank 0 to all.
+void broadcastNodes(Exchange& exchange, const BrickLevel& level, NodeField& field);
+
 /// The place of the node with coordinates x, y, z in -4..7 relative to brick `b`: in the brick whose own it is, else in
 /// the rim of one.
 NodePlace findNodeAround(const BrickLevel& level, Index b, int x, int y, int z);

@@ -2,6 +2,8 @@
 #include "poisson/octree/node_field.h"
 #include "poisson/octree/radix_sort.h"
 #include "poisson/octree/select.h"
+#include "poisson/ranks/bytes.h"
+#include "poisson/ranks/ghost_finder.h"
 #include <algorithm>
 #include <fresco/core/morton.h>
 #include <fresco/core/parallel.h>
@@ -210,6 +212,12 @@ int BrickLevel::neighborByParent(Index b, int offset) const
   return uncle < 0 ? -1 : coarser->child(uncle, (x & 1) | (y & 1) << 1 | (z & 1) << 2);
 }
 
+Exchange& onlyRank()
+{
+  static Exchange alone;
+  return alone;
+}
+
 std::array<int, 3> BrickLevel::corner(Index b) const
 {
   const auto [x, y, z] = mortonCell(codes[b]);
@@ -239,15 +247,22 @@ Octree linkBricks(std::vector<std::vector<std::uint64_t>> codes, int full_depth,
   return tree;
 }
 
-Octree buildOctree(const Array<std::uint64_t>& cell_codes, int depth, int full_depth, int threads)
+Octree buildOctree(const Array<std::uint64_t>& cell_codes, int depth, int full_depth, int threads,
+                   const Partition* partition)
 {
   std::vector<std::vector<std::uint64_t>> codes(depth + 1);
+  GhostFinder ghosts(partition, depth);
   Array<Occupied> occupied = occupiedBricks(cell_codes, threads);
   for (int d = depth; d >= 2; --d) {
+    if (partition && d == partition->sharedDepth())
+      occupied = gatherAll(partition->exchange(), occupied.data(), occupied.size());
     codes[d] = d <= full_depth ? allBricks(d) : dilate(occupied, d, threads);
+    ghosts.exchangeBricks(d, codes[d]);
     occupied = coarsen(occupied, threads);
   }
-  return linkBricks(std::move(codes), full_depth, threads);
+  Octree tree = linkBricks(std::move(codes), full_depth, threads);
+  ghosts.addTo(tree);
+  return tree;
 }
 
 std::vector<Index> countBricks(const Array<std::uint64_t>& cell_codes, int depth, int full_depth, int threads)

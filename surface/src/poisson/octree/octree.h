@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include "poisson/octree/bit_count.h"
+#include "poisson/octree/ghosts.h"
+#include "poisson/ranks/partition.h"
 #include <Eigen/Core>
 #include <array>
 #include <cstddef>
@@ -31,10 +33,8 @@ constexpr int octantOf(int x, int y, int z) { return (x >> 1) | (y >> 1) << 1 | 
 /// Indices of the bricks around one, and its own, by offsetIndex(); -1 where there is none.
 using Neighbors = std::array<int, 27>;
 
-/// Consecutive bricks begin..end - 1.
-struct BrickRun {
-  int begin, end;
-};
+/// For where there are no others.
+Exchange& onlyRank();
 
 /// Nodes on the upper faces of a brick where no neighbour has them as its own.
 struct Rim {
@@ -56,6 +56,9 @@ struct BrickLevel {
   /// Blocks of 4^3 bricks, by the octant that a block is in the block of 8^3 around it. Those of one colour never
   /// touch.
   std::array<std::vector<BrickRun>, 8> colors;
+  Ghosts ghosts;
+  /// With several ranks, of the deepest shared depth: bits by octant, children that are on other ranks only.
+  std::vector<std::uint8_t> remote_children;
 
   Index size() const { return codes.size(); }
   /// Octant of its parent (bits x, y, z) that brick `b` covers.
@@ -74,6 +77,13 @@ struct BrickLevel {
   /// The same through the parents.
   Neighbors neighborsByParent(Index b) const;
   int neighborByParent(Index b, int offset) const;
+  /// Whether the cells of an octant are leaves.
+  bool isLeaf(Index b, int octant) const { return ((child_octants[b] | remoteChildren(b)) >> octant & 1) == 0; }
+  unsigned remoteChildren(Index b) const { return remote_children.empty() ? 0 : remote_children[b]; }
+  /// Bricks that are no ghosts.
+  BrickRun own() const { return ghosts.isDivided() ? ghosts.own : BrickRun{0, static_cast<int>(size())}; }
+  Exchange& exchange() const { return ghosts.isDivided() ? *ghosts.exchange : onlyRank(); }
+  bool owns(Index b) const { return !ghosts.isDivided() || (b >= ghosts.own.begin && b < ghosts.own.end); }
   /// Coordinates of the lower node of brick `b`, in cells of this depth.
   std::array<int, 3> corner(Index b) const;
   Eigen::Vector3f origin(Index b) const;
@@ -83,15 +93,22 @@ struct BrickLevel {
 struct Octree {
   int depth = 0, full_depth = 0;
   std::vector<BrickLevel> levels;
+  const Partition* partition = nullptr; ///< nullptr: the only rank
 
   Octree() = default;
   Octree(Octree&&) = default; // the levels, which point to each other, stay where they are
   Octree& operator=(Octree&&) = default;
+
+  Exchange& exchange() const { return partition ? partition->exchange() : onlyRank(); }
+  /// Whether the bricks of a depth are divided among ranks.
+  bool isDivided(int d) const { return partition && d > partition->sharedDepth(); }
 };
 
-/// @param cell_codes sorted Morton codes of the finest cells that hold samples
+/// @param cell_codes sorted Morton codes of the finest cells that hold samples: of this rank
 /// @param full_depth all bricks exist down to this depth, 2..depth
-Octree buildOctree(const Array<std::uint64_t>& cell_codes, int depth, int full_depth, int threads);
+/// @param partition  outlives the octree
+Octree buildOctree(const Array<std::uint64_t>& cell_codes, int depth, int full_depth, int threads,
+                   const Partition* partition = nullptr);
 
 /// @param codes by depth, from 2 on, sorted; the parent of each brick must be there
 Octree linkBricks(std::vector<std::vector<std::uint64_t>> codes, int full_depth, int threads);

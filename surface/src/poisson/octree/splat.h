@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include "poisson/octree/node_field.h"
+#include "poisson/octree/sample_ranges.h"
 #include <Eigen/Core>
 #include <algorithm>
 #include <array>
@@ -67,6 +68,10 @@ class SplatBlock {
 public:
   static constexpr int side = brick_nodes + 2 * reach;
   void clear() { data_.fill(0.f); }
+  bool isZero() const
+  {
+    return std::all_of(data_.begin(), data_.end(), [](float v) { return v == 0.f; });
+  }
   /// @param x, y, z node relative to the brick, -reach..4 + reach
   float& at(int x, int y, int z) { return data_[index(x, y, z)]; }
   void addTo(const BrickLevel& level, Index brick, NodeField& field) const
@@ -117,17 +122,17 @@ private:
 
 /// splat(block, brick) for each brick with samples, added to `field`. Bricks of one colour share no node, so the sums
 /// do not depend on the number of threads.
-/// @param begin see sampleRanges()
+/// @param samples see sampleRanges()
 /// @tparam reach nodes beyond a brick that its samples reach
 template <int reach = 1, typename Splat>
-void splatBricks(const BrickLevel& level, const Array<std::uint32_t>& begin, NodeField& field, int threads,
+void splatBricks(const BrickLevel& level, const SampleRanges& samples, NodeField& field, int threads,
                  const Splat& splat)
 {
   for (const std::vector<BrickRun>& runs : level.colors)
     parallelFor(runs.size(), threads, [&](Index r) {
       const BrickRun run = runs[r];
       for (int b = run.begin; b < run.end; ++b) {
-        if (begin[b] == begin[b + 1])
+        if (samples[b].empty())
           continue;
         SplatBlock<reach> block;
         block.clear();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "poisson/solver/constraints.h"
 #include "poisson/octree/splat.h"
+#include "poisson/ranks/shared_splat.h"
 #include "poisson/solver/transfer.h"
 #include <algorithm>
 #include <fresco/core/release.h>
@@ -34,22 +35,43 @@ void splatVector(const Eigen::Vector3f& n, const Eigen::Vector3f& position, Spla
     }
 }
 
-template <typename Weights>
-void splatLevel(const BrickLevel& level, const NormalField& normals, NodeField& field, int threads)
+/// Whether all ranks have all bricks of a depth, but not all samples.
+bool isShared(const Octree& tree, int depth) { return tree.partition && !tree.isDivided(depth); }
+
+/// Those that a rank splats: at shared depths each its own.
+SampleRanges samplesOf(const Octree& tree, int depth, const SampleLevel& samples, int threads)
 {
+  SampleRanges ranges = sampleRanges(tree.levels[depth], samples.codes, samples.depth, threads);
+  if (isShared(tree, depth)) {
+    const auto own = tree.partition->ownRange(samples.depth, samples.codes);
+    for (std::uint32_t& begin : ranges.begin)
+      begin = std::clamp<Index>(begin, own.first, own.second);
+  }
+  return ranges;
+}
+
+template <typename Weights>
+void splatLevel(const Octree& tree, int depth, const NormalField& normals, NodeField& field, int threads)
+{
+  const BrickLevel& level = tree.levels[depth];
   const SampleLevel& samples = normals.samples;
   const int finest = samples.depth;
-  const Array<std::uint32_t> begin = sampleRanges(level, samples.codes, finest, threads);
+  const SampleRanges ranges = samplesOf(tree, depth, samples, threads);
   const float scale = std::ldexp(1.f, level.depth - finest);
-  splatBricks<Weights::reach>(level, begin, field, threads, [&](SplatBlock<Weights::reach>& block, int b) {
+  const auto splat = [&](SplatBlock<Weights::reach>& block, int b) {
     const Eigen::Vector3f origin = level.origin(b);
-    for (std::uint32_t i = begin[b]; i < begin[b + 1]; ++i) {
+    for (const std::uint32_t i : ranges[b]) {
       const CoarseSample& s = samples.samples[i];
       const float w = share(s.depth, level.depth, finest);
       if (w > 0.f)
         splatVector<Weights>(w * s.area * scale * scale * normals.vectors[i], s.position * scale - origin, block);
     }
-  });
+  };
+  if (isShared(tree, depth))
+    SharedSplat<Weights::reach>(level, ranges, tree.exchange(), threads).addTo(field, splat);
+  else
+    splatBricks<Weights::reach>(level, ranges, field, threads, splat);
+  refreshGhosts(level, field);
 }
 } // namespace
 
@@ -62,9 +84,9 @@ Constraints splatNormals(const Octree& tree, const SampleLevel& samples, Array<E
   const auto splatted = [&](int d) {
     NodeField field(tree.levels[d], threads);
     if (d < tree.depth)
-      splatLevel<BoxWeights>(tree.levels[d], {samples, vectors}, field, threads);
+      splatLevel<BoxWeights>(tree, d, {samples, vectors}, field, threads);
     else
-      splatLevel<TentWeights>(tree.levels[d], {samples, vectors}, field, threads);
+      splatLevel<TentWeights>(tree, d, {samples, vectors}, field, threads);
     return field;
   };
   for (int d = 2; d < tree.depth; ++d)
@@ -77,6 +99,7 @@ Constraints splatNormals(const Octree& tree, const SampleLevel& samples, Array<E
     restrictLevel(tree.levels[d + 1], finer, tree.levels[d], 0.5f, constraints.fine[d], threads);
     if (d + 1 > tree.full_depth)
       finer.releaseRim();
+    poisonGhosts(tree.levels[d + 1], finer); // right-hand sides are read in own bricks only
   }
   return constraints;
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "poisson/solver/level_system.h"
+#include "poisson/exact_sum.h"
 #include "poisson/octree/splat.h"
 #include <algorithm>
 #include <cmath>
@@ -43,7 +44,7 @@ struct LevelSystem::Block {
 
 LevelSystem::LevelSystem(const BrickLevel& level, const SampleLevel& samples, int finest, float point_weight,
                          int threads)
-    : level_(level), begin_(sampleRanges(level, samples.codes, samples.depth, threads)), samples_(samples),
+    : level_(level), ranges_(sampleRanges(level, samples.codes, samples.depth, threads)), samples_(samples),
       scale_(std::ldexp(1.f, level.depth - finest)), weights_(screeningWeights(samples, scale_, point_weight, threads)),
       threads_(threads)
 {
@@ -59,7 +60,7 @@ void LevelSystem::assemble(Index brick, const Neighbors& neighbors, Block& block
     const int n = neighbors[offsetIndex(-(o & 1), -(o >> 1 & 1), -(o >> 2))];
     if (n < 0)
       continue;
-    for (std::uint32_t i = begin_[n]; i < begin_[n + 1]; ++i) {
+    for (const std::uint32_t i : ranges_[n]) {
       const Eigen::Vector3f position = samples_.samples[i].position * scale_ - origin;
       if (position.x() >= -1.f && position.y() >= -1.f && position.z() >= -1.f && weights_[i] > 0.f)
         addScreening(HatWeights(position), weights_[i], block.rows);
@@ -149,12 +150,16 @@ void LevelSystem::smooth(const NodeField& b, int iterations, NodeField& x) const
 {
   constexpr int local_sweeps = 2; // the second one over a brick that is in the cache already costs little
   for (int done = 0; done < iterations; done += local_sweeps)
-    for (const std::vector<BrickRun>& runs : level_.colors)
+    for (int color = 0; color < 8; ++color) {
+      const std::vector<BrickRun>& runs = level_.colors[color];
       parallelFor(runs.size(), threads_, [&](Index r) {
         const BrickRun run = runs[r];
-        for (int brick = run.begin; brick < run.end; ++brick)
+        for (int brick = run.begin; level_.owns(run.begin) && brick < run.end; ++brick)
           smoothBrick(brick, b, std::min(local_sweeps, iterations - done), x);
       });
+      refreshOwnNodes(level_, x, color);
+    }
+  refreshGhosts(level_, x);
 }
 
 void LevelSystem::smoothBrick(Index brick, const NodeField& b, int sweeps, NodeField& x) const
@@ -169,11 +174,11 @@ void LevelSystem::smoothBrick(Index brick, const NodeField& b, int sweeps, NodeF
 
 void LevelSystem::addMultiplierUpdate(const NodeField& x, NodeField& right) const
 {
-  splatBricks(level_, begin_, right, threads_, [&](SplatBlock<1>& block, int b) {
+  splatBricks(level_, ranges_, right, threads_, [&](SplatBlock<1>& block, int b) {
     const Eigen::Vector3f origin = level_.origin(b);
     float nodes[nodes_per_brick];
     x.load(level_, b, nodes);
-    for (std::uint32_t i = begin_[b]; i < begin_[b + 1]; ++i) {
+    for (const std::uint32_t i : ranges_[b]) {
       const CoarseSample& s = samples_.samples[i];
       const float isolated = std::clamp(level_.depth + 1.f - s.depth, 0.f, 1.f);
       if (isolated * weights_[i] <= 0.f)
@@ -184,22 +189,18 @@ void LevelSystem::addMultiplierUpdate(const NodeField& x, NodeField& right) cons
         block.at(hat.x + (k & 1), hat.y + (k >> 1 & 1), hat.z + (k >> 2)) += multiplier * hat.value[k];
     }
   });
+  refreshGhosts(level_, right);
 }
 
 LevelSystem::Norms LevelSystem::residual(const NodeField& b, const NodeField& x) const
 {
-  const auto add = [](Norms a, const Norms& part) { return Norms{a.residual + part.residual, a.right + part.right}; };
-  return parallelReduce(
-      level_.size(), threads_, Norms{},
-      [&](Index begin, Index end) {
-        Norms sum;
-        for (Index brick = begin; brick < end; ++brick) {
-          Block block;
-          load(brick, b, x, block);
-          sum = add(sum, block.residual());
-        }
-        return sum;
-      },
-      add);
+  const BrickRun own = level_.own();
+  const Eigen::Array2d sums = exactSums(level_.exchange(), own.end - own.begin, threads_, [&](Index i) {
+    Block block;
+    load(own.begin + i, b, x, block);
+    const Norms norms = block.residual();
+    return Eigen::Array2d(norms.residual, norms.right);
+  });
+  return {sums[0], sums[1]};
 }
 } // namespace fresco::poisson

@@ -34,7 +34,7 @@ private:
   void smoothBrick(Index brick, const NodeField& b, int sweeps, NodeField& x) const;
 
   const BrickLevel& level_;
-  Array<std::uint32_t> begin_; ///< see sampleRanges()
+  SampleRanges ranges_;
   const SampleLevel& samples_;
   float scale_;          ///< cells of the level per finest cell
   Array<float> weights_; ///< see screeningWeights()

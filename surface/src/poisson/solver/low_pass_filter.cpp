@@ -31,12 +31,12 @@ float strengthOf(const BrickSums& sums)
 LowPassFilter::LowPassFilter(const BrickLevel& level, const SampleLevel& samples, int finest, int threads)
     : level_(level), threads_(threads), strengths_(level.codes.size())
 {
-  const Array<std::uint32_t> begin = sampleRanges(level, samples.codes, samples.depth, threads);
+  const SampleRanges ranges = sampleRanges(level, samples.codes, samples.depth, threads);
   const float scale = std::ldexp(1.f, level.depth - finest);
   std::vector<BrickSums> sums(level.codes.size());
   parallelFor(level.size(), threads, [&](Index b) {
     constexpr float most_missing = 3.f; // a lone outlier does not decide for a brick
-    for (std::uint32_t i = begin[b]; i < begin[b + 1]; ++i) {
+    for (const std::uint32_t i : ranges[b]) {
       const CoarseSample& s = samples.samples[i];
       sums[b].area += s.area;
       sums[b].missing_depth += s.area * std::clamp(level.depth - s.depth, -1.f, most_missing);
@@ -52,12 +52,16 @@ LowPassFilter::LowPassFilter(const BrickLevel& level, const SampleLevel& samples
       }
     strengths_[b] = strengthOf(around);
   });
+  level.ghosts.refresh(strengths_.data());
 }
 
 void LowPassFilter::apply(NodeField& chi, NodeField& spare) const
 {
   const auto isActive = [&](Index b) { return b >= 0 && strengths_[b] > 0.f; };
-  if (std::none_of(strengths_.begin(), strengths_.end(), [](float w) { return w > 0.f; }))
+  std::int64_t active = std::any_of(strengths_.begin(), strengths_.end(), [](float w) { return w > 0.f; }) ? 1 : 0;
+  if (level_.ghosts.isDivided())
+    level_.ghosts.exchange->sum(&active, 1);
+  if (active == 0)
     return;
   spare.releaseRim();
   parallelFor(level_.size(), threads_, [&](Index b) {
@@ -67,10 +71,12 @@ void LowPassFilter::apply(NodeField& chi, NodeField& spare) const
     if (std::any_of(around.begin(), around.end(), isActive))
       addHighPass(around, chi, 1.f, to);
   });
+  refreshOwnNodes(level_, spare);
   parallelFor(level_.size(), threads_, [&](Index b) {
     if (isActive(b))
       addHighPass(level_.neighborsOf(b), spare, -strengths_[b], chi.own(b));
   });
+  refreshGhosts(level_, chi);
 }
 
 void LowPassFilter::addHighPass(const Neighbors& neighbors, const NodeField& field, float factor, float* result) const

@@ -1,10 +1,38 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "poisson/solver/transfer.h"
+#include "poisson/ranks/bytes.h"
+#include <algorithm>
 #include <cstring>
 namespace fresco::poisson {
 namespace {
 /// Index of the parent's node at the lower corner of an octant.
 int octantCorner(int octant) { return nodeIndex((octant & 1) * 2, (octant >> 1 & 1) * 2, (octant >> 2) * 2); }
+
+constexpr int upper_stride = 64; // upper nodes in whole cache lines
+
+/// Makes the sums of other ranks' bricks theirs. @param upper sums on the upper faces of each brick
+void shareSums(const BrickLevel& fine_level, const BrickLevel& level, NodeField& field, Array<float>& upper)
+{
+  using Upper = std::array<float, upper_stride>;
+  level.ghosts.refresh(reinterpret_cast<Upper*>(upper.data()));
+  if (!fine_level.ghosts.isDivided() || level.ghosts.isDivided())
+    return;
+  struct Sums {
+    std::array<float, nodes_per_brick> held;
+    Upper upper;
+  };
+  std::vector<Sums> own;
+  for (int b = level.ghosts.own.begin; b < level.ghosts.own.end; ++b) {
+    own.emplace_back();
+    field.loadHeld(level, b, own.back().held.data());
+    std::copy_n(&upper[b * upper_stride], upper_stride, own.back().upper.begin());
+  }
+  const Array<Sums> all = gatherAll(*fine_level.ghosts.exchange, own.data(), own.size());
+  for (Index b = 0; b < level.size(); ++b) {
+    field.store(level, b, all[b].held.data());
+    std::copy_n(all[b].upper.begin(), upper_stride, &upper[b * upper_stride]);
+  }
+}
 
 constexpr int step_x = 1, step_y = brick_nodes, step_z = brick_nodes * brick_nodes;
 } // namespace
@@ -66,8 +94,7 @@ void restrictToParent(const float* child, int octant, float factor, float* paren
 void restrictLevel(const BrickLevel& fine_level, const NodeField& fine, const BrickLevel& coarse_level, float factor,
                    NodeField& coarse, int threads)
 {
-  constexpr int stride = 64; // upper_nodes in whole cache lines
-  Array<float> upper(coarse_level.codes.size() * stride);
+  Array<float> upper(coarse_level.codes.size() * upper_stride);
   parallelFor(coarse_level.size(), threads, [&](Index p) {
     float parent[nodes_per_brick], held[nodes_per_brick];
     coarse.loadHeld(coarse_level, p, parent);
@@ -77,8 +104,9 @@ void restrictLevel(const BrickLevel& fine_level, const NodeField& fine, const Br
         restrictToParent(held, octant, factor, parent);
       }
     coarse.store(coarse_level, p, parent);
-    copyUpperNodes(parent, &upper[p * stride]);
+    copyUpperNodes(parent, &upper[p * upper_stride]);
   });
+  shareSums(fine_level, coarse_level, coarse, upper);
   parallelFor(coarse_level.size(), threads, [&](Index p) {
     float* own = coarse.own(p);
     const Neighbors neighbors = coarse_level.neighborsOf(p);
@@ -87,12 +115,13 @@ void restrictLevel(const BrickLevel& fine_level, const NodeField& fine, const Br
       const int n = neighbors[offsetIndex(-dx, -dy, -dz)];
       if (n < 0)
         continue;
-      const float* part = &upper[n * stride + upperPart(axes)];
+      const float* part = &upper[n * upper_stride + upperPart(axes)];
       for (int z = 0; z < (dz ? 1 : brick_cells); ++z)
         for (int y = 0; y < (dy ? 1 : brick_cells); ++y)
           for (int x = 0; x < (dx ? 1 : brick_cells); ++x)
             own[ownIndex(x, y, z)] += part[rimIndex(axes, x, y, z)];
     }
   });
+  refreshGhosts(coarse_level, coarse);
 }
 } // namespace fresco::poisson

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include <cstddef>
+#include <fresco/core/exchange.h>
 #include <fresco/core/export.h>
 #include <fresco/core/mesh.h>
 #include <fresco/core/point_set.h>
 #include <fresco/core/point_stream.h>
 #include <fresco/core/progress.h>
 #include <memory>
+#include <vector>
 namespace fresco {
 /// Screened Poisson reconstruction over an adaptive octree: Kazhdan, Bolitho & Hoppe 2006, "Poisson Surface
 /// Reconstruction"; Kazhdan & Hoppe 2013, "Screened Poisson Surface Reconstruction". The function chi is a sum of
@@ -64,6 +66,25 @@ FRESCO_EXPORT VolumetricResult reconstructVolumetric(PointSet&& points, const Vo
 FRESCO_EXPORT VolumetricResult reconstructVolumetric(std::unique_ptr<PointStream> points,
                                                      const VolumetricOptions& options = {},
                                                      const Progress& progress = {});
+
+/// A rank's part of a reconstruction that several ranks make together: the same bytes as one makes.
+struct VolumetricPart {
+  /// Consecutive vertices or faces of the whole mesh.
+  struct Run {
+    Index first, count;
+  };
+  VolumetricResult result;                ///< its mesh has the own vertices; faces hold numbers of the whole mesh
+  std::vector<Run> vertices, faces;       ///< where the own ones belong, one run after the other, rising
+  Index vertex_count = 0, face_count = 0; ///< of the whole mesh
+};
+
+/// All ranks call this, with the same options. Octrees of depth 10 and more are divided; rank 0 makes shallower ones.
+/// @param points   of this rank, maybe none: any share of all points
+/// @param exchange with the other ranks; outlives the call
+/// @throws std::invalid_argument also if several ranks are to trim, or `min_depth` is below 5
+FRESCO_EXPORT VolumetricPart reconstructVolumetricPart(std::unique_ptr<PointStream> points,
+                                                       const VolumetricOptions& options, const Progress& progress,
+                                                       Exchange& exchange);
 
 /// What a reconstruction will take, judged from how many octree cells the points occupy.
 struct VolumetricEstimate {
