@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "support/ranks.h"
 #include "support/scan_option.h"
 #include "support/tool.h"
 #include <algorithm>
@@ -6,9 +7,12 @@
 #include <filesystem>
 #include <fresco/core/require.h>
 #include <fresco/core/scratch_space.h>
+#include <fresco/io/file.h>
 #include <fresco/io/formats.h>
 #include <fresco/io/mesh_io.h>
+#include <fresco/io/mesh_part.h>
 #include <fresco/io/point_files.h>
+#include <fresco/io/shared_files.h>
 #include <fresco/surface/core/volumetric_reconstruction.h>
 #include <iostream>
 #include <limits>
@@ -57,12 +61,12 @@ void declareOptions(Args& args, Request& request)
   args.option("scratch", request.scratch, "folder for such files, on a fast disk; default: the folder of OUT");
 }
 
-Request parse(int argc, char** argv)
+Request parse(int argc, char** argv, const std::string& program)
 {
   Request request;
   VolumetricOptions& o = request.options;
   Args args(
-      "fresco_reconstruct IN... OUT [options]",
+      program + " IN... OUT [options]",
       "Volumetric surface reconstruction (screened Poisson over an octree) of points with normals.\n"
       "IN: " +
           readableExtensions(FileKind::points) +
@@ -119,41 +123,84 @@ std::string scratchFolder(const Request& request)
 
 std::string percent(Index part, Index whole) { return concat(std::round(1000.0 * part / whole) / 10, " %"); }
 
-void run(const Request& request)
+/// The mesh of all points, by this process.
+VolumetricResult makeAlone(const Request& request)
 {
-  std::unique_ptr<PointStream> points = openPointFiles(request.inputs);
-  if (request.estimate) {
-    constexpr std::size_t program = 40'000'000; // libraries, threads
-    VolumetricEstimate estimate = estimateVolumetric(*points, request.options);
-    estimate.memory += program;
-    const std::size_t kept = request.memory == 0 ? estimate.memory : ScratchSpace::keptInMemory(bytes(request.memory));
-    std::cout << std::ceil(estimate.memory / 1e6) << ' '
-              << std::ceil((estimate.memory - std::min(kept, estimate.memory)) / 1e6) << ' '
-              << std::ceil(estimate.seconds) << '\n';
-    return;
-  }
-  std::optional<ScratchSpace> scratch;
-  if (request.memory > 0)
-    scratch.emplace(bytes(request.memory), scratchFolder(request));
   VolumetricResult result =
-      reconstructVolumetric(std::move(points), request.options, printProgress(request.common.quiet));
+      reconstructVolumetric(openPointFiles(request.inputs), request.options, printProgress(request.common.quiet));
   {
     const FileBacking vertices(result.mesh.vertices), faces(result.mesh.faces);
     writeOutputs([&] { writeMesh(request.output, result.mesh); });
   }
+  return result;
+}
+
+/// The same, by several ranks.
+VolumetricPart makeTogether(const Request& request, Exchange& ranks)
+{
+  if (extension(request.output) != ".ply")
+    throw UsageError("OUT: several ranks write .ply");
+  std::unique_ptr<PointStream> points = openPointFiles(request.inputs, points_per_window, {ranks.rank(), ranks.size()});
+  VolumetricPart part =
+      reconstructVolumetricPart(std::move(points), request.options, printProgress(request.common.quiet), ranks);
+  const auto runs = [](const std::vector<VolumetricPart::Run>& own) {
+    std::vector<MeshPart::Run> all;
+    for (const VolumetricPart::Run& run : own)
+      all.push_back({run.first, run.count});
+    return all;
+  };
+  writeMeshPart(request.output,
+                {part.result.mesh, runs(part.vertices), runs(part.faces), part.vertex_count, part.face_count}, ranks);
+  return part;
+}
+
+/// Counts of the whole mesh, whoever made it.
+void tellCounts(const Request& request, const VolumetricResult& result, Index vertices, Index faces)
+{
   inform(request.common.quiet,
-         concat(result.mesh.vertexCount(), " vertices, ", result.mesh.faceCount(), " faces; depth ", result.depth,
-                ", cell ", result.cell_size, "; ", result.used_points, " points used, ", result.left_out_points,
-                " left out (", percent(result.left_out_points, result.used_points + result.left_out_points), ")"));
+         concat(vertices, " vertices, ", faces, " faces; depth ", result.depth, ", cell ", result.cell_size, "; ",
+                result.used_points, " points used, ", result.left_out_points, " left out (",
+                percent(result.left_out_points, result.used_points + result.left_out_points), ")"));
+}
+
+void printEstimate(const Request& request)
+{
+  constexpr std::size_t program = 40'000'000; // libraries, threads
+  VolumetricEstimate estimate = estimateVolumetric(*openPointFiles(request.inputs), request.options);
+  estimate.memory += program;
+  const std::size_t kept = request.memory == 0 ? estimate.memory : ScratchSpace::keptInMemory(bytes(request.memory));
+  std::cout << std::ceil(estimate.memory / 1e6) << ' '
+            << std::ceil((estimate.memory - std::min(kept, estimate.memory)) / 1e6) << ' '
+            << std::ceil(estimate.seconds) << '\n';
+}
+
+void run(const Request& request, Exchange& ranks)
+{
+  std::vector<std::string> files;
+  for (const ScanPath& input : request.inputs)
+    files.push_back(input.file);
+  requireSameFiles(files, nameOf(request.inputs), ranks);
+  if (request.estimate)
+    return ranks.rank() == 0 ? printEstimate(request) : void();
+  std::optional<ScratchSpace> scratch;
+  if (request.memory > 0)
+    scratch.emplace(bytes(request.memory), scratchFolder(request));
+  if (ranks.size() == 1) {
+    const VolumetricResult result = makeAlone(request);
+    return tellCounts(request, result, result.mesh.vertexCount(), result.mesh.faceCount());
+  }
+  const VolumetricPart part = makeTogether(request, ranks);
+  tellCounts(request, part.result, part.vertex_count, part.face_count);
 }
 } // namespace
 
 int main(int argc, char** argv)
 {
-  return runTool("fresco_reconstruct", [&] {
-    const Request request = parse(argc, argv);
+  return runRanks("fresco_reconstruct", argc, argv, [&](const std::string& program, Exchange& ranks) {
+    Request request = parse(argc, argv, program);
+    request.common.quiet |= ranks.rank() > 0;
     try {
-      run(request);
+      run(request, ranks);
     } catch (const std::invalid_argument& error) {
       throw std::runtime_error(nameOf(request.inputs) + ": " + error.what());
     }

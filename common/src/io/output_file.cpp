@@ -166,6 +166,19 @@ void abandonUnfinishedFiles() noexcept
     ::rmdir(folder->c_str());
 }
 
+void addUnfinishedFile(const std::string& path)
+{
+  const Lock lock(unfinished().mutex);
+  unfinished().paths.insert(path);
+}
+
+void dropUnfinishedFile(const std::string& path) noexcept
+{
+  const Lock lock(unfinished().mutex);
+  if (unfinished().paths.erase(path) > 0)
+    ::unlink(path.c_str());
+}
+
 void removeEmptyFolders() noexcept
 {
   const Lock lock(unfinished().mutex);

@@ -3,6 +3,7 @@
 #include "io/points/text_numbers.h"
 #include <algorithm>
 #include <array>
+#include <cstring>
 #include <fresco/core/require.h>
 #include <fresco/io/file.h>
 namespace fresco::io {
@@ -79,23 +80,9 @@ std::pair<std::string, std::string> cameraElement(const PointTable& table, Index
 
 void writeFaces(OutputFile& file, const Faces& faces)
 {
-#pragma pack(push, 1)
-  struct Row {
-    std::uint8_t count;
-    int corners[3];
-  };
-#pragma pack(pop)
   constexpr Index at_most = Index{1} << 20;
-  std::vector<Row> rows(std::min(faces.cols(), at_most));
-  for (Index begin = 0; begin < faces.cols(); begin += at_most) {
-    const Index count = std::min(at_most, faces.cols() - begin);
-    const auto store = [&](Index i) {
-      const auto corners = faces.col(begin + i);
-      rows[i] = {3, {corners[0], corners[1], corners[2]}};
-    };
-    parallelFor(count, 0, store, rows_per_task);
-    file.write(rows.data(), count * sizeof(Row));
-  }
+  for (Index begin = 0; begin < faces.cols(); begin += at_most)
+    file.write(plyFaceRows(faces, begin, std::min(begin + at_most, faces.cols())));
 }
 
 /// Colours as bytes, and only what PLY has types for.
@@ -123,6 +110,35 @@ std::pair<std::string, std::string> headerAndEnd(const PointTable& table, Index 
   return {header + "end_header\n", camera};
 }
 } // namespace
+
+std::string plyHeader(const PointTable& rows, Index vertices, Index faces)
+{
+  return headerAndEnd(rows, vertices, faces).first;
+}
+
+PointTable plyRows(PointTable vertices)
+{
+  prepare("mesh", vertices);
+  return vertices;
+}
+
+std::string plyFaceRows(const Faces& faces, Index begin, Index end)
+{
+#pragma pack(push, 1)
+  struct Row {
+    std::uint8_t count;
+    int corners[3];
+  };
+#pragma pack(pop)
+  std::string rows((end - begin) * sizeof(Row), '\0');
+  const auto store = [&](Index i) {
+    const auto corners = faces.col(begin + i);
+    const Row row{3, {corners[0], corners[1], corners[2]}};
+    std::memcpy(&rows[i * sizeof(Row)], &row, sizeof(Row));
+  };
+  parallelFor(end - begin, 0, store, rows_per_task);
+  return rows;
+}
 
 void writePly(const std::string& path, PointTable vertices, const Faces& faces)
 {

@@ -117,7 +117,8 @@ private:
 
 class FileStream : public PointStream {
 public:
-  FileStream(const std::vector<ScanPath>& files, Index window) : window_(window)
+  FileStream(const std::vector<ScanPath>& files, Index window, const WindowShare& share)
+      : window_(window), share_(share)
   {
     bool wide = false;
     for (const ScanPath& path : files) {
@@ -134,10 +135,13 @@ public:
   void read(const std::function<void(const PointSet&)>& receive) const override
   {
     PointSet set;
+    Index number = 0; // of the window among all
     for (const Source& source : sources_) {
       const Index count = source.rows ? source.rows->size() : 1;
-      const Index windows = source.rows ? (count + window_ - 1) / window_ : 1; // of about the same size
+      const Index windows = source.rows ? windowsOf(count) : 1;
       for (Index w = 0; w < windows; ++w) {
+        if (number++ % share_.parts != share_.part)
+          continue;
         io::namingFile(source.path.name(), [&] {
           if (source.rows)
             return RowWindow(*source.rows, attributes_, origin_)
@@ -155,10 +159,17 @@ public:
     Index rows = 0;
     for (const Source& source : sources_)
       rows += source.rows ? source.rows->size() : window_ + 1;
-    return rows <= window_;
+    return rows / share_.parts <= window_;
   }
 
 private:
+  /// Of about the same size, and one for each rank at least.
+  Index windowsOf(Index rows) const
+  {
+    const Index fewest = (rows + window_ - 1) / window_;
+    return (fewest + share_.parts - 1) / share_.parts * share_.parts;
+  }
+
   /// Joins the attributes of a file to those of the others. @return whether its coordinates are no floats
   bool look(const Source& source)
   {
@@ -186,6 +197,7 @@ private:
 
   std::vector<Source> sources_;
   Index window_;
+  WindowShare share_;
   Attributes attributes_;
   Eigen::Vector3d origin_ = Eigen::Vector3d::Zero();
 };
@@ -199,6 +211,12 @@ private:
   PointSet set_;
 };
 
+/// What a rank has that no window is left for.
+class NoPoints : public PointStream {
+public:
+  void read(const std::function<void(const PointSet&)>&) const override {}
+};
+
 /// In a folder, text files are notes or poses, and .stl files hold no normals.
 bool isPointFile(const std::filesystem::path& path)
 {
@@ -207,17 +225,23 @@ bool isPointFile(const std::filesystem::path& path)
 }
 } // namespace
 
-std::unique_ptr<PointStream> openPointFiles(const std::vector<ScanPath>& files, Index window)
+std::unique_ptr<PointStream> openPointFiles(const std::vector<ScanPath>& files, Index window, const WindowShare& share)
 {
   require(!files.empty(), "points: no files");
   require(window >= 1, "points: a window of ", window);
-  if (files.size() == 1 && (files[0].scan >= 0 || !io::RowFile::open(files[0].file)))
+  require(share.part >= 0 && share.part < share.parts, "points: part ", share.part, " of ", share.parts);
+  if (files.size() == 1 && (files[0].scan >= 0 || !io::RowFile::open(files[0].file))) {
+    if (share.part > 0)
+      return std::make_unique<NoPoints>();
     return std::make_unique<KeptPoints>(readPoints(files[0]));
-  auto stream = std::make_unique<FileStream>(files, window);
+  }
+  auto stream = std::make_unique<FileStream>(files, window, share);
   if (!stream->fitsWindow())
     return stream;
   PointSet all;
   stream->read([&](const PointSet& part) { all.size() == 0 ? void(all = part) : appendPoints(all, part); });
+  if (share.parts > 1 && all.size() == 0)
+    return std::make_unique<NoPoints>();
   return std::make_unique<KeptPoints>(std::move(all));
 }
 
