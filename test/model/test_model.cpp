@@ -59,7 +59,7 @@ TEST(Fusion, OptimisationGetsNoMorePointsThanVerticesCanUse)
   EXPECT_NEAR(thinned.points.row(2).mean() + thinned.origin.z(), set.origin.z(), 1e-4);
 }
 
-TEST(PlacedPoints, AreTheSameInWindowsAndAsFilesAndSamplesAreEven)
+TEST(PlacedPoints, AreTheSameInWindowsAndAsFiles)
 {
   PointSet a, b;
   a.points = Points::Random(3, 1000);
@@ -84,12 +84,27 @@ TEST(PlacedPoints, AreTheSameInWindowsAndAsFilesAndSamplesAreEven)
   placed.stream()->read([&](const PointSet& window) { appendPoints(streamed, window); });
   EXPECT_EQ(streamed.points, both.points);
   EXPECT_EQ(countPoints(*placed.stream()), 1500);
-  const PointSet third = placed.sample(500);
-  ASSERT_EQ(third.size(), 500);
-  for (Index i = 0; i < 500; ++i)
-    EXPECT_EQ(third.points.col(i), both.points.col(3 * i));
   placed.clear();
   EXPECT_THROW(placed.forEach([](const PointSet&) {}), std::runtime_error);
+}
+
+TEST(PlacedPoints, SamplesAreEven)
+{
+  PointSet near, far; // 20,000 points on one side of a square, 2,000 on the other
+  near.points = Points::Random(3, 20000).cwiseProduct(Eigen::Vector3f(0.5f, 1, 0).replicate(1, 20000));
+  near.points.row(0).array() -= 0.5f;
+  far.points = Points::Random(3, 2000).cwiseProduct(Eigen::Vector3f(0.5f, 1, 0).replicate(1, 2000));
+  far.points.row(0).array() += 0.5f;
+  const PlacedPoints placed(test::scratchFolder() + "/even");
+  placed.clear();
+  placed.write(0, near);
+  placed.write(1, far);
+  const PointSet sample = placed.sample(6000);
+  EXPECT_LE(sample.size(), 6000);
+  EXPECT_GT(sample.size(), 5500);
+  EXPECT_GT((sample.points.row(0).array() > 0).count(), 1900); // almost all; every fourth were 500
+  EXPECT_LE(placed.sample(3).size(), 3);
+  EXPECT_EQ(placed.sample(22000).size(), 22000);
 }
 
 struct TwoStages {

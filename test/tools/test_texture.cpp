@@ -5,6 +5,7 @@
 #include <fresco/io/file.h>
 #include <fresco/io/image_io.h>
 #include <fresco/io/mesh_io.h>
+#include <fresco/io/point_io.h>
 #include <sys/wait.h>
 namespace fresco::test {
 namespace {
@@ -28,9 +29,9 @@ struct Files {
     writeColmap(cameras, set);
   }
 
-  int run(const std::string& arguments) const
+  int run(const std::string& arguments, const std::string& before = "") const
   {
-    const std::string tool = std::string(FRESCO_BINARY_DIR) + "/bin/fresco_texture";
+    const std::string tool = before + std::string(FRESCO_BINARY_DIR) + "/bin/fresco_texture";
     const int status = std::system((tool + " " + arguments + " > " + messages + " 2>&1").c_str());
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   }
@@ -139,6 +140,30 @@ TEST(TextureTool, NoPhotographSeesTheMesh)
   EXPECT_EQ(files.texture("model.obj"), 1);
   EXPECT_TRUE(files.says("cube.ply"));
   EXPECT_FALSE(std::filesystem::exists(files.folder + "/model.obj"));
+}
+
+TEST(TextureTool, WhatMemoryDoesNotHoldIsRefusedBeforeTheWork)
+{
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "AddressSanitizer wants an address space without limit";
+#endif
+  const Files files;
+  TriangleMesh mesh = cube();
+  const Faces one = mesh.faces;
+  mesh.faces = one.replicate(1, 1500000 / one.cols()); // 0.4 GB from points, 0.8 GB from photographs
+  writeMesh(files.folder + "/large.ply", mesh);
+  PointSet points;
+  points.points = mesh.vertices;
+  points.colors = Colors::Random(3, points.size());
+  writePoints(files.folder + "/points.ply", points);
+  const std::string large = files.folder + "/large.ply ", out = files.folder + "/out.glb";
+  for (const std::string& sources : {"-points " + files.folder + "/points.ply", files.cameras + " " + files.images}) {
+    EXPECT_EQ(files.run(large + sources + " " + out + " -quiet", "ulimit -v 420000 && "), 1);
+    const std::string error = readFile(files.messages);
+    EXPECT_NE(error.find("MB of memory"), std::string::npos) << error;
+    EXPECT_EQ(std::count(error.begin(), error.end(), '\n'), 1) << error;
+    EXPECT_FALSE(std::filesystem::exists(out));
+  }
 }
 
 TEST(TextureTool, UnwritableFolder)

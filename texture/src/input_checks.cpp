@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
+#include <fresco/core/machine_memory.h>
 #include <fresco/core/parallel.h>
 #include <fresco/core/poses.h>
 #include <fresco/core/require.h>
@@ -96,6 +97,18 @@ void validate(const TriangleMesh& mesh, const std::vector<TextureView>& views, c
   require(options.memory >= 1, "texture: memory ", options.memory, " MB is below 1");
   for (std::size_t v = 0; v < views.size(); ++v)
     validateView(views[v], v);
+  constexpr std::size_t bytes_per_face = 540; // measured with 35 photographs of a room: docs/texture.md
+  if (!views.empty())
+    requireMemory(mesh.faceCount(), mesh.faceCount() * bytes_per_face);
+}
+
+void requireMemory(Index faces, std::size_t needed)
+{
+  constexpr std::size_t megabyte = 1000000;
+  if (const std::size_t there = machineMemory(); needed > there)
+    throw std::runtime_error(concat("texture: ", faces, " faces take at least ", needed / megabyte,
+                                    " MB of memory, there are ", there / megabyte,
+                                    "; a mesh of larger cells takes less"));
 }
 
 void weld(TextureResult& result)

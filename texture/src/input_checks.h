@@ -5,6 +5,10 @@ namespace fresco::texture {
 /// @throws std::invalid_argument as reconstructTexture() says
 void validate(const TriangleMesh& mesh, const std::vector<TextureView>& views, const TextureOptions& options);
 
+/// The whole mesh is textured at once. @param needed bytes
+/// @throws std::runtime_error if that is more than machineMemory()
+void requireMemory(Index faces, std::size_t needed);
+
 /// Joins corners at equal places for the length of the work, and says so where neighbours shared hardly a vertex.
 void weld(TextureResult& result);
 

@@ -29,7 +29,8 @@ public:
   /// Hands over file after file, with all that it has. @throws as stream()
   void forEach(const std::function<void(const PointSet&)>& receive) const;
 
-  /// All points, or every k-th where there are more than `most`, with the attributes that all files have.
+  /// All points, or up to `most` of them where there are more, with the attributes that all files have: as many from each
+  /// part of space, as far as it has them.
   PointSet sample(Index most) const;
 
 private:

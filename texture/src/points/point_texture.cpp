@@ -29,6 +29,8 @@ void validate(const TriangleMesh& mesh, const PointSet& points, const PointTextu
   validatePointSet(points);
   require(options.width >= 0.3 && options.width <= 10, "texture: width ", options.width, " is not in 0.3..10");
   require(options.rounds >= 0 && options.rounds <= 20, "texture: rounds ", options.rounds, " is not in 0..20");
+  constexpr std::size_t bytes_per_face = 290, bytes_per_point = 100; // measured: docs/texture.md
+  requireMemory(mesh.faceCount(), mesh.faceCount() * bytes_per_face + points.size() * bytes_per_point);
 }
 
 /// Patches of a few samples each, so that few samples count for a texel of one.

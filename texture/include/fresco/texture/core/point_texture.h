@@ -51,6 +51,7 @@ struct PointTextureResult {
 /// @param points with colors or intensities; else the model is untextured
 /// @throws std::invalid_argument if mesh, points or an option are out of range
 /// @throws std::runtime_error if no point lies on the mesh, or there would be more than a thousand megatexels
+/// @throws std::runtime_error if the faces alone take more than machineMemory(): the whole mesh is textured at once
 /// @throws Cancelled if `progress` asks to stop
 FRESCO_EXPORT PointTextureResult reconstructPointTexture(const TriangleMesh& mesh, const PointSet& points,
                                                          const PointTextureOptions& options = {},

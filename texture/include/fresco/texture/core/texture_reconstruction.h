@@ -99,6 +99,7 @@ struct TextureResult {
 /// @throws std::invalid_argument if the mesh, an option or a view (pose, intrinsics) is out of range
 /// @throws std::runtime_error naming the photograph or mask that is missing, no image, or of another size than its camera
 /// @throws std::runtime_error if the texture would be larger than a thousand megatexels
+/// @throws std::runtime_error if the faces alone take more than machineMemory(): the whole mesh is textured at once
 /// @throws Cancelled if `progress` asks to stop
 FRESCO_EXPORT TextureResult reconstructTexture(const TriangleMesh& mesh, const std::vector<TextureView>& views,
                                                const TextureOptions& options = {}, const Progress& progress = {});
