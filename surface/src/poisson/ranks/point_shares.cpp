@@ -53,16 +53,19 @@ public:
 
   void deliver(const SortedPoints& piece)
   {
+    constexpr std::size_t cells_at_a_time = 1 << 17; // 12 MB of sums
     const Array<std::uint32_t> begins = cellBegins(piece, threads_);
-    std::vector<Bytes> to(partition_.ranks());
-    for (std::size_t c = 0; c + 1 < begins.size(); ++c) {
-      Entry entry = {piece.code(begins[c]), {}, {}};
-      points_.add(piece, begins[c], begins[c + 1], entry.sum);
-      if (points_.hasAttributes())
-        points_.addAttributes(piece, begins[c], begins[c + 1], entry.attributes);
-      append(to[partition_.ownerOf(depth_, entry.code)], entry);
+    for (std::size_t first = 0; first + 1 < begins.size(); first += cells_at_a_time) {
+      std::vector<Bytes> to(partition_.ranks());
+      for (std::size_t c = first; c < std::min(first + cells_at_a_time, begins.size() - 1); ++c) {
+        Entry entry = {piece.code(begins[c]), {}, {}};
+        points_.add(piece, begins[c], begins[c + 1], entry.sum);
+        if (points_.hasAttributes())
+          points_.addAttributes(piece, begins[c], begins[c + 1], entry.attributes);
+        append(to[partition_.ownerOf(depth_, entry.code)], entry);
+      }
+      exchange(1, std::move(to));
     }
-    exchange(1, std::move(to));
   }
 
   void finish()
