@@ -28,7 +28,7 @@ int main(int argc, char** argv)
                 "finest cell of the surface reconstruction, metres; 0 = 0.02 for scans, 3 pixels at the median depth "
                 "for RGB-D");
     args.option("fuse", options.fuse, "RGB-D: cell in which the frames are fused, metres; 0 = as -cell");
-    args.option("bilateral", options.bilateral, "rounds of bilateral smoothing of the normals, >= 0");
+    args.option("bilateral", options.bilateral, "rounds of bilateral smoothing of the normals of scans, >= 0");
     args.option("trim_levels", options.trim_levels,
                 "octree levels that the data may sustain less than they do elsewhere, else surface is cut off; 0 = "
                 "keep it closed");

@@ -10,7 +10,7 @@ Figures makeOptimizedSurface(const Job& job, const Progress& progress)
   const auto& [input, files, options, ranks] = job;
   report(progress, "read", 0.0);
   const TriangleMesh surface = readMesh(files.surface);
-  // Of fused depth images no edge is sharper than the sensor saw it, and round things would get facets:
+  // Fused depth images gain less than a per cent by it, for half of the time that the surface takes:
   // docs/measurements/depth_fusion.md.
   if (!options.optimize || input.rgbd) {
     writeMesh(files.mesh, surface);

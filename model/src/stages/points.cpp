@@ -196,10 +196,11 @@ Figures pointsFromFrames(const Job& job, const Progress& progress)
   fusion.refine_poses = !options.use_poses;
   fusion.threads = options.threads;
   const DepthFusionResult fused =
-      fuseDepthImages(frames, fusion, subProgress(progress, rgbd.has_poses ? 0.0 : 0.3, 0.8));
+      fuseDepthImages(frames, fusion, subProgress(progress, rgbd.has_poses ? 0.0 : 0.3, 1.0));
   if (fused.points.size() < 100)
     throw std::runtime_error(input.folder + ": hardly any depth in the frames");
-  const PointSet points = smoothed(fused.points, options, subProgress(progress, 0.8, 1.0));
+  // Smoothing of the normals would change nothing: docs/measurements/depth_fusion.md.
+  const PointSet& points = fused.points;
   const PlacedPoints placed(files.points);
   placed.clear();
   placed.write(0, points);

@@ -151,6 +151,28 @@ TEST(Optimization, NoisySphereGetsNoFacets)
   EXPECT_LE(angle_after, angle_before);
 }
 
+TEST(Optimization, BendsOfAFewCellsStayRound)
+{
+  for (const float noise : {0.f, 0.01f, 0.03f})
+    for (const float cube : {7.6f, 8.8f}) { // of 32 cells: the sphere's radius is about four of them
+      std::mt19937 random(3);
+      std::normal_distribution<float> gaussian;
+      PointSet points;
+      points.points.resize(3, 6000);
+      points.normals.resize(3, 6000);
+      for (Index i = 0; i < points.size(); ++i) {
+        points.normals.col(i) = Eigen::Vector3f(gaussian(random), gaussian(random), gaussian(random)).normalized();
+        points.points.col(i) = (1.f + noise * gaussian(random)) * points.normals.col(i);
+      }
+      VolumetricOptions options;
+      options.depth = 5;
+      options.scale = cube / 2;
+      const TriangleMesh before = reconstructVolumetric(points, options).mesh;
+      EXPECT_LE(sphereErrors(filterSurface(before, points).mesh).second, sphereErrors(before).second)
+          << noise << ' ' << cube;
+    }
+}
+
 TEST(Optimization, ContradictingDataDrawNoSplinters)
 {
   const TriangleMesh mesh = test::sphere(1.f, 3);

@@ -15,7 +15,7 @@ struct ModelOptions {
   double cell = 0;                ///< finest cell of the surface reconstruction, >= 0; 0 = 0.02 for scans, three pixels
                                   ///< at the median depth for RGB-D
   double fuse = 0;                ///< RGB-D: cell in which the frames are fused, >= 0; 0 = as `cell`
-  int bilateral = 2;              ///< rounds of bilateral smoothing of the normals, >= 0
+  int bilateral = 2;              ///< rounds of bilateral smoothing of the normals of scans, >= 0
   bool optimize = true;           ///< move the vertices so that edges become sharp; scans only
   double trim_levels = 2.0;       ///< see VolumetricOptions::trim_levels, >= 0; 0 = keep the surface closed; RGB-D:
                                   ///< at most 0.75

@@ -2,6 +2,7 @@
 #include <fresco/surface/core/normal_filtering.h>
 
 #include "optimization/common/inversion_guard.h"
+#include "optimization/normal_filtering/curved_data.h"
 #include "optimization/normal_filtering/edge_flips.h"
 #include "optimization/normal_filtering/face_normals.h"
 #include "optimization/normal_filtering/vertex_energy.h"
@@ -87,8 +88,13 @@ NormalFilteringStep improve(OptimizationProblem& problem, const NormalFilteringO
   NormalFilterOptions filter;
   filter.threads = threads;
   const double normal_weight = noise < 0.0 ? 0.0 : normalWeight(noise);
-  const Eigen::Matrix3Xf normals =
+  Eigen::Matrix3Xf normals =
       filterNormals(problem.graph, areas, dataNormals(problem, areas, lists, normal_weight, threads), filter);
+  if (noise < 0.0) {
+    const Eigen::Matrix3Xf own = areas.cast<float>().colwise().normalized();
+    noise = noiseOf(problem.data, lists, dataResiduals(problem, lists, own, threads));
+  }
+  followCurvedData(problem, areas, lists, noise, normals, threads);
   const Eigen::VectorXf residuals = dataResiduals(problem, lists, normals, threads);
   noise = noiseOf(problem.data, lists, residuals);
   const QuadraticEnergy energy =
