@@ -30,6 +30,38 @@ TEST(TextureReconstruction, IsTheCoreInPclTypes)
   EXPECT_EQ(texture.getResult().model.atlases[0].data, core.model.atlases[0].data);
 }
 
+TEST(TextureReconstruction, KeepsAGivenLayout)
+{
+  const TriangleMesh mesh = cube();
+  TextureReconstruction texture;
+  texture.setInputMesh(polygons(mesh));
+  for (const TextureView& view : photographsAround(mesh, waves))
+    texture.addView(view);
+  auto first = pcl::make_shared<pcl::TextureMesh>();
+  texture.process(*first);
+  texture.setInputMesh(first);
+  EXPECT_EQ(texture.getInputMesh(), nullptr);
+  EXPECT_EQ(texture.getInputLayout(), first);
+  texture.setAtlasSize(200);
+  pcl::TextureMesh second;
+  texture.process(second);
+  EXPECT_EQ(second.header.frame_id, "room");
+  ASSERT_EQ(second.tex_coordinates.size(), first->tex_coordinates.size());
+  for (std::size_t part = 0; part < second.tex_coordinates.size(); ++part)
+    EXPECT_EQ(second.tex_coordinates[part], first->tex_coordinates[part]);
+  const Image& atlas = texture.getResult().model.atlases[0];
+  EXPECT_EQ(std::max(atlas.width, atlas.height), 200);
+
+  texture.setInputMesh(polygons(mesh)); // a layout is made again
+  EXPECT_EQ(texture.getInputLayout(), nullptr);
+  texture.process(second);
+  EXPECT_EQ(texture.getResult().model.mesh.faceCount(), mesh.faceCount());
+
+  first->tex_coordinates[0].pop_back();
+  texture.setInputMesh(first);
+  EXPECT_THROW(texture.process(second), std::invalid_argument);
+}
+
 TEST(TextureReconstruction, PclWritesIt)
 {
   const TriangleMesh mesh = cube();

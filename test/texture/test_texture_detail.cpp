@@ -52,7 +52,7 @@ TEST(TextureDetail, AllPhotographsTogetherShowMoreThanTheBestOne)
   const TriangleMesh mesh = cube();
   const auto views = finePhotographs(mesh);
   const TextureResult painted = reconstructTexture(mesh, views, withRounds(0)),
-                      corrected = reconstructTexture(mesh, views, withRounds(3));
+                      corrected = reconstructTexture(mesh, views, withRounds(2));
   ASSERT_LT(corrected.disagreement_after, 0.5);
   EXPECT_LT(colorError(corrected.model, fine).mean, 0.85 * colorError(painted.model, fine).mean);
 }

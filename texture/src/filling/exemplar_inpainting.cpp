@@ -74,21 +74,26 @@ HolePicture pictureOf(const ChartTexels& texels, const Hole& hole, const Eigen::
   HolePicture out;
   out.width = box.sizes().x() + 1;
   out.height = box.sizes().y() + 1;
-  out.color.resize(cellCount(out.width, out.height), Eigen::Vector4f::Zero());
+  out.color.resize(cellCount(out.width, out.height), HolePicture::Color{});
   out.state.resize(out.color.size(), HolePicture::outside);
   const auto set = [&](int at, std::uint8_t state) { // texels of other holes are not even read: they are being written
     const int x = at % chart.width, y = at / chart.width;
     const std::uint8_t* p = atlas.pixel(chart.x + x, chart.y + y);
     const std::size_t pixel = out.at(x - box.min().x(), y - box.min().y());
-    out.color[pixel] = Eigen::Vector4f(p[0], p[1], p[2], 0);
+    out.color[pixel] = HolePicture::stored(Eigen::Vector4f(p[0], p[1], p[2], 0));
     out.state[pixel] = state;
+  };
+  const auto addSpan = [&](const TexelSpan& span) {
+    if (span.y < box.min().y() || span.y > box.max().y())
+      return;
+    for (int x = std::max<int>(span.x, box.min().x()); x <= std::min(span.x + span.length - 1, box.max().x()); ++x)
+      if (!texels.isUnseen(x, span.y))
+        set(span.y * chart.width + x, HolePicture::known);
   };
   for (std::size_t s = 0; s < chart.texels.patches.size(); ++s)
     if (texels.pieceOf(s) == hole.piece)
-      chart.texels.forTexels(s, [&](int x, int y) {
-        if (box.contains(Eigen::Vector2i(x, y)) && !texels.isUnseen(x, y))
-          set(y * chart.width + x, HolePicture::known);
-      });
+      std::for_each(chart.texels.spans.begin() + chart.texels.begin[s],
+                    chart.texels.spans.begin() + chart.texels.begin[s + 1], addSpan);
   for (const int at : hole.texels)
     set(at, HolePicture::hole);
   return out;
@@ -122,7 +127,7 @@ std::vector<Eigen::Vector4f> smoothed(const HolePicture& picture)
   for (std::size_t i = 0; i < picture.color.size(); ++i)
     value.push_back(picture.state[i] == HolePicture::outside
                         ? Eigen::Vector4f::Zero()
-                        : Eigen::Vector4f(picture.color[i] + Eigen::Vector4f::UnitW()));
+                        : Eigen::Vector4f(HolePicture::levels(picture.color[i]) + Eigen::Vector4f::UnitW()));
   for (int round = 0; round < 2; ++round) { // box over box: nearly a Gaussian
     sumRows(value, picture.width, picture.height);
     sumRows(value, picture.height, picture.width);
@@ -146,16 +151,18 @@ bool fill(const ChartTexels& texels, const Hole& hole, Image& atlas)
     return false;
   const std::vector<Eigen::Vector4f> base = smoothed(picture);
   for (std::size_t i = 0; i < base.size(); ++i)
-    picture.color[i] =
-        picture.state[i] == HolePicture::known ? Eigen::Vector4f(picture.color[i] - base[i]) : Eigen::Vector4f::Zero();
+    picture.color[i] = picture.state[i] == HolePicture::known
+                           ? HolePicture::stored(HolePicture::levels(picture.color[i]) - base[i])
+                           : HolePicture::Color{};
   if (!synthesizeHole(picture, hole.chart * 1000003 + hole.texels.front()))
     return false;
   for (const int at : hole.texels) {
     const int x = at % texels.chart.width, y = at / texels.chart.width;
     const std::size_t i = picture.at(x - box.min().x(), y - box.min().y());
     std::uint8_t* p = atlas.pixel(texels.chart.x + x, texels.chart.y + y);
+    const Eigen::Vector4f color = base[i] + HolePicture::levels(picture.color[i]);
     for (int c = 0; c < 3; ++c)
-      p[c] = std::lround(std::clamp(base[i][c] + picture.color[i][c], 0.f, 255.f));
+      p[c] = std::lround(std::clamp(color[c], 0.f, 255.f));
   }
   return true;
 }

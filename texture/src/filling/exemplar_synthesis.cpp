@@ -3,6 +3,7 @@
 #include "grid.h"
 #include <algorithm>
 #include <cmath>
+#include <fresco/core/simd.h>
 #include <fresco/core/statistics.h>
 #include <limits>
 #include <opencv2/imgproc.hpp>
@@ -29,26 +30,40 @@ private:
   std::uint64_t state_;
 };
 
+/// Sum of squared differences of two rows of a window.
+int rowDifference(const HolePicture::Color* a, const HolePicture::Color* b)
+{
+  const std::int16_t *own = a->data(), *other = b->data();
+  int sum = 0;
+  for (int k = 0; k < 4 * (2 * reach + 1); ++k) {
+    const std::int16_t difference = own[k] - other[k];
+    sum += difference * difference;
+  }
+  return sum;
+}
+
 /// Half as wide and high. A pixel is known where all four are, hole where one is.
 HolePicture halved(const HolePicture& in)
 {
   HolePicture out;
   out.width = in.width / 2;
   out.height = in.height / 2;
-  out.color.resize(cellCount(out.width, out.height), Eigen::Vector4f::Zero());
+  out.color.resize(cellCount(out.width, out.height), HolePicture::Color{});
   out.state.resize(out.color.size(), HolePicture::outside);
   for (int y = 0; y < out.height; ++y)
     for (int x = 0; x < out.width; ++x) {
       int known = 0, hole = 0;
-      Eigen::Vector4f sum = Eigen::Vector4f::Zero();
+      std::array<int, 3> sum{};
       for (int k = 0; k < 4; ++k) {
         const std::size_t i = in.at(2 * x + k % 2, 2 * y + k / 2);
         known += in.state[i] == HolePicture::known;
         hole += in.state[i] == HolePicture::hole;
-        sum += in.color[i];
+        for (int c = 0; c < 3; ++c)
+          sum[c] += in.color[i][c];
       }
       out.state[out.at(x, y)] = hole > 0 ? HolePicture::hole : known == 4 ? HolePicture::known : HolePicture::outside;
-      out.color[out.at(x, y)] = 0.25f * sum;
+      for (int c = 0; c < 3; ++c)
+        out.color[out.at(x, y)][c] = (sum[c] + 2) >> 2;
     }
   return out;
 }
@@ -64,8 +79,11 @@ public:
       hole[i] = picture.state[i] == HolePicture::hole;
       other[i] = picture.state[i] != HolePicture::known;
     }
-    spread(hole);
-    spread(other);
+    std::vector<std::uint8_t> outside(n);
+    for (std::size_t i = 0; i < n; ++i)
+      outside[i] = picture.state[i] == HolePicture::outside;
+    for (auto* flags : {&hole, &other, &outside})
+      spread(*flags);
     usable_.assign(n, 0);
     slot_.assign(n, -1);
     for (int y = reach; y < picture.height - reach; ++y)
@@ -79,6 +97,8 @@ public:
         if (hole[picture.at(x, y)] && picture.state[picture.at(x, y)] != HolePicture::outside) {
           slot_[picture.at(x, y)] = targets_.size();
           targets_.emplace_back(x, y);
+          whole_.push_back(x >= reach && y >= reach && x + reach < picture.width && y + reach < picture.height &&
+                           !outside[picture.at(x, y)]);
         }
     match_.resize(targets_.size());
     error_.resize(targets_.size());
@@ -89,13 +109,17 @@ public:
 
   void start()
   {
+    farthest_ = std::max(picture_.width, picture_.height);
     for (Pixel& match : match_)
       match = sources_[random_.below(sources_.size())];
     voteColors(false);
   }
 
+  /// What lies far away was searched for there.
   void startFrom(const Matching& coarse)
   {
+    constexpr int few_windows = 32; // pixels
+    farthest_ = std::min(few_windows, std::max(picture_.width, picture_.height));
     for (std::size_t t = 0; t < targets_.size(); ++t) {
       const Pixel p = targets_[t],
                   half(std::min(p.x() / 2, coarse.picture_.width - 1), std::min(p.y() / 2, coarse.picture_.height - 1));
@@ -140,31 +164,50 @@ private:
   }
 
   /// Mean squared difference over what of the target's window is in the picture; given up beyond `most`.
-  float difference(const Pixel& target, const Pixel& source, float most) const
+  float difference(std::size_t t, const Pixel& source, float most) const
   {
-    Eigen::Array4f sum = Eigen::Array4f::Zero();
-    int count = 0;
+    constexpr int side = 2 * reach + 1;
+    const Pixel& target = targets_[t];
+    const float limit = most * (side * side);
+    if (!whole_[t])
+      return differenceInside(target, source, limit);
+    const std::size_t own = picture_.at(target.x() - reach, target.y() - reach),
+                      other = picture_.at(source.x() - reach, source.y() - reach);
+    int sum = 0;
+    for (std::size_t row = 0; row < side * std::size_t(picture_.width); row += picture_.width) {
+      sum += rowDifference(&picture_.color[own + row], &picture_.color[other + row]);
+      if (sum > limit)
+        return std::numeric_limits<float>::infinity();
+    }
+    return float(sum) / (side * side);
+  }
+
+  /// The same where a part of the window is not.
+  float differenceInside(const Pixel& target, const Pixel& source, float limit) const
+  {
+    int sum = 0, count = 0;
     const int left = std::max(-reach, -target.x()), right = std::min(reach, picture_.width - 1 - target.x());
     for (int j = std::max(-reach, -target.y()); j <= std::min(reach, picture_.height - 1 - target.y()); ++j) {
       const std::size_t first = picture_.at(target.x(), target.y() + j);
-      const Eigen::Vector4f *own = &picture_.color[first],
-                            *other = &picture_.color[picture_.at(source.x(), source.y() + j)];
+      const HolePicture::Color *own = &picture_.color[first],
+                               *other = &picture_.color[picture_.at(source.x(), source.y() + j)];
       for (int i = left; i <= right; ++i)
         if (picture_.state[first + i] != HolePicture::outside) {
-          sum += (own[i] - other[i]).array().square();
+          for (int c = 0; c < 3; ++c)
+            sum += (own[i][c] - other[i][c]) * (own[i][c] - other[i][c]);
           ++count;
         }
-      if (sum.sum() > most * (2 * reach + 1) * (2 * reach + 1))
+      if (sum > limit)
         return std::numeric_limits<float>::infinity();
     }
-    return count > 0 ? sum.sum() / count : 0.f;
+    return count > 0 ? float(sum) / count : 0.f;
   }
 
   void attempt(std::size_t t, const Pixel& source)
   {
     if (!isUsable(source) || source == match_[t])
       return;
-    const float error = difference(targets_[t], source, error_[t]);
+    const float error = difference(t, source, error_[t]);
     if (error < error_[t]) {
       error_[t] = error;
       match_[t] = source;
@@ -175,7 +218,7 @@ private:
   void search(int passes)
   {
     for (std::size_t t = 0; t < targets_.size(); ++t)
-      error_[t] = difference(targets_[t], match_[t], std::numeric_limits<float>::infinity());
+      error_[t] = difference(t, match_[t], std::numeric_limits<float>::infinity());
     for (int pass = 0; pass < passes; ++pass) {
       const int step = pass % 2 == 0 ? -1 : 1;
       for (std::size_t k = 0; k < targets_.size(); ++k) {
@@ -188,7 +231,7 @@ private:
           if (const int slot = slot_[picture_.at(q.x(), q.y())]; slot >= 0)
             attempt(t, match_[slot] - aside);
         }
-        for (int radius = std::max(picture_.width, picture_.height); radius >= 1; radius /= 3)
+        for (int radius = farthest_; radius >= 1; radius /= 3)
           attempt(t, match_[t] + Pixel(random_.below(2 * radius + 1) - radius, random_.below(2 * radius + 1) - radius));
       }
     }
@@ -197,7 +240,7 @@ private:
   /// Colours of the hole from the windows' matches.
   void voteColors(bool own_only)
   {
-    float scale = 1e-3f;
+    float scale = 1e-2f;
     if (!own_only && !error_.empty()) { // the error that a quarter of the windows exceed
       std::vector<float> errors = error_;
       scale = std::max(scale, rankedValue(errors, errors.size() * 3 / 4));
@@ -205,7 +248,7 @@ private:
     std::vector<float> weights;
     for (const float error : error_)
       weights.push_back(std::exp(-error / (2 * scale)) + 1e-6f);
-    std::vector<Eigen::Vector4f> result(targets_.size());
+    std::vector<HolePicture::Color> result(targets_.size());
     for (std::size_t t = 0; t < targets_.size(); ++t)
       result[t] = own_only ? picture_.color[picture_.at(match_[t].x(), match_[t].y())] : meanAt(targets_[t], weights);
     for (std::size_t t = 0; t < targets_.size(); ++t)
@@ -214,9 +257,10 @@ private:
   }
 
   /// @param weights of the targets' windows
-  Eigen::Vector4f meanAt(const Pixel& p, const std::vector<float>& weights) const
+  HolePicture::Color meanAt(const Pixel& p, const std::vector<float>& weights) const
   {
-    Eigen::Vector4f sum = Eigen::Vector4f::Zero();
+    using Short4 = std::int16_t __attribute__((vector_size(8)));
+    simd::Float4 sum{};
     float total = 0;
     for (int j = -reach; j <= reach; ++j)
       for (int i = -reach; i <= reach; ++i) {
@@ -226,19 +270,39 @@ private:
         const int slot = slot_[picture_.at(x, y)];
         if (slot < 0)
           continue;
-        sum += weights[slot] * picture_.color[picture_.at(match_[slot].x() + i, match_[slot].y() + j)];
+        const HolePicture::Color& color = picture_.color[picture_.at(match_[slot].x() + i, match_[slot].y() + j)];
+        sum += weights[slot] * __builtin_convertvector(simd::load<Short4>(color.data()), simd::Float4);
         total += weights[slot];
       }
-    return sum / total;
+    HolePicture::Color out{};
+    for (int c = 0; c < 3; ++c)
+      out[c] = std::lrint(sum[c] / total);
+    return out;
   }
 
   HolePicture& picture_;
   Random& random_;
+  int farthest_ = 0;         ///< reach of the random search, pixels
   std::vector<char> usable_; ///< per pixel: middle of a known window
   std::vector<int> slot_;    ///< per pixel: its number among the targets, -1 = none
   std::vector<Pixel> sources_, targets_, match_;
-  std::vector<float> error_;
+  std::vector<char> whole_;  ///< of the targets: their window lies in the picture
+  std::vector<float> error_; ///< of the matches, squares of stored numbers
 };
+
+/// @param matchings fine to coarse
+void matchCoarseToFine(std::vector<Matching>& matchings)
+{
+  constexpr int rounds = 6, passes = 2;        // finer levels start from coarser ones and need fewer
+  constexpr std::size_t many_windows = 300000; // one round at the finest level: time; its matches come from the coarser
+  matchings.back().start();
+  matchings.back().refine(2 * rounds, passes);
+  for (std::size_t l = matchings.size() - 1; l-- > 0;) {
+    matchings[l].startFrom(matchings[l + 1]);
+    matchings[l].refine(matchings[l].targets() > many_windows ? 1 : 2, passes);
+  }
+  matchings.front().finish(matchings.front().targets() > many_windows ? 0 : passes);
+}
 } // namespace
 
 int holeRadius(const HolePicture& picture)
@@ -255,35 +319,29 @@ int holeRadius(const HolePicture& picture)
 
 bool synthesizeHole(HolePicture& picture, std::uint64_t seed)
 {
-  constexpr std::size_t least_windows = 300;   // wholly known: fewer would repeat visibly
-  constexpr int coarsest_radius = 4;           // of the hole, pixels: about a window
-  constexpr std::size_t most_levels = 6;       // a hole of 250 pixels becomes a window
-  constexpr std::size_t many_windows = 300000; // one round at the finest level: time; its matches come from the coarser
+  constexpr std::size_t least_windows = 300; // wholly known: fewer would repeat visibly
+  constexpr int coarsest_radius = 4;         // of the hole, pixels: about a window
+  constexpr std::size_t most_levels = 6;     // a hole of 250 pixels becomes a window
   Random random(seed);
-  std::vector<HolePicture> levels{picture};
-  int radius = holeRadius(picture);
-  while (levels.size() < most_levels && radius > coarsest_radius) {
-    HolePicture next = halved(levels.back());
-    if (Matching(next, random).sources() < least_windows)
+  std::vector<HolePicture> levels;
+  std::vector<Matching> matchings; // they refer to the levels
+  levels.reserve(most_levels);
+  matchings.reserve(most_levels);
+  levels.push_back(std::move(picture));
+  matchings.emplace_back(levels.back(), random);
+  const bool enough = matchings.front().sources() >= least_windows;
+  for (int radius = holeRadius(levels.front()); enough && levels.size() < most_levels && radius > coarsest_radius;
+       radius /= 2) {
+    levels.push_back(halved(levels.back()));
+    matchings.emplace_back(levels.back(), random);
+    if (matchings.back().sources() < least_windows) {
+      matchings.pop_back();
       break;
-    levels.push_back(std::move(next));
-    radius /= 2;
+    }
   }
-  std::vector<Matching> matchings;
-  matchings.reserve(levels.size());
-  for (HolePicture& level : levels)
-    matchings.emplace_back(level, random);
-  if (matchings.front().sources() < least_windows)
-    return false;
-  constexpr int rounds = 6, passes = 2; // finer levels start from coarser ones and need fewer
-  matchings.back().start();
-  matchings.back().refine(2 * rounds, passes);
-  for (std::size_t l = levels.size() - 1; l-- > 0;) {
-    matchings[l].startFrom(matchings[l + 1]);
-    matchings[l].refine(matchings[l].targets() > many_windows ? 1 : std::max(2, rounds - 2), passes);
-  }
-  matchings.front().finish(matchings.front().targets() > many_windows ? 0 : passes);
-  picture.color = std::move(levels.front().color);
-  return true;
+  if (enough)
+    matchCoarseToFine(matchings);
+  picture = std::move(levels.front());
+  return enough;
 }
 } // namespace fresco::texture

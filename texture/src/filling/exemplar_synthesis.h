@@ -2,6 +2,8 @@
 #pragma once
 #include "grid.h"
 #include <Eigen/Core>
+#include <array>
+#include <cmath>
 #include <cstdint>
 #include <fresco/core/point_set.h>
 #include <vector>
@@ -9,11 +11,25 @@ namespace fresco::texture {
 /// Part of a picture with a hole in it.
 struct HolePicture {
   enum : std::uint8_t { outside = 0, known = 1, hole = 2 };
+  static constexpr float per_level = 4;      ///< stored numbers per grey level
+  using Color = std::array<std::int16_t, 4>; ///< red, green, blue, 0: 500 grey levels either way
   int width = 0, height = 0;
-  std::vector<Eigen::Vector4f> color; ///< rows from the top; the last of the four is 0: processors add four at once
-  std::vector<std::uint8_t> state;    ///< what each pixel is; pixels outside are not looked at
+  std::vector<Color> color;        ///< rows from the top
+  std::vector<std::uint8_t> state; ///< what each pixel is; pixels outside are not looked at
 
   std::size_t at(int x, int y) const { return cellAt(x, y, width); }
+
+  static Eigen::Vector4f levels(const Color& color)
+  {
+    return Eigen::Vector4f(color[0], color[1], color[2], 0) / per_level;
+  }
+  static Color stored(const Eigen::Vector4f& levels)
+  {
+    Color out{};
+    for (int c = 0; c < 3; ++c)
+      out[c] = std::lrint(per_level * levels[c]);
+    return out;
+  }
 };
 
 /// Fills the hole so that each 7x7 window of it looks like some window of the known part, coarse to fine: Wexler,

@@ -19,17 +19,22 @@ public:
     listPatches();
   }
 
-  void round()
+  /// @param gain of what the photographs show more than predicted
+  void round(float gain)
   {
-    constexpr std::size_t group_bytes = 512u << 20; // of residuals held at a time; results depend on it
+    constexpr std::size_t group_pixels = 1u << 25; // of residuals held at a time; results depend on it
     const Index n = sources_.views.size();
+    const auto pixelsOf = [&](Index v) {
+      const CameraModel& camera = sources_.views[v].camera();
+      return cellCount(camera.width, camera.height);
+    };
     for (Index first = 0, last = 0; first < n; first = last) {
-      std::size_t bytes = 0;
+      std::size_t pixels = 0;
       do
-        bytes += residualBytes(sources_.views[last++].camera());
-      while (last < n && bytes + residualBytes(sources_.views[last].camera()) <= group_bytes);
+        pixels += pixelsOf(last++);
+      while (last < n && pixels + pixelsOf(last) <= group_pixels);
       computeResiduals(first, last);
-      backProjectResidual(first, last);
+      backProjectResidual({first, last, gain / PhotoResidual::per_level});
     }
   }
 
@@ -74,19 +79,21 @@ private:
     parallelFor(last - first, scene_.threads, compute, 1);
   }
 
-  void backProjectResidual(Index first, Index last)
+  /// Views whose residuals are at hand, and the factor of these.
+  struct Group {
+    Index first, last;
+    float gain;
+  };
+
+  void backProjectResidual(const Group& group)
   {
     parallelRanges(scene_.patches.size(), scene_.threads, [&](Index begin, Index end) {
       Sums sums;
       for (Index i = begin; i < end; ++i)
         if (scene_.isSeen(i))
-          correct(i, {first, last}, sums);
+          correct(i, group, sums);
     });
   }
-
-  struct Range {
-    Index first, last;
-  };
 
   /// Work space: changes of a patch's texels.
   struct Sums {
@@ -100,7 +107,8 @@ private:
   {
     std::size_t next = 0;
     const auto add = [&](const Eigen::Vector2f& pixel) {
-      sums.values[next++] += sums.weight * residual.at(pixel.x(), pixel.y());
+      float* sum = sums.values[next++].data();
+      simd::store(simd::load<simd::Float4>(sum) + sums.weight * residual.at(pixel.x(), pixel.y()), sum);
     };
     std::size_t number = 0;
     frame.forSpans([&](const TexelSpan& span) {
@@ -131,9 +139,8 @@ private:
     });
   }
 
-  void correct(Index patch, const Range& views, Sums& sums)
+  void correct(Index patch, const Group& group, Sums& sums)
   {
-    constexpr float gain = 1.3f; // above 1: what a pixel differs by is spread over texels that it only partly covers
     PatchFrame frame(scene_, patch);
     Eigen::Vector3f least; // of the corners' weights
     for (int k = 0; k < 3; ++k)
@@ -142,11 +149,11 @@ private:
     const Candidates& all = sources_.candidates;
     for (Index c = all.begin[patch]; c < all.begin[patch + 1]; ++c) {
       const int view = all.list[c].view;
-      if (!(weights_[c] > 0) || view < views.first || view >= views.last || !frame.map.look(sources_.views[view]))
+      if (!(weights_[c] > 0) || view < group.first || view >= group.last || !frame.map.look(sources_.views[view]))
         continue;
       if (sums.values.empty())
         start(frame, sums);
-      sums.weight = gain * weights_[c];
+      sums.weight = group.gain * weights_[c];
       addView(frame, least, residuals_[view], sums);
     }
     if (!sums.values.empty())
@@ -172,6 +179,14 @@ private:
   std::vector<std::vector<int>> shown_;  ///< by view, patches in their order
   std::vector<PhotoResidual> residuals_; ///< by view, of those in work
 };
+
+/// Gains of the rounds after Golub & Varga 1961 (Chebyshev's semi-iteration), for changes of the texels of which
+/// photographs show a share between `least` and all: pixels average what is fine, and spread it over many texels.
+float gainOf(int round, int rounds)
+{
+  constexpr double least = 0.38, pi = 3.14159265358979;
+  return 2 / (1 + least + (1 - least) * std::cos(pi * (round + 0.5) / rounds));
+}
 } // namespace
 
 void backProject(const PaintScene& scene, const PaintSources& sources, int rounds, std::vector<Image>& atlases)
@@ -180,6 +195,6 @@ void backProject(const PaintScene& scene, const PaintSources& sources, int round
     return;
   BackProjection projection(scene, sources, atlases);
   for (int round = 0; round < rounds; ++round)
-    projection.round();
+    projection.round(gainOf(round, rounds));
 }
 } // namespace fresco::texture

@@ -9,11 +9,17 @@ namespace fresco::texture {
 namespace {
 constexpr float nearly_pixel = 1.2f; // width of a box that is taken as one pixel, which touches four at most
 
+/// What was drawn of each pixel: colours times area, and the area.
+struct Drawing {
+  int width, height;
+  std::vector<Eigen::Vector4f> pixels;
+};
+
 /// Adds a texel's value to the pixels under its box, by the area of each in it.
 class Canvas {
 public:
   /// @param size of the box, pixels
-  Canvas(PhotoResidual& sums, const Eigen::Vector2f& size) : sums_(sums), small_(size.maxCoeff() <= nearly_pixel)
+  Canvas(Drawing& sums, const Eigen::Vector2f& size) : sums_(sums), small_(size.maxCoeff() <= nearly_pixel)
   {
     const Eigen::Vector2f box = small_ ? Eigen::Vector2f(size.cwiseMin(1.f)) : size;
     half_ = 0.5f * box;
@@ -51,7 +57,7 @@ private:
     }
   }
 
-  PhotoResidual& sums_;
+  Drawing& sums_;
   Eigen::Vector2f half_, per_size_;
   bool small_;
 };
@@ -93,7 +99,7 @@ void prefetch(const Prediction& p, Index patch)
 }
 
 /// Adds a patch's colours, each texel times the area it covers in the photograph, and the areas.
-void draw(const Prediction& p, Index patch, PhotoResidual& sums)
+void draw(const Prediction& p, Index patch, Drawing& sums)
 {
   constexpr float largest_box = 6; // pixels: beyond, the photograph shows more than the texture can hold
   PatchFrame frame(p.scene, patch);
@@ -146,33 +152,28 @@ float coverageWeight(float covered)
 PhotoResidual residualOf(const Prediction& prediction, const Image& photo, const PixelGain& gain)
 {
   constexpr std::uint8_t overexposed = 254; // grey level: the light may have been any brighter
-  PhotoResidual out;
-  out.width = photo.width;
-  out.height = photo.height;
-  out.pixels.assign(cellCount(photo.width, photo.height), Eigen::Vector4f::Zero());
+  constexpr float largest = 127;            // of what is stored
+  const std::size_t count = cellCount(photo.width, photo.height);
+  Drawing drawn{photo.width, photo.height, std::vector<Eigen::Vector4f>(count, Eigen::Vector4f::Zero())};
   const std::vector<int>& patches = prediction.patches;
   constexpr std::size_t ahead = 4;
   for (std::size_t i = 0; i < patches.size(); ++i) {
     prefetch(prediction, patches[std::min(i + ahead, patches.size() - 1)]);
-    draw(prediction, patches[i], out);
+    draw(prediction, patches[i], drawn);
   }
+  PhotoResidual out{photo.width, photo.height, std::vector<PhotoResidual::Pixel>(count)};
   const std::uint8_t* p = photo.data.data();
-  for (Index i = 0; i < Index(out.pixels.size()); ++i, p += 3) {
-    Eigen::Vector4f& pixel = out.pixels[i];
+  for (Index i = 0; i < Index(count); ++i, p += 3) {
+    const Eigen::Vector4f& pixel = drawn.pixels[i];
     const float trust = std::max({p[0], p[1], p[2]}) < overexposed ? coverageWeight(pixel.w()) : 0.f;
-    if (trust > 0)
-      pixel.head<3>() =
-          trust * (gain({i % photo.width + 0.5f, i / photo.width + 0.5f}, Eigen::Vector3f(p[0], p[1], p[2])) -
-                   pixel.head<3>() / pixel.w());
-    else
-      pixel.setZero();
-    pixel.w() = 0;
+    if (!(trust > 0))
+      continue;
+    const Eigen::Vector3f more =
+        gain({i % photo.width + 0.5f, i / photo.width + 0.5f}, Eigen::Vector3f(p[0], p[1], p[2])) -
+        pixel.head<3>() / pixel.w();
+    for (int c = 0; c < 3; ++c)
+      out.pixels[i][c] = std::lrint(std::clamp(PhotoResidual::per_level * trust * more[c], -largest, largest));
   }
   return out;
-}
-
-std::size_t residualBytes(const CameraModel& camera)
-{
-  return cellCount(camera.width, camera.height) * sizeof(Eigen::Vector4f);
 }
 } // namespace fresco::texture

@@ -25,8 +25,20 @@ public:
   void setOptions(const TextureOptions& options) { options_ = options; }
   const TextureOptions& getOptions() const { return options_; }
 
-  void setInputMesh(const pcl::PolygonMeshConstPtr& mesh) { input_mesh_ = mesh; }
+  void setInputMesh(const pcl::PolygonMeshConstPtr& mesh)
+  {
+    input_mesh_ = mesh;
+    input_layout_.reset();
+  }
+  /// A mesh whose texture coordinates are kept. Its images are not read: they are as large as the photographs ask for, or
+  /// have setAtlasSize() texels on the longest side.
+  void setInputMesh(const pcl::TextureMesh::ConstPtr& mesh)
+  {
+    input_layout_ = mesh;
+    input_mesh_.reset();
+  }
   pcl::PolygonMeshConstPtr getInputMesh() const { return input_mesh_; }
+  pcl::TextureMesh::ConstPtr getInputLayout() const { return input_layout_; } ///< null where a layout is made
 
   void addView(TextureView view) { views_.push_back(std::move(view)); }
   /// @param T_camera_world axes of the camera: x right, y down, z forward
@@ -85,6 +97,7 @@ public:
 
 private:
   pcl::PolygonMeshConstPtr input_mesh_;
+  pcl::TextureMesh::ConstPtr input_layout_;
   std::vector<TextureView> views_;
   TextureOptions options_;
   Progress progress_;

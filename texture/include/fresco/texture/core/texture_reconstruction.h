@@ -33,7 +33,7 @@ struct TextureOptions {
   double blend_width = 6;  ///< pixels over which one photograph passes into the next at a seam (feathering), 0..100
   /// Rounds of back-projection: texels are made of all photographs together, 0..100. Only where refinement found them to
   /// agree within half a pixel and exposures are brought together.
-  int rounds = 3;
+  int rounds = 2;
   bool examples = true; ///< give larger unseen parts the fine structure of the seen surface beside them
   int memory = 1024;    ///< MB of photographs kept at a time, decoded or as grey copies, >= 1
   int threads = 0;      ///< 0 = all cores; the result does not depend on it

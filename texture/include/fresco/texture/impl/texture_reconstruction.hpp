@@ -8,10 +8,16 @@
 namespace fresco {
 inline void TextureReconstruction::process(pcl::TextureMesh& output)
 {
-  require(input_mesh_ != nullptr, "TextureReconstruction: no input mesh");
-  result_ = reconstructTexture(toTriangleMesh(*input_mesh_), views_, options_, progress_);
+  require(input_mesh_ || input_layout_, "TextureReconstruction: no input mesh");
+  if (input_layout_) {
+    const std::vector<Image> sizeless(input_layout_->tex_polygons.size(), Image(1, 1, 3, 0));
+    result_ = reconstructTexture(toTexturedMesh(*input_layout_, "", sizeless), views_, options_, progress_);
+  } else {
+    result_ = reconstructTexture(toTriangleMesh(*input_mesh_), views_, options_, progress_);
+  }
+  const pcl::PCLHeader header = input_layout_ ? input_layout_->header : input_mesh_->header;
   toTextureMesh(result_.model, output);
-  output.header = input_mesh_->header;
+  output.header = header;
 }
 
 inline void TextureReconstruction::saveAtlases(const std::string& folder) const
