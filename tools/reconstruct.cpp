@@ -82,6 +82,9 @@ Request parse(int argc, char** argv, const std::string& program)
   args.note("fresco_reconstruct scan.ply mesh.ply -depth 9\n"
             "fresco_reconstruct room.pcd room.ply -cell 0.02 -trim_levels 2   (an open room: cells of 2 cm, no "
             "invented surface)");
+  args.note(
+      "fresco_reconstruct_mpi: several ranks share octrees of depth 10 and more. To trim, they send the mesh to the "
+      "first rank,\nwhich then needs some 100 bytes per vertex of the untrimmed mesh.");
   fresco::ScanOption scan;
   scan.declare(args);
   request.common.declare(args);

@@ -43,6 +43,26 @@ TEST(ReconstructMpi, SameFileAsOneProcess)
   EXPECT_EQ(listing(folder).size(), 3U);
 }
 
+// One of the ball's two files is an open surface.
+TEST(ReconstructMpi, TrimsAsOneProcess)
+{
+  const std::string folder = scratchFolder();
+  writeBall(folder);
+  std::string closed;
+  for (const char* trimming : {"", " -trim_levels 2", " -trim 6.5", " -trim 40"}) {
+    const std::string options = std::string(" -threads 1 -quiet -depth 10") + trimming;
+    const Outcome alone = run(folder, "reconstruct a.ply one.ply" + options);
+    ASSERT_EQ(alone.status, 0) << alone.err;
+    const Outcome together = runJob(folder, ranks(2, "reconstruct_mpi a.ply all.ply" + options));
+    ASSERT_EQ(together.status, 0) << together.err;
+    EXPECT_TRUE(get(folder + "/all.ply") == get(folder + "/one.ply")) << trimming;
+    if (closed.empty())
+      closed = get(folder + "/one.ply");
+    else
+      EXPECT_LT(get(folder + "/one.ply").size(), closed.size()) << trimming;
+  }
+}
+
 TEST(ReconstructMpi, OneLineForWhatCannotBeDone)
 {
   const std::string folder = scratchFolder();

@@ -9,6 +9,7 @@
 #include "poisson/ranks/reconstruct_part.h"
 #include "poisson/ranks/sample_ghosts.h"
 #include "poisson/ranks/surface_part.h"
+#include "poisson/ranks/whole_mesh.h"
 #include "poisson/small_components.h"
 #include "poisson/solver/base_solver.h"
 #include "poisson/solver/constraints.h"
@@ -151,6 +152,8 @@ void addAttributes(const Samples& samples, const Eigen::Matrix4Xf& attributes, T
     mesh.fields["intensity"] = attributes.row(3).transpose();
 }
 
+bool isTrimmed(const VolumetricOptions& options) { return options.trim > 0 || options.trim_levels > 0; }
+
 /// Depth below which the surface is cut away, 0 = nowhere; see VolumetricOptions::trim_levels.
 float trimDepth(const Eigen::VectorXf& support, int depth, const VolumetricOptions& options)
 {
@@ -248,15 +251,24 @@ VolumetricPart reconstruct(Samples&& samples, const VolumetricOptions& options, 
   addAttributes(samples, attributes, result.mesh);
   result.mesh.fields["support"].swap(support);
   own = SurfacePart(); // what backs the mesh ends before it is freed
-  trim(samples.cube, options, result);
+  if (partition && isTrimmed(options))
+    gatherMesh(tree.exchange(), part);
+  if (tree.exchange().rank() == 0)
+    trim(samples.cube, options, result);
   report(progress, "done", 1.0);
   return part;
 }
 
-/// What rank 0 tells the others of a mesh that it makes alone.
+/// Rank 0 has the whole mesh; what it tells the others of it.
 void tellOthers(Exchange& exchange, VolumetricPart& part)
 {
   VolumetricResult& result = part.result;
+  if (exchange.rank() == 0) {
+    part.vertex_count = result.mesh.vertexCount();
+    part.face_count = result.mesh.faceCount();
+    part.vertices = {{0, part.vertex_count}};
+    part.faces = {{0, part.face_count}};
+  }
   double numbers[] = {result.residual, result.trim_depth};
   std::int64_t counts[] = {result.cells, part.vertex_count, part.face_count};
   broadcast(exchange, numbers, std::size(numbers));
@@ -282,13 +294,8 @@ VolumetricPart reconstructAlone(Samples&& samples, const VolumetricOptions& opti
   if (samples.has_intensities)
     mesh.fields["intensity"].resize(0);
   mesh.fields["support"].resize(0);
-  if (exchange.rank() == 0) {
+  if (exchange.rank() == 0)
     part = reconstruct(std::move(samples), options, progress);
-    part.vertex_count = mesh.vertexCount();
-    part.face_count = mesh.faceCount();
-    part.vertices = {{0, part.vertex_count}};
-    part.faces = {{0, part.face_count}};
-  }
   tellOthers(exchange, part);
   return part;
 }
@@ -309,13 +316,13 @@ VolumetricPart reconstructPart(std::unique_ptr<PointStream> points, const Volume
   points.reset();
   if (!isDivided(share.samples.cube.depth, ranks))
     return reconstructAlone(std::move(share.samples), options, progress, exchange);
-  require(options.trim <= 0 && options.trim_levels <= 0,
-          "volumetric reconstruction: several ranks do not trim octrees of depth ", ranks.shared_depth + 2,
-          " and more");
   require(options.min_depth >= Partition::atomDepth(ranks.shared_depth) && options.min_depth <= ranks.shared_depth,
           "volumetric reconstruction: of several ranks the minimum depth ", options.min_depth, " is below ",
           Partition::atomDepth(ranks.shared_depth));
-  return reconstruct(std::move(share.samples), options, progress, &share.partition);
+  VolumetricPart part = reconstruct(std::move(share.samples), options, progress, &share.partition);
+  if (isTrimmed(options))
+    tellOthers(exchange, part);
+  return part;
 }
 } // namespace poisson
 

@@ -196,6 +196,21 @@ TEST(VolumetricRanks, SurfaceClosedFarFromPointsIsTheSame)
   expectSameOnRanks(open, withDepths(7, 2), 5, {3, 7});
 }
 
+/// Rank 0 trims the whole mesh, with all attributes.
+TEST(VolumetricRanks, TrimmedOpenSurfaceIsTheSame)
+{
+  const auto isTaken = [](const Eigen::Vector3f& p) { return p.x() < 0.4f && p.norm() < 10.f; };
+  const PointSet open = part(attributedTorus(20000, 0.f), isTaken);
+  VolumetricOptions options = withDepths(7, 5);
+  options.trim_levels = 1.5f;
+  const VolumetricResult closed = reconstructVolumetric(open, withDepths(7, 5));
+  EXPECT_LT(reconstructVolumetric(open, options).mesh.faceCount(), closed.mesh.faceCount());
+  expectSameOnRanks(open, options, 5, {2, 3, 7});
+  options.trim_levels = 0.f;
+  options.trim = 5.5f;
+  expectSameOnRanks(part(sphere(20000), isTaken), options, 5, {4});
+}
+
 /// Single points with random normals make components that are removed, some of them on several ranks.
 TEST(VolumetricRanks, SmallComponentsAreRemovedAlike)
 {
@@ -244,9 +259,6 @@ TEST(VolumetricRanks, WhatAllRanksRefuse)
   const PointSet points = sphere(2000), none;
   EXPECT_THROW(partsOf(points, withDepths(7, 6), 2, division), std::invalid_argument);
   EXPECT_THROW(partsOf(none, withDepths(7, 5), 2, division), std::invalid_argument);
-  VolumetricOptions trimmed = withDepths(7, 5);
-  trimmed.trim_levels = 2.f;
-  EXPECT_THROW(partsOf(points, trimmed, 2, division), std::invalid_argument);
 }
 
 /// Attributes that only some ranks' points have.

@@ -78,7 +78,7 @@ private:
 /// What is alike on all ranks that have a vertex.
 struct Layout {
   std::string header;
-  std::size_t row = 0; ///< bytes of a vertex
+  std::size_t row = 0; ///< bytes of a vertex, 0 = this rank has none
 };
 
 template <typename Archive>
@@ -89,9 +89,7 @@ void fields(Archive& archive, Layout& layout)
 
 Layout layoutOf(const MeshPart& part)
 {
-  if (part.mesh.vertexCount() == 0)
-    return {};
-  const PointTable table = plyRows(verticesToTable(part.mesh, 0, 1));
+  const PointTable table = plyRows(verticesToTable(part.mesh, 0, std::min<Index>(1, part.mesh.vertexCount())));
   return {plyHeader(table, part.vertex_count, part.face_count), table.data.size()};
 }
 
@@ -115,8 +113,9 @@ void writeMeshPart(const std::string& path, const MeshPart& part, Exchange& rank
   if (extension(path) != ".ply")
     throw std::runtime_error(path + ": several ranks write .ply");
   const std::vector<Layout> layouts = gatherValues(ranks, layoutOf(part));
-  const auto layout = std::find_if(layouts.begin(), layouts.end(), [](const Layout& some) { return some.row > 0; });
-  require(layout != layouts.end(), "mesh: no vertices");
+  auto layout = std::find_if(layouts.begin(), layouts.end(), [](const Layout& some) { return some.row > 0; });
+  if (layout == layouts.end())
+    layout = layouts.begin(); // a mesh without vertices
   SharedFile file(path, ranks);
   const std::uint64_t begin = layout->header.size(), faces = begin + layout->row * part.vertex_count;
   if (ranks.rank() == 0)

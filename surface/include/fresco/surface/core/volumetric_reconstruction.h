@@ -78,10 +78,11 @@ struct VolumetricPart {
   Index vertex_count = 0, face_count = 0; ///< of the whole mesh
 };
 
-/// All ranks call this, with the same options. Octrees of depth 10 and more are divided; rank 0 makes shallower ones.
+/// All ranks call this, with the same options. Octrees of depth 10 and more are divided; rank 0 makes shallower ones. A
+/// surface that is trimmed comes to rank 0 as a whole, before it is trimmed; the others have no part in the mesh.
 /// @param points   of this rank, maybe none: any share of all points
 /// @param exchange with the other ranks; outlives the call
-/// @throws std::invalid_argument also if several ranks are to trim, or `min_depth` is below 5
+/// @throws std::invalid_argument also if `min_depth` is below 5
 FRESCO_EXPORT VolumetricPart reconstructVolumetricPart(std::unique_ptr<PointStream> points,
                                                        const VolumetricOptions& options, const Progress& progress,
                                                        Exchange& exchange);
