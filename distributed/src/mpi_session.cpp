@@ -5,6 +5,7 @@
 #include <fresco/core/require.h>
 #include <fresco/distributed/mpi_session.h>
 #include <limits.h>
+#include <malloc.h>
 #include <optional>
 #include <thread>
 #include <unistd.h>
@@ -54,6 +55,10 @@ class MpiSession::State {
 public:
   State()
   {
+    // Arrays of a rank are smaller than those of one process. Left alone, glibc comes to take them from its heap, and what
+    // lies between them there is not given back: a sixth more memory for 20 million points on four ranks.
+    constexpr int mapped_alone = 4 << 20;
+    mallopt(M_MMAP_THRESHOLD, mapped_alone);
     int made = 0;
     check(MPI_Initialized(&made));
     if (made != 0)
