@@ -26,6 +26,7 @@ struct Request {
   VolumetricOptions options;
   CommonOptions common;
   bool estimate = false;
+  bool parts = false;  ///< each rank writes a file
   int memory = 0;      ///< MB, 0 = no limit
   std::string scratch; ///< folder
 };
@@ -55,6 +56,10 @@ void declareOptions(Args& args, Request& request)
   args.flag("estimate", request.estimate,
             "print three numbers on stdout and stop, without writing OUT: MB of memory, MB of scratch files with this "
             "-memory, seconds to about a factor of two");
+  args.flag(
+      "parts", request.parts,
+      "of fresco_reconstruct_mpi: each rank writes its part as a mesh by itself, OUT_0000.ply ..., and the first an "
+      "index of them, OUT.json");
   args.option("memory", request.memory,
               "MB to stay below, 256 or more: arrays that do not fit go to files in -scratch; the same bytes come out. "
               "0 = all in memory");
@@ -95,6 +100,8 @@ Request parse(int argc, char** argv, const std::string& program)
   } catch (const std::invalid_argument& error) {
     throw UsageError(error.what());
   }
+  if (request.parts && program == "fresco_reconstruct")
+    throw UsageError("-parts goes with fresco_reconstruct_mpi");
   if (request.memory != 0 && bytes(request.memory) < ScratchSpace::least_memory)
     throw UsageError(concat("-memory ", request.memory, " is not ", ScratchSpace::least_memory / 1000000, " or more"));
   if (!request.scratch.empty() && request.memory == 0)
@@ -152,8 +159,11 @@ VolumetricPart makeTogether(const Request& request, Exchange& ranks)
       all.push_back({run.first, run.count});
     return all;
   };
-  writeMeshPart(request.output,
-                {part.result.mesh, runs(part.vertices), runs(part.faces), part.vertex_count, part.face_count}, ranks);
+  const MeshPart own{part.result.mesh, runs(part.vertices), runs(part.faces), part.vertex_count, part.face_count};
+  if (request.parts)
+    writeMeshParts(request.output, own, ranks);
+  else
+    writeMeshPart(request.output, own, ranks);
   return part;
 }
 
@@ -188,7 +198,9 @@ void run(const Request& request, Exchange& ranks)
   std::optional<ScratchSpace> scratch;
   if (request.memory > 0)
     scratch.emplace(bytes(request.memory), scratchFolder(request));
-  if (ranks.size() == 1) {
+  if (request.parts)
+    requireDistinct(meshPartFiles(request.output, ranks.size()), files);
+  if (ranks.size() == 1 && !request.parts) {
     const VolumetricResult result = makeAlone(request);
     return tellCounts(request, result, result.mesh.vertexCount(), result.mesh.faceCount());
   }

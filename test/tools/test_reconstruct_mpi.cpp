@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // fresco_reconstruct_mpi: the same file as fresco_reconstruct, and how it ends when a rank cannot go on.
+#include "mesh_parts.h"
 #include "tools/mpi_job.h"
 namespace {
 using namespace fresco;
@@ -63,6 +64,36 @@ TEST(ReconstructMpi, TrimsAsOneProcess)
   }
 }
 
+// The parts of ranks make up the file of one process, to the byte.
+TEST(ReconstructMpi, PartsMakeUpTheWhole)
+{
+  const std::string folder = scratchFolder();
+  writeBall(folder);
+  const std::string options = " -threads 1 -quiet -depth 10";
+  const Outcome alone = run(folder, "reconstruct a.ply b.pcd one.ply" + options);
+  ASSERT_EQ(alone.status, 0) << alone.err;
+  const Outcome together = runJob(folder, ranks(3, "reconstruct_mpi a.ply b.pcd all.ply -parts" + options));
+  ASSERT_EQ(together.status, 0) << together.err;
+  EXPECT_EQ(listing(folder).size(), 7U); // a, b, one, the index, three parts
+  writeMesh(folder + "/again.ply", joinedParts(folder, "all.json"));
+  EXPECT_TRUE(get(folder + "/again.ply") == get(folder + "/one.ply"));
+}
+
+// Trimmed meshes are one part, as those of shallow octrees; no part takes the place of an input.
+TEST(ReconstructMpi, OnePart)
+{
+  const std::string folder = scratchFolder();
+  writeBall(folder);
+  const Outcome done = runJob(folder, ranks(2, "reconstruct_mpi a.ply all.ply -parts -quiet -depth 7 -trim 5"));
+  ASSERT_EQ(done.status, 0) << done.err;
+  EXPECT_EQ(listing(folder).size(), 4U);
+  EXPECT_GT(joinedParts(folder, "all.json").faceCount(), 0);
+  fs::rename(folder + "/a.ply", folder + "/a_0001.ply");
+  const std::string cloud = get(folder + "/a_0001.ply");
+  EXPECT_EQ(runJob(folder, ranks(2, "reconstruct_mpi a_0001.ply a.ply -parts -quiet -depth 7")).status, 2);
+  EXPECT_TRUE(get(folder + "/a_0001.ply") == cloud);
+}
+
 TEST(ReconstructMpi, OneLineForWhatCannotBeDone)
 {
   const std::string folder = scratchFolder();
@@ -94,9 +125,10 @@ TEST(ReconstructMpi, KilledRank)
   put(folder + "/old.ply", "older");
   const auto before = listing(folder);
   int milliseconds = 400;
-  for (const int victim : {0, 1, 1, 0}) {
-    expectKilledRankEndsAll(folder, "reconstruct_mpi a.ply b.pcd old.ply -depth 11 -threads 1 -quiet", victim,
-                            milliseconds);
+  for (const auto& [victim, parts] : {std::pair{0, ""}, {1, " -parts"}, {1, ""}, {0, " -parts"}}) {
+    expectKilledRankEndsAll(folder,
+                            std::string("reconstruct_mpi a.ply b.pcd old.ply -depth 11 -threads 1 -quiet") + parts,
+                            victim, milliseconds);
     EXPECT_EQ(get(folder + "/old.ply"), "older");
     EXPECT_EQ(listing(folder), before);
     milliseconds += 400;

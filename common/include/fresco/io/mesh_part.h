@@ -21,4 +21,13 @@ struct MeshPart {
 /// see its folder.
 /// @throws std::runtime_error "PATH: reason" if it is no .ply or cannot be written
 FRESCO_EXPORT void writeMeshPart(const std::string& path, const MeshPart& part, Exchange& ranks);
+
+/// Files of writeMeshParts() for OUT.ply: OUT_0000.ply ... by rank, then OUT.json.
+FRESCO_EXPORT std::vector<std::string> meshPartFiles(const std::string& path, int ranks);
+
+/// Each rank writes its part as a mesh by itself: its faces and the vertices they use. Ranks without any write none.
+/// Rank 0 writes the index, which tells how the files make up the whole again: docs/distributed.md. All of them are
+/// there in the end, or none.
+/// @throws std::runtime_error as writeMeshPart()
+FRESCO_EXPORT void writeMeshParts(const std::string& path, const MeshPart& part, Exchange& ranks);
 } // namespace fresco

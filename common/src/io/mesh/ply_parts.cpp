@@ -1,16 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "io/mesh/open_file.h"
 #include "io/mesh/ply.h"
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
-#include <fcntl.h>
-#include <fresco/core/require.h>
 #include <fresco/io/file.h>
 #include <fresco/io/mesh_part.h>
 #include <fresco/io/packing.h>
 #include <fresco/io/unfinished_files.h>
 #include <optional>
-#include <unistd.h>
 namespace fresco {
 namespace {
 using namespace io;
@@ -18,47 +14,29 @@ using namespace io;
 /// A temporary file that rank 0 has made, opened by all.
 class SharedFile {
 public:
-  SharedFile(const std::string& path, Exchange& ranks) : path_(path)
+  SharedFile(const std::string& path, Exchange& ranks)
   {
     if (ranks.rank() == 0)
       own_.emplace(path);
     temporary_ = gatherValues(ranks, own_ ? own_->temporaryPath() : std::string())[0];
     if (!own_)
       addUnfinishedFile(temporary_); // rank 0 may be killed
-    descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_NOFOLLOW | O_CLOEXEC);
-    if (descriptor_ < 0)
-      fail();
+    file_.emplace(path, temporary_);
   }
   ~SharedFile()
   {
-    ::close(descriptor_);
     if (!own_)
       dropUnfinishedFile(temporary_);
   }
   SharedFile(const SharedFile&) = delete;
   SharedFile& operator=(const SharedFile&) = delete;
 
-  void write(std::uint64_t offset, const void* data, std::size_t bytes) const
-  {
-    constexpr std::size_t piece = std::size_t{8} << 20; // a call under way holds up the end of the process
-    const auto* from = static_cast<const char*>(data);
-    while (bytes > 0) {
-      const ssize_t done = ::pwrite(descriptor_, from, std::min(bytes, piece), static_cast<off_t>(offset));
-      if (done < 0 && errno == EINTR)
-        continue;
-      if (done < 0)
-        fail();
-      from += done;
-      offset += static_cast<std::size_t>(done);
-      bytes -= static_cast<std::size_t>(done);
-    }
-  }
+  void write(std::uint64_t offset, const void* data, std::size_t bytes) const { file_->write(offset, data, bytes); }
 
   /// By all ranks.
   void commit(Exchange& ranks)
   {
-    if (::fsync(descriptor_) != 0 && errno != EINVAL)
-      fail();
+    file_->finish();
     awaitAll(ranks);
     if (own_)
       own_->commit();
@@ -66,13 +44,9 @@ public:
   }
 
 private:
-  [[noreturn]] void fail() const
-  {
-    throw std::runtime_error(concat(path_, ": cannot be written (", std::strerror(errno), ")"));
-  }
-  std::string path_, temporary_;
+  std::string temporary_;
   std::optional<OutputFile> own_;
-  int descriptor_ = -1;
+  std::optional<OpenFile> file_;
 };
 
 /// What is alike on all ranks that have a vertex.
