@@ -11,10 +11,9 @@
 #include <utility>
 #include <vector>
 namespace fresco {
-/// Values as bytes, for messages between ranks on machines of one kind. A struct that is no plain memory needs a function
-/// `template <typename Archive> void fields(Archive& archive, Struct& s) { archive(s.first, s.second); }` beside it, which
-/// serves both directions.
-class Packer {
+/// What both directions share. @tparam Archive has block(data, bytes)
+template <typename Archive>
+class ArchiveBase {
 public:
   template <typename... Values>
   void operator()(Values&... values)
@@ -22,6 +21,23 @@ public:
     (add(values), ...);
   }
 
+protected:
+  template <typename Value>
+  void add(Value& value)
+  {
+    Archive& archive = static_cast<Archive&>(*this);
+    if constexpr (std::is_trivially_copyable_v<Value>)
+      archive.block(&value, sizeof(value));
+    else
+      fields(archive, value);
+  }
+};
+
+/// Values as bytes, for messages between ranks on machines of one kind. A struct that is no plain memory needs a function
+/// `template <typename Archive> void fields(Archive& archive, Struct& s) { archive(s.first, s.second); }` beside it, which
+/// serves both directions.
+class Packer : public ArchiveBase<Packer> {
+public:
   /// Of a container that is to be filled alike.
   std::size_t count(std::size_t size)
   {
@@ -38,28 +54,13 @@ public:
   Exchange::Bytes take() { return std::move(bytes_); }
 
 private:
-  template <typename Value>
-  void add(Value& value)
-  {
-    if constexpr (std::is_trivially_copyable_v<Value>)
-      block(&value, sizeof(value));
-    else
-      fields(*this, value);
-  }
-
   Exchange::Bytes bytes_;
 };
 
 /// The way back. @throws std::runtime_error if the bytes end too early
-class Unpacker {
+class Unpacker : public ArchiveBase<Unpacker> {
 public:
   explicit Unpacker(const Exchange::Bytes& bytes) : bytes_(bytes) {}
-
-  template <typename... Values>
-  void operator()(Values&... values)
-  {
-    (add(values), ...);
-  }
 
   std::size_t count(std::size_t)
   {
@@ -78,15 +79,6 @@ public:
   }
 
 private:
-  template <typename Value>
-  void add(Value& value)
-  {
-    if constexpr (std::is_trivially_copyable_v<Value>)
-      block(&value, sizeof(value));
-    else
-      fields(*this, value);
-  }
-
   const Exchange::Bytes& bytes_;
   std::size_t at_ = 0;
 };

@@ -6,12 +6,15 @@
 #include <filesystem>
 #include <fresco/core/require.h>
 #include <fresco/io/file.h>
+#include <fresco/io/json_text.h>
 #include <fresco/io/packing.h>
 #include <fresco/io/unfinished_files.h>
+#include <nlohmann/json.hpp>
 #include <optional>
 namespace fresco {
 namespace {
 using namespace io;
+using Json = nlohmann::ordered_json;
 using Runs = std::vector<MeshPart::Run>;
 
 /// What the index tells of a file.
@@ -44,51 +47,33 @@ Entry entryOf(const std::string& path, const SeparateMesh& own, const Runs& face
   return entry;
 }
 
-std::string quoted(const std::string& text)
+Json listOf(const Runs& runs)
 {
-  std::string result = "\"";
-  for (const char c : text)
-    if (c == '"' || c == '\\')
-      result += {'\\', c};
-    else if (static_cast<unsigned char>(c) < 0x20) {
-      char code[8];
-      std::snprintf(code, sizeof(code), "\\u%04x", static_cast<unsigned>(c));
-      result += code;
-    } else
-      result += c;
-  return result + '"';
-}
-
-std::string triple(const std::array<double, 3>& v)
-{
-  char text[100];
-  std::snprintf(text, sizeof(text), "[%.17g, %.17g, %.17g]", v[0], v[1], v[2]);
-  return text;
-}
-
-std::string listOf(const Runs& runs)
-{
-  std::string list = "[";
+  Json list = Json::array();
   for (const MeshPart::Run& run : runs)
-    list += concat(list.size() > 1 ? ", [" : "[", run.first, ", ", run.count, ']');
-  return list + ']';
+    list.push_back({run.first, run.count});
+  return list;
 }
 
 std::string indexOf(const MeshPart& whole, const std::vector<Entry>& entries)
 {
-  std::string parts;
-  Index count = 0;
-  for (const Entry& entry : entries) {
-    if (entry.file.empty())
-      continue;
-    parts += concat(count++ > 0 ? ",\n" : "", "    {\"file\": ", quoted(entry.file), ", \"vertices\": ", entry.vertices,
-                    ", \"faces\": ", entry.faces, ",\n     \"lowest\": ", triple(entry.lowest),
-                    ", \"highest\": ", triple(entry.highest), ",\n     \"vertex_runs\": ", listOf(entry.vertex_runs),
-                    ",\n     \"face_runs\": ", listOf(entry.face_runs), '}');
-  }
-  return concat("{\n  \"format\": \"fresco mesh parts 1\",\n  \"vertices\": ", whole.vertex_count,
-                ",\n  \"faces\": ", whole.face_count, ",\n  \"part_count\": ", count, ",\n  \"parts\": [\n", parts,
-                "\n  ]\n}\n");
+  Json parts = Json::array();
+  for (const Entry& entry : entries)
+    if (!entry.file.empty())
+      parts.push_back({{"file", entry.file},
+                       {"vertices", entry.vertices},
+                       {"faces", entry.faces},
+                       {"lowest", entry.lowest},
+                       {"highest", entry.highest},
+                       {"vertex_runs", listOf(entry.vertex_runs)},
+                       {"face_runs", listOf(entry.face_runs)}});
+  const std::size_t count = parts.size();
+  return jsonText(Json{{"format", "fresco mesh parts 1"},
+                       {"vertices", whole.vertex_count},
+                       {"faces", whole.face_count},
+                       {"part_count", count},
+                       {"parts", std::move(parts)}},
+                  1);
 }
 
 /// A file of this rank, or none. The other ranks remove it, too, should this one be killed.
