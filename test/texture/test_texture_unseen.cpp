@@ -223,5 +223,57 @@ TEST(TextureUnseen, WhatIsIgnoredIsSaid)
   const std::vector<TextureView> many(401, view); // as many as one likes are refined
   EXPECT_EQ(reconstructTexture(cube(), many).warnings, without);
 }
+
+/// A red square in the middle of the second of two views that see the top.
+TEST(TextureUnseen, WhatStoodInOnePhotographIsNotPaintedThoughFewSeeThePlace)
+{
+  const TriangleMesh mesh = cube();
+  const auto grey = [](const Eigen::Vector3d& p) { return Eigen::Vector3d(110 + 20 * std::sin(3 * p.x()), 120, 130); };
+  std::vector<TextureView> views;
+  for (const Eigen::Vector3d& eye :
+       {Eigen::Vector3d(0.5, 0.3, 4.2), Eigen::Vector3d(-0.5, 0.2, 4), Eigen::Vector3d(0.1, -0.6, 4.4)})
+    views.push_back(photograph(mesh, grey, camera(), lookAt(eye, {0, 0, 0})));
+  for (int y = 60; y < 140; ++y)
+    for (int x = 60; x < 110; ++x)
+      std::copy_n(std::array<std::uint8_t, 3>{200, 30, 20}.data(), 3, views[1].image.pixel(x, y));
+  const TextureResult result = reconstructTexture(mesh, views);
+  int red = 0;
+  forPlaces(mesh, 2000, [&](Index f, const Eigen::Vector3d& w) {
+    const Eigen::Vector3d c = colorAt(result.model, f, w);
+    red += pointAt(mesh, f, w).z() > 0.99 && c.x() > c.z() + 30;
+  });
+  EXPECT_EQ(red, 0);
+}
+
+/// Two of three views of the right half show red there, but other views of the left half tell what the red is.
+TEST(TextureUnseen, WhatStoodInTwoOfThreePhotographsIsNoMajority)
+{
+  const TriangleMesh mesh = cube();
+  const Pattern grey = [](const Eigen::Vector3d& p) {
+    return Eigen::Vector3d(110 + 20 * std::sin(3 * p.x()), 120, 130);
+  };
+  const Pattern visited = [&](const Eigen::Vector3d& p) {
+    const bool there = p.x() > -0.6 && p.x() < 0.25 && std::abs(p.y()) < 0.4 && p.z() > 0.99;
+    return there ? Eigen::Vector3d(200, 30, 20) : grey(p);
+  };
+  std::vector<TextureView> views;
+  for (int v = 0; v < 7; ++v) {
+    const Eigen::Vector3d eye(0.2 * v - 0.6, 0.3 * (v % 3) - 0.3, 4 + 0.1 * v);
+    views.push_back(photograph(mesh, v < 2 ? visited : grey, camera(), lookAt(eye, {0, 0, 0})));
+    if (v < 3)
+      continue;
+    views[v].mask = Image(200, 200, 1, 0); // left half alone
+    for (int y = 0; y < 200; ++y)
+      std::fill_n(views[v].mask.pixel(0, y), 100, 255);
+  }
+  const TextureResult result = reconstructTexture(mesh, views);
+  int red = 0;
+  forPlaces(mesh, 2000, [&](Index f, const Eigen::Vector3d& w) {
+    const Eigen::Vector3d c = colorAt(result.model, f, w), p = pointAt(mesh, f, w);
+    const bool rim = p.x() > 0.2 || std::abs(p.y()) > 0.35; // patches there are of both colours
+    red += p.z() > 0.99 && !rim && c.x() > c.z() + 30;
+  });
+  EXPECT_EQ(red, 0);
+}
 } // namespace
 } // namespace fresco::test

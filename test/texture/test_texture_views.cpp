@@ -82,27 +82,6 @@ TEST(TextureViews, ResponseCurveIsFoundAndUndone)
   EXPECT_TRUE(sameAtlases(result, reconstructTexture(mesh, bent, withThreads(2))));
 }
 
-/// A red square in the middle of the second of two views that see the top.
-TEST(TextureViews, WhatStoodInOnePhotographIsNotPaintedThoughFewSeeThePlace)
-{
-  const TriangleMesh mesh = cube();
-  const auto grey = [](const Eigen::Vector3d& p) { return Eigen::Vector3d(110 + 20 * std::sin(3 * p.x()), 120, 130); };
-  std::vector<TextureView> views;
-  for (const Eigen::Vector3d& eye :
-       {Eigen::Vector3d(0.5, 0.3, 4.2), Eigen::Vector3d(-0.5, 0.2, 4), Eigen::Vector3d(0.1, -0.6, 4.4)})
-    views.push_back(photograph(mesh, grey, camera(), lookAt(eye, {0, 0, 0})));
-  for (int y = 60; y < 140; ++y)
-    for (int x = 60; x < 110; ++x)
-      std::copy_n(std::array<std::uint8_t, 3>{200, 30, 20}.data(), 3, views[1].image.pixel(x, y));
-  const TextureResult result = reconstructTexture(mesh, views);
-  int red = 0;
-  forPlaces(mesh, 2000, [&](Index f, const Eigen::Vector3d& w) {
-    const Eigen::Vector3d c = colorAt(result.model, f, w);
-    red += pointAt(mesh, f, w).z() > 0.99 && c.x() > c.z() + 30;
-  });
-  EXPECT_EQ(red, 0);
-}
-
 /// Photographs with something green in their middles, hidden by masks.
 TEST(TextureViews, NothingIsTakenFromWhatMasksHide)
 {
