@@ -15,12 +15,29 @@ public:
     float support; ///< as `depth`, but no more than the samples nearby sustain: small where all lie to one side
   };
 
-  /// @param depth, brick brick of the octree in or next to which the position lies
-  /// @param position     in cells of the finest depth
-  Estimate at(int depth, Index brick, const Eigen::Vector3f& position) const;
+  /// Asks for many places, one brick's after the other: it keeps the weights around the last brick of each depth.
+  class Reader {
+  public:
+    explicit Reader(const Density& density);
+
+    /// @param depth, brick brick of the octree that the position lies in
+    /// @param position     in cells of the finest depth
+    Estimate at(int depth, Index brick, const Eigen::Vector3f& position);
+
+  private:
+    static constexpr int side = brick_nodes + 2; ///< nodes -1..5: all that a position in the brick is between
+    struct Window {
+      Index brick = -1;
+      float weights[side * side * side];
+    };
+    void load(int depth, Index brick);
+    float weightAt(int depth, Index brick, const Eigen::Vector3f& position);
+
+    const Density& density_;
+    std::vector<Window> windows_; ///< by depth
+  };
 
 private:
-  float weightAt(int depth, Index brick, const Eigen::Vector3f& position) const;
   const Octree* tree_;
   std::vector<NodeField> fields_; ///< by depth
 };

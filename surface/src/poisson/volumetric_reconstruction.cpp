@@ -122,10 +122,13 @@ Eigen::VectorXf vertexSupport(const Density& density, const IsoSurface& surface,
 {
   Eigen::VectorXf support(surface.vertices.cols());
   const float shift = 0.5f * std::log2(samples_per_node);
-  parallelFor(surface.ranges.size(), threads, [&](Index r) {
-    const VertexRange& range = surface.ranges[r];
-    for (Index v = range.first; v < range.first + range.count; ++v)
-      support[v] = std::max(0.f, density.at(range.depth, range.brick, surface.vertices.col(v)).support - shift);
+  parallelRanges(surface.ranges.size(), threads, [&](Index begin, Index end) {
+    Density::Reader reader(density);
+    for (Index r = begin; r < end; ++r) {
+      const VertexRange& range = surface.ranges[r];
+      for (Index v = range.first; v < range.first + range.count; ++v)
+        support[v] = std::max(0.f, reader.at(range.depth, range.brick, surface.vertices.col(v)).support - shift);
+    }
   });
   return support;
 }

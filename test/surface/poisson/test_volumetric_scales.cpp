@@ -32,13 +32,32 @@ TEST(VolumetricScales, DensityDoesNotDependOnPointsFarAway)
   const Octree tree = buildOctree(samples.codes, 6, 2, 1);
   const auto atLast = [&] {
     const Eigen::Vector3f place = samples.samples.back().position;
-    return Density(tree, samples, 1).at(6, tree.levels[6].size() - 1, place);
+    const Density density(tree, samples, 1);
+    return Density::Reader(density).at(6, tree.levels[6].size() - 1, place);
   };
   const Density::Estimate before = atLast();
   samples.samples.front().area = 1e9f;
   EXPECT_EQ(atLast().depth, before.depth);
   EXPECT_EQ(atLast().area, before.area);
   EXPECT_EQ(atLast().support, before.support);
+}
+
+/// What was asked before does not matter.
+TEST(VolumetricScales, DensityInAnyOrder)
+{
+  const Samples samples = gatherSamples(sphere(2000), atDepth(6));
+  const Octree tree = buildOctree(samples.codes, 6, 2, 1);
+  const Density density(tree, samples, 1);
+  Density::Reader reader(density);
+  const Index bricks = tree.levels[6].size();
+  for (Index k = 0; k < 500; ++k) {
+    const Index b = k * 7919 % bricks;
+    const Eigen::Vector3f place = tree.levels[6].origin(b) + Eigen::Vector3f(k % 5, k % 3 + 0.7f, k % 4 + 0.2f);
+    const Density::Estimate once = Density::Reader(density).at(6, b, place), again = reader.at(6, b, place);
+    EXPECT_EQ(once.depth, again.depth);
+    EXPECT_EQ(once.area, again.area);
+    EXPECT_EQ(once.support, again.support);
+  }
 }
 
 /// Sum over the nodes, each counted once, of the field times visit(node in cells).

@@ -218,10 +218,12 @@ int CrossedEdges::vertexOn(EdgePlace edge) const
   return edges.first + edges.rank(owner.axis, nodeIndex(owner.x, owner.y, owner.z));
 }
 
-Eigen::Vector3f CrossedEdges::position(const EdgePlace& edge) const
+/// @param chi at the nodes of the edge's brick
+Eigen::Vector3f CrossedEdges::position(const EdgePlace& edge, const float* chi) const
 {
   constexpr float end_margin = 1e-3f; // of an edge of length 1: no two vertices coincide
-  const float a = lowerEnd(edge), b = upperEnd(edge);
+  const int node = nodeIndex(edge.x, edge.y, edge.z);
+  const float a = chi[node], b = chi[node + stepAlong(edge.axis)];
   const float t = std::clamp((surface_->value - a) / (b - a), end_margin, 1.f - end_margin);
   const auto corner = surface_->tree->levels[edge.depth].corner(edge.brick);
   Eigen::Vector3f p(corner[0] + edge.x, corner[1] + edge.y, corner[2] + edge.z);
@@ -234,12 +236,16 @@ void CrossedEdges::fillPositions(int threads, Points& positions) const
   for (int d = 2; d <= surface_->tree->depth; ++d)
     parallelFor(bricks_[d].size(), threads, [&](int b) {
       const BrickEdges& edges = bricks_[d][b];
+      if (edges.count() == 0)
+        return;
+      float chi[nodes_per_brick];
+      (*surface_->chi)[d].load(surface_->tree->levels[d], b, chi);
       Index at = edges.first;
       for (int w = 0; w < 6; ++w)
         for (int bit = 0; edges.bits[w] >> bit != 0; ++bit) {
           if (edges.bits[w] >> bit & 1) {
             const int node = (w & 1) * 64 + bit;
-            positions.col(at++) = position({d, b, w / 2, node % 5, node / 5 % 5, node / 25});
+            positions.col(at++) = position({d, b, w / 2, node % 5, node / 5 % 5, node / 25}, chi);
           }
           if (bit == 63)
             break;

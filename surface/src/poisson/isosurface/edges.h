@@ -85,7 +85,7 @@ private:
   float lowerEnd(const EdgePlace& edge) const; ///< chi there
   float upperEnd(const EdgePlace& edge) const;
   bool finerHalf(EdgePlace& edge) const;
-  Eigen::Vector3f position(const EdgePlace& edge) const;
+  Eigen::Vector3f position(const EdgePlace& edge, const float* chi) const;
 
   const LevelSet* surface_;
   std::vector<Bricks> bricks_; ///< by depth

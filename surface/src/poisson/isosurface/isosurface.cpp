@@ -4,6 +4,8 @@
 #include "poisson/octree/halo.h"
 #include "poisson/octree/select.h"
 #include <algorithm>
+#include <array>
+#include <bitset>
 #include <fresco/core/morton.h>
 #include <fresco/core/parallel.h>
 #include <fresco/core/release.h>
@@ -32,11 +34,14 @@ public:
     const Index extra_before = part.extra.size();
     const int b = brick;
     (*surface_.chi)[depth].load(tree_.levels[depth], brick, nodes_);
+    const NodeBits crossed = crossedCells();
+    if (crossed.none())
+      return;
     for (int z = 0; z < brick_cells; ++z)
       for (int y = 0; y < brick_cells; ++y)
         for (int x = 0; x < brick_cells; ++x)
           if (const CellPlace cell{depth, b, x, y, z};
-              isCrossed(x, y, z) && childBrick(tree_, cell) < 0 && isOwn(cell)) {
+              crossed[nodeIndex(x, y, z)] && childBrick(tree_, cell) < 0 && isOwn(cell)) {
             const Index faces = part.faces.size() / 3, extra = part.extra.size();
             marchCell(cell, part);
             if (tree_.partition)
@@ -65,21 +70,26 @@ private:
     addToRuns(part.extra_runs, key, extra);
   }
 
-  static int cornerStep(int corner) { return nodeIndex(corner & 1, corner >> 1 & 1, corner >> 2); }
+  using NodeBits = std::bitset<nodes_per_brick>;
 
-  /// Whether the surface passes through a cell of the brick that is marched.
-  bool isCrossed(int x, int y, int z) const
+  /// By the nodeIndex() of their lowest corners: the cells of the marched brick that the surface passes through.
+  NodeBits crossedCells() const
   {
-    const float* v = nodes_ + nodeIndex(x, y, z);
-    int inside = 0;
-    for (int c = 0; c < 8; ++c)
-      inside += surface_.inside(v[cornerStep(c)]);
-    return inside != 0 && inside != 8;
+    NodeBits some;
+    for (int i = 0; i < nodes_per_brick; ++i)
+      some[i] = surface_.inside(nodes_[i]);
+    NodeBits all = some;
+    for (const int step : {nodeIndex(1, 0, 0), nodeIndex(0, 1, 0), nodeIndex(0, 0, 1)}) {
+      some |= some >> step;
+      all &= all >> step;
+    }
+    return some & ~all;
   }
 
   void marchCell(const CellPlace& cell, Part& part)
   {
     polygons_.clear();
+    edge_vertices_.fill(unknown);
     for (int face = 0; face < 6; ++face)
       if (const CellPlace beyond = refinedBeyond(cell, face); beyond.brick >= 0)
         addFace(beyond, face ^ 1, face, true);
@@ -122,16 +132,16 @@ private:
   {
     float chi[4];
     for (int k = 0; k < 4; ++k) {
-      const int c = face_corners[face][k];
-      chi[k] = surface_.at(cell.depth, cell.brick, cell.x + (c & 1), cell.y + (c >> 1 & 1), cell.z + (c >> 2)) -
-               surface_.value;
+      const int c = face_corners[face][k], x = cell.x + (c & 1), y = cell.y + (c >> 1 & 1), z = cell.z + (c >> 2);
+      chi[k] = (reversed ? surface_.at(cell.depth, cell.brick, x, y, z) : nodes_[nodeIndex(x, y, z)]) - surface_.value;
     }
     const FaceCrossings crossings = crossFace(chi);
     for (int s = 0; s < crossings.count; ++s) {
-      int from = vertexOnSide(cell, face, crossings.from[s]), to = vertexOnSide(cell, face, crossings.to[s]);
+      const int a = crossings.from[s], b = crossings.to[s];
       if (reversed)
-        std::swap(from, to);
-      polygons_.add({from, to, owner_face});
+        polygons_.add({vertexOnSide(cell, face, b), vertexOnSide(cell, face, a), owner_face});
+      else
+        polygons_.add({ownVertexOnSide(cell, face, a), ownVertexOnSide(cell, face, b), owner_face});
     }
   }
 
@@ -143,12 +153,24 @@ private:
         {cell.depth, cell.brick, axis, cell.x + (lower & 1), cell.y + (lower >> 1 & 1), cell.z + (lower >> 2)});
   }
 
+  /// The same of the cell that is marched: two of its faces share an edge.
+  int ownVertexOnSide(const CellPlace& cell, int face, int side)
+  {
+    const int a = face_corners[face][side], b = face_corners[face][(side + 1) & 3];
+    int& vertex = edge_vertices_[3 * (a & b) + ((a ^ b) >> 1)];
+    if (vertex == unknown)
+      vertex = vertexOnSide(cell, face, side);
+    return vertex;
+  }
+
   const LevelSet& surface_;
   const Octree& tree_;
   const CrossedEdges& edges_;
   const Points& positions_;
   CellPolygons polygons_;
   float nodes_[nodes_per_brick]; ///< chi in the brick that is marched
+  static constexpr int unknown = -1;
+  std::array<int, 24> edge_vertices_; ///< of the cell that is marched, by 3 x lower corner + axis of the edge
 };
 
 struct BrickPlace {

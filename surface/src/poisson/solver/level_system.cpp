@@ -26,6 +26,14 @@ constexpr Lanes fixed_lanes[16] = {{0, 0, 0, 0},   {-1, 0, 0, 0},   {0, -1, 0, 0
                                    {0, 0, -1, 0},  {-1, 0, -1, 0},  {0, -1, -1, 0},  {-1, -1, -1, 0},
                                    {0, 0, 0, -1},  {-1, 0, 0, -1},  {0, -1, 0, -1},  {-1, -1, 0, -1},
                                    {0, 0, -1, -1}, {-1, 0, -1, -1}, {0, -1, -1, -1}, {-1, -1, -1, -1}};
+
+/// All bricks of shallow levels; of deeper ones an eighth, whole blocks of siblings by a hash of their place: enough
+/// for norms.
+bool isSampled(const BrickLevel& level, Index brick)
+{
+  constexpr int shallow = 8;
+  return level.depth <= shallow || ((level.codes[brick] >> 3) * 0x9E3779B97F4A7C15u) >> 61 == 0;
+}
 } // namespace
 
 /// A brick with what lies around it, in the cache.
@@ -196,6 +204,8 @@ LevelSystem::Norms LevelSystem::residual(const NodeField& b, const NodeField& x)
 {
   const BrickRun own = level_.own();
   const Eigen::Array2d sums = exactSums(level_.exchange(), own.end - own.begin, threads_, [&](Index i) {
+    if (!isSampled(level_, own.begin + i))
+      return Eigen::Array2d(0, 0);
     Block block;
     load(own.begin + i, b, x, block);
     const Norms norms = block.residual();

@@ -39,7 +39,7 @@ struct VolumetricResult {
   TriangleMesh mesh;
   int depth = 0;             ///< depth used
   double cell_size = 0.0;    ///< side of the finest cell
-  double residual = 0.0;     ///< |A x - b| / |b| at the finest depth
+  double residual = 0.0;     ///< |A x - b| / |b| at the finest depth; below depth 8 of an eighth of the unknowns
   double trim_depth = 0.0;   ///< depth below which the surface was cut away, 0 = nowhere
   Index used_points = 0;     ///< points that took part
   Index left_out_points = 0; ///< not finite, without normal or confidence, or far outliers
