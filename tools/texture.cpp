@@ -51,7 +51,7 @@ void declare(Args& args, TextureOptions& options, ToolOptions& tool)
               "pixels over which one photograph passes into the next at a seam, 0..100");
   args.option("strip", options.blend_width, "old name of -blend_width, 0..100");
   args.option("rounds", options.rounds,
-              "how often texels are corrected by all photographs, where these agree within half a pixel, 0..100");
+              "how often texels are corrected by all photographs, 0..100; not with -no_refine or -no_exposure");
   args.option(
       "keep_out", tool.keep_out,
       "every Nth photograph (the Nth, 2Nth ...) is aligned with the others but not used, to judge by; 0 = none");

@@ -57,6 +57,34 @@ TEST(TextureDetail, AllPhotographsTogetherShowMoreThanTheBestOne)
   EXPECT_LT(colorError(corrected.model, fine).mean, 0.85 * colorError(painted.model, fine).mean);
 }
 
+/// The photograph bent by a pixel, each row by its own: no camera explains it.
+void bend(double phase, Image& photo)
+{
+  const Image straight = photo;
+  for (int y = 0; y < photo.height; ++y)
+    for (int x = 0; x < photo.width; ++x) {
+      const double from = std::clamp(x + std::sin(0.15 * y + phase), 0.0, photo.width - 1.001);
+      const int i = static_cast<int>(from);
+      for (int c = 0; c < 3; ++c) {
+        const double left = straight.pixel(i, y)[c], right = straight.pixel(i + 1, y)[c];
+        photo.pixel(x, y)[c] = static_cast<std::uint8_t>(std::lround(left + (from - i) * (right - left)));
+      }
+    }
+}
+
+TEST(TextureDetail, PhotographsThatAreOffDoNoHarm)
+{
+  const TriangleMesh mesh = cube();
+  std::vector<TextureView> views = photographsAround(mesh, detailed);
+  for (std::size_t v = 0; v < views.size(); ++v)
+    bend(v, views[v].image);
+  const TextureResult painted = reconstructTexture(mesh, views, withRounds(0)),
+                      corrected = reconstructTexture(mesh, views, withRounds(2));
+  ASSERT_GT(corrected.disagreement_after, 0.5);
+  EXPECT_LT(colorError(corrected.model, detailed).mean, 1.02 * colorError(painted.model, detailed).mean);
+  EXPECT_LT(colorError(corrected.model, detailed).largest, 1.02 * colorError(painted.model, detailed).largest);
+}
+
 TEST(TextureDetail, ThreadsDoNotChangeIt)
 {
   const TriangleMesh mesh = cube();

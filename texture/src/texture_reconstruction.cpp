@@ -63,6 +63,16 @@ Eigen::VectorXi ownersOf(const Eigen::VectorXi& view, const std::vector<int>& ow
   return view.unaryExpr([&](int v) { return v < 0 ? -1 : owner[v]; });
 }
 
+/// Values of what was given as values of parts; none stay none.
+template <typename T>
+std::vector<T> ofParts(const std::vector<T>& values, const std::vector<int>& owner)
+{
+  std::vector<T> out;
+  for (std::size_t part = 0; part < owner.size() && !values.empty(); ++part)
+    out.push_back(values[owner[part]]);
+  return out;
+}
+
 /// What all steps read and write.
 struct Job {
   const TextureOptions& options;
@@ -151,8 +161,8 @@ void paintModel(const Job& job, ViewChoice& choice)
   paintPhotographs(scene, sources, choice.view, job);
 
   steps.begin("back-projection", 0.85);
-  if (options.exposure && photographsAgree(result))
-    backProject(scene, sources, options.rounds, atlases);
+  if (options.exposure)
+    backProject(scene, sources, {options.rounds, ofParts(registrationErrors(result), views.owner)}, atlases);
 
   steps.begin("inpainting", 0.9);
   paintUnseen(scene, diffuseColors(patches, patchColors(scene, atlases), options.threads), atlases, result.masks);
@@ -190,14 +200,13 @@ TextureResult reconstruct(const TexturedMesh& given, const std::vector<TextureVi
     inside_out = insideOutFaces(result.model.mesh, *rays, projectors, result);
   for (TexturedMesh* m : {&model, &result.model})
     turnFaces(inside_out, *m);
-  const std::vector<double> misfit = misfits(result);
   warnOfMisfits(views, result);
   ViewList list{projectors, photos, {}, {}, poseUncertainty(result), lensNumbers(parts), {}};
   for (const ViewPart& part : parts) {
     list.used.push_back(part.given->paint);
     list.owner.push_back(part.view);
-    list.misfits.push_back(misfit[part.view]);
   }
+  list.misfits = ofParts(misfits(result), list.owner);
   const Job job{options, list, steps, result};
   ViewChoice choice = chooseViews(job, *rays, progress);
   rays.reset(); // painting needs the memory

@@ -13,6 +13,8 @@ namespace fresco::texture {
 namespace {
 /// Cameras that agree so well are left alone: half a pixel is what matching itself errs by.
 constexpr double agreement_pixels = 0.5;
+constexpr double exact_pixels = 0.3;    // what matching errs by where cameras and mesh are exact
+constexpr Index least_fit_matches = 20; // of a photograph, for a median
 
 auto numbersOf(const CameraModel& c)
 {
@@ -211,12 +213,11 @@ void placeCameras(const RefinementInput& input, const TextureOptions& options, c
 
 std::vector<double> misfits(const TextureResult& result)
 {
-  constexpr Index least_matches = 20; // for a median
-  constexpr double most = 4;          // octaves: what no other photograph shows is still painted
+  constexpr double most = 4; // octaves: what no other photograph shows is still painted
   std::vector<double> out(result.cameras.size(), 0);
   const double expected = std::max(agreement_pixels, result.disagreement_after);
   for (std::size_t v = 0; v < result.fits.size(); ++v)
-    if (result.fits[v].matches >= least_matches)
+    if (result.fits[v].matches >= least_fit_matches)
       out[v] = std::clamp(std::log2(result.fits[v].median / expected), 0.0, most);
   return out;
 }
@@ -239,14 +240,19 @@ void warnOfMisfits(const std::vector<TextureView>& views, TextureResult& result)
 
 double poseUncertainty(const TextureResult& result)
 {
-  constexpr double exact = 0.3, vague = 0.7; // pixels: what matching itself errs by, and a disagreement that shows
-  constexpr double least = 0.2;              // the mesh itself stays uncertain
-  const double uncertainty = (result.disagreement_after - exact) / (vague - exact);
+  constexpr double vague = 0.7; // pixels: a disagreement that shows
+  constexpr double least = 0.2; // the mesh itself stays uncertain
+  const double uncertainty = (result.disagreement_after - exact_pixels) / (vague - exact_pixels);
   return result.disagreement_before > 0 ? std::clamp(uncertainty, least, 1.0) : 1.0;
 }
 
-bool photographsAgree(const TextureResult& result)
+std::vector<float> registrationErrors(const TextureResult& result)
 {
-  return result.disagreement_before > 0 && result.disagreement_after <= agreement_pixels;
+  std::vector<float> out;
+  for (const PhotographFit& fit : result.fits) {
+    const double median = fit.matches >= least_fit_matches ? fit.median : result.disagreement_after;
+    out.push_back(std::max(0.0, median - exact_pixels));
+  }
+  return out;
 }
 } // namespace fresco::texture

@@ -31,6 +31,6 @@ std::vector<double> misfits(const TextureResult& result);
 /// @param views as given
 void warnOfMisfits(const std::vector<TextureView>& views, TextureResult& result);
 
-/// Whether the photographs are known to agree so well that texels may be made of several of them.
-bool photographsAgree(const TextureResult& result);
+/// Pixels by which each view is off from the others, beyond what matching itself errs by; empty where that is not known.
+std::vector<float> registrationErrors(const TextureResult& result);
 } // namespace fresco::texture

@@ -9,8 +9,10 @@ namespace fresco::texture {
 namespace {
 class BackProjection {
 public:
-  BackProjection(const PaintScene& scene, const PaintSources& sources, std::vector<Image>& atlases)
-      : scene_(scene), sources_(sources), atlases_(atlases), weights_(sources.candidates.list.size(), 0.f)
+  BackProjection(const PaintScene& scene, const PaintSources& sources, const std::vector<float>& errors,
+                 std::vector<Image>& atlases)
+      : scene_(scene), sources_(sources), errors_(errors), atlases_(atlases),
+        weights_(sources.candidates.list.size(), 0.f)
   {
     parallelFor(scene.patches.size(), scene.threads, [&](Index i) {
       if (scene.isSeen(i))
@@ -74,7 +76,7 @@ private:
       const Index v = first + i;
       if (!shown_[v].empty())
         residuals_[v] = residualOf({scene_, atlases_, sources_.views[v], shown_[v]}, *sources_.photos.get(v),
-                                   {sources_.photometry, static_cast<int>(v), sources_.views[v].camera()});
+                                   {sources_.photometry, static_cast<int>(v), sources_.views[v].camera()}, errors_[v]);
     };
     parallelFor(last - first, scene_.threads, compute, 1);
   }
@@ -174,6 +176,7 @@ private:
 
   const PaintScene& scene_;
   const PaintSources& sources_;
+  const std::vector<float>& errors_;
   std::vector<Image>& atlases_;
   std::vector<float> weights_;           ///< of each candidate, 0..1; those of a patch sum to 1
   std::vector<std::vector<int>> shown_;  ///< by view, patches in their order
@@ -189,12 +192,13 @@ float gainOf(int round, int rounds)
 }
 } // namespace
 
-void backProject(const PaintScene& scene, const PaintSources& sources, int rounds, std::vector<Image>& atlases)
+void backProject(const PaintScene& scene, const PaintSources& sources, const BackProjectionOptions& options,
+                 std::vector<Image>& atlases)
 {
-  if (rounds == 0)
+  if (options.rounds == 0 || options.errors.empty())
     return;
-  BackProjection projection(scene, sources, atlases);
-  for (int round = 0; round < rounds; ++round)
-    projection.round(gainOf(round, rounds));
+  BackProjection projection(scene, sources, options.errors, atlases);
+  for (int round = 0; round < options.rounds; ++round)
+    projection.round(gainOf(round, options.rounds));
 }
 } // namespace fresco::texture

@@ -147,10 +147,21 @@ float coverageWeight(float covered)
       std::min((covered - none_below) / (all_from - none_below), (none_above - covered) / (none_above - all_to)), 0.f,
       1.f);
 }
+
+/// 0..1, weight of Geman & McClure 1987: what a photograph that is off shows otherwise is its being off.
+/// @param difference grey levels
+/// @param error of the photograph's place, pixels
+float agreementWeight(float difference, float error)
+{
+  constexpr float steepness = 12; // grey levels per pixel: what is steeper differs by the error
+  const float x = difference * error / steepness, w = 1 / (1 + x * x);
+  return w * w;
+}
 } // namespace
 
-PhotoResidual residualOf(const Prediction& prediction, const Image& photo, const PixelGain& gain)
+PhotoResidual residualOf(const Prediction& prediction, const Image& photo, const PixelGain& gain, float error)
 {
+
   constexpr std::uint8_t overexposed = 254; // grey level: the light may have been any brighter
   constexpr float largest = 127;            // of what is stored
   const std::size_t count = cellCount(photo.width, photo.height);
@@ -171,8 +182,9 @@ PhotoResidual residualOf(const Prediction& prediction, const Image& photo, const
     const Eigen::Vector3f more =
         gain({i % photo.width + 0.5f, i / photo.width + 0.5f}, Eigen::Vector3f(p[0], p[1], p[2])) -
         pixel.head<3>() / pixel.w();
+    const float weight = PhotoResidual::per_level * trust * agreementWeight(more.cwiseAbs().maxCoeff(), error);
     for (int c = 0; c < 3; ++c)
-      out.pixels[i][c] = std::lrint(std::clamp(PhotoResidual::per_level * trust * more[c], -largest, largest));
+      out.pixels[i][c] = std::lrint(std::clamp(weight * more[c], -largest, largest));
   }
   return out;
 }

@@ -42,6 +42,8 @@ struct Prediction {
 };
 
 /// A pixel is predicted as the mean of what bilinear interpolation of the texels gives over its area. Pixels that the
-/// patches cover in part or more than once, at outlines for instance, are trusted little or not.
-PhotoResidual residualOf(const Prediction& prediction, const Image& photo, const PixelGain& gain);
+/// patches cover in part or more than once, at outlines for instance, are trusted little or not. So are those that differ
+/// much where the photograph is off.
+/// @param error by which it is off from others, pixels
+PhotoResidual residualOf(const Prediction& prediction, const Image& photo, const PixelGain& gain, float error);
 } // namespace fresco::texture

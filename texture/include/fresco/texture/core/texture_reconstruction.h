@@ -31,8 +31,8 @@ struct TextureOptions {
   bool consistency = true; ///< avoid photographs whose colour differs from what most show of the same surface
   bool level = true;       ///< seam levelling: take away what steps of colour are left at seams
   double blend_width = 6;  ///< pixels over which one photograph passes into the next at a seam (feathering), 0..100
-  /// Rounds of back-projection: texels are made of all photographs together, 0..100. Only where refinement found them to
-  /// agree within half a pixel and exposures are brought together.
+  /// Rounds of back-projection: texels are made of all photographs together, 0..100. Those that refinement leaves off by more
+  /// count less where they differ. Only where `refine` and `exposure` are on.
   int rounds = 2;
   bool examples = true; ///< give larger unseen parts the fine structure of the seen surface beside them
   int memory = 1024;    ///< MB of photographs kept at a time, decoded or as grey copies, >= 1
