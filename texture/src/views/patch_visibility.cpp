@@ -23,19 +23,33 @@ float typicalDepth(const PatchMesh& patches, const std::vector<Projector>& views
   return median(depths);
 }
 
-/// Cells from a place to the triangle's nearest side, positive inside; some number below -1 where it lies further out.
-float depthInside(const Footprint& patch, const Eigen::Vector2f& p)
-{
-  const auto& c = patch.corners;
-  const Eigen::Vector2f u = c.col(1) - c.col(0), v = c.col(2) - c.col(0);
-  const float turn = u.x() * v.y() - u.y() * v.x() > 0 ? 1.f : -1.f;
-  float depth = std::numeric_limits<float>::infinity();
-  for (int k = 0; k < 3 && depth >= -1; ++k) {
-    const Eigen::Vector2f edge = c.col((k + 1) % 3) - c.col(k), to = p - c.col(k);
-    depth = std::min(depth, turn * (edge.x() * to.y() - edge.y() * to.x()) / std::max(edge.norm(), 1e-6f));
+/// Where places lie of a triangle.
+class Triangle {
+public:
+  explicit Triangle(const Footprint& patch) : corners_(patch.corners)
+  {
+    for (int k = 0; k < 3; ++k)
+      edges_.col(k) = corners_.col((k + 1) % 3) - corners_.col(k);
+    if (!(cross(edges_.col(0), -edges_.col(2)) > 0)) // clockwise
+      edges_ = -edges_;
+    lengths_ = edges_.colwise().norm().cwiseMax(1e-6f);
   }
-  return depth;
-}
+
+  /// Whether the place lies in it or at most so many cells beyond each side.
+  bool holds(const Eigen::Vector2f& p, float beyond) const
+  {
+    for (int k = 0; k < 3; ++k)
+      if (!(cross(edges_.col(k), p - corners_.col(k)) >= -beyond * lengths_[k]))
+        return false;
+    return true;
+  }
+
+private:
+  static float cross(const Eigen::Vector2f& a, const Eigen::Vector2f& b) { return a.x() * b.y() - a.y() * b.x(); }
+
+  Eigen::Matrix<float, 2, 3> corners_, edges_;
+  Eigen::RowVector3f lengths_;
+};
 
 /// Cells around a patch's corners.
 struct CellBox {
@@ -115,6 +129,7 @@ Visibility visibilityOf(const Footprint& patch, const DepthMap& map, float toler
   const CellBox box = cellsOf(patch, map);
   const Eigen::Vector2i middle = patch.corners.rowwise().mean().array().floor().cast<int>().matrix();
   const PlaneTest plane(patch, tolerance);
+  const Triangle triangle(patch);
   Visibility visibility = Visibility::clear;
   for (int y = box.y0; y <= box.y1; ++y)
     for (int x = box.x0; x <= box.x1; ++x) {
@@ -122,10 +137,9 @@ Visibility visibilityOf(const Footprint& patch, const DepthMap& map, float toler
       if (!(hit < patch.farthest - tolerance))
         continue;
       const Eigen::Vector2f p(x + 0.5f, y + 0.5f);
-      const float inside = depthInside(patch, p);
-      if (inside < -1 || !plane.endsBefore(hit, p))
+      if (!triangle.holds(p, 1) || !plane.endsBefore(hit, p))
         continue;
-      if (inside >= 0 || Eigen::Vector2i(x, y) == middle)
+      if (triangle.holds(p, 0) || Eigen::Vector2i(x, y) == middle)
         return Visibility::hidden;
       visibility = Visibility::beside;
     }
@@ -136,10 +150,11 @@ bool isSeenInPart(const Footprint& patch, const DepthMap& map, float tolerance)
 {
   const CellBox box = cellsOf(patch, map);
   const PlaneTest plane(patch, tolerance);
+  const Triangle triangle(patch);
   for (int y = box.y0; y <= box.y1; ++y)
     for (int x = box.x0; x <= box.x1; ++x) {
       const Eigen::Vector2f p(x + 0.5f, y + 0.5f);
-      if (depthInside(patch, p) >= 0 && !plane.endsBefore(map.at(x, y), p))
+      if (triangle.holds(p, 0) && !plane.endsBefore(map.at(x, y), p))
         return true;
     }
   return false;

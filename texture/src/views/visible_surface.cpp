@@ -103,9 +103,13 @@ PatchMesh cutHiddenParts(PatchMesh patches, const VisibilityInput& input, const 
   const int threads = input.options.threads;
   const DepthTest test{input.views.projectors, maps, limitsFor(patches, input.views, input.options).tolerance};
   constexpr int rounds = 3; // each halves the sides: patches of 2 pixels
+  Index known = 0;          // vertices: patches that were cut have later ones, others stay as they were judged
   for (int round = 0; round < rounds; ++round) {
     std::vector<char> marked(patches.size());
-    parallelFor(patches.size(), threads, [&](Index i) { marked[i] = isOnlySeenInPart(patches, i, test); });
+    parallelFor(patches.size(), threads, [&](Index i) {
+      marked[i] = patches.faces.col(i).maxCoeff() >= known && isOnlySeenInPart(patches, i, test);
+    });
+    known = patches.vertices.cols();
     patches = cutPatches(patches, marked, threads);
   }
   return patches;
