@@ -293,15 +293,14 @@ private:
 /// @param matchings fine to coarse
 void matchCoarseToFine(std::vector<Matching>& matchings)
 {
-  constexpr int rounds = 6, passes = 2;        // finer levels start from coarser ones and need fewer
-  constexpr std::size_t many_windows = 300000; // one round at the finest level: time; its matches come from the coarser
+  constexpr int rounds = 6, passes = 2; // finer levels start from coarser ones and need fewer
   matchings.back().start();
   matchings.back().refine(2 * rounds, passes);
   for (std::size_t l = matchings.size() - 1; l-- > 0;) {
     matchings[l].startFrom(matchings[l + 1]);
-    matchings[l].refine(matchings[l].targets() > many_windows ? 1 : 2, passes);
+    matchings[l].refine(l > 0 ? 2 : 1, l > 0 ? passes : 1);
   }
-  matchings.front().finish(matchings.front().targets() > many_windows ? 0 : passes);
+  matchings.front().finish(1);
 }
 } // namespace
 
