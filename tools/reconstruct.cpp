@@ -26,9 +26,10 @@ struct Request {
   VolumetricOptions options;
   CommonOptions common;
   bool estimate = false;
-  bool parts = false;  ///< each rank writes a file
-  int memory = 0;      ///< MB, 0 = no limit
-  std::string scratch; ///< folder
+  bool free_space = false; ///< no surface where beams passed
+  bool parts = false;      ///< each rank writes a file
+  int memory = 0;          ///< MB, 0 = no limit
+  std::string scratch;     ///< folder
 };
 
 std::size_t bytes(int megabytes) { return std::max(0, megabytes) * std::size_t{1000000}; }
@@ -50,6 +51,8 @@ void declareOptions(Args& args, Request& request)
       "reaches; 0 = keep it closed");
   args.flag("confidence", o.confidence,
             "weight the points by their field `confidence`, else by the length of their normals");
+  args.flag("free_space", request.free_space,
+            "no surface where beams passed: IN has viewpoints, of up to 1000 stations; it is read once more");
   args.option("scale", o.scale, "cube side / longest side of the points' bounding box, 1..100");
   args.option("min_depth", o.min_depth, "the octree is complete down to this depth, 2..8");
   args.option("iterations", o.iterations, "solver sweeps per octree depth, 1..1000");
@@ -133,11 +136,28 @@ std::string scratchFolder(const Request& request)
 
 std::string percent(Index part, Index whole) { return concat(std::round(1000.0 * part / whole) / 10, " %"); }
 
+/// The points with their viewpoints, a file at a time.
+class Beams : public PointStream {
+public:
+  explicit Beams(const std::vector<ScanPath>& files) : files_(files) {}
+  void read(const std::function<void(const PointSet&)>& receive) const override
+  {
+    for (const ScanPath& file : files_)
+      receive(readPoints(file));
+  }
+
+private:
+  const std::vector<ScanPath>& files_;
+};
+
 /// The mesh of all points, by this process.
 VolumetricResult makeAlone(const Request& request)
 {
+  VolumetricOptions options = request.options;
+  if (request.free_space)
+    options.free_space = std::make_shared<FreeSpaceMap>(Beams(request.inputs));
   VolumetricResult result =
-      reconstructVolumetric(openPointFiles(request.inputs), request.options, printProgress(request.common.quiet));
+      reconstructVolumetric(openPointFiles(request.inputs), options, printProgress(request.common.quiet));
   {
     const FileBacking vertices(result.mesh.vertices), faces(result.mesh.faces);
     writeOutputs([&] { writeMesh(request.output, result.mesh); });
@@ -198,6 +218,8 @@ void run(const Request& request, Exchange& ranks)
   std::optional<ScratchSpace> scratch;
   if (request.memory > 0)
     scratch.emplace(bytes(request.memory), scratchFolder(request));
+  if (request.free_space && (ranks.size() > 1 || request.parts))
+    throw UsageError("-free_space goes with one process, without -parts");
   if (request.parts)
     requireDistinct(meshPartFiles(request.output, ranks.size()), files);
   if (ranks.size() == 1 && !request.parts) {

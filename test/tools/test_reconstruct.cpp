@@ -79,6 +79,19 @@ TEST_F(ReconstructTool, ConfidenceIsTakenFromTheFile)
   EXPECT_FALSE(trusting.vertexCount() == usual.vertexCount() && trusting.vertices == usual.vertices);
 }
 
+TEST_F(ReconstructTool, FreeSpaceNeedsViewpoints)
+{
+  EXPECT_EQ(run("in.ply", "none.ply", "-depth 6 -free_space"), 1);
+  EXPECT_NE(readFile(path("log.err")).find("in.ply: free space: the points have no viewpoints"), std::string::npos);
+  EXPECT_FALSE(std::ifstream(path("none.ply")).good());
+  PointSet room = sphere(8000);
+  room.normals *= -1;
+  room.viewpoints.setZero(3, 8000);
+  writePoints(path("room.ply"), room);
+  const TriangleMesh plain = mesh("-depth 6", "room.ply"), asked = mesh("-depth 6 -free_space", "room.ply");
+  EXPECT_EQ(plain.vertices, asked.vertices) << "beams agree";
+}
+
 TEST_F(ReconstructTool, EstimatePrintsMegabytesAndWritesNothing)
 {
   ASSERT_EQ(run("in.ply", "out.ply", "-depth 8 -estimate -quiet"), 0);

@@ -11,6 +11,7 @@
 #include <fresco/io/pose_file.h>
 #include <fresco/search/neighbors.h>
 #include <fresco/surface/core/volumetric_reconstruction.h>
+#include <functional>
 namespace fresco::model {
 namespace {
 /// Octree levels. Fused frames have a point in every cell of their surface, so half as many along a line already tell of
@@ -32,6 +33,42 @@ std::vector<char> farFromPoints(const TriangleMesh& mesh, const PlacedPoints& pl
   return far;
 }
 
+/// Hands over each scan as it was measured, in the frame of its scanner, which stands at the origin.
+void forEachScan(const Job& job, const std::function<void(const Points&, const Eigen::Isometry3d&)>& receive)
+{
+  const std::vector<Pose> poses = readPoses(job.files.poses);
+  for (std::size_t s = 0; s < job.input.scans.size(); ++s)
+    if (poses.at(s)) {
+      const PointSet scan = readPoints(job.input.scans[s]);
+      if (scan.viewpoints.cols() > 1) // of several stations: no one place that the beams come from
+        continue;
+      Eigen::Vector3f scanner = (-scan.origin).cast<float>();
+      if (scan.viewpoints.cols() == 1)
+        scanner = scan.viewpoints.col(0);
+      const Eigen::Translation3d T_scan_scanner(scan.origin + scanner.cast<double>());
+      receive(scan.points.colwise() - scanner, Eigen::Isometry3d(*poses[s]) * T_scan_scanner);
+    }
+}
+
+/// All scans in the world, each in a window of its own with the place of its scanner as origin.
+class Beams : public PointStream {
+public:
+  explicit Beams(const Job& job) : job_(job) {}
+  void read(const std::function<void(const PointSet&)>& receive) const override
+  {
+    forEachScan(job_, [&](const Points& scan, const Eigen::Isometry3d& T_world_scanner) {
+      PointSet beams;
+      beams.points = T_world_scanner.linear().cast<float>() * scan;
+      beams.viewpoints.setZero(3, 1);
+      beams.origin = T_world_scanner.translation();
+      receive(beams);
+    });
+  }
+
+private:
+  const Job& job_;
+};
+
 FreeSpace askAllViews(const Points& places, const Job& job, double cell)
 {
   const auto& [input, files, options, ranks] = job;
@@ -41,17 +78,8 @@ FreeSpace askAllViews(const Points& places, const Job& job, double cell)
     for (std::size_t f = 0; f < input.rgbd->frames.size(); ++f)
       if (poses.at(f))
         space.ask(readImage16(input.rgbd->frames[f].depth), input.rgbd->camera, Eigen::Isometry3d(*poses[f]));
-  for (std::size_t s = 0; s < input.scans.size(); ++s)
-    if (poses.at(s)) {
-      const PointSet scan = readPoints(input.scans[s]);
-      if (scan.viewpoints.cols() > 1) // of several stations: no one place that the beams come from
-        continue;
-      Eigen::Vector3f scanner = (-scan.origin).cast<float>();
-      if (scan.viewpoints.cols() == 1)
-        scanner = scan.viewpoints.col(0);
-      const Eigen::Translation3d T_frame_scanner(scan.origin + scanner.cast<double>());
-      space.ask((scan.points.colwise() - scanner).eval(), Eigen::Isometry3d(*poses[s]) * T_frame_scanner);
-    }
+  forEachScan(job,
+              [&](const Points& scan, const Eigen::Isometry3d& T_world_scanner) { space.ask(scan, T_world_scanner); });
   return space;
 }
 
@@ -83,6 +111,8 @@ Figures makeSurface(const Job& job, const Progress& progress)
   volumetric.cell_size = finestCell(job);
   volumetric.threads = options.threads;
   volumetric.trim_levels = input.rgbd ? std::min(options.trim_levels, most_trim_of_frames) : options.trim_levels;
+  if (!input.scans.empty())
+    volumetric.free_space = std::make_shared<FreeSpaceMap>(Beams(job));
   VolumetricResult result = reconstructVolumetric(placed.stream(), volumetric, subProgress(progress, 0.0, 0.7));
   Index carved = 0;
   if (options.trim_levels > 0) {

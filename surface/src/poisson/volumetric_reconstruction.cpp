@@ -11,11 +11,9 @@
 #include "poisson/ranks/surface_part.h"
 #include "poisson/ranks/whole_mesh.h"
 #include "poisson/small_components.h"
-#include "poisson/solver/base_solver.h"
 #include "poisson/solver/constraints.h"
-#include "poisson/solver/level_system.h"
-#include "poisson/solver/low_pass_filter.h"
-#include "poisson/solver/transfer.h"
+#include "poisson/solver/hat_function.h"
+#include "poisson/solver/solve.h"
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -35,62 +33,6 @@ void validate(const PointSet& points, const VolumetricOptions& options)
   validatePointSet(points);
   require(points.hasNormals(), "volumetric reconstruction: the points have no normals");
   validateVolumetricOptions(options);
-}
-
-/// Samples joined in the cells of each depth, by depth.
-using SampleLevels = std::vector<SampleLevel>;
-
-SampleLevels sampleLevels(SampleLevel&& finest, const Octree& tree, int threads)
-{
-  SampleLevels levels(finest.depth + 1);
-  levels.back() = std::move(finest);
-  for (int d = levels.back().depth; d > 2; --d)
-    levels[d - 1] = coarsen(levels[d], tree, threads);
-  return levels;
-}
-
-struct Solution {
-  std::vector<NodeField> chi; ///< by depth, from the complete depth on
-  double residual = 0;
-};
-
-/// Frees what it does not need any more: of `levels` all but the finest remain empty.
-Solution solve(const Octree& tree, Constraints& constraints, SampleLevels& levels, const VolumetricOptions& options,
-               const Progress& progress)
-{
-  Solution solution;
-  solution.chi.resize(tree.levels.size());
-  for (int d = 2; d <= tree.full_depth; ++d)
-    addCoarser(tree, d, options.threads, constraints);
-  NodeField& base = solution.chi[tree.full_depth];
-  if (tree.exchange().rank() == 0)
-    base = solveBase(tree, constraints.fine, levels, options.point_weight, options.threads);
-  if (tree.partition)
-    broadcastNodes(tree.exchange(), tree.levels[tree.full_depth], base);
-  for (int d = 2; d <= std::min(tree.full_depth + 1, tree.depth - 1); ++d)
-    levels[d] = SampleLevel();
-  for (int d = tree.full_depth + 1; d <= tree.depth; ++d) {
-    report(progress, "solve", 0.35 + 0.35 * (d - tree.full_depth) / (tree.depth - tree.full_depth + 1));
-    addCoarser(tree, d, options.threads, constraints);
-    const BrickLevel& level = tree.levels[d];
-    NodeField& chi = solution.chi[d] = NodeField(level);
-    interpolateLevel(tree, d, solution.chi[d - 1], options.threads,
-                     [&](Index b, const float* nodes) { chi.store(level, b, nodes); });
-    const SampleLevel& joined = levels[std::min(d + 1, tree.depth)];
-    const LevelSystem system(level, joined, tree.depth, options.point_weight, options.threads);
-    system.smooth(constraints.fine[d], options.iterations, solution.chi[d]);
-    if (d == tree.depth) {
-      const LevelSystem::Norms norms = system.residual(constraints.fine[d], solution.chi[d]);
-      solution.residual = norms.right > 0 ? std::sqrt(norms.residual / norms.right) : 0;
-    } else {
-      system.addMultiplierUpdate(solution.chi[d], constraints.own[d]);
-    }
-    LowPassFilter(level, joined, tree.depth, options.threads).apply(solution.chi[d], constraints.fine[d]);
-    constraints.fine[d] = NodeField();
-    if (d + 1 < tree.depth)
-      levels[d + 1] = SampleLevel();
-  }
-  return solution;
 }
 
 /// Mean of chi over the samples, weighted by their area (Kazhdan, Bolitho & Hoppe 2006, sections 4.4 and 4.5), kept
@@ -232,7 +174,8 @@ VolumetricPart reconstruct(Samples&& samples, const VolumetricOptions& options, 
   ghosts.addTo(finest);
   Constraints constraints = splatNormals(tree, finest, std::move(normals), options.threads);
   SampleLevels levels = sampleLevels(std::move(finest), tree, options.threads);
-  Solution solution = solve(tree, constraints, levels, options, progress);
+  const FreePlaces free_places{options.free_space.get(), samples.cube, samples.origin};
+  Solution solution = solve({tree, free_places, constraints, levels}, options, progress);
   result.residual = solution.residual;
   report(progress, "surface", 0.7);
   const float level_set = levelSetValue(tree, solution.chi.back(), levels.back(), options.threads);
@@ -359,6 +302,8 @@ VolumetricResult reconstructVolumetric(std::unique_ptr<PointStream> points, cons
 VolumetricPart reconstructVolumetricPart(std::unique_ptr<PointStream> points, const VolumetricOptions& options,
                                          const Progress& progress, Exchange& exchange)
 {
+  require(!options.free_space || exchange.size() == 1,
+          "volumetric reconstruction: free space is asked for by one process only, not by several ranks");
   return reconstructPart(std::move(points), options, progress, RankOptions(), exchange);
 }
 

@@ -43,6 +43,9 @@ public:
   float getTrim() const { return options_.trim; }
   void setTrimLevels(float levels) { options_.trim_levels = levels; }
   float getTrimLevels() const { return options_.trim_levels; }
+  /// Where beams passed; no surface is made there. nullptr: beams are not asked.
+  void setFreeSpace(std::shared_ptr<const FreeSpaceMap> free_space) { options_.free_space = std::move(free_space); }
+  const std::shared_ptr<const FreeSpaceMap>& getFreeSpace() const { return options_.free_space; }
   /// Solver sweeps per octree depth.
   void setMaximumIterations(int iterations) { options_.iterations = iterations; }
   int getMaximumIterations() const { return options_.iterations; }

@@ -34,6 +34,9 @@ bool isSampled(const BrickLevel& level, Index brick)
   constexpr int shallow = 8;
   return level.depth <= shallow || ((level.codes[brick] >> 3) * 0x9E3779B97F4A7C15u) >> 61 == 0;
 }
+
+/// What chi is kept at where beams passed, as much above the level set as the cube's boundary is below it.
+constexpr float least_free = 0.1f;
 } // namespace
 
 /// A brick with what lies around it, in the cache.
@@ -42,7 +45,8 @@ struct LevelSystem::Block {
   MatrixRows rows;
   float inverse[own_nodes]; ///< of the diagonal
   float right[own_nodes];
-  std::uint64_t fixed; ///< see fixedNodes()
+  std::uint64_t fixed;   ///< see fixedNodes()
+  std::uint64_t bounded; ///< see LevelSystem::keepFree()
 
   void sweep(int sweeps);
   template <int count>
@@ -85,6 +89,7 @@ void LevelSystem::load(Index brick, const NodeField& b, const NodeField& x, Bloc
   std::copy_n(b.own(brick), own_nodes, block.right);
   loadHalo(level_, neighbors, x, block.x);
   block.fixed = fixedNodes(neighbors);
+  block.bounded = bounded_.empty() ? 0 : bounded_[brick];
 }
 
 /// Relaxes lines of the brick that do not depend on each other, side by side: each sum is a chain of operations.
@@ -103,7 +108,9 @@ void LevelSystem::Block::relax(const int* lines)
         sum[i] -= line(&rows[k][lines[i] * brick_cells]) * line(at[i] + steps[k]);
   for (int i = 0; i < count; ++i) {
     const int own = lines[i] * brick_cells;
-    line(at[i]) = fixed_lanes[fixed >> own & 15] ? line(at[i]) : sum[i] * line(&inverse[own]);
+    const Line value = sum[i] * line(&inverse[own]), bound = Line{} + least_free;
+    const Line relaxed = (value < bound) & fixed_lanes[bounded >> own & 15] ? bound : value;
+    line(at[i]) = fixed_lanes[fixed >> own & 15] ? line(at[i]) : relaxed;
   }
 }
 
@@ -178,6 +185,44 @@ void LevelSystem::smoothBrick(Index brick, const NodeField& b, int sweeps, NodeF
   float* nodes = x.own(brick);
   for (int y_z = 0; y_z < brick_cells * brick_cells; ++y_z)
     line(&nodes[y_z * brick_cells]) = line(&block.x[haloIndex(0, y_z & 3, y_z >> 2)]);
+}
+
+/// @param position in cells of the level
+bool LevelSystem::isNearSample(const Neighbors& neighbors, const Eigen::Vector3f& position) const
+{
+  constexpr float reach = 1.5f; // cells; nearer, beams that passed beside what was measured would thin it
+  for (const int n : neighbors)
+    if (n >= 0)
+      for (const std::uint32_t i : ranges_[n])
+        if ((samples_.samples[i].position * scale_ - position).squaredNorm() < reach * reach)
+          return true;
+  return false;
+}
+
+void LevelSystem::findBounded(const FreePlaces& places, const NodeField& x)
+{
+  bounded_.assign(level_.size(), 0);
+  parallelFor(level_.size(), threads_, [&](Index b) {
+    const Neighbors neighbors = level_.neighborsOf(b);
+    const std::uint64_t fixed = fixedNodes(neighbors);
+    const float* values = x.own(b);
+    for (int i = 0; i < own_nodes; ++i) {
+      if (values[i] >= least_free || fixed >> i & 1)
+        continue;
+      const Eigen::Vector3f position = level_.origin(b) + Eigen::Vector3f(i & 3, i >> 2 & 3, i >> 4);
+      if (places.isFree(position / scale_, 1 / scale_) && !isNearSample(neighbors, position))
+        bounded_[b] |= std::uint64_t(1) << i;
+    }
+  });
+}
+
+void LevelSystem::keepFree(const FreePlaces& places, const NodeField& b, int iterations, NodeField& x)
+{
+  if (!places.map)
+    return;
+  findBounded(places, x);
+  if (std::any_of(bounded_.begin(), bounded_.end(), [](std::uint64_t nodes) { return nodes != 0; }))
+    smooth(b, iterations, x);
 }
 
 void LevelSystem::addMultiplierUpdate(const NodeField& x, NodeField& right) const

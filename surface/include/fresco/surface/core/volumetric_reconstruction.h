@@ -7,6 +7,7 @@
 #include <fresco/core/point_set.h>
 #include <fresco/core/point_stream.h>
 #include <fresco/core/progress.h>
+#include <fresco/surface/core/free_space_map.h>
 #include <memory>
 #include <vector>
 namespace fresco {
@@ -29,6 +30,9 @@ struct VolumetricOptions {
   float trim_levels = 0.f;
   int iterations = 6; ///< smoothing sweeps per octree depth, 1..1000
   int threads = 0;    ///< 0 = all cores; the result does not depend on it
+  /// No surface where beams passed: chi is kept positive there, farther than 1.5 cells from samples. In the frame of the
+  /// points. Empty: beams are not asked.
+  std::shared_ptr<const FreeSpaceMap> free_space;
 };
 
 /// Lengths are in the unit of the points.
@@ -78,7 +82,7 @@ struct VolumetricPart {
   Index vertex_count = 0, face_count = 0; ///< of the whole mesh
 };
 
-/// All ranks call this, with the same options. Octrees of depth 10 and more are divided; rank 0 makes shallower ones. A
+/// All ranks call this, with the same options; of several ranks none can ask for free space. Octrees of depth 10 and more are divided; rank 0 makes shallower ones. A
 /// surface that is trimmed comes to rank 0 as a whole, before it is trimmed; the others have no part in the mesh.
 /// @param points   of this rank, maybe none: any share of all points
 /// @param exchange with the other ranks; outlives the call

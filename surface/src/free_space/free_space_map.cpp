@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <fresco/core/require.h>
+#include <fresco/surface/core/free_space_map.h>
+#include <limits>
+#include <map>
+namespace fresco {
+namespace {
+constexpr int finest_side = 256; ///< bins of 0.35 degrees: 3 MB a station
+constexpr float none = std::numeric_limits<float>::infinity();
+
+std::array<double, 3> keyOf(const Eigen::Vector3d& place) { return {place.x(), place.y(), place.z()}; }
+
+/// Bin of a direction on a cube around the station: its largest coordinate names the face, the others the place there.
+Index binOf(const Eigen::Vector3d& direction, int side)
+{
+  int axis;
+  const double largest = direction.cwiseAbs().maxCoeff(&axis);
+  const auto on = [&](int other) {
+    return std::clamp<Index>((direction[other] / largest + 1) * 0.5 * side, 0, side - 1);
+  };
+  const Index face = 2 * axis + (direction[axis] < 0);
+  return (face * side + on((axis + 1) % 3)) * side + on((axis + 2) % 3);
+}
+
+/// Direction of a place on a face, in bins; places beside it belong to the next face.
+Eigen::Vector3d directionOf(Index face, double row, double column, int side)
+{
+  const int axis = face / 2;
+  Eigen::Vector3d direction;
+  direction[axis] = face % 2 ? -1 : 1;
+  direction[(axis + 1) % 3] = 2 * row / side - 1;
+  direction[(axis + 2) % 3] = 2 * column / side - 1;
+  return direction;
+}
+
+template <typename Lengths>
+Index countFilled(const std::vector<Lengths>& bins)
+{
+  return std::count_if(bins.begin(), bins.end(), [](const Lengths& b) { return b.shortest < none; });
+}
+
+/// Half as many bins a side.
+template <typename Lengths>
+std::vector<Lengths> coarsen(const std::vector<Lengths>& fine, int side)
+{
+  const int half = side / 2;
+  std::vector<Lengths> coarse(fine.size() / 4, {none, 0.f});
+  for (Index i = 0; i < Index(fine.size()); ++i) {
+    const Index face_row = i / side, column = i % side; // sides are even, so rows of two faces do not mix
+    Lengths& to = coarse[face_row / 2 * half + column / 2];
+    to = {std::min(to.shortest, fine[i].shortest), std::max(to.longest, fine[i].longest)};
+  }
+  return coarse;
+}
+} // namespace
+
+FreeSpaceMap::Station FreeSpaceMap::stationOf(const Eigen::Vector3d& viewpoint, std::vector<Lengths>&& bins)
+{
+  constexpr int least_filled = 5; // of nine
+  Station station{viewpoint, finest_side, {}};
+  int& side = station.side;
+  for (; side > 2; side /= 2) { // until half of four bins have beams where one of them has
+    std::vector<Lengths> coarse = coarsen(bins, side);
+    if (countFilled(bins) >= 2 * countFilled(coarse))
+      break;
+    bins.swap(coarse);
+  }
+  station.bins.resize(bins.size());
+  for (Index i = 0; i < Index(bins.size()); ++i) {
+    const Index face = i / (side * side), row = i / side % side, column = i % side;
+    Lengths around{none, 0.f};
+    int filled = 0;
+    for (int k = 0; k < 9; ++k) {
+      const Lengths& bin = bins[binOf(directionOf(face, row + k / 3 - 0.5, column + k % 3 - 0.5, side), side)];
+      filled += bin.shortest < none;
+      around = {std::min(around.shortest, bin.shortest), std::max(around.longest, bin.longest)};
+    }
+    station.bins[i] = filled < least_filled ? Lengths{none, 0.f} : around;
+  }
+  return station;
+}
+
+FreeSpaceMap::FreeSpaceMap(const PointStream& beams)
+{
+  constexpr std::size_t most_stations = 1000;
+  std::map<std::array<double, 3>, std::vector<Lengths>> bins_by_viewpoint;
+  beams.read([&](const PointSet& set) {
+    validatePointSet(set);
+    require(set.viewpoints.cols() > 0 || set.size() == 0, "free space: the points have no viewpoints");
+    const auto seenFrom = [&](Index i) { return set.viewpoints.col(set.viewpoints.cols() == 1 ? 0 : i); };
+    for (Index i = 0; i < set.viewpoints.cols() && bins_by_viewpoint.size() <= most_stations; ++i)
+      if (seenFrom(i).allFinite())
+        bins_by_viewpoint[keyOf(set.origin + seenFrom(i).cast<double>())];
+    require(bins_by_viewpoint.size() <= most_stations, "free space: more than ", most_stations,
+            " viewpoints, which are no stations of a scanner");
+    for (Index i = 0; i < set.size(); ++i) {
+      const Eigen::Vector3d beam = set.points.col(i).cast<double>() - seenFrom(i).cast<double>();
+      const double length = beam.norm();
+      if (!(std::isfinite(length) && length > 0))
+        continue;
+      std::vector<Lengths>& bins = bins_by_viewpoint[keyOf(set.origin + seenFrom(i).cast<double>())];
+      bins.resize(6 * finest_side * finest_side, {none, 0.f});
+      Lengths& bin = bins[binOf(beam, finest_side)];
+      bin = {std::min<float>(bin.shortest, length), std::max<float>(bin.longest, length)};
+    }
+  });
+  for (auto& [viewpoint, bins] : bins_by_viewpoint)
+    if (!bins.empty())
+      stations_.push_back(stationOf(Eigen::Vector3d(viewpoint[0], viewpoint[1], viewpoint[2]), std::move(bins)));
+}
+
+bool FreeSpaceMap::isFree(const Eigen::Vector3d& place, double tolerance) const
+{
+  int through = 0, there = 0;
+  for (const Station& station : stations_) {
+    const Eigen::Vector3d to = place - station.viewpoint;
+    const double distance = to.norm();
+    if (!(distance > 0))
+      continue;
+    const Lengths& beams = station.bins[binOf(to, station.side)];
+    if (distance > beams.longest + tolerance)
+      continue;
+    if (beams.shortest > distance + tolerance)
+      ++through;
+    else
+      ++there;
+  }
+  return through > 2 * there;
+}
+} // namespace fresco
