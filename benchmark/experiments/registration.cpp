@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Registration against known poses: of pairs from features (pairs), of all scans (map), of pairs from disturbed poses
-// (converge).
+// (converge); which pairs would be tried (candidates).
 #include "experiments/registration_input.h"
+#include "graph/pair_ranking.h"
 #include "pair/pair_alignment.h"
 #include "pair/self_alignment.h"
 #include "support/tool.h"
@@ -156,12 +157,60 @@ void measureConvergence(const RegistrationInput& input, const PoseError& toleran
             << " degrees, the worst of them " << 1000.0 * worst << " mm\n";
 }
 
+/// Share of the true links among the pairs that are among the `most` best of one of their scans; also how many those are.
+std::pair<double, int> recall(const std::vector<RankedPair>& ranked, const Eigen::MatrixXd& overlaps, int most,
+                              double least_overlap)
+{
+  std::vector<int> taken(overlaps.rows(), 0);
+  int pairs = 0;
+  double links = 0.0, found = 0.0;
+  for (const RankedPair& pair : ranked) {
+    const bool link = overlaps(pair.a, pair.b) >= least_overlap;
+    const bool tried = std::min(taken[pair.a]++, taken[pair.b]++) < most;
+    links += link ? 1 : 0;
+    found += link && tried ? 1 : 0;
+    pairs += tried ? 1 : 0;
+  }
+  return {found / std::max(1.0, links), pairs};
+}
+
+/// Whether pairs of overlapping scans come first.
+void measureCandidates(const RegistrationInput& input)
+{
+  const std::vector<PreparedScan> scans = prepareAll(input, thinningForFeatures(input));
+  std::vector<ScanFeatures> features;
+  for (const PreparedScan& scan : scans)
+    features.push_back(describeScan(scan, {}));
+  const fresco::Index n = scans.size();
+  Eigen::MatrixXd overlaps = Eigen::MatrixXd::Zero(n, n);
+  std::vector<RankedPair> pairs;
+  for (fresco::Index a = 0; a < n; ++a)
+    for (fresco::Index b = a + 1; b < n; ++b) {
+      overlaps(a, b) = overlaps(b, a) = trueOverlap(scans, input, a, b);
+      pairs.push_back({a, b, 0.0});
+    }
+  std::cout << "by        best  pairs  links above 15 %  above 30 %\n";
+  for (const bool by_place : {false, true}) {
+    const double start = processorSeconds();
+    rankPairs(pairs, scans, features, {by_place, false, 0});
+    const double spent = processorSeconds() - start;
+    for (const int most : {2, 4, 8, 12, 16, 24}) {
+      const auto [all, tried] = recall(pairs, overlaps, most, 0.15);
+      std::cout << (by_place ? "place   " : "features") << std::setw(6) << most << std::setw(7) << tried
+                << std::setw(16) << 100.0 * all << " %" << std::setw(10)
+                << 100.0 * recall(pairs, overlaps, most, 0.3).first << " %\n";
+    }
+    std::cout << "processor time " << spent / pairs.size() << " s a pair\n";
+  }
+}
+
 void run(int argc, char** argv)
 {
-  fresco::Args args("fresco_benchmark_registration pairs|map|converge TRUTH.txt SCAN SCAN...",
+  fresco::Args args("fresco_benchmark_registration pairs|map|converge|candidates TRUTH.txt SCAN SCAN...",
                     "pairs: aligns each pair of scans from features; counts by overlap how many are right.\n"
                     "map: registers all scans at once; counts the same of the scans of each group.\n"
                     "converge: aligns pairs of more than 50 % overlap from 0.3 m and 15 degrees off.\n"
+                    "candidates: ranks all pairs; prints the share of overlapping ones among the best of each scan.\n"
                     "TRUTH.txt: world from scan, one pose for each SCAN, in their order.");
   std::string overlap_file;
   PoseError tolerance{0.05, 1.0};
@@ -175,10 +224,12 @@ void run(int argc, char** argv)
     measurePairs(input, overlap_file);
   else if (words[0] == "map")
     measureMap(input);
+  else if (words[0] == "candidates")
+    measureCandidates(input);
   else if (words[0] == "converge")
     measureConvergence(input, tolerance);
   else
-    throw fresco::UsageError("the first word is pairs, map or converge");
+    throw fresco::UsageError("the first word is pairs, map, converge or candidates");
 }
 } // namespace
 

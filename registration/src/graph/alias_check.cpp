@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "graph/alias_check.h"
 #include <algorithm>
+#include <atomic>
 #include <fresco/core/parallel.h>
 namespace fresco::registration {
 namespace {
@@ -127,14 +128,19 @@ double worstViolation(const GraphInput& input, const ScanCluster& first, const S
 {
   const Index n = first.scans.size(), m = second.scans.size();
   std::vector<double> violations(n * m, 0.0);
+  std::atomic<bool> too_large{false};
   parallelFor(
       n * m, input.options.threads,
       [&](Index k) {
+        if (too_large)
+          return;
         const Index i = k / m, j = k % m;
         const PreparedScan& a = input.scans[first.scans[i]];
         const PreparedScan& b = input.scans[second.scans[j]];
         const Eigen::Isometry3d T_a_b = first.poses[i].inverse() * T_first_second * second.poses[j];
         violations[k] = pairViolation(a, b, T_a_b, check_level);
+        if (violations[k] > input.options.max_violation)
+          too_large = true;
       },
       1);
   return *std::max_element(violations.begin(), violations.end());

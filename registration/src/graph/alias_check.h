@@ -10,7 +10,8 @@ struct ClusterJoin {
   bool has_joined = false; ///< only a place that free space does not rule out any more than this one speaks against it
 };
 
-/// Largest violation of any scan of one cluster with any of the other, 0..1.
+/// Largest violation of any scan of one cluster with any of the other, 0..1. Above max_violation it may be any value that
+/// is: one contradiction decides.
 double worstViolation(const GraphInput& input, const ScanCluster& first, const ScanCluster& second,
                       const Eigen::Isometry3d& T_first_second);
 

@@ -23,7 +23,7 @@ std::vector<RankedPair> possiblePairs(const std::vector<PreparedScan>& scans, co
   for (Index a = 0; a < n; ++a)
     for (Index b = a + 1; b < n; ++b)
       if (usable(a) && usable(b) && !(isKnown(known, a) && isKnown(known, b)))
-        pairs.push_back({a, b, 0});
+        pairs.push_back({a, b, 0.0});
   return pairs;
 }
 
@@ -44,6 +44,11 @@ private:
     parallelFor((n - first + step - 1) / step, options_.threads, [&](Index k) { body(first + k * step); }, 1);
   }
   void describe(const Progress& progress);
+  void describeAliases(const std::vector<RankedPair>& round);
+  bool manyPlaces() const;
+  bool hasMany(std::size_t pairs) const;
+  std::vector<RankedPair> orderedPairs() const;
+  void leaveOutJoined(std::vector<RankedPair>& pairs) const;
   void alignPairs(const std::vector<RankedPair>& round);
   void correctViewpoints();
   PoseEdges edgesOf(const ScanCluster& cluster, const PoseGraphOptions& options) const;
@@ -55,6 +60,7 @@ private:
   Exchange& ranks_;
   const ScanRegistrationOptions& options_;
   std::vector<ScanFeatures> features_;
+  std::vector<char> has_aliases_; // per scan, whether they were looked for
   GlobalAlignment result_;
 };
 
@@ -69,12 +75,27 @@ void GlobalAligner::describe(const Progress& progress)
     if (isOwn(ranks_, k) && scans_[k].problem.empty())
       features_[k] = describeScan(scans_[k], options);
   }
-  std::vector<ScanAliases> aliases(scans_.size());
-  forOwn(count, [&](Index k) { aliases[k] = findAliases(scans_[k], features_[k]); });
   shareItems(ranks_, features_);
+  has_aliases_.assign(scans_.size(), 0);
+}
+
+// Aliases of the scans of a round that have not been in one before.
+void GlobalAligner::describeAliases(const std::vector<RankedPair>& round)
+{
+  std::vector<Index> fresh;
+  for (const RankedPair& pair : round)
+    for (const Index scan : {pair.a, pair.b})
+      if (!has_aliases_[scan]) {
+        has_aliases_[scan] = 1;
+        fresh.push_back(scan);
+      }
+  if (fresh.empty())
+    return;
+  std::vector<ScanAliases> aliases(fresh.size());
+  forOwn(fresh.size(), [&](Index k) { aliases[k] = findAliases(scans_[fresh[k]], features_[fresh[k]]); });
   shareItems(ranks_, aliases);
-  for (Index k = 0; k < count; ++k)
-    scans_[k].aliases = std::move(aliases[k]);
+  for (std::size_t k = 0; k < fresh.size(); ++k)
+    scans_[fresh[k]].aliases = std::move(aliases[k]);
 }
 
 void GlobalAligner::alignPairs(const std::vector<RankedPair>& round)
@@ -83,6 +104,7 @@ void GlobalAligner::alignPairs(const std::vector<RankedPair>& round)
   options.verification.min_overlap = options_.min_overlap;
   options.verification.max_violation = options_.max_violation;
   options.upright = options_.upright;
+  describeAliases(round);
   std::vector<PairAlignment> aligned(round.size());
   forOwn(round.size(), [&](Index k) {
     const Index a = round[k].a, b = round[k].b;
@@ -112,7 +134,7 @@ void GlobalAligner::correctViewpoints()
     std::vector<PairAlignment> kept;
     for (const PairAlignment& pair : result_.pairs)
       if (wrong[pair.a] || wrong[pair.b])
-        again.push_back({pair.a, pair.b, 0});
+        again.push_back({pair.a, pair.b, 0.0});
       else
         kept.push_back(pair);
     result_.pairs = kept;
@@ -163,25 +185,57 @@ GraphOptions GlobalAligner::graphOptions() const
   return options;
 }
 
-GlobalAlignment GlobalAligner::run(const Progress& progress)
+// Whether features alone rank pairs too badly.
+bool GlobalAligner::manyPlaces() const
+{
+  constexpr Index most_ranked_by_features = 30;
+  const Index usable = std::count_if(scans_.begin(), scans_.end(), [](const auto& s) { return s.problem.empty(); });
+  return usable > most_ranked_by_features || !known_.scans.empty();
+}
+
+bool GlobalAligner::hasMany(std::size_t pairs) const
 {
   constexpr std::size_t all_pairs = 30; // up to this many are tried without ranking, which would cost as much
-  constexpr int most_rounds = 6;        // 24 partners of each scan: more than overlap with it
-  describe(progress);
+  return pairs > all_pairs || !known_.scans.empty();
+}
+
+// Pairs of scans that hang together already.
+void GlobalAligner::leaveOutJoined(std::vector<RankedPair>& pairs) const
+{
+  const std::vector<ClusterPlace> places = placesOf(result_.graph.clusters, scans_.size());
+  const auto joined = [&](const RankedPair& pair) { return places[pair.a].cluster == places[pair.b].cluster; };
+  pairs.erase(std::remove_if(pairs.begin(), pairs.end(), joined), pairs.end());
+}
+
+// The likeliest first where there are many.
+std::vector<RankedPair> GlobalAligner::orderedPairs() const
+{
   std::vector<RankedPair> pairs = possiblePairs(scans_, known_);
+  if (hasMany(pairs.size()))
+    rankPairs(pairs, scans_, features_, {manyPlaces(), options_.upright, options_.threads});
+  return pairs;
+}
+
+GlobalAlignment GlobalAligner::run(const Progress& progress)
+{
+  constexpr int most_rounds = 6;       // 24 partners of each scan: more than overlap with it
+  constexpr int most_place_rounds = 4; // the right ones come sooner
+  describe(progress);
+  std::vector<RankedPair> pairs = orderedPairs();
+  const bool in_rounds = hasMany(pairs.size());
+  const int rounds = manyPlaces() ? most_place_rounds : most_rounds;
   std::vector<char> has_place(scans_.size(), 0);
   for (const Index scan : known_.scans)
     has_place[scan] = 1;
-  const bool ranked = pairs.size() > all_pairs;
-  if (ranked)
-    rankPairs(pairs, scans_, features_, options_.threads);
-  for (int round = 0; round < most_rounds; ++round) {
-    report(progress, "align pairs", 0.3 + 0.7 * round / most_rounds);
-    alignPairs(ranked ? takeRound(pairs, has_place) : pairs);
+  for (int round = 0; round < rounds; ++round) {
+    report(progress, "align pairs", 0.3 + 0.7 * round / rounds);
+    if (round > 0 && manyPlaces())
+      leaveOutJoined(pairs);
+    alignPairs(in_rounds ? takeRound(pairs, has_place) : pairs);
     correctViewpoints();
     sharePartialAliases(scans_, result_.pairs);
     result_.graph = buildScanGraph({scans_, result_.pairs, graphOptions()}, known_);
-    if (!ranked || pairs.empty() || result_.graph.clusters.size() <= 1)
+    if (!in_rounds || pairs.empty() || result_.graph.clusters.size() <= 1)
       break;
   }
   for (ScanCluster& cluster : result_.graph.clusters)

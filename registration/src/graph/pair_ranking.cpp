@@ -1,37 +1,37 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "graph/pair_ranking.h"
+#include "pair/place_likeness.h"
 #include <algorithm>
 #include <fresco/core/parallel.h>
 namespace fresco::registration {
 namespace {
-ScanFeatures mostDistinctive(const ScanFeatures& features)
+// Of the best pose.
+double agreeingFeatures(const PlaceSample& a, const PlaceSample& b)
 {
-  constexpr Index quick_features = 300; // a quarter of all: matching and SC2-PCR then take a sixteenth of the time
-  const Index n = std::min(quick_features, features.points.cols());
-  return {features.points.leftCols(n), features.normals.leftCols(n), features.descriptors.leftCols(n), {}};
+  Sc2PcrOptions options;
+  options.tolerance = 1.5f * a.scan.levels[1].voxel;
+  options.size = a.scan.size;
+  options.most = 1;
+  const PoseHypotheses best = runSc2Pcr(a.features, b.features, matchFeatures(a.features, b.features, 400), options);
+  return best.empty() ? 0.0 : best[0].votes;
 }
 } // namespace
 
 void rankPairs(std::vector<RankedPair>& pairs, const std::vector<PreparedScan>& scans,
-               const std::vector<ScanFeatures>& features, int threads)
+               const std::vector<ScanFeatures>& features, const RankingOptions& options)
 {
-  std::vector<ScanFeatures> few;
-  for (const ScanFeatures& all : features)
-    few.push_back(mostDistinctive(all));
+  std::vector<PlaceSample> samples;
+  for (std::size_t k = 0; k < scans.size(); ++k)
+    samples.emplace_back(scans[k], features[k]);
   parallelFor(
-      pairs.size(), threads,
+      pairs.size(), options.threads,
       [&](Index k) {
         RankedPair& pair = pairs[k];
-        const ScanFeatures &a = few[pair.a], &b = few[pair.b];
-        Sc2PcrOptions options;
-        options.tolerance = 1.5f * scans[pair.a].levels[1].voxel;
-        options.size = scans[pair.a].size;
-        options.most = 1;
-        const PoseHypotheses best = runSc2Pcr(a, b, matchFeatures(a, b, 400), options);
-        pair.votes = best.empty() ? 0 : best[0].votes;
+        const PlaceSample &a = samples[pair.a], &b = samples[pair.b];
+        pair.likeness = options.by_place ? placeLikeness(a, b, options.upright) : agreeingFeatures(a, b);
       },
       1);
-  std::stable_sort(pairs.begin(), pairs.end(), [](const auto& x, const auto& y) { return x.votes > y.votes; });
+  std::stable_sort(pairs.begin(), pairs.end(), [](const auto& x, const auto& y) { return x.likeness > y.likeness; });
 }
 
 std::vector<RankedPair> takeRound(std::vector<RankedPair>& pairs, const std::vector<char>& known)

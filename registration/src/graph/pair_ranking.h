@@ -4,12 +4,18 @@
 namespace fresco::registration {
 struct RankedPair {
   Index a = 0, b = 0;
-  Index votes = 0; ///< features that agree on a pose
+  double likeness = 0.0; ///< how likely both scans saw the same place; larger is likelier
 };
 
-/// Sorts pairs by the votes of the best pose from their most distinctive features, most first.
+struct RankingOptions {
+  bool by_place = false; ///< by placeLikeness(); else by the features that agree on a pose
+  bool upright = false;  ///< whether all scanners stood upright
+  int threads = 0;
+};
+
+/// Sorts pairs by likeness, largest first.
 void rankPairs(std::vector<RankedPair>& pairs, const std::vector<PreparedScan>& scans,
-               const std::vector<ScanFeatures>& features, int threads);
+               const std::vector<ScanFeatures>& features, const RankingOptions& options);
 
 /// The best pairs not yet tried, a few of each scan but the known ones; they are taken out of `pairs`.
 /// @param known per scan, whether its place is known: how many look for places with it does not matter

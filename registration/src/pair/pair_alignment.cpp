@@ -78,12 +78,16 @@ FoundHypotheses findHypotheses(const DescribedScan& a, const DescribedScan& b, c
     found.planes = matchPlanes(a.features.planes, b.features.planes, most_by_planes);
   if (options.upright)
     for (PoseHypotheses* poses : {&found.features, &found.planes})
-      poses->erase(
-          std::remove_if(poses->begin(), poses->end(), [](const PoseHypothesis& h) { return !isUpright(h.T_a_b); }),
-          poses->end());
+      keepUpright(*poses);
   return found;
 }
 } // namespace
+
+void keepUpright(PoseHypotheses& poses)
+{
+  poses.erase(std::remove_if(poses.begin(), poses.end(), [](const PoseHypothesis& h) { return !isUpright(h.T_a_b); }),
+              poses.end());
+}
 
 PairAlignment alignPair(const DescribedScan& a, const DescribedScan& b, const PairAlignmentOptions& options)
 {

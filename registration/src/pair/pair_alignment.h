@@ -21,6 +21,9 @@ struct DescribedScan {
   const ScanFeatures& features;
 };
 
+/// Leaves the poses between scanners that both stood upright.
+void keepUpright(PoseHypotheses& poses);
+
 /// Global alignment of two scans from their features: hypotheses by SC2-PCR, the best by overlap and free space,
 /// refined and checked again; and, for each alias of a scan, the hypothesis that lies at the other place.
 PairAlignment alignPair(const DescribedScan& a, const DescribedScan& b, const PairAlignmentOptions& options);

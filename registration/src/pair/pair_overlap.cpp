@@ -21,6 +21,8 @@ double overlapShare(const ScanLevel& source, const ScanLevel& target, const Eige
 }
 
 namespace {
+ScanFreeSpace::Slack slackOf(const ScanLevel& level) { return {1.5f * level.voxel, 0.02f}; }
+
 // Share of the comparable points of a level that lie, together with their neighbours, in space that was seen through.
 double violationShare(const ScanFreeSpace& space, const ScanLevel& level, const Eigen::Isometry3f& T_space_level)
 {
@@ -28,7 +30,7 @@ double violationShare(const ScanFreeSpace& space, const ScanLevel& level, const 
       6; // of a point and its 7 neighbours: mixed pixels at edges violate alone, misplaced surfaces all over
   if (space.empty())
     return 0.0;
-  const auto verdicts = space.judge(level.points, T_space_level, {1.5f * level.voxel, 0.02f});
+  const auto verdicts = space.judge(level.points, T_space_level, slackOf(level));
   Index comparable = 0, violating = 0;
   for (Index i = 0; i < level.points.cols(); ++i) {
     comparable += verdicts[i] != ScanFreeSpace::Verdict::unknown ? 1 : 0;
@@ -71,7 +73,28 @@ std::optional<double> colorCorrelation(const ScanLevel& source, const ScanLevel&
     return {};
   return (sxy - sx * sy / n).sum() / n / std::sqrt(vx * vy);
 }
+
+// Of the sampled points of a level.
+double sampledShare(const ScanFreeSpace& space, const ScanLevel& level, const Eigen::Isometry3f& T_space_level)
+{
+  constexpr std::size_t few = 150; // the share is known to 4 %
+  if (space.empty())
+    return 0.0;
+  std::vector<Index> some(level.samples.begin(), level.samples.begin() + std::min(few, level.samples.size()));
+  Index comparable = 0, violating = 0;
+  for (const auto verdict : space.judge(level.points(Eigen::all, some), T_space_level, slackOf(level))) {
+    comparable += verdict != ScanFreeSpace::Verdict::unknown ? 1 : 0;
+    violating += verdict == ScanFreeSpace::Verdict::violates ? 1 : 0;
+  }
+  return 1.0 * violating / std::max<Index>(1, comparable);
+}
 } // namespace
+
+double sampledViolation(const PreparedScan& a, const PreparedScan& b, const Eigen::Isometry3d& T_a_b)
+{
+  return std::max(sampledShare(a.free_space, b.levels[check_level], T_a_b.cast<float>()),
+                  sampledShare(b.free_space, a.levels[check_level], T_a_b.inverse().cast<float>()));
+}
 
 double pairViolation(const PreparedScan& a, const PreparedScan& b, const Eigen::Isometry3d& T_a_b, int level)
 {

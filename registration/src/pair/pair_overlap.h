@@ -34,6 +34,10 @@ PairCheck checkPair(const PreparedScan& a, const PreparedScan& b, const Eigen::I
 /// The same from fewer samples and without colours: to sort out hypotheses.
 PairCheck checkRoughly(const PreparedScan& a, const PreparedScan& b, const Eigen::Isometry3d& T_a_b, int level);
 
+/// The larger share of few points of check_level in space that the other scan saw through. Points that lie there alone
+/// count, so mixed pixels do.
+double sampledViolation(const PreparedScan& a, const PreparedScan& b, const Eigen::Isometry3d& T_a_b);
+
 /// PairCheck::violation alone.
 double pairViolation(const PreparedScan& a, const PreparedScan& b, const Eigen::Isometry3d& T_a_b, int level);
 } // namespace fresco::registration

@@ -75,7 +75,7 @@ ScanFreeSpace::Map ScanFreeSpace::buildMap(const Points& points, const std::vect
 {
   constexpr double coherent_share = 0.05; // of the range: a surface seen at a slant varies by so much within a cell
   const Index cells = 6 * side_ * side_;
-  Map map{center, std::vector<float>(cells, infinity), std::vector<float>(cells, 0.f)};
+  Map map{center, std::vector<float>(cells, infinity), std::vector<float>(cells, 0.f), 0.f};
   std::vector<std::vector<float>> ranges(cells);
   const float spread = float_pi / 2.f / side_;
   std::array<Eigen::Vector2f, 8> ring;
@@ -98,6 +98,7 @@ ScanFreeSpace::Map ScanFreeSpace::buildMap(const Points& points, const std::vect
       map.farthest[cell] = std::max(map.farthest[cell], range);
     }
   }
+  map.reach = *std::max_element(map.farthest.begin(), map.farthest.end());
   for (std::vector<float>& cell : ranges) {
     if (cell.empty())
       continue;
@@ -120,7 +121,7 @@ std::vector<ScanFreeSpace::Verdict> ScanFreeSpace::judge(const Points& points, c
     for (const Map& map : maps_) {
       const Eigen::Vector3f ray = point - map.center;
       const float range = ray.norm(), margin = slack.absolute + slack.relative * range;
-      if (!(range > slack.absolute))
+      if (!(range > slack.absolute) || range > map.reach + margin)
         continue;
       const Index cell = cellOf(ray, side_);
       if (map.nearest[cell] == infinity || range > map.farthest[cell] + margin)

@@ -51,11 +51,12 @@ private:
   struct Map {
     Eigen::Vector3f center;
     std::vector<float> nearest, farthest; ///< per cell; nearest = +inf in cells without a measurement
+    float reach = 0.f;                    ///< the largest of `farthest`, length
   };
   template <typename Archive>
   friend void fields(Archive& archive, Map& map)
   {
-    archive(map.center, map.nearest, map.farthest);
+    archive(map.center, map.nearest, map.farthest, map.reach);
   }
   Map buildMap(const Points& points, const std::vector<Index>& members, const Eigen::Vector3f& center, double reach);
   std::vector<Map> maps_;
