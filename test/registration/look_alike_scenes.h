@@ -131,6 +131,38 @@ inline LookAlikeScene bays(const EqualBays& kind, Index rays = 30000)
   return made;
 }
 
+constexpr double row_pitch = 5.1; ///< from one of the rooms in a row to the next, along y
+
+/// Three equal rooms side by side along a corridor, their doors open: a scan in each and one in front of each door.
+/// @param telling whether something else stands opposite to each door, so that the rooms' scans show which room is theirs
+inline LookAlikeScene roomsInARow(bool telling, Index rays = 30000)
+{
+  constexpr double pitch = row_pitch;
+  Boxes boxes;
+  for (int k = 0; k < 3; ++k) {
+    addRoom(boxes, {0, pitch * k, 0}, {4, pitch * k + 5, 2.6}, pitch * k + 2);
+    addFurniture(boxes, {0.3, pitch * k + 0.3, 0}, {3.5, pitch * k + 4.7, 0}, 8, 3);
+    if (telling)
+      addFurniture(boxes, {5.3, pitch * k + 1.2, 0}, {5.7, pitch * k + 2.8, 0}, 3, 50 + static_cast<unsigned>(k));
+  }
+  addBox(boxes, {4.0, -1.1, -0.1}, {6, 3 * pitch, 0});
+  addBox(boxes, {4.0, -1.1, 2.6}, {6, 3 * pitch, 2.7});
+  addBox(boxes, {6.0, -1.1, 0}, {6.1, 3 * pitch, 2.6});
+  addBox(boxes, {4.0, -1.1, 0}, {6, -1, 2.6});
+  addBox(boxes, {4.0, 3 * pitch, 0}, {6, 3 * pitch + 0.1, 2.6});
+  addBox(boxes, {4.0, -1.1, 0}, {4.1, 0, 2.6});
+  LookAlikeScene made;
+  for (int k = 0; k < 3; ++k) {
+    made.scene.truth.push_back(stationPose({1.2 + 0.6 * k, pitch * k + 2.6 - 0.5 * k, 1.5}, 0.9 * k, 0.02));
+    made.scene.truth.push_back(stationPose({4.9, pitch * k + 1.8 + 0.2 * k, 1.5}, 0.4 + k, 0.02));
+  }
+  for (std::size_t i = 0; i < made.scene.truth.size(); ++i)
+    made.scene.scans.push_back(scanBoxes(boxes, made.scene.truth[i], rays, 0.004, static_cast<unsigned>(i) + 1));
+  made.decidable = telling;
+  made.name = std::string("three equal rooms in a row") + (telling ? ", telling things opposite" : "");
+  return made;
+}
+
 /// All of them: what looks alike, and what only seems to.
 inline std::vector<LookAlikeScene> lookAlikeScenes(Index rays = 30000)
 {
@@ -143,6 +175,8 @@ inline std::vector<LookAlikeScene> lookAlikeScenes(Index rays = 30000)
       scenes.push_back(facingRooms({true, between, false, paint}, rays));
   for (const bool between : {false, true})
     scenes.push_back(facingRooms({false, between, false, Paint::none}, rays));
+  for (const bool telling : {false, true})
+    scenes.push_back(roomsInARow(telling, rays));
   for (const bool equal : {true, false})
     for (const bool ends : {false, true})
       scenes.push_back(bays({equal, ends}, rays));

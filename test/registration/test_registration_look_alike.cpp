@@ -85,6 +85,19 @@ TEST(LookAlikes, EqualRoomsSeenFromBetweenAreNotMerged)
   }
 }
 
+// Scans of equal rooms fit each other better than they fit the corridor, but only that one tells the rooms apart.
+TEST(LookAlikes, EqualRoomsInARowAreNotMerged)
+{
+  for (const bool telling : {false, true}) {
+    const LookAlikeScene place = test::roomsInARow(telling);
+    const Outcome outcome = registered(place);
+    EXPECT_EQ(outcome.held.wrong, 0) << place.name;
+    if (telling) {
+      EXPECT_EQ(outcome.placed, place.scene.scans.size()) << place.name;
+    }
+  }
+}
+
 // Without one, a scan of either room sees through both doors that a second room is equal.
 TEST(LookAlikes, EqualRoomsThatSeeEachOtherAreNotMerged)
 {

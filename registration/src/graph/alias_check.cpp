@@ -95,7 +95,7 @@ bool ChainCheck::isAlias(const ChainLink& out, const ChainLink& back) const
   const double here = std::max(violation(join_.first, join_.second, join_.T_first_second),
                                std::min(violation(join_.second, out.to, T_second_first * out.T_from_to),
                                         violation(join_.first, out.to, join_.T_first_second * back.T_from_to)));
-  return join_.has_joined ? there <= here : !clearlyWorse(there, here);
+  return !clearlyWorse(there, here);
 }
 
 bool ChainCheck::run() const

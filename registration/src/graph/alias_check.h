@@ -6,8 +6,7 @@ namespace fresco::registration {
 struct ClusterJoin {
   Index first = 0, second = 0; ///< clusters
   Eigen::Isometry3d T_first_second = Eigen::Isometry3d::Identity();
-  double overlap = 0.0;    ///< of the pair
-  bool has_joined = false; ///< only a place that free space does not rule out any more than this one speaks against it
+  double overlap = 0.0; ///< of the pair
 };
 
 /// Largest violation of any scan of one cluster with any of the other, 0..1. Above max_violation it may be any value that

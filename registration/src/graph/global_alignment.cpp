@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "graph/global_alignment.h"
+#include "graph/loop_closing.h"
 #include "graph/pair_ranking.h"
-#include "graph/pose_graph.h"
 #include "graph/scan_exchange.h"
 #include "graph/viewpoint_check.h"
 #include "pair/partial_alias.h"
@@ -51,8 +51,6 @@ private:
   void leaveOutJoined(std::vector<RankedPair>& pairs) const;
   void alignPairs(const std::vector<RankedPair>& round);
   void correctViewpoints();
-  PoseEdges edgesOf(const ScanCluster& cluster, const PoseGraphOptions& options) const;
-  void closeLoops(ScanCluster& cluster) const;
   GraphOptions graphOptions() const;
 
   std::vector<PreparedScan>& scans_;
@@ -142,40 +140,6 @@ void GlobalAligner::correctViewpoints()
   }
 }
 
-// What all pairs between the cluster's scans say of poses near those it has.
-PoseEdges GlobalAligner::edgesOf(const ScanCluster& cluster, const PoseGraphOptions& options) const
-{
-  constexpr double edge_reach = 6.0; // tolerances between a pair and the poses of its cluster: beyond, it is wrong
-  const auto position = [&](Index scan) {
-    return std::find(cluster.scans.begin(), cluster.scans.end(), scan) - cluster.scans.begin();
-  };
-  const Index n = cluster.scans.size();
-  PoseEdges edges;
-  for (const PairAlignment& pair : result_.pairs) {
-    const Index a = position(pair.a), b = position(pair.b);
-    if (a == n || b == n)
-      continue;
-    const Eigen::Isometry3d T = cluster.poses[a].inverse() * cluster.poses[b];
-    for (const VerifiedHypothesis& hypothesis : pair.hypotheses)
-      if (poseDistance(T, hypothesis.T_a_b, options.size) < edge_reach * options.tolerance)
-        edges.push_back({a, b, hypothesis.T_a_b, hypothesis.support});
-  }
-  return edges;
-}
-
-// Joining used one pair at a time; now all pairs of the cluster count.
-void GlobalAligner::closeLoops(ScanCluster& cluster) const
-{
-  PoseGraphOptions options;
-  options.size = scans_[cluster.scans[0]].size;
-  options.tolerance = graphOptions().tolerance;
-  for (const Index scan : cluster.scans)
-    options.fixed.push_back(isKnown(known_, scan));
-  if (std::find(options.fixed.begin(), options.fixed.end(), 1) == options.fixed.end())
-    options.fixed[0] = 1;
-  cluster.poses = optimizePoseGraph(cluster.poses, edgesOf(cluster, options), options);
-}
-
 GraphOptions GlobalAligner::graphOptions() const
 {
   GraphOptions options;
@@ -239,7 +203,7 @@ GlobalAlignment GlobalAligner::run(const Progress& progress)
       break;
   }
   for (ScanCluster& cluster : result_.graph.clusters)
-    closeLoops(cluster);
+    closeLoops({scans_, result_.pairs, graphOptions()}, known_, cluster);
   return std::move(result_);
 }
 } // namespace

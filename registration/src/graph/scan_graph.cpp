@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "graph/scan_graph.h"
 #include "graph/alias_check.h"
+#include "graph/place_check.h"
 #include <algorithm>
 #include <fresco/core/statistics.h>
+#include <numeric>
 namespace fresco::registration {
 namespace {
 struct Candidate {
@@ -13,7 +15,8 @@ struct Candidate {
 class GraphBuilder {
 public:
   GraphBuilder(const GraphInput& input, const ScanCluster& known)
-      : input_(input), known_(known), least_color_(leastColor()), plain_violation_(plainViolation())
+      : input_(input), known_(known), least_color_(leastColor(input.pairs)),
+        usual_violation_(usualViolation(input.pairs)), late_(input.scans.size(), 0)
   {
     begin();
   }
@@ -22,7 +25,7 @@ public:
 
 private:
   void begin();
-  bool refuseTwins();
+  bool setContestedAside();
   const Eigen::Isometry3d& pose(Index scan) const
   {
     return graph_.clusters[places_[scan].cluster].poses[places_[scan].position];
@@ -31,23 +34,39 @@ private:
   bool supported(const Candidate& candidate, const Eigen::Isometry3d& T_first_second) const;
   bool tryJoin(const Candidate& candidate);
   Eigen::Isometry3d clusterPose(const Candidate& candidate) const;
-  void join(const Candidate& candidate, const Eigen::Isometry3d& T_a_b);
-  double leastColor() const;
-  double plainViolation() const;
-  bool doubtful(const VerifiedHypothesis& hypothesis) const { return hypothesis.check.violation > plain_violation_; }
+  void join(Index a, Index b, const Eigen::Isometry3d& T_a_b); // clusters
+  bool doubtful(const PairAlignment& pair, const PairCheck& check) const
+  {
+    if (!sawAround(input_.scans[pair.a]) || !sawAround(input_.scans[pair.b]))
+      return check.violation > mostViolation();
+    return check.violation > noiseViolation() || contradictsOneRoom(check, usual_violation_);
+  }
+  double noiseViolation() const
+  {
+    constexpr double noise_violation = 0.002; // mixed pixels do not cause more
+    return std::max(noise_violation, usual_violation_);
+  }
+  // Of any two scans of clusters of one state of a place: what moves or is misread, panes for one.
+  double mostViolation() const
+  {
+    constexpr double plain_violation = 0.01;
+    return std::min<double>(input_.options.max_violation, std::max(plain_violation, usual_violation_));
+  }
   bool unconvincing(const Candidate& candidate) const;
   bool joinUnambiguous();
   bool joinAmbiguous();
   bool mostAgree(Index scan, const PairAlignment& candidate) const;
   bool joinBlind();
+  bool joinUncontested();
   bool blind(const PairAlignment& pair) const { return input_.scans[pair.a].blind || input_.scans[pair.b].blind; }
+  bool waits(const PairAlignment& pair) const { return blind(pair) || late_[pair.a] || late_[pair.b]; }
   void markLookAlikes();
 
   const GraphInput& input_;
   const ScanCluster& known_;
-  double least_color_, plain_violation_;
-  std::vector<const PairAlignment*> aliased_, refused_;
-  std::vector<Candidate> joins_; // that made the clusters
+  double least_color_, usual_violation_;
+  std::vector<const PairAlignment*> aliased_;
+  std::vector<char> late_; // per scan
   ScanGraph graph_;
   std::vector<ClusterPlace> places_; // of all scans in graph_
 };
@@ -56,8 +75,7 @@ private:
 void GraphBuilder::begin()
 {
   graph_.clusters.clear();
-  aliased_ = refused_;
-  joins_.clear();
+  aliased_.clear();
   if (!known_.scans.empty())
     graph_.clusters.push_back(known_);
   const Index n = input_.scans.size();
@@ -67,31 +85,18 @@ void GraphBuilder::begin()
   places_ = placesOf(graph_.clusters, n);
 }
 
-// The best pairs are joined first, and of equal rooms those are best that lie in each other's place. Once other scans
-// hang together, a chain over them may show two rooms: such a pair joins nothing in another round.
-bool GraphBuilder::refuseTwins()
+// Scans that would fit elsewhere join last: another round is built without them.
+bool GraphBuilder::setContestedAside()
 {
-  constexpr double same_place = 0.6; // overlap of scans of one room, or of its twin
-  const std::size_t before = refused_.size();
-  for (const Candidate& join : joins_) {
-    const Index a = join.pair->a, b = join.pair->b;
-    if (join.hypothesis->check.overlap < same_place || !graph_.clusters[places_[a].cluster].look_alike)
-      continue;
-    std::vector<ScanCluster> clusters = graph_.clusters;
-    ScanCluster& own = clusters[places_[a].cluster];
-    for (const Index scan : {a, b}) {
-      const auto at = std::find(own.scans.begin(), own.scans.end(), scan) - own.scans.begin();
-      own.scans.erase(own.scans.begin() + at);
-      own.poses.erase(own.poses.begin() + at);
+  bool found = false;
+  for (ScanCluster& cluster : graph_.clusters) {
+    settle(input_, known_, cluster);
+    for (const Index scan : contestedScans(input_, known_, cluster)) {
+      late_[scan] = 1;
+      found = true;
     }
-    const bool alone = own.scans.empty(); // nothing confirms what others contest
-    const Index n = clusters.size();
-    clusters.push_back({{a}, {Eigen::Isometry3d::Identity()}});
-    clusters.push_back({{b}, {Eigen::Isometry3d::Identity()}});
-    if (alone || hasAliasByChain(input_, clusters, {n, n + 1, join.hypothesis->T_a_b, same_place, true}))
-      refused_.push_back(join.pair);
   }
-  return refused_.size() > before;
+  return found;
 }
 
 // Frame of the cluster of a from frame of the cluster of b.
@@ -126,7 +131,7 @@ bool GraphBuilder::supported(const Candidate& candidate, const Eigen::Isometry3d
       continue;
     for (const VerifiedHypothesis& hypothesis : pair.hypotheses) {
       // What another pair holds merely possible does not make an unconvincing one certain.
-      if (doubtful(hypothesis) || (only_best && &hypothesis != &pair.hypotheses[0]))
+      if (doubtful(pair, hypothesis.check) || (only_best && &hypothesis != &pair.hypotheses[0]))
         continue;
       const Eigen::Isometry3d T = clusterPose({&pair, &hypothesis});
       if (poseDistance(a == first ? T : T.inverse(), T_first_second, input_.scans[pair.a].size) < slack())
@@ -137,9 +142,8 @@ bool GraphBuilder::supported(const Candidate& candidate, const Eigen::Isometry3d
 }
 
 // The frame of the cluster that stands first stays.
-void GraphBuilder::join(const Candidate& candidate, const Eigen::Isometry3d& T_a_b)
+void GraphBuilder::join(Index a, Index b, const Eigen::Isometry3d& T_a_b)
 {
-  const Index a = places_[candidate.pair->a].cluster, b = places_[candidate.pair->b].cluster;
   ScanCluster &first = graph_.clusters[std::min(a, b)], &second = graph_.clusters[std::max(a, b)];
   const Eigen::Isometry3d T_first_second = a < b ? T_a_b : T_a_b.inverse();
   for (std::size_t k = 0; k < second.scans.size(); ++k) {
@@ -153,64 +157,36 @@ void GraphBuilder::join(const Candidate& candidate, const Eigen::Isometry3d& T_a
 bool GraphBuilder::tryJoin(const Candidate& candidate)
 {
   const Index a = places_[candidate.pair->a].cluster, b = places_[candidate.pair->b].cluster;
-  if (a == b || std::find(refused_.begin(), refused_.end(), candidate.pair) != refused_.end())
+  if (a == b)
     return false;
   const Eigen::Isometry3d T = clusterPose(candidate);
   const bool unsure = unconvincing(candidate);
-  const bool weak =
-      candidate.hypothesis->support < input_.options.strong_overlap || doubtful(*candidate.hypothesis) || unsure;
+  const bool weak = candidate.hypothesis->support < input_.options.strong_overlap ||
+                    doubtful(*candidate.pair, candidate.hypothesis->check) || unsure;
   if (weak && !supported(candidate, T)) {
     if (unsure)
       aliased_.push_back(candidate.pair);
     return false;
   }
-  const double most_violation = std::min<double>(input_.options.max_violation, plain_violation_);
-  if (worstViolation(input_, graph_.clusters[a], graph_.clusters[b], T) > most_violation)
+  const ScanCluster &first = graph_.clusters[a], &second = graph_.clusters[b];
+  if (worstViolation(input_, first, second, T) > mostViolation())
     return false;
   const ClusterJoin proposed{a, b, T, candidate.hypothesis->check.overlap};
-  if (hasAliasByChain(input_, graph_.clusters, proposed) || hasAliasByScan(input_, graph_.clusters, proposed)) {
+  const bool single = first.scans.size() == 1 || second.scans.size() == 1; // of which contestedScans() will tell
+  if (hasAliasByChain(input_, graph_.clusters, proposed) || hasAliasByScan(input_, graph_.clusters, proposed) ||
+      (!single && isContested(input_, first, second, T))) {
     aliased_.push_back(candidate.pair);
     return false;
   }
-  join(candidate, T);
-  joins_.push_back(candidate);
+  join(a, b, T);
   return true;
-}
-
-// Where most pairs agree well in colour, one that does not is a look-alike.
-double GraphBuilder::leastColor() const
-{
-  constexpr double telling_color = 0.6; // correlation that a quarter of the pairs reaches: the scans' colours are good
-  constexpr double color_share = 0.5;   // of it, at least: lights and exposure change less between scans
-  std::vector<double> colors;
-  for (const PairAlignment& pair : input_.pairs)
-    if (!pair.hypotheses.empty() && pair.hypotheses[0].check.color)
-      colors.push_back(*pair.hypotheses[0].check.color);
-  if (colors.empty())
-    return -1.0;
-  const double upper = rankedValue(colors, 3 * colors.size() / 4);
-  return upper > telling_color ? color_share * upper : -1.0;
-}
-
-// Where most pairs contradict free space hardly at all, one that does is a look-alike or has seen a change.
-double GraphBuilder::plainViolation() const
-{
-  constexpr double plain_violation = 0.01;  // of scans of one state of a place: what moves or is misread
-  constexpr double violation_factor = 10.0; // of what the best quarter of the pairs has: another order of magnitude
-  std::vector<double> violations;
-  for (const PairAlignment& pair : input_.pairs)
-    if (!pair.hypotheses.empty() && !pair.ambiguous)
-      violations.push_back(pair.hypotheses[0].check.violation);
-  if (violations.empty())
-    return plain_violation;
-  return std::max(plain_violation, violation_factor * rankedValue(violations, (violations.size() - 1) / 4));
 }
 
 bool GraphBuilder::joinUnambiguous()
 {
   std::vector<Candidate> candidates;
   for (const PairAlignment& pair : input_.pairs)
-    if (!pair.hypotheses.empty() && !pair.ambiguous && !blind(pair) &&
+    if (!pair.hypotheses.empty() && !pair.ambiguous && !waits(pair) &&
         pair.hypotheses[0].check.color.value_or(1.0) >= least_color_)
       candidates.push_back({&pair, &pair.hypotheses[0]});
   std::stable_sort(candidates.begin(), candidates.end(),
@@ -226,7 +202,7 @@ bool GraphBuilder::joinAmbiguous()
 {
   for (const PairAlignment& pair : input_.pairs) {
     const Index a = places_[pair.a].cluster, b = places_[pair.b].cluster;
-    if (!pair.ambiguous || a == b || blind(pair))
+    if (!pair.ambiguous || a == b || waits(pair))
       continue;
     std::vector<std::pair<double, Candidate>> left;
     for (const VerifiedHypothesis& hypothesis : pair.hypotheses) {
@@ -274,12 +250,35 @@ bool GraphBuilder::joinBlind()
   return false;
 }
 
+// What is left joins where nothing else is in question for it: small clusters, of one scan mostly, to larger ones.
+bool GraphBuilder::joinUncontested()
+{
+  std::vector<Index> order(graph_.clusters.size());
+  std::iota(order.begin(), order.end(), Index(0));
+  const auto size = [&](Index c) { return graph_.clusters[c].scans.size(); };
+  std::stable_sort(order.begin(), order.end(), [&](Index x, Index y) { return size(x) > size(y); });
+  for (std::size_t i = 0; i < order.size() && size(order[i]) > 1; ++i)
+    for (std::size_t j = i + 1; j < order.size(); ++j) {
+      if (input_.scans[graph_.clusters[order[j]].scans[0]].blind)
+        continue;
+      const ClusterPoses places = findPlaces(input_, graph_.clusters[order[i]], graph_.clusters[order[j]]);
+      const ClusterPose* place = uncontested(places, input_.options.strong_overlap, noiseViolation());
+      if (place == nullptr)
+        continue;
+      join(order[i], order[j], place->T);
+      settle(input_, known_, graph_.clusters[std::min(order[i], order[j])]);
+      return true;
+    }
+  return false;
+}
+
 // Clusters that stayed apart although pairs between them fit.
 void GraphBuilder::markLookAlikes()
 {
   for (const PairAlignment& pair : input_.pairs) {
     const Index a = places_[pair.a].cluster, b = places_[pair.b].cluster;
-    const bool contested = std::find(aliased_.begin(), aliased_.end(), &pair) != aliased_.end();
+    const bool contested =
+        late_[pair.a] || late_[pair.b] || std::find(aliased_.begin(), aliased_.end(), &pair) != aliased_.end();
     if (a != b && !pair.hypotheses.empty() && !blind(pair) && (pair.ambiguous || contested))
       graph_.clusters[a].look_alike = graph_.clusters[b].look_alike = true;
   }
@@ -291,18 +290,49 @@ ScanGraph GraphBuilder::build()
   for (int round = 0; round < most_rounds; ++round) {
     while (joinUnambiguous() || joinAmbiguous())
       ;
-    markLookAlikes();
-    if (round + 1 == most_rounds || !refuseTwins())
+    if (!setContestedAside() || round + 1 == most_rounds)
       break;
     begin();
   }
-  while (joinBlind())
+  while (joinUncontested() || joinBlind())
     ;
+  markLookAlikes();
   std::stable_sort(graph_.clusters.begin() + (known_.scans.empty() ? 0 : 1), graph_.clusters.end(),
                    [](const ScanCluster& x, const ScanCluster& y) { return x.scans.size() > y.scans.size(); });
   return std::move(graph_);
 }
 } // namespace
+
+double leastColor(const std::vector<PairAlignment>& pairs)
+{
+  constexpr double telling_color = 0.6; // correlation that a quarter of the pairs reaches: the scans' colours are good
+  constexpr double color_share = 0.5;   // of it, at least: lights and exposure change less between scans
+  std::vector<double> colors;
+  for (const PairAlignment& pair : pairs)
+    if (!pair.hypotheses.empty() && pair.hypotheses[0].check.color)
+      colors.push_back(*pair.hypotheses[0].check.color);
+  if (colors.empty())
+    return -1.0;
+  const double upper = rankedValue(colors, 3 * colors.size() / 4);
+  return upper > telling_color ? color_share * upper : -1.0;
+}
+
+double usualViolation(const std::vector<PairAlignment>& pairs)
+{
+  constexpr double violation_factor = 10.0; // of what the best quarter of the pairs has: another order of magnitude
+  std::vector<double> violations;
+  for (const PairAlignment& pair : pairs)
+    if (!pair.hypotheses.empty() && !pair.ambiguous)
+      violations.push_back(pair.hypotheses[0].check.violation);
+  return violations.empty() ? 0.0 : violation_factor * rankedValue(violations, (violations.size() - 1) / 4);
+}
+
+bool contradictsOneRoom(const PairCheck& check, double usual_violation)
+{
+  constexpr double one_room = 0.5;         // overlap
+  constexpr double room_violation = 0.001; // a handful of points
+  return check.overlap > one_room && check.violation > std::max(room_violation, usual_violation);
+}
 
 std::vector<ClusterPlace> placesOf(const std::vector<ScanCluster>& clusters, Index scan_count)
 {

@@ -36,6 +36,15 @@ struct GraphInput {
   GraphOptions options;
 };
 
+/// Where most pairs agree well in colour, one below this correlation is a look-alike; else -1.
+double leastColor(const std::vector<PairAlignment>& pairs);
+
+/// Where most pairs contradict free space hardly at all, a pair above this is a look-alike or has seen a change.
+double usualViolation(const std::vector<PairAlignment>& pairs);
+
+/// Two scans that see one room see all of it through the same air: the little that contradicts tells it from its twin.
+bool contradictsOneRoom(const PairCheck& check, double usual_violation);
+
 /// Joins scans to clusters by the relative poses of pairs, the best first. Two clusters are joined only if no scan of
 /// one lies in space that a scan of the other saw through. Of an ambiguous pair a hypothesis is used only if it is the
 /// one that the clusters' other scans do not contradict. Scans without a problem take part.

@@ -23,25 +23,35 @@ double overlapShare(const ScanLevel& source, const ScanLevel& target, const Eige
 namespace {
 ScanFreeSpace::Slack slackOf(const ScanLevel& level) { return {1.5f * level.voxel, 0.02f}; }
 
-// Share of the comparable points of a level that lie, together with their neighbours, in space that was seen through.
-double violationShare(const ScanFreeSpace& space, const ScanLevel& level, const Eigen::Isometry3f& T_space_level)
+struct Violation {
+  double of_comparable = 0.0, share = 0.0; // share: of at least half of all points
+  Index points = 0;
+};
+
+// Points of a level that lie, together with their neighbours, in space that was seen through; how many lie there with or
+// without them.
+Violation findViolation(const PreparedScan& seer, const ScanLevel& level, const Eigen::Isometry3f& T_seer_level)
 {
   constexpr int fewest_violating =
       6; // of a point and its 7 neighbours: mixed pixels at edges violate alone, misplaced surfaces all over
-  if (space.empty())
-    return 0.0;
-  const auto verdicts = space.judge(level.points, T_space_level, slackOf(level));
-  Index comparable = 0, violating = 0;
+  if (seer.free_space.empty())
+    return {};
+  const auto verdicts = seer.free_space.judge(level.points, T_seer_level, slackOf(level));
+  Index comparable = 0, violating = 0, points = 0;
   for (Index i = 0; i < level.points.cols(); ++i) {
     comparable += verdicts[i] != ScanFreeSpace::Verdict::unknown ? 1 : 0;
     if (verdicts[i] != ScanFreeSpace::Verdict::violates)
       continue;
+    ++points;
     int around = 0;
     for (const std::int32_t hit : level.around.col(i))
       around += hit >= 0 && verdicts[hit] == ScanFreeSpace::Verdict::violates ? 1 : 0;
     violating += around >= fewest_violating ? 1 : 0;
   }
-  return 1.0 * violating / std::max<Index>(1, comparable);
+  // Half of all points: of few, a handful that are misread is a large share. Who looks one way compares few anyway.
+  const double least_comparable = sawAround(seer) ? 0.5 * level.points.cols() : 1.0;
+  return {1.0 * violating / std::max<Index>(1, comparable), violating / std::max(least_comparable, 1.0 * comparable),
+          points};
 }
 
 // Pearson's correlation, pooled over the three channels: blind to gain and offset of each scan.
@@ -98,8 +108,8 @@ double sampledViolation(const PreparedScan& a, const PreparedScan& b, const Eige
 
 double pairViolation(const PreparedScan& a, const PreparedScan& b, const Eigen::Isometry3d& T_a_b, int level)
 {
-  return std::max(violationShare(a.free_space, b.levels[level], T_a_b.cast<float>()),
-                  violationShare(b.free_space, a.levels[level], T_a_b.inverse().cast<float>()));
+  return std::max(findViolation(a, b.levels[level], T_a_b.cast<float>()).share,
+                  findViolation(b, a.levels[level], T_a_b.inverse().cast<float>()).share);
 }
 
 namespace {
@@ -124,9 +134,11 @@ PairCheck checkSurfaces(const PreparedScan& a, const PreparedScan& b, const Eige
   test.oriented = a.oriented && b.oriented;
   PairCheck check;
   check.overlap = std::max(overlapShare(level_b, level_a, T_ab, test), overlapShare(level_a, level_b, T_ba, test));
-  check.violation_a = violationShare(a.free_space, level_b, T_ab);
-  check.violation_b = violationShare(b.free_space, level_a, T_ba);
-  check.violation = std::max(check.violation_a, check.violation_b);
+  const Violation by_a = findViolation(a, level_b, T_ab), by_b = findViolation(b, level_a, T_ba);
+  check.violation_a = by_a.of_comparable;
+  check.violation_b = by_b.of_comparable;
+  check.violating_points = by_a.points + by_b.points;
+  check.violation = std::max(by_a.share, by_b.share);
   return check;
 }
 } // namespace

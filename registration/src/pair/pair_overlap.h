@@ -20,9 +20,10 @@ double overlapShare(const ScanLevel& source, const ScanLevel& target, const Eige
 struct PairCheck {
   double overlap = 0.0; ///< larger of the two shares of points with a counterpart, 0..1
   /// Larger share of comparable points that lie, together with their neighbours, in space that the other scan saw
-  /// through, 0..1.
+  /// through, 0..1; of half of all points where fewer are comparable to a scan that saw around.
   double violation = 0.0;
-  double violation_a = 0.0, violation_b = 0.0; ///< what a's and what b's free space says of the other
+  double violation_a = 0.0, violation_b = 0.0; ///< a's and b's free space of the other: shares of comparable points
+  Index violating_points = 0; ///< points of both in space that the other saw through, also without their neighbours
   /// Pearson's correlation of the colours of corresponding points, -1..1; absent without enough of them.
   std::optional<double> color;
 };

@@ -41,8 +41,7 @@ ScanAlias toAlias(const VerifiedHypothesis& own)
 
 ScanAliases findAliases(const PreparedScan& scan, const ScanFeatures& features)
 {
-  constexpr double least_coverage = 0.4; // of all directions: who saw less knows too little that could reject an alias
-  if (scan.free_space.coverage() < least_coverage)
+  if (!sawAround(scan)) // it knows too little that could reject an alias
     return {};
   Sc2PcrOptions sc2_pcr;
   sc2_pcr.tolerance = 1.5f * scan.levels[1].voxel;

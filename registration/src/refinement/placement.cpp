@@ -4,12 +4,12 @@
 #include <algorithm>
 #include <cmath>
 #include <fresco/core/parallel.h>
+#include <fresco/core/union_find.h>
 namespace fresco::registration {
 namespace {
 JointOptions jointOptions(const ScanRegistrationOptions& options)
 {
   JointOptions joint;
-  joint.max_distance = options.max_distance;
   joint.min_overlap = 0.5 * options.min_overlap;
   joint.max_iterations = options.max_iterations;
   joint.covariances = true;
@@ -88,16 +88,34 @@ Index memberOf(const Placement& placement, Index scan)
 {
   return std::find(placement.members.begin(), placement.members.end(), scan) - placement.members.begin();
 }
-} // namespace
+// Members of the largest set that accepted pairs hold together.
+Index heldTogether(const Placement& placement)
+{
+  UnionFind held(placement.members.size());
+  for (const PairResult& pair : placement.pairs)
+    if (pair.accepted)
+      held.join(memberOf(placement, pair.a), memberOf(placement, pair.b));
+  std::vector<Index> sizes(placement.members.size(), 0);
+  for (std::size_t m = 0; m < sizes.size(); ++m)
+    ++sizes[held.root(m)];
+  return *std::max_element(sizes.begin(), sizes.end());
+}
 
-void refinePlacement(const std::vector<PreparedScan>& scans, const ScanRegistrationOptions& options,
-                     Placement& placement, const Progress& progress)
+struct Reach {
+  float distance = 0.f; // of corresponding points, at first
+  int first_level = 0;
+};
+
+void refineWithin(const Reach& reach, const std::vector<PreparedScan>& scans, const ScanRegistrationOptions& options,
+                  Placement& placement, const Progress& progress)
 {
   constexpr int most_rounds = 4; // of leaving out contradicting pairs: bounds the time
   ScanPointers members;
   for (const Index i : placement.members)
     members.push_back(&scans[i]);
   JointOptions joint = jointOptions(options);
+  joint.max_distance = reach.distance;
+  joint.first_level = reach.first_level;
   joint.anchors = placement.anchors;
   joint.fixed = placement.fixed;
   const IsometryVector start = placement.poses;
@@ -112,5 +130,25 @@ void refinePlacement(const std::vector<PreparedScan>& scans, const ScanRegistrat
     if (joint.excluded.size() == before)
       return;
   }
+}
+} // namespace
+
+void refinePlacement(const std::vector<PreparedScan>& scans, const ScanRegistrationOptions& options,
+                     Placement& placement, const Progress& progress)
+{
+  constexpr float found_reach = 4.f; // voxels: poses that were found are mostly nearer, and other rooms are further off
+  const Placement start = placement;
+  const Index all = placement.members.size();
+  Placement near = start;
+  if (start.anchors.empty() && all > 1) {
+    refineWithin({std::min(options.max_distance, found_reach * options.voxel), 1}, scans, options, near, progress);
+    if (heldTogether(near) == all) {
+      placement = near;
+      return;
+    }
+  }
+  refineWithin({options.max_distance, 0}, scans, options, placement, progress);
+  if (!near.pairs.empty() && heldTogether(near) >= heldTogether(placement))
+    placement = near;
 }
 } // namespace fresco::registration

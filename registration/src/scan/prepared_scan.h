@@ -60,6 +60,13 @@ constexpr float variation_limit = 0.1f;
 /// Level on which two scans are compared: fine enough for furniture, coarser than the errors of a measured pose.
 constexpr int check_level = level_count - 2;
 
+/// Whether it saw enough, 0.4 of all directions, to rule out wrong places of others.
+inline bool sawAround(const PreparedScan& scan)
+{
+  constexpr double least_coverage = 0.4;
+  return scan.free_space.coverage() >= least_coverage;
+}
+
 /// For a scan whose viewpoint turned out wrong: no free space, normals towards the middle of the scan.
 void distrustViewpoint(PreparedScan& scan, const std::string& reason);
 

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "graph/loop_closing.h"
+#include "graph/pose_graph.h"
+#include <algorithm>
+namespace fresco::registration {
+namespace {
+// What all pairs between the cluster's scans say of poses near those it has.
+PoseEdges edgesOf(const GraphInput& input, const ScanCluster& cluster, const PoseGraphOptions& options)
+{
+  constexpr double edge_reach = 6.0; // tolerances between a pair and the poses of its cluster: beyond, it is wrong
+  const auto position = [&](Index scan) {
+    return std::find(cluster.scans.begin(), cluster.scans.end(), scan) - cluster.scans.begin();
+  };
+  const Index n = cluster.scans.size();
+  PoseEdges edges;
+  for (const PairAlignment& pair : input.pairs) {
+    const Index a = position(pair.a), b = position(pair.b);
+    if (a == n || b == n)
+      continue;
+    const Eigen::Isometry3d T = cluster.poses[a].inverse() * cluster.poses[b];
+    for (const VerifiedHypothesis& hypothesis : pair.hypotheses)
+      if (poseDistance(T, hypothesis.T_a_b, options.size) < edge_reach * options.tolerance)
+        edges.push_back({a, b, hypothesis.T_a_b, hypothesis.support});
+  }
+  return edges;
+}
+} // namespace
+
+void closeLoops(const GraphInput& input, const ScanCluster& known, ScanCluster& cluster)
+{
+  PoseGraphOptions options;
+  options.size = input.scans[cluster.scans[0]].size;
+  options.tolerance = input.options.tolerance;
+  for (const Index scan : cluster.scans)
+    options.fixed.push_back(std::find(known.scans.begin(), known.scans.end(), scan) != known.scans.end());
+  if (std::find(options.fixed.begin(), options.fixed.end(), 1) == options.fixed.end())
+    options.fixed[0] = 1;
+  cluster.poses = optimizePoseGraph(cluster.poses, edgesOf(input, cluster, options), options);
+}
+} // namespace fresco::registration

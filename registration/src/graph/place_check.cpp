@@ -1,0 +1,295 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "graph/place_check.h"
+#include "graph/loop_closing.h"
+#include "refinement/joint_refinement.h"
+#include <algorithm>
+#include <cmath>
+#include <fresco/core/parallel.h>
+namespace fresco::registration {
+namespace {
+constexpr double telling_overlap = 0.25; // of a pair: hardly by chance
+
+bool contains(const ScanCluster& cluster, Index scan)
+{
+  return std::find(cluster.scans.begin(), cluster.scans.end(), scan) != cluster.scans.end();
+}
+
+JointOptions settlingOptions(const GraphInput& input)
+{
+  JointOptions options;
+  options.max_distance = input.options.tolerance;
+  options.min_overlap = 0.1f;
+  options.samples = 1500; // of thousands: centimetres suffice
+  options.first_level = 1;
+  options.last_level = check_level;
+  options.max_iterations = 20;
+  options.threads = input.options.threads;
+  return options;
+}
+
+// Whether a place stands against another one. Overlap hardly counts: of equal rooms, the wrong one may be seen best.
+bool contests(const ClusterPose& other, const ClusterPose& place)
+{
+  constexpr double overlap_share = 0.4;    // less, and mere chance explains it
+  constexpr double sound_violation = 0.01; // of a place that two scans are sure of: others may have seen a pane
+  const double most = place.violating_points + 3.0 * std::sqrt(other.violating_points + place.violating_points);
+  if (other.violating_points > most) // more than counts vary
+    return false;
+  if (other.sound && !other.chained && other.violation <= sound_violation)
+    return true;
+  return !clearlyWorse(other.violation, place.violation) &&
+         (other.chained || other.overlap >= overlap_share * place.overlap);
+}
+
+// A place before it is refined.
+struct RoughPlace {
+  Eigen::Isometry3d T;
+  bool sound, chained;
+};
+using RoughPlaces = std::vector<RoughPlace, Eigen::aligned_allocator<RoughPlace>>;
+
+class PlaceSearch {
+public:
+  PlaceSearch(const GraphInput& input, const ScanCluster& cluster, const ScanCluster& moving)
+      : input_(input), cluster_(cluster), moving_(moving), size_(input.scans[moving.scans[0]].size),
+        usual_violation_(usualViolation(input.pairs)), least_color_(leastColor(input.pairs))
+  {}
+
+  ClusterPoses run() const;
+  ClusterPose evidence(const Eigen::Isometry3d& T) const;
+  double distance(const Eigen::Isometry3d& T, const Eigen::Isometry3d& other) const
+  {
+    return poseDistance(T * moving_.poses[0], other * moving_.poses[0], size_);
+  }
+
+private:
+  // Errors of a pose that is not refined may cause it.
+  double loose() const { return 0.5 * input_.options.max_violation; }
+  bool isSound(const PairAlignment& pair, const VerifiedHypothesis& hypothesis) const;
+  void addPlaces(Index scan, Index from, const RoughPlace& pose, bool sound_only, RoughPlaces& places) const;
+  RoughPlaces placesOf(Index scan, bool sound_only) const;
+  void addChains(RoughPlaces& places) const;
+  RoughPlaces roughPlaces() const;
+  Eigen::Isometry3d refined(const Eigen::Isometry3d& T) const;
+  bool isKnown(const RoughPlace& rough, const Eigen::Isometry3d& T, double tolerances, ClusterPoses& places) const;
+
+  const GraphInput& input_;
+  const ScanCluster &cluster_, &moving_;
+  double size_, usual_violation_, least_color_;
+};
+
+bool PlaceSearch::isSound(const PairAlignment& pair, const VerifiedHypothesis& hypothesis) const
+{
+  constexpr double noise_violation = 0.002; // mixed pixels do not cause more
+  return &hypothesis == &pair.hypotheses.front() && hypothesis.check.overlap >= telling_overlap &&
+         hypothesis.check.violation <= noise_violation;
+}
+
+// Where a scan at a pose sees another one.
+void PlaceSearch::addPlaces(Index scan, Index from, const RoughPlace& pose, bool sound_only, RoughPlaces& places) const
+{
+  for (const PairAlignment& pair : input_.pairs) {
+    if (!((pair.a == scan && pair.b == from) || (pair.a == from && pair.b == scan)))
+      continue;
+    for (const VerifiedHypothesis& hypothesis : pair.hypotheses)
+      if (hypothesis.check.color.value_or(1.0) >= least_color_ &&
+          (sound_only ? isSound(pair, hypothesis) : hypothesis.check.violation <= loose())) {
+        const Eigen::Isometry3d& T = hypothesis.T_a_b;
+        places.push_back({pose.T * (pair.a == scan ? T.inverse() : T), isSound(pair, hypothesis), pose.chained});
+      }
+  }
+}
+
+// Of a scan among those of the cluster.
+RoughPlaces PlaceSearch::placesOf(Index scan, bool sound_only) const
+{
+  RoughPlaces places;
+  for (std::size_t k = 0; k < cluster_.scans.size(); ++k)
+    addPlaces(scan, cluster_.scans[k], {cluster_.poses[k], false, sound_only}, sound_only, places);
+  return places;
+}
+
+// Over one or two scans that are in neither cluster.
+void PlaceSearch::addChains(RoughPlaces& places) const
+{
+  const Index n = input_.scans.size();
+  std::vector<Index> outside;
+  for (Index i = 0; i < n; ++i)
+    if (input_.scans[i].problem.empty() && !contains(cluster_, i) && !contains(moving_, i))
+      outside.push_back(i);
+  std::vector<RoughPlaces> first(n);
+  for (const Index i : outside)
+    first[i] = placesOf(i, true);
+  for (const Index i : outside) {
+    RoughPlaces reached = first[i];
+    for (const Index j : outside)
+      for (const RoughPlace& place : first[j])
+        addPlaces(i, j, place, true, reached);
+    for (const RoughPlace& place : reached)
+      for (std::size_t k = 0; k < moving_.scans.size(); ++k) {
+        RoughPlaces ends;
+        addPlaces(moving_.scans[k], i, place, true, ends);
+        for (const RoughPlace& end : ends)
+          places.push_back({end.T * moving_.poses[k].inverse(), end.sound, true});
+      }
+  }
+}
+
+RoughPlaces PlaceSearch::roughPlaces() const
+{
+  RoughPlaces places;
+  for (std::size_t k = 0; k < moving_.scans.size(); ++k)
+    for (const RoughPlace& place : placesOf(moving_.scans[k], false))
+      places.push_back({place.T * moving_.poses[k].inverse(), place.sound, false});
+  addChains(places);
+  return places;
+}
+
+ClusterPose PlaceSearch::evidence(const Eigen::Isometry3d& T) const
+{
+  ClusterPose place;
+  place.T = T;
+  std::vector<std::pair<double, std::pair<std::size_t, std::size_t>>> near_first;
+  for (std::size_t i = 0; i < cluster_.scans.size(); ++i)
+    for (std::size_t j = 0; j < moving_.scans.size(); ++j)
+      near_first.push_back({(cluster_.poses[i].translation() - (T * moving_.poses[j]).translation()).norm(), {i, j}});
+  std::sort(near_first.begin(), near_first.end());
+  Index against = 0, agree = 0;
+  for (const auto& [distance, pair] : near_first) {
+    const auto& [i, j] = pair;
+    const PairCheck check = checkRoughly(input_.scans[cluster_.scans[i]], input_.scans[moving_.scans[j]],
+                                         cluster_.poses[i].inverse() * T * moving_.poses[j], check_level);
+    place.violation = std::max(place.violation, check.violation);
+    place.overlap = std::max(place.overlap, check.overlap);
+    place.violating_points += check.violating_points;
+    const bool contradicts = contradictsOneRoom(check, usual_violation_);
+    against += contradicts ? 1 : 0;
+    agree += !contradicts && check.overlap > telling_overlap ? 1 : 0;
+    if (place.violation > loose())
+      break; // ruled out
+  }
+  place.doubtful = against > 0 && against >= agree;
+  return place;
+}
+
+// One scan alone moves; clusters of several are left as they are.
+Eigen::Isometry3d PlaceSearch::refined(const Eigen::Isometry3d& T) const
+{
+  if (moving_.scans.size() > 1)
+    return T;
+  ScanPointers scans = {&input_.scans[moving_.scans[0]]};
+  IsometryVector poses = {T * moving_.poses[0]};
+  JointOptions options = settlingOptions(input_);
+  options.threads = 1;
+  options.fixed = {0};
+  for (std::size_t k = 0; k < cluster_.scans.size(); ++k) {
+    scans.push_back(&input_.scans[cluster_.scans[k]]);
+    poses.push_back(cluster_.poses[k]);
+    options.fixed.push_back(1);
+  }
+  return refineJointly(scans, poses, options, {}).poses[0] * moving_.poses[0].inverse();
+}
+
+bool PlaceSearch::isKnown(const RoughPlace& rough, const Eigen::Isometry3d& T, double tolerances,
+                          ClusterPoses& places) const
+{
+  for (ClusterPose& place : places)
+    if (distance(place.T, T) < tolerances * input_.options.tolerance) {
+      place.sound = place.sound || rough.sound;
+      place.chained = place.chained || rough.chained;
+      return true;
+    }
+  return false;
+}
+
+ClusterPoses PlaceSearch::run() const
+{
+  ClusterPoses places;
+  for (const RoughPlace& rough : roughPlaces()) {
+    if (isKnown(rough, rough.T, 2.0, places) || evidence(rough.T).violation > loose())
+      continue;
+    const Eigen::Isometry3d T = refined(rough.T);
+    if (isKnown(rough, T, 1.0, places))
+      continue;
+    ClusterPose place = evidence(T);
+    place.sound = rough.sound;
+    place.chained = rough.chained;
+    if (place.violation <= loose())
+      places.push_back(place);
+  }
+  return places;
+}
+
+bool isContestedMember(const GraphInput& input, const ScanCluster& cluster, std::size_t member)
+{
+  ScanCluster others = cluster;
+  others.scans.erase(others.scans.begin() + member);
+  others.poses.erase(others.poses.begin() + member);
+  const ScanCluster moving = {{cluster.scans[member]}, {cluster.poses[member]}};
+  return isContested(input, others, moving, Eigen::Isometry3d::Identity());
+}
+} // namespace
+
+void settle(const GraphInput& input, const ScanCluster& known, ScanCluster& cluster)
+{
+  if (cluster.scans.size() < 2)
+    return;
+  closeLoops(input, known, cluster);
+  ScanPointers scans;
+  JointOptions options = settlingOptions(input);
+  for (const Index scan : cluster.scans) {
+    scans.push_back(&input.scans[scan]);
+    if (!known.scans.empty())
+      options.fixed.push_back(contains(known, scan));
+  }
+  cluster.poses = refineJointly(scans, cluster.poses, options, {}).poses;
+}
+
+bool isContested(const GraphInput& input, const ScanCluster& cluster, const ScanCluster& moving,
+                 const Eigen::Isometry3d& T)
+{
+  if (!std::all_of(moving.scans.begin(), moving.scans.end(), [&](Index scan) { return sawAround(input.scans[scan]); }))
+    return false;
+  const PlaceSearch search(input, cluster, moving);
+  const ClusterPose here = search.evidence(T);
+  const ClusterPoses places = search.run();
+  return here.doubtful || std::any_of(places.begin(), places.end(), [&](const ClusterPose& place) {
+           return search.distance(place.T, T) > 2.0 * input.options.tolerance && contests(place, here);
+         });
+}
+
+ClusterPoses findPlaces(const GraphInput& input, const ScanCluster& cluster, const ScanCluster& moving)
+{
+  return PlaceSearch(input, cluster, moving).run();
+}
+
+const ClusterPose* uncontested(const ClusterPoses& places, double least_overlap, double most_violation)
+{
+  for (const ClusterPose& place : places) {
+    const bool contested = std::any_of(places.begin(), places.end(), [&](const ClusterPose& other) {
+      return &other != &place && contests(other, place);
+    });
+    if (!contested && !place.doubtful && place.overlap >= least_overlap && place.violation <= most_violation)
+      return &place;
+  }
+  return nullptr;
+}
+
+std::vector<Index> contestedScans(const GraphInput& input, const ScanCluster& known, const ScanCluster& cluster)
+{
+  const Index n = cluster.scans.size();
+  std::vector<char> contested(n, 0);
+  parallelFor(
+      n > 1 ? n : 0, input.options.threads,
+      [&](Index k) {
+        const Index scan = cluster.scans[k];
+        contested[k] = !contains(known, scan) && isContestedMember(input, cluster, k);
+      },
+      1);
+  std::vector<Index> scans;
+  for (Index k = 0; k < n; ++k)
+    if (contested[k])
+      scans.push_back(cluster.scans[k]);
+  return scans;
+}
+} // namespace fresco::registration
