@@ -3,6 +3,17 @@
 #include "support/ranks.h"
 #include "support/tool.h"
 #include <fresco/model/build_model.h>
+namespace {
+void print(const fresco::ModelReport& report, bool quiet)
+{
+  for (const fresco::ModelStage& stage : report.stages) {
+    fresco::inform(quiet, fresco::stageSummary(stage));
+    for (const std::string& warning : stage.warnings)
+      fresco::inform(quiet, "warning: " + warning);
+  }
+}
+} // namespace
+
 int main(int argc, char** argv)
 {
   return fresco::runRanks("fresco_model", argc, argv, [&](const std::string& program, fresco::Exchange& ranks) {
@@ -36,6 +47,10 @@ int main(int argc, char** argv)
     args.flag("no_optimize", options.optimize,
               "leave the vertices where the reconstruction puts them: rounded edges; always so for RGB-D", false);
     args.option("texel", options.texel, "side of a texel, metres; 0 = as fine as photographs, panoramas or points");
+    args.option(
+        "tile_faces", options.tile_faces,
+        "most faces that are textured at a time, >= 0: a mesh of more gets pictures for each of its tiles; 0 = all, or "
+        "as many as memory holds");
     args.option("atlas", options.atlas,
                 "largest side of a picture of the texture, 128..16384 pixels; a larger texture has several; 0 = 8192");
     args.option("quality", options.quality, "JPEG quality of the texture's pictures, 1..100; 0 = PNG, without loss");
@@ -54,12 +69,6 @@ int main(int argc, char** argv)
     options.threads = common.threads;
     common.quiet |= ranks.rank() > 0;
     fresco::inform(common.quiet, "input: " + fresco::describeInput(words[0]));
-    const fresco::ModelReport report =
-        fresco::buildModel({words[0], words[1]}, options, fresco::printProgress(common.quiet), ranks);
-    for (const fresco::ModelStage& stage : report.stages) {
-      fresco::inform(common.quiet, fresco::stageSummary(stage));
-      for (const std::string& warning : stage.warnings)
-        fresco::inform(common.quiet, "warning: " + warning);
-    }
+    print(fresco::buildModel({words[0], words[1]}, options, fresco::printProgress(common.quiet), ranks), common.quiet);
   });
 }

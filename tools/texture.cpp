@@ -10,6 +10,7 @@
 #include <fresco/io/point_io.h>
 #include <fresco/texture/core/point_texture.h>
 #include <fresco/texture/core/texture_reconstruction.h>
+#include <memory>
 namespace {
 using namespace fresco;
 
@@ -69,6 +70,10 @@ void declare(Args& args, TextureOptions& options, ToolOptions& tool)
   args.option("margin", options.margin, "pixels kept away from the outline of what stands in front, 0..100");
   args.option("depth_tolerance", options.depth_tolerance,
               "share of the typical distance by which occlusion is forgiven, 0..0.5");
+  args.option(
+      "tile_faces", options.tile_faces,
+      "most faces that are textured at a time, >= 0: a mesh of more gets atlases for each of its tiles; 0 = all, "
+      "or as many as memory holds");
   args.option("memory", options.memory, "MB of photographs kept at a time, decoded or as grey copies, at least 1");
 }
 
@@ -124,24 +129,53 @@ TriangleMesh readSurface(const std::string& path)
   return mesh;
 }
 
-/// @param path of the mesh
-TextureResult reconstruct(const std::string& path, const std::vector<TextureView>& views, const TextureOptions& options,
-                          const CommonOptions& common, bool keep_uv)
+/// Writes a model, atlas by atlas where it comes in tiles.
+class ModelOutput {
+public:
+  ModelOutput(std::string path, int quality) : path_(std::move(path)), quality_(quality) {}
+
+  AtlasSink sink()
+  {
+    return [this](const Image& atlas, const Image& mask) {
+      if (!tiles_)
+        tiles_ = std::make_unique<TexturedMeshWriter>(path_, quality_);
+      tiles_->addAtlas(atlas);
+      constexpr std::size_t several = 2;
+      writeImage(maskPath(path_, count_++, several), mask);
+    };
+  }
+
+  template <typename Result>
+  void write(const Result& result)
+  {
+    if (tiles_)
+      return tiles_->finish(result.model);
+    writeTexturedMesh(path_, result.model, quality_);
+    for (std::size_t i = 0; i < result.masks.size(); ++i)
+      writeImage(maskPath(path_, i, result.masks.size()), result.masks[i]);
+  }
+
+private:
+  std::string path_;
+  int quality_;
+  std::unique_ptr<TexturedMeshWriter> tiles_;
+  std::size_t count_ = 0;
+};
+
+struct MeshFile {
+  const std::string& path;
+  bool keep_uv;
+};
+
+TextureResult reconstruct(const MeshFile& file, const std::vector<TextureView>& views, const TextureOptions& options,
+                          const CommonOptions& common, ModelOutput& output)
 {
+  const auto& [path, keep_uv] = file;
   if (!keep_uv)
-    return reconstructTexture(readSurface(path), views, options, printProgress(common.quiet));
+    return reconstructTexture(readSurface(path), views, options, printProgress(common.quiet), output.sink());
   const TexturedMesh model = readTextureLayout(path);
   requireSurface(path, model.mesh);
   return reconstructTexture(model, views, options, printProgress(common.quiet));
-}
-
-/// The outputs of both ways.
-template <typename Result>
-void writeModel(const std::string& out, const Result& result, int quality)
-{
-  writeTexturedMesh(out, result.model, quality);
-  for (std::size_t i = 0; i < result.masks.size(); ++i)
-    writeImage(maskPath(out, i, result.masks.size()), result.masks[i]);
 }
 
 template <typename Result>
@@ -166,16 +200,21 @@ void textureFromPoints(const std::vector<std::string>& files, const ToolOptions&
   options.exposure = shared.exposure;
   options.examples = shared.examples;
   options.threads = shared.threads;
+  options.tile_faces = shared.tile_faces;
   requireDistinct({files[1]}, {files[0], tool.points});
-  const TriangleMesh mesh = readSurface(files[0]);
+  TriangleMesh mesh = readSurface(files[0]);
   const PointSet points = readPoints(tool.points);
   if (std::vector<std::string> reasons; lookOf(points, &reasons) == PointLook::none)
     throw std::runtime_error(tool.points + ": " +
                              (reasons.empty() ? "has neither colours nor intensities" : reasons[0]));
-  const PointTextureResult result = reconstructPointTexture(mesh, points, options, printProgress(quiet));
-  if (!(result.coverage > 0))
-    throw std::runtime_error(tool.points + ": no part of " + files[0] + " is covered with points");
-  writeOutputs([&] { writeModel(files[1], result, tool.quality); });
+  PointTextureResult result;
+  writeOutputs([&] {
+    ModelOutput output(files[1], tool.quality);
+    result = reconstructPointTexture(std::move(mesh), points, options, printProgress(quiet), output.sink());
+    if (!(result.coverage > 0))
+      throw std::runtime_error(tool.points + ": no part of " + files[0] + " is covered with points");
+    output.write(result);
+  });
   inform(quiet, format("%s of %td points, scans: %td, seen %.1f %% of the surface",
                        result.look == PointLook::colors ? "colours" : "intensities", points.size(), result.gains.cols(),
                        100 * result.coverage));
@@ -221,6 +260,8 @@ void run(int argc, char** argv)
   const std::string out = files.back();
   if (extension(out) != ".obj" && extension(out) != ".glb")
     throw UsageError(out + ": the output's extension must be .obj or .glb");
+  if (tool.uv == "keep" && options.tile_faces > 0)
+    throw UsageError("-uv keep does not go with -tile_faces");
   if (tool.uv != "new" && (tool.uv != "keep" || options.texel > 0 || !tool.points.empty()))
     throw UsageError("-uv is new or keep, which goes with neither -texel nor -points");
   if (tool.keep_out < 0)
@@ -235,12 +276,14 @@ void run(int argc, char** argv)
   requireOtherFiles(out, views, keep_uv ? filesNamedBy(files[0]) : std::vector<std::string>());
   for (std::size_t v = 0; v < views.size() && tool.keep_out > 0; ++v)
     views[v].paint = (v + 1) % static_cast<std::size_t>(tool.keep_out) != 0;
-  const TextureResult result = reconstruct(files[0], views, options, common, keep_uv);
-  if (!(result.coverage > 0))
-    throw std::runtime_error(
-        concat(files[1], ": none of the ", views.size(), " photographs sees any part of ", files[0]));
+  TextureResult result;
   writeOutputs([&] {
-    writeModel(out, result, tool.quality);
+    ModelOutput output(out, tool.quality);
+    result = reconstruct({files[0], keep_uv}, views, options, common, output);
+    if (!(result.coverage > 0))
+      throw std::runtime_error(
+          concat(files[1], ": none of the ", views.size(), " photographs sees any part of ", files[0]));
+    output.write(result);
     if (!tool.cameras_out.empty())
       writeColmap(tool.cameras_out, usedCameras(set, result));
   });

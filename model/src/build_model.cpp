@@ -18,6 +18,7 @@ void validate(const ModelInput& input, const ModelOptions& options)
   require(options.bilateral >= 0 && options.trim_levels >= 0 && options.texel >= 0, "model: an option is negative");
   require(options.atlas == 0 || (options.atlas >= 128 && options.atlas <= 16384), "model: atlas ", options.atlas,
           " is neither 0 nor in 128..16384");
+  require(options.tile_faces >= 0, "model: ", options.tile_faces, " faces of a tile");
   require(options.quality >= 0 && options.quality <= 100, "model: quality ", options.quality, " is not in 0..100");
   require(options.width >= 160 && options.height >= 120, "model: pictures of ", options.width, "x", options.height,
           " pixels are too small");
@@ -54,7 +55,7 @@ std::vector<Stage> stagesOf(const Job& job)
   add({"optimization", concat(options.optimize), {files.mesh}, step(makeOptimizedSurface)});
   add({"texture",
        concat(options.texel, " ", options.atlas, " ", options.quality, " ", options.panorama_direction, " ",
-              options.panorama_mirrored),
+              options.panorama_mirrored, " ", options.tile_faces),
        {files.model_obj, files.model_glb, files.viewer_glb},
        step(makeTexture)});
   add({"pictures", concat(options.width, "x", options.height), pictureFiles(job), step(makePictures)});

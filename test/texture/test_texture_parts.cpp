@@ -33,14 +33,15 @@ struct BoardScene {
     options.threads = threads;
     const RayScene scene(mesh);
     const ViewList list{projectors, photos, std::move(used), {0, 1}, 0.2};
-    return cutHiddenParts(patches, {scene, list, options}, coarseMaps({scene, list, options}));
+    return cutHiddenParts(patches, {&scene, list, options}, coarseMaps({&scene, list, options}));
   }
 
   Candidates candidates(const PatchMesh& parts) const
   {
     const std::vector<ViewPart> whole = partsOf(views);
     PhotoStore photos(whole, 1 << 24);
-    return findCandidates(parts, {RayScene(mesh), {projectors, photos, {1, 1}, {0, 1}, 0.2, {}, {}}, TextureOptions{}},
+    const RayScene scene(mesh);
+    return findCandidates(parts, {&scene, {projectors, photos, {1, 1}, {0, 1}, 0.2, {}, {}}, TextureOptions{}},
                           Progress{});
   }
 

@@ -57,6 +57,35 @@ TEST(TextureTool, WritesObjAndGlb)
             readTexturedMesh(files.folder + "/model.obj").atlases[0].width);
 }
 
+TEST(TextureTool, TilesHaveAtlasesOfTheirOwn)
+{
+  const Files files;
+  for (const std::string name : {"model.obj", "model.glb"}) {
+    ASSERT_EQ(files.texture(name, "-tile_faces 4"), 0) << readFile(files.messages);
+    const TexturedMesh model = readTexturedMesh(files.folder + "/" + name);
+    EXPECT_EQ(model.mesh.faceCount(), 12);
+    EXPECT_GE(model.atlases.size(), 3U);
+    EXPECT_LT(colorError(model, waves).mean, 2.0) << name;
+    EXPECT_EQ(readImage(files.folder + "/model_mask_0.png").width, model.atlases[0].width);
+  }
+  EXPECT_EQ(files.texture("model.obj", "-tile_faces 4 -uv keep"), 2);
+  EXPECT_EQ(files.texture("model.obj", "-tile_faces -4"), 2);
+}
+
+TEST(TextureTool, TilesThatFailLeaveNothing)
+{
+  const Files files;
+  TriangleMesh away = cube(); // no camera sees it
+  away.origin = {1000, 1000, 0};
+  writeMesh(files.folder + "/away.ply", away);
+  EXPECT_EQ(files.run(files.folder + "/away.ply " + files.cameras + " " + files.images + " " + files.folder +
+                      "/model.obj -tile_faces 4"),
+            1);
+  EXPECT_TRUE(files.says("none of the"));
+  for (const auto& entry : std::filesystem::directory_iterator(files.folder))
+    EXPECT_EQ(entry.path().filename().string().find("model"), std::string::npos) << entry.path();
+}
+
 TEST(TextureTool, HelpAndWrongUsage)
 {
   const Files files;

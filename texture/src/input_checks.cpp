@@ -94,21 +94,30 @@ void validate(const TriangleMesh& mesh, const std::vector<TextureView>& views, c
   require(options.blend_width >= 0 && options.blend_width <= 100, "texture: blend width ", options.blend_width,
           " is not in 0..100");
   require(options.rounds >= 0 && options.rounds <= 100, "texture: rounds ", options.rounds, " is not in 0..100");
+  require(options.tile_faces >= 0, "texture: ", options.tile_faces, " faces of a tile");
   require(options.memory >= 1, "texture: memory ", options.memory, " MB is below 1");
   for (std::size_t v = 0; v < views.size(); ++v)
     validateView(views[v], v);
-  constexpr std::size_t bytes_per_face = 540; // measured with 35 photographs of a room: docs/texture.md
-  if (!views.empty())
-    requireMemory(mesh.faceCount(), mesh.faceCount() * bytes_per_face);
 }
 
-void requireMemory(Index faces, std::size_t needed)
+Index tileFaces(Index faces, int asked, const MemoryNeed& need)
 {
-  constexpr std::size_t megabyte = 1000000;
-  if (const std::size_t there = machineMemory(); needed > there)
-    throw std::runtime_error(concat("texture: ", faces, " faces take at least ", needed / megabyte,
+  constexpr std::size_t least = 100'000, usual = 1'000'000; // faces of a tile that memory asks for
+  constexpr std::size_t surroundings = 2;                   // a tile takes with what lies around it so much more
+  constexpr std::size_t megabyte = 1'000'000;
+  const std::size_t there = machineMemory(), count = faces;
+  if (asked > 0)
+    return std::min<Index>(faces, asked);
+  if (need.fixed + count * need.face_at_once <= there)
+    return faces;
+  const std::size_t kept = need.fixed + need.fixed_of_tiles + count * need.face_of_tiles,
+                    tile_face = surroundings * need.face_at_once;
+  if (kept + least * tile_face > there)
+    throw std::runtime_error(concat("texture: ", faces, " faces take at least ", (kept + least * tile_face) / megabyte,
                                     " MB of memory, there are ", there / megabyte,
                                     "; a mesh of larger cells takes less"));
+  constexpr std::size_t share = 2; // of the rest, for photographs, atlases and other programs
+  return std::clamp((there - kept) / share / tile_face, least, usual);
 }
 
 void weld(TextureResult& result)
@@ -129,9 +138,8 @@ void weld(TextureResult& result)
   mesh.faces = faces;
 }
 
-TexturedMesh withoutDuplicates(const TexturedMesh& model, TextureResult& result)
+std::vector<Index> firstFaces(const Faces& faces)
 {
-  const Faces faces = weldedFaces(model.mesh);
   const auto key = [&](Index f) {
     std::array<int, 3> corners{faces(0, f), faces(1, f), faces(2, f)};
     std::rotate(corners.begin(), std::min_element(corners.begin(), corners.end()), corners.end());
@@ -144,10 +152,21 @@ TexturedMesh withoutDuplicates(const TexturedMesh& model, TextureResult& result)
   for (std::size_t i = 0; i < order.size(); ++i)
     if (i == 0 || key(order[i]) != key(order[i - 1]))
       kept.push_back(order[i]);
-  if (kept.size() == order.size())
-    return model;
-  result.warnings.push_back(concat(order.size() - kept.size(), " faces are there twice; the second ones are left out"));
   std::sort(kept.begin(), kept.end());
+  return kept;
+}
+
+std::string duplicatesWarning(Index count)
+{
+  return concat(count, " faces are there twice; the second ones are left out");
+}
+
+TexturedMesh withoutDuplicates(const TexturedMesh& model, TextureResult& result)
+{
+  const std::vector<Index> kept = firstFaces(weldedFaces(model.mesh));
+  if (Index(kept.size()) == model.mesh.faceCount())
+    return model;
+  result.warnings.push_back(duplicatesWarning(model.mesh.faceCount() - kept.size()));
   TexturedMesh out = model;
   out.mesh.faces = model.mesh.faces(Eigen::all, kept);
   if (model.texcoord_faces.cols() > 0) {

@@ -5,12 +5,26 @@ namespace fresco::texture {
 /// @throws std::invalid_argument as reconstructTexture() says
 void validate(const TriangleMesh& mesh, const std::vector<TextureView>& views, const TextureOptions& options);
 
-/// The whole mesh is textured at once. @param needed bytes
-/// @throws std::runtime_error if that is more than machineMemory()
-void requireMemory(Index faces, std::size_t needed);
+/// Bytes that texturing takes.
+struct MemoryNeed {
+  std::size_t fixed;          ///< points
+  std::size_t fixed_of_tiles; ///< beside them of a mesh in tiles: maps of photographs
+  std::size_t face_at_once;   ///< of each face that is textured at a time
+  std::size_t face_of_tiles;  ///< of each face of a mesh in tiles
+};
+
+/// Most faces of a tile: those asked for, or as many as leave machineMemory() room.
+/// @param asked 0 = all faces, if these fit
+/// @throws std::runtime_error if the mesh is larger than memory allows even in tiles
+Index tileFaces(Index faces, int asked, const MemoryNeed& need);
 
 /// Joins corners at equal places for the length of the work, and says so where neighbours shared hardly a vertex.
 void weld(TextureResult& result);
+
+/// The first ones of faces with the same corners in the same order, ascending.
+std::vector<Index> firstFaces(const Faces& faces);
+
+std::string duplicatesWarning(Index count);
 
 /// The model without faces of the same corners in the same order, of which it warns; corners at equal places are the same.
 TexturedMesh withoutDuplicates(const TexturedMesh& model, TextureResult& result);

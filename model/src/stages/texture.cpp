@@ -15,6 +15,7 @@
 #include <fresco/texture/core/texture_reconstruction.h>
 #include <fstream>
 #include <map>
+#include <memory>
 #include <regex>
 #include <set>
 namespace fresco::model {
@@ -133,16 +134,50 @@ void removeOldPictures(const ModelFiles& files, std::size_t masks)
     fs::remove(path);
 }
 
-/// Writes the model of a TextureResult or PointTextureResult. @return the figures that both have
+/// Writes the model's files, atlas by atlas where it comes in tiles.
+class ModelOutput {
+public:
+  explicit ModelOutput(const Job& job)
+      : files_(job.files), outputs_{{job.files.model_glb, job.options.quality},
+                                    {job.files.model_obj, job.options.quality},
+                                    {job.files.viewer_glb, 90}} // smaller, since the report has it inside
+  {}
+
+  AtlasSink sink()
+  {
+    return [this](const Image& atlas, const Image& mask) {
+      constexpr std::size_t several = 2;
+      for (const auto& [path, quality] : outputs_)
+        if (tiles_.size() < outputs_.size())
+          tiles_.push_back(std::make_unique<TexturedMeshWriter>(path, quality));
+      for (const auto& writer : tiles_)
+        writer->addAtlas(atlas);
+      writeImage(files_.mask(masks_++, several), mask);
+    };
+  }
+
+  void write(const TexturedMesh& model, const std::vector<Image>& masks)
+  {
+    for (const auto& writer : tiles_)
+      writer->finish(model);
+    for (std::size_t i = masks_; i < masks.size(); ++i)
+      writeImage(files_.mask(i, masks.size()), masks[i]);
+    for (std::size_t i = tiles_.size(); i < outputs_.size(); ++i)
+      writeTexturedMesh(outputs_[i].first, model, outputs_[i].second);
+    removeOldPictures(files_, masks.size());
+  }
+
+private:
+  const ModelFiles& files_;
+  std::vector<std::pair<std::string, int>> outputs_; ///< with their JPEG quality
+  std::vector<std::unique_ptr<TexturedMeshWriter>> tiles_;
+  std::size_t masks_ = 0; ///< that are written
+};
+
+/// Of a TextureResult or PointTextureResult, the figures that both have.
 template <typename Result>
-Figures writeModel(const Result& result, const ModelFiles& files, int quality)
+Figures figuresOf(const Result& result)
 {
-  for (std::size_t i = 0; i < result.masks.size(); ++i)
-    writeImage(files.mask(i, result.masks.size()), result.masks[i]);
-  writeTexturedMesh(files.model_glb, result.model, quality);
-  writeTexturedMesh(files.model_obj, result.model, quality);
-  writeTexturedMesh(files.viewer_glb, result.model, 90); // smaller, since the report has it inside
-  removeOldPictures(files, result.masks.size());
   return {{"coverage", result.coverage},
           {"charts", result.charts},
           {"atlases", result.model.atlases.size()},
@@ -152,7 +187,7 @@ Figures writeModel(const Result& result, const ModelFiles& files, int quality)
           {"warnings", result.warnings}};
 }
 
-Figures textureFromPoints(const Job& job, const TriangleMesh& mesh, const Progress& progress)
+Figures textureFromPoints(const Job& job, TriangleMesh mesh, const Progress& progress)
 {
   static constexpr const char* looks[] = {"nothing: no colours, no intensities", "colours of the points",
                                           "intensities of the points"};
@@ -161,16 +196,19 @@ Figures textureFromPoints(const Job& job, const TriangleMesh& mesh, const Progre
   texture.texel = job.options.texel;
   texture.atlas = job.options.atlas;
   texture.threads = job.options.threads;
-  const PointTextureResult result =
-      reconstructPointTexture(mesh, PlacedPoints(job.files.points).sample(most_points), texture, progress);
+  texture.tile_faces = job.options.tile_faces;
+  ModelOutput output(job);
+  const PointTextureResult result = reconstructPointTexture(
+      std::move(mesh), PlacedPoints(job.files.points).sample(most_points), texture, progress, output.sink());
+  output.write(result.model, result.masks);
   Figures figures = {{"made_of", looks[int(result.look)]}};
-  figures.update(writeModel(result, job.files, job.options.quality));
+  figures.update(figuresOf(result));
   if (result.look == PointLook::intensities)
     figures.update({{"range_exponent", result.range_exponent}, {"incidence_exponent", result.incidence_exponent}});
   return figures;
 }
 
-Figures textureFromViews(const Job& job, const TriangleMesh& mesh, const std::vector<TextureView>& views,
+Figures textureFromViews(const Job& job, TriangleMesh mesh, const std::vector<TextureView>& views,
                          const Progress& progress)
 {
   const ModelInput& input = job.input;
@@ -178,7 +216,10 @@ Figures textureFromViews(const Job& job, const TriangleMesh& mesh, const std::ve
   texture.texel = job.options.texel;
   texture.atlas = job.options.atlas;
   texture.threads = job.options.threads;
-  TextureResult result = reconstructTexture(mesh, views, texture, progress);
+  texture.tile_faces = job.options.tile_faces;
+  ModelOutput output(job);
+  TextureResult result = reconstructTexture(std::move(mesh), views, texture, progress, output.sink());
+  output.write(result.model, result.masks);
   const std::size_t given = input.panoramas.size() + input.inside.pictures.size() + placedCameras(job).views.size();
   if (views.size() < given)
     result.warnings.push_back(concat(given - views.size(), " pictures are not used: their scans have no place"));
@@ -199,7 +240,7 @@ Figures textureFromViews(const Job& job, const TriangleMesh& mesh, const std::ve
                                           {"places", result.fits[v].matches},
                                           {"median_pixels", result.fits[v].median},
                                           {"nine_tenths_below_pixels", result.fits[v].upper}});
-  figures.update(writeModel(result, job.files, job.options.quality));
+  figures.update(figuresOf(result));
   for (const auto& [phase, seconds] : result.seconds)
     figures["seconds"][phase] = seconds;
   return figures;
@@ -208,10 +249,10 @@ Figures textureFromViews(const Job& job, const TriangleMesh& mesh, const std::ve
 
 Figures makeTexture(const Job& job, const Progress& progress)
 {
-  const TriangleMesh mesh = readMesh(job.files.mesh);
+  TriangleMesh mesh = readMesh(job.files.mesh);
   const std::vector<TextureView> views = viewsOf(job, readPoses(job.files.poses));
-  Figures figures =
-      views.empty() ? textureFromPoints(job, mesh, progress) : textureFromViews(job, mesh, views, progress);
+  Figures figures = views.empty() ? textureFromPoints(job, std::move(mesh), progress)
+                                  : textureFromViews(job, std::move(mesh), views, progress);
   for (const std::string& warning : job.input.inside.warnings)
     figures["warnings"].push_back(warning);
   std::filesystem::remove_all(job.files.pictures);

@@ -36,7 +36,9 @@ void fillTexcoords(const std::vector<Chart>& charts, int side, TexturedMesh& mod
       }
     }
   }
-  model.texcoords = Eigen::Map<const Eigen::Matrix2Xf>(coords.front().data(), 2, coords.size());
+  model.texcoords.resize(2, coords.size());
+  for (std::size_t i = 0; i < coords.size(); ++i)
+    model.texcoords.col(i) = coords[i];
 }
 
 double typicalTexel(const std::vector<Chart>& charts, const FaceGraph& graph)
@@ -135,9 +137,13 @@ double pixelSize(const Eigen::VectorXf& resolution)
 }
 
 std::vector<Chart> makeAtlas(const PatchMesh& patches, const Eigen::VectorXf& resolution, const TextureOptions& options,
-                             TextureResult& result)
+                             TextureResult& result, Index own)
 {
-  const FaceGraph graph = buildFaceGraph(result.model.mesh, options.threads);
+  FaceGraph graph = buildFaceGraph(result.model.mesh, options.threads);
+  for (Index f = 0; f < graph.neighbors.cols(); ++f)
+    for (int k = 0; k < 3; ++k)
+      if ((graph.neighbors(k, f) < own) != (f < own))
+        graph.neighbors(k, f) = -1;
   Eigen::VectorXf density = wantedDensities(patches, result.model.mesh.faceCount(), resolution, options.texel);
   if (result.model.texcoord_faces.cols() > 0)
     return keepAtlas(patches, {graph, density}, options, result);
@@ -154,13 +160,29 @@ std::vector<Chart> makeAtlas(const PatchMesh& patches, const Eigen::VectorXf& re
   layout.largest = side - side / 16; // packing rounds up to its blocks
   layout.threads = options.threads;
   std::vector<Chart> charts = layOutCharts(patches, graph, density, layout);
-  const Packing packing = packCharts(charts, side);
-  fillTexcoords(charts, packing.side, result.model);
-  result.model.atlases.assign(packing.atlases, Image(packing.side, packing.side, 3, 128));
-  result.masks.assign(packing.atlases, Image(packing.side, packing.side, 1));
-  result.used = packing.used;
+  const auto around =
+      std::stable_partition(charts.begin(), charts.end(), [&](const Chart& c) { return c.faces[0] < own; });
+  std::vector<Chart> others(std::make_move_iterator(around), std::make_move_iterator(charts.end()));
+  charts.erase(around, charts.end());
   result.charts = charts.size();
   result.texel = typicalTexel(charts, graph);
+  result.model.atlases.clear();
+  result.masks.clear();
+  const auto pack = [&](std::vector<Chart>& group) {
+    const int first = result.model.atlases.size();
+    const Packing packing = packCharts(group, side);
+    for (Chart& chart : group)
+      chart.atlas += first;
+    result.model.atlases.resize(first + packing.atlases, Image(packing.side, packing.side, 3, 128));
+    result.masks.resize(first + packing.atlases, Image(packing.side, packing.side, 1));
+    return packing;
+  };
+  const Packing packing = pack(charts);
+  result.used = packing.used;
+  fillTexcoords(charts, packing.side, result.model);
+  if (!others.empty())
+    pack(others);
+  std::move(others.begin(), others.end(), std::back_inserter(charts));
   return charts;
 }
 } // namespace fresco::texture

@@ -15,6 +15,8 @@ double pixelSize(const Eigen::VectorXf& resolution);
 /// and the figures that say how. Where the photographs would give more texels than memory should hold, texels are made
 /// larger, with a warning.
 /// @param resolution P, pixels per mesh unit in each patch's view, 0 where unseen
+/// @param result of whose faces the first `own` get texture coordinates. The others are around a tile: their charts, the
+///        last ones, go to atlases of their own behind those of the tile
 std::vector<Chart> makeAtlas(const PatchMesh& patches, const Eigen::VectorXf& resolution, const TextureOptions& options,
-                             TextureResult& result);
+                             TextureResult& result, Index own);
 } // namespace fresco::texture

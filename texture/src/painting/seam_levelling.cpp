@@ -21,7 +21,7 @@ public:
       out_.begin.push_back(out_.begin.back() + list.size());
   }
 
-  SeamOffsets run(int threads)
+  SeamOffsets run(const BlendOptions& options)
   {
     const Index n = out_.begin.back();
     right_ = Eigen::MatrixXf::Zero(n, 3);
@@ -30,6 +30,8 @@ public:
     for (std::size_t v = 0; v < shares_.size(); ++v)
       addSeams(v);
     addSmoothness();
+    if (options.border)
+      holdBorder(*options.border);
     const Sparse A = matrix();
     Eigen::MatrixXf channels(n, 3); // columns, so that threads do not write side by side
     const auto solve = [&](Index c) {
@@ -39,12 +41,34 @@ public:
       solver.compute(A);
       channels.col(c) = solver.solve(right_.col(c));
     };
-    parallelFor(n > 0 ? 3 : 0, threads, solve, 1);
+    parallelFor(n > 0 ? 3 : 0, options.threads, solve, 1);
     out_.offsets = channels.transpose();
+    if (options.border)
+      keepBorder(*options.border);
     return std::move(out_);
   }
 
 private:
+  /// Pulls the offsets that another tile has found to what they are.
+  void holdBorder(const BorderOffsets& border)
+  {
+    constexpr float strong = 1e3f; // beside the equations, which sum up to some tens
+    border.forKnown(patches_, shares_, [&](Index v, std::size_t share, const Eigen::Vector3f& offset) {
+      const Index i = out_.begin[v] + share;
+      diagonal_[i] += strong;
+      right_.row(i) += strong * offset.transpose();
+    });
+  }
+
+  void keepBorder(BorderOffsets& border)
+  {
+    border.forKnown(patches_, shares_, [&](Index v, std::size_t share, const Eigen::Vector3f& offset) {
+      out_.offsets.col(out_.begin[v] + share) = offset;
+    });
+    border.add(patches_, shares_,
+               [&](Index v, std::size_t share) -> Eigen::Vector3f { return out_.offsets.col(out_.begin[v] + share); });
+  }
+
   /// Of the normal equations the lower half, which is all that the solver reads.
   Sparse matrix()
   {
@@ -123,8 +147,9 @@ private:
 };
 } // namespace
 
-SeamOffsets levelSeams(const BlendInput& input, const Groups& around, const VertexViews& shares, int threads)
+SeamOffsets levelSeams(const BlendInput& input, const Groups& around, const VertexViews& shares,
+                       const BlendOptions& options)
 {
-  return Levelling(input, around, shares).run(threads);
+  return Levelling(input, around, shares).run(options);
 }
 } // namespace fresco::texture

@@ -13,5 +13,7 @@ struct SeamOffsets {
 /// Lempitsky & Ivanov 2007, "Seamless Mosaicing of Image-Based Texture Maps". What two views differ by is measured on
 /// patches that both see, so that detail of the surface does not count.
 /// @param around patches at every vertex @param shares views at every vertex
-SeamOffsets levelSeams(const BlendInput& input, const Groups& around, const VertexViews& shares, int threads);
+/// Where the options have a border, its offsets stay, and those found become known to it.
+SeamOffsets levelSeams(const BlendInput& input, const Groups& around, const VertexViews& shares,
+                       const BlendOptions& options);
 } // namespace fresco::texture

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 namespace fresco::texture {
-namespace {
 double meanEdge(const PatchMesh& patches)
 {
   double sum = 0;
@@ -15,20 +14,21 @@ double meanEdge(const PatchMesh& patches)
 }
 
 /// k rounds of averaging spread a step over about sqrt(k) edges to either side.
-int roundsFor(const PatchMesh& patches, double width)
+int blendRounds(double mean_edge, double width)
 {
-  const double edges = width / std::max(2 * meanEdge(patches), 1e-30);
+  const double edges = width / std::max(2 * mean_edge, 1e-30);
   return std::clamp(std::round(edges * edges), 0.0, 8.0);
 }
 
+namespace {
 class Blending {
 public:
   Blending(const BlendInput& input, const BlendOptions& options)
       : input_(input), patches_(input.patches), view_(input.view), around_(vertexPatches(patches_)),
-        shares_(shareVertices(patches_, around_, view_, roundsFor(patches_, options.blend_width)))
+        shares_(shareVertices(patches_, around_, view_, options.rounds))
   {
     if (options.level)
-      offsets_ = levelSeams(input, around_, shares_, options.threads);
+      offsets_ = levelSeams(input, around_, shares_, options);
   }
 
   Blend run() const

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+#include "painting/border_offsets.h"
 #include "views/visibility.h"
 namespace fresco::texture {
 /// A view that takes part in a patch's colour.
@@ -18,10 +19,17 @@ struct Blend {
 };
 
 struct BlendOptions {
-  double blend_width = 0; ///< mesh units over which one view passes into the next
-  bool level = true;      ///< take away the step between views that is left at their seam, and spread what that changes
+  int rounds = 0;    ///< of spreading the views' shares, see blendRounds()
+  bool level = true; ///< take away the step between views that is left at their seam, and spread what that changes
   int threads = 0;
+  BorderOffsets* border = nullptr; ///< of the tiles of a mesh, where this is one
 };
+
+/// Mean length of an edge.
+double meanEdge(const PatchMesh& patches);
+
+/// Rounds that let one view pass into the next over a width in mesh units.
+int blendRounds(double mean_edge, double width);
 
 /// What is blended.
 struct BlendInput {

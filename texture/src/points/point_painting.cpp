@@ -82,7 +82,8 @@ Points sharpened(const SurfaceSamples& samples, const SurfaceGaussian& gaussian,
   return current;
 }
 
-void paintSamples(const PaintScene& scene, const PointPaint& paint, Eigen::VectorXi& view, TextureResult& result)
+void paintSamples(const PaintScene& scene, const PointPaint& paint, Eigen::VectorXi& view, Index own,
+                  TextureResult& result)
 {
   std::vector<std::vector<PatchTexel>> unknown(scene.patches.size());
   parallelFor(scene.patches.size(), scene.threads, [&](Index i) {
@@ -96,7 +97,7 @@ void paintSamples(const PaintScene& scene, const PointPaint& paint, Eigen::Vecto
     else
       all.insert(all.end(), unknown[i].begin(), unknown[i].end());
   }
-  describeViews(scene.patches, view, result);
+  describeViews(scene.patches, view.head(own), result);
   fillUnknown(scene, all, result.model.atlases, result.masks);
 }
 } // namespace fresco::texture

@@ -21,5 +21,7 @@ struct PointPaint {
 
 /// Paints the seen patches. Texels without samples continue the colours around them and are marked in the masks.
 /// @param view of the scene's patches: those without any sample become unseen
-void paintSamples(const PaintScene& scene, const PointPaint& paint, Eigen::VectorXi& view, TextureResult& result);
+/// @param own patches that the result's figures count
+void paintSamples(const PaintScene& scene, const PointPaint& paint, Eigen::VectorXi& view, Index own,
+                  TextureResult& result);
 } // namespace fresco::texture

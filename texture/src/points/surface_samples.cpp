@@ -7,6 +7,7 @@
 #include <fresco/core/statistics.h>
 #include <fresco/search/batch_knn.h>
 #include <fresco/search/triangle_tree.h>
+#include <limits>
 #include <map>
 #include <tuple>
 namespace fresco::texture {
@@ -19,28 +20,87 @@ struct Feet {
   std::vector<float> distances;
 };
 
-Feet feetOf(const TriangleMesh& mesh, const PointSet& set, int threads)
+/// How far from a tile points are looked for, mesh units: those of one tile are looked for everywhere.
+float reachOf(const TriangleMesh& mesh, const MeshTiles& tiles)
+{
+  constexpr float edges = 10; // what is farther away is no noise
+  const float far = std::numeric_limits<float>::infinity();
+  return tiles.count() == 1 ? far : edges * static_cast<float>(meanEdge(mesh, far));
+}
+
+/// Points up to `reach` from the tile; numbers of feet.
+std::vector<Index> feetNear(const Eigen::AlignedBox3f& tile, float reach, const PointSet& set,
+                            const Eigen::Vector3d& shift, const Feet& feet)
+{
+  const Eigen::AlignedBox3d box(tile.min().cast<double>().array() - reach, tile.max().cast<double>().array() + reach);
+  std::vector<Index> out;
+  for (std::size_t i = 0; i < feet.points.size(); ++i)
+    if (box.contains(Eigen::Vector3d(set.points.col(feet.points[i]).cast<double>() + shift)))
+      out.push_back(i);
+  return out;
+}
+
+/// A part of the mesh.
+struct TileTree {
+  TriangleTree tree;
+  const int* faces; ///< numbers in the mesh
+};
+
+/// Moves the chosen points to the tile where that is nearer than what was there before.
+void addFeet(const TileTree& tile, const Eigen::Matrix3Xd& queries, const Index* chosen, int threads, Feet& feet)
+{
+  const std::vector<ClosestPoint> closest = closestPoints(tile.tree, queries, threads);
+  for (Index i = 0; i < queries.cols(); ++i) {
+    const Index to = chosen[i];
+    if (!(closest[i].distance < feet.distances[to]))
+      continue;
+    feet.places.col(to) = closest[i].point.cast<float>();
+    feet.faces[to] = tile.faces[closest[i].face];
+    feet.distances[to] = closest[i].distance;
+  }
+}
+
+/// Leaves out points that found nothing.
+void dropLost(Feet& feet)
+{
+  Index kept = 0;
+  for (std::size_t i = 0; i < feet.faces.size(); ++i)
+    if (feet.faces[i] >= 0) {
+      feet.points[kept] = feet.points[i];
+      feet.faces[kept] = feet.faces[i];
+      feet.distances[kept] = feet.distances[i];
+      feet.places.col(kept++) = feet.places.col(i).eval();
+    }
+  feet.points.resize(kept);
+  feet.faces.resize(kept);
+  feet.distances.resize(kept);
+}
+
+Feet feetOf(const TriangleMesh& mesh, const MeshTiles& tiles, const PointSet& set, int threads)
 {
   constexpr Index window = 1 << 20; // points at a time: bounds the memory
-  const TriangleTree tree(mesh, threads);
   Feet feet;
   feet.points = finiteColumns(set.points);
-  const Index n = feet.points.size();
-  feet.places.resize(3, n);
-  feet.faces.resize(n);
-  feet.distances.resize(n);
+  feet.places.resize(3, feet.points.size());
+  feet.faces.assign(feet.points.size(), -1);
+  feet.distances.assign(feet.points.size(), std::numeric_limits<float>::infinity());
   const Eigen::Vector3d shift = set.origin - mesh.origin;
-  for (Index first = 0; first < n; first += window) {
-    Eigen::Matrix3Xd queries(3, std::min(window, n - first));
-    for (Index i = 0; i < queries.cols(); ++i)
-      queries.col(i) = set.points.col(feet.points[first + i]).cast<double>() + shift;
-    const std::vector<ClosestPoint> closest = closestPoints(tree, queries, threads);
-    for (Index i = 0; i < queries.cols(); ++i) {
-      feet.places.col(first + i) = closest[i].point.cast<float>();
-      feet.faces[first + i] = closest[i].face;
-      feet.distances[first + i] = closest[i].distance;
+  const float reach = reachOf(mesh, tiles);
+  for (Index t = 0; t < tiles.count(); ++t) {
+    const std::vector<Index> chosen = feetNear(tiles.boxes[t], reach, set, shift, feet);
+    if (chosen.empty())
+      continue;
+    const TileTree tile{TriangleTree(tiles.count() == 1 ? mesh : tileMesh(mesh, tiles, t, -1).mesh, threads),
+                        tiles.order.data() + tiles.begin[t]};
+    const Index n = chosen.size();
+    for (Index first = 0; first < n; first += window) {
+      Eigen::Matrix3Xd queries(3, std::min(window, n - first));
+      for (Index i = 0; i < queries.cols(); ++i)
+        queries.col(i) = set.points.col(feet.points[chosen[first + i]]).cast<double>() + shift;
+      addFeet(tile, queries, chosen.data() + first, threads, feet);
     }
   }
+  dropLost(feet);
   return feet;
 }
 
@@ -103,11 +163,11 @@ void measureSpacing(int threads, SurfaceSamples& samples)
 }
 } // namespace
 
-SurfaceSamples sampleSurface(const TriangleMesh& mesh, const PointSet& points, int threads)
+SurfaceSamples sampleSurface(const TriangleMesh& mesh, const MeshTiles& tiles, const PointSet& points, int threads)
 {
   constexpr float most_deviations = 4; // of the noise, from the surface
   const Points normals = faceNormals(mesh, threads);
-  Feet feet = feetOf(mesh, points, threads);
+  Feet feet = feetOf(mesh, tiles, points, threads);
   double side = 0;
   for (std::size_t i = 0; i < feet.points.size(); ++i)
     side += sideOf(points, feet.points[i], normals.col(feet.faces[i]));

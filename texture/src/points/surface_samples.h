@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+#include "tiles/mesh_tiles.h"
 #include <fresco/core/mesh.h>
 #include <fresco/core/point_set.h>
 #include <fresco/search/neighbors.h>
@@ -20,7 +21,8 @@ struct SurfaceSamples {
 
 /// Leaves out points that are not finite, behind the surface (by their normals or viewpoints), or farther from it than
 /// noise explains.
-SurfaceSamples sampleSurface(const TriangleMesh& mesh, const PointSet& points, int threads);
+/// @param tiles of the mesh, which take part one after the other
+SurfaceSamples sampleSurface(const TriangleMesh& mesh, const MeshTiles& tiles, const PointSet& points, int threads);
 
 /// Gaussian means over samples on the same side of the surface.
 class SurfaceGaussian {

@@ -6,23 +6,6 @@
 #include <limits>
 namespace fresco::texture {
 namespace {
-/// Median distance of the surface within the images, from what stands before it or not; mesh units.
-float typicalDepth(const PatchMesh& patches, const std::vector<Projector>& views)
-{
-  constexpr Index samples = 2000; // enough for a median
-  const Index stride = std::max<Index>(1, patches.vertices.cols() / samples);
-  std::vector<float> depths;
-  for (const Projector& view : views)
-    for (Index v = 0; v < patches.vertices.cols(); v += stride) {
-      const Eigen::Vector3f p = view(patches.vertices.col(v));
-      if (p.z() > 0 && p.x() >= 0 && p.y() >= 0 && p.x() <= view.camera().width && p.y() <= view.camera().height)
-        depths.push_back(p.z());
-    }
-  if (depths.empty())
-    return 0;
-  return median(depths);
-}
-
 /// Where places lie of a triangle.
 class Triangle {
 public:
@@ -49,11 +32,6 @@ private:
 
   Eigen::Matrix<float, 2, 3> corners_, edges_;
   Eigen::RowVector3f lengths_;
-};
-
-/// Cells around a patch's corners.
-struct CellBox {
-  int x0, x1, y0, y1; ///< both ends included
 };
 
 CellBox cellsOf(const Footprint& patch, const DepthMap& map)
@@ -85,9 +63,27 @@ private:
 };
 } // namespace
 
-VisibilityLimits limitsFor(const PatchMesh& patches, const ViewList& views, const TextureOptions& options)
+float typicalDepth(const Points& vertices, const std::vector<Projector>& views)
 {
-  const double tolerance = views.pose_uncertainty * options.depth_tolerance * typicalDepth(patches, views.projectors);
+  constexpr Index samples = 2000; // enough for a median
+  const Index stride = std::max<Index>(1, vertices.cols() / samples);
+  std::vector<float> depths;
+  for (const Projector& view : views)
+    for (Index v = 0; v < vertices.cols(); v += stride) {
+      const Eigen::Vector3f p = view(vertices.col(v));
+      if (p.z() > 0 && p.x() >= 0 && p.y() >= 0 && p.x() <= view.camera().width && p.y() <= view.camera().height)
+        depths.push_back(p.z());
+    }
+  if (depths.empty())
+    return 0;
+  return median(depths);
+}
+
+VisibilityLimits limitsFor(const PatchMesh& patches, const VisibilityInput& input)
+{
+  const auto& [scene, views, options, whole] = input;
+  const float typical = whole ? whole->typical_depth : typicalDepth(patches.vertices, views.projectors);
+  const double tolerance = views.pose_uncertainty * options.depth_tolerance * typical;
   VisibilityLimits out;
   out.tolerance = tolerance;
   out.margin = views.pose_uncertainty * options.margin;

@@ -13,7 +13,10 @@ struct VisibilityLimits {
 };
 
 /// The tolerance is the same length in all views, so that near views are not penalized more than far ones.
-VisibilityLimits limitsFor(const PatchMesh& patches, const ViewList& views, const TextureOptions& options);
+VisibilityLimits limitsFor(const PatchMesh& patches, const VisibilityInput& input);
+
+/// Median distance of the surface within the images, from what stands before it or not; mesh units.
+float typicalDepth(const Points& vertices, const std::vector<Projector>& views);
 
 /// Pixel and depth of a vertex; depth 0 where it is too near to the image's border, outside, or behind the camera.
 Eigen::Vector3f pixelWithin(const Projector& view, const Eigen::Vector3f& vertex);

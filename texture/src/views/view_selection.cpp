@@ -181,9 +181,9 @@ Eigen::VectorXi selectViews(const PatchMesh& patches, const ViewCosts& costs, do
 double seamLength(const PatchMesh& patches, const Eigen::VectorXi& view)
 {
   double length = 0;
-  for (Index i = 0; i < patches.size(); ++i)
+  for (Index i = 0; i < view.size(); ++i)
     for (int side = 0; side < 3; ++side)
-      if (const int other = patches.neighbors(side, i); other > i && view[i] != view[other])
+      if (const int other = patches.neighbors(side, i); other > i && other < view.size() && view[i] != view[other])
         length += edgeLength(patches, i, side);
   return length;
 }

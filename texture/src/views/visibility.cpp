@@ -72,7 +72,9 @@ public:
     const float radius = limits_.margin / map.step;
     constexpr float rim_pixels = 2; // reach of cubic interpolation
     const float rim = rim_pixels / map.step;
-    const DepthMap nearest = nearestWithin(map, std::ceil(radius)), farthest = farthestWithin(map, std::ceil(rim));
+    const CellBox cells = cellsInUse(map);
+    const DepthMap nearest = nearestWithin(map, std::ceil(radius), cells),
+                   farthest = farthestWithin(map, std::ceil(rim), cells);
     for (Index i = 0; i < patches_.size(); ++i)
       if (const float cosine = cosineOf(i); cosine >= least_cosine) {
         const Footprint patch = footprintOf(corners(i), map.step);
@@ -102,6 +104,17 @@ private:
     for (int k = 0; k < 3; ++k)
       out.col(k) = pixels_.col(patches_.faces(k, i));
     return out;
+  }
+
+  /// Around all vertices in the image.
+  CellBox cellsInUse(const DepthMap& map) const
+  {
+    Eigen::AlignedBox2f box;
+    for (Index v = 0; v < pixels_.cols(); ++v)
+      if (pixels_(2, v) > 0)
+        box.extend(Eigen::Vector2f(pixels_.col(v).head<2>() / map.step));
+    return {std::clamp<int>(box.min().x(), 0, map.width - 1), std::clamp<int>(box.max().x(), 0, map.width - 1),
+            std::clamp<int>(box.min().y(), 0, map.height - 1), std::clamp<int>(box.max().y(), 0, map.height - 1)};
   }
 
   /// Cosine between the patch's normal and the direction to the camera; 0 where a corner is out of the image.
@@ -211,18 +224,24 @@ const Candidate* Candidates::find(Index patch, int view) const
 
 DepthMap shownDepth(const VisibilityInput& input, Index view, Index cells)
 {
+  if (input.whole)
+    return input.whole->maps[view];
+  DepthMap map = depthMap(*input.scene, input.views.projectors[view], cells);
+  hideMasked(input.views.photos.mask(view), map);
+  return map;
+}
+
+void hideMasked(const Image& mask, DepthMap& map)
+{
   constexpr float before_lens = 1e-3f; // of the distance of what is nearest
-  DepthMap map = depthMap(input.scene, input.views.projectors[view], cells);
-  const Image mask = input.views.photos.mask(view);
   if (mask.empty())
-    return map;
+    return;
   const float depth = before_lens * *std::min_element(map.depth.begin(), map.depth.end());
   for (int y = 0; y < mask.height; ++y)
     for (int x = 0; x < mask.width; ++x)
       if (*mask.pixel(x, y) == 0)
         map.depth[cellAt(std::min<int>(x / map.step, map.width - 1), std::min<int>(y / map.step, map.height - 1),
                          map.width)] = depth;
-  return map;
 }
 
 Candidates findCandidates(const PatchMesh& patches, const VisibilityInput& input, const Progress& progress,
@@ -233,7 +252,7 @@ Candidates findCandidates(const PatchMesh& patches, const VisibilityInput& input
   const Index n = views.used.size();
   CandidateTable table(patches.size(), CandidateTable::mostPerPatch(patches.size(), n));
   std::vector<std::vector<Seen>> seen(batch);
-  const VisibilityLimits limits = limitsFor(patches, views, input.options);
+  const VisibilityLimits limits = limitsFor(patches, input);
   maps.resize(n);
   if (outlines)
     outlines->resize(n);

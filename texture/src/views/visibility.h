@@ -68,12 +68,24 @@ struct ViewList {
   std::vector<double> misfits; ///< octaves by which each view is trusted less; empty: none
 };
 
+/// What is to be known of a surface as a whole when a part of it is looked at.
+struct WholeSurface {
+  std::vector<DepthMap> maps;        ///< shownDepth() of each view in use, as fine as can be
+  std::vector<OutlineMask> outlines; ///< of each view in use, or none where poses are too uncertain
+  float longest_edge = 0;            ///< of a patch, mesh units
+  float typical_depth = 0;           ///< from the cameras, mesh units
+};
+
 /// What visibility is judged by.
 struct VisibilityInput {
-  const RayScene& scene; ///< of the whole mesh
+  const RayScene* scene; ///< of the whole mesh; null if there is `whole`
   const ViewList& views;
   const TextureOptions& options;
+  const WholeSurface* whole = nullptr; ///< in place of the scene where the patches are a part of the surface
 };
+
+/// Brings what a mask leaves out to before the lens.
+void hideMasked(const Image& mask, DepthMap& map);
 
 /// Depth of what a view shows in at most `cells` cells. Where its mask says not to use the photograph, something stands before the lens.
 DepthMap shownDepth(const VisibilityInput& input, Index view, Index cells);

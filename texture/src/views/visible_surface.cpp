@@ -9,11 +9,10 @@
 namespace fresco::texture {
 namespace {
 /// Longest side of a patch, mesh units.
-float longestEdge(const TriangleMesh& mesh, const std::vector<Projector>& views)
+float longestEdge(const TriangleMesh& mesh, const std::vector<Projector>& views, double most_patches)
 {
-  constexpr float patch_pixels = 16;   // small against what stands before a surface, many pixels to compare colours by
-  constexpr double most_patches = 1e6; // bounds the memory
-  constexpr Index samples = 2000;      // enough for a median
+  constexpr float patch_pixels = 16; // small against what stands before a surface, many pixels to compare colours by
+  constexpr Index samples = 2000;    // enough for a median
   const Index stride = std::max<Index>(1, mesh.faceCount() / samples);
   std::vector<float> sizes; // of a pixel
   for (const Projector& view : views)
@@ -33,7 +32,7 @@ Eigen::VectorXi viewsOfFaces(const PatchMesh& patches, const Eigen::VectorXi& vi
 {
   Eigen::VectorXi out = Eigen::VectorXi::Constant(faces, -1);
   std::vector<std::pair<int, float>> areas; // of the views of one face
-  for (Index i = 0; i < patches.size(); ++i) {
+  for (Index i = 0; i < view.size(); ++i) {
     if (i == 0 || patches.parent[i] != patches.parent[i - 1])
       areas.clear();
     const auto at = std::find_if(areas.begin(), areas.end(), [&](const auto& a) { return a.first == view[i]; });
@@ -76,12 +75,22 @@ bool isOnlySeenInPart(const PatchMesh& patches, Index patch, const DepthTest& te
 }
 } // namespace
 
-double diagonalOf(const TriangleMesh& mesh)
+Eigen::AlignedBox3f boxOf(const TriangleMesh& mesh)
 {
   Eigen::AlignedBox3f box;
   for (Index i = 0; i < mesh.faces.size(); ++i)
     box.extend(mesh.vertices.col(mesh.faces.data()[i]));
-  return box.sizes().norm();
+  return box;
+}
+
+double diagonalOf(const TriangleMesh& mesh) { return boxOf(mesh).sizes().norm(); }
+
+WholeSurface measureSurface(const TriangleMesh& mesh, const ViewList& views, double most_patches)
+{
+  WholeSurface out;
+  out.longest_edge = longestEdge(mesh, views.projectors, most_patches);
+  out.typical_depth = typicalDepth(mesh.vertices, views.projectors);
+  return out;
 }
 
 std::vector<DepthMap> coarseMaps(const VisibilityInput& input)
@@ -101,7 +110,7 @@ std::vector<DepthMap> coarseMaps(const VisibilityInput& input)
 PatchMesh cutHiddenParts(PatchMesh patches, const VisibilityInput& input, const std::vector<DepthMap>& maps)
 {
   const int threads = input.options.threads;
-  const DepthTest test{input.views.projectors, maps, limitsFor(patches, input.views, input.options).tolerance};
+  const DepthTest test{input.views.projectors, maps, limitsFor(patches, input).tolerance};
   constexpr int rounds = 3; // each halves the sides: patches of 2 pixels
   Index known = 0;          // vertices: patches that were cut have later ones, others stay as they were judged
   for (int round = 0; round < rounds; ++round) {
@@ -118,14 +127,19 @@ VisibleSurface findVisibleSurface(const TriangleMesh& mesh, const VisibilityInpu
 {
   const bool exact = input.views.pose_uncertainty < 1; // else outlines are too uncertain to be followed closely
   VisibleSurface out;
-  out.patches = cutFaces(mesh, longestEdge(mesh, input.views.projectors), input.options.threads);
+  constexpr double most_patches = 1e6; // bounds the memory
+  const WholeSurface* whole = input.whole;
+  out.patches = cutFaces(mesh, whole ? whole->longest_edge : longestEdge(mesh, input.views.projectors, most_patches),
+                         input.options.threads);
   if (!exact) {
     out.candidates = findCandidates(out.patches, input, progress);
     return out;
   }
-  std::vector<DepthMap> maps = coarseMaps(input);
-  out.patches = cutHiddenParts(std::move(out.patches), input, maps);
-  out.candidates = findCandidates(out.patches, input, progress, std::move(maps), &out.outlines);
+  std::vector<DepthMap> maps;
+  if (!whole)
+    maps = coarseMaps(input);
+  out.patches = cutHiddenParts(std::move(out.patches), input, whole ? whole->maps : maps);
+  out.candidates = findCandidates(out.patches, input, progress, std::move(maps), whole ? nullptr : &out.outlines);
   return out;
 }
 
@@ -133,12 +147,12 @@ void describeViews(const PatchMesh& patches, const Eigen::VectorXi& view, Textur
 {
   double seen = 0;
   std::vector<char> used(view.maxCoeff() + 1, 0);
-  for (Index i = 0; i < patches.size(); ++i)
+  for (Index i = 0; i < view.size(); ++i)
     if (view[i] >= 0) {
       seen += patches.areas[i];
       used[view[i]] = 1;
     }
-  result.coverage = std::min(1.0, seen / patches.areas.cast<double>().sum());
+  result.coverage = std::min(1.0, seen / patches.areas.head(view.size()).cast<double>().sum());
   result.views_used = std::count(used.begin(), used.end(), 1);
   result.seam_length = seamLength(patches, view);
   result.face_view = viewsOfFaces(patches, view, result.model.mesh.faceCount());

@@ -12,6 +12,10 @@ struct VisibleSurface {
 /// Patches of about 16 pixels of a typical view, smaller ones beside outlines, and the views that show them.
 VisibleSurface findVisibleSurface(const TriangleMesh& mesh, const VisibilityInput& input, const Progress& progress);
 
+/// What findVisibleSurface() asks of a surface as a whole, but for its maps.
+/// @param patches that may be there at most, about
+WholeSurface measureSurface(const TriangleMesh& mesh, const ViewList& views, double most_patches);
+
 /// shownDepth() of each view in use, in as many cells as fit into 256 MB together.
 std::vector<DepthMap> coarseMaps(const VisibilityInput& input);
 
@@ -21,8 +25,11 @@ std::vector<DepthMap> coarseMaps(const VisibilityInput& input);
 PatchMesh cutHiddenParts(PatchMesh patches, const VisibilityInput& input, const std::vector<DepthMap>& maps);
 
 /// Fills coverage, views_used, seam_length and face_view of the result.
-/// @param view P, -1 = unseen; panoramas as a whole
+/// @param view -1 = unseen; panoramas as a whole. Of the first patches only, P at most: the others are not counted
 void describeViews(const PatchMesh& patches, const Eigen::VectorXi& view, TextureResult& result);
+
+/// Of all faces.
+Eigen::AlignedBox3f boxOf(const TriangleMesh& mesh);
 
 /// Diagonal of the bounding box of all faces, mesh units.
 double diagonalOf(const TriangleMesh& mesh);

@@ -3,6 +3,7 @@
 #include <fresco/core/export.h>
 #include <fresco/core/mesh.h>
 #include <fresco/core/textured_mesh.h>
+#include <memory>
 #include <string>
 #include <vector>
 namespace fresco {
@@ -21,6 +22,22 @@ FRESCO_EXPORT void writeMesh(const std::string& path, const TriangleMesh& mesh);
 /// @param jpeg_quality of the images, 1..100; 0: PNG, without loss
 /// @throws std::invalid_argument as validateTexturedMesh(), std::runtime_error "PATH: reason" if it cannot be written
 FRESCO_EXPORT void writeTexturedMesh(const std::string& path, const TexturedMesh& model, int jpeg_quality = 0);
+
+/// writeTexturedMesh() of a model whose atlases come one by one, so that not all of them are held. Those of an OBJ file are
+/// `NAME_0.png` ..., even one alone; those of a .glb are kept as they are stored.
+class FRESCO_EXPORT TexturedMeshWriter {
+public:
+  TexturedMeshWriter(const std::string& path, int jpeg_quality = 0);
+  ~TexturedMeshWriter();
+  void addAtlas(const Image& atlas);
+  /// @param model with as many atlases, whose pixels are not looked at
+  /// @throws std::invalid_argument, std::runtime_error as writeTexturedMesh()
+  void finish(const TexturedMesh& model);
+
+private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
 
 /// What writeTexturedMesh() writes, and OBJ + MTL and .glb of others. Faces whose material has no image, or whose
 /// corners have no texture coordinates, are without texture. From a .glb, vertices at the same place become one,

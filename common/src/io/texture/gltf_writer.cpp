@@ -7,6 +7,7 @@
 #include <limits>
 #include <streambuf>
 #include <tiny_gltf.h>
+#include <unordered_map>
 namespace fresco::io {
 namespace {
 using Color16 = Eigen::Matrix<std::uint16_t, 4, 1>;
@@ -32,8 +33,9 @@ std::uint16_t linearLight(std::uint8_t value)
 class PartBuilder {
 public:
   /// @param atlas -1: the faces without texture
-  PartBuilder(const TexturedMesh& model, int atlas)
-      : model_(model), atlas_(atlas), textured_(atlas >= 0), first_(model.mesh.vertexCount(), -1)
+  /// @param faces see facesByAtlas()
+  PartBuilder(const TexturedMesh& model, const Groups& faces, int atlas)
+      : model_(model), faces_(faces), textured_(atlas >= 0), at_(faces.begin[atlas + 1]), end_(faces.begin[atlas + 2])
   {
     for (int value = 0; value < 256; ++value)
       linear_[value] = linearLight(value);
@@ -44,11 +46,10 @@ public:
   {
     constexpr std::size_t most_places = 65535; // so that 16 bits hold an index; 65535 itself has a meaning of its own
     part_ = {};
-    for (; face_ < model_.mesh.faceCount() && places_.size() + 3 <= most_places; ++face_)
-      for (int k = 0; k < 3 && model_.face_atlas[face_] == atlas_; ++k)
-        part_.indices.push_back(place(model_.mesh.faces(k, face_), textured_ ? model_.texcoord_faces(k, face_) : -1));
-    for (const Place& place : places_)
-      first_[place.vertex] = -1;
+    first_.clear();
+    for (; at_ < end_ && places_.size() + 3 <= most_places; ++at_)
+      for (int k = 0, face = faces_.list[at_]; k < 3; ++k)
+        part_.indices.push_back(place(model_.mesh.faces(k, face), textured_ ? model_.texcoord_faces(k, face) : -1));
     places_.clear();
     return std::move(part_);
   }
@@ -60,7 +61,7 @@ private:
 
   std::uint16_t place(int vertex, int texcoord)
   {
-    int& first = first_[vertex];
+    int& first = first_.emplace(vertex, -1).first->second;
     for (int at = first; at >= 0; at = places_[at].next)
       if (places_[at].texcoord == texcoord)
         return at;
@@ -84,10 +85,10 @@ private:
   }
 
   const TexturedMesh& model_;
-  int atlas_;
+  const Groups& faces_;
   bool textured_;
-  Index face_ = 0; ///< the first that is in no part yet
-  std::vector<int> first_;
+  Index at_, end_;                     ///< faces that are in no part yet
+  std::unordered_map<int, int> first_; ///< place of each vertex of the part
   std::vector<Place> places_;
   std::uint16_t linear_[256];
   Part part_;
@@ -98,7 +99,7 @@ const Eigen::Matrix3d R_gltf_model = (Eigen::Matrix3d() << 1, 0, 0, 0, 0, 1, 0, 
 
 class GltfBuilder {
 public:
-  explicit GltfBuilder(const TexturedMesh& model) : source_(model)
+  explicit GltfBuilder(const TexturedMesh& model) : source_(model), faces_(facesByAtlas(model))
   {
     gltf_.asset.version = "2.0";
     gltf_.asset.generator = "fresco";
@@ -107,9 +108,10 @@ public:
   }
 
   /// @param atlas -1: the faces without texture
-  void addPart(int atlas, int jpeg_quality)
+  /// @param image of the atlas
+  void addPart(int atlas, const std::vector<std::uint8_t>& image, int jpeg_quality)
   {
-    PartBuilder builder(source_, atlas);
+    PartBuilder builder(source_, faces_, atlas);
     Part part = builder.next();
     if (part.indices.empty())
       return;
@@ -118,7 +120,7 @@ public:
     surface.metallicFactor = 0.0;
     surface.roughnessFactor = 1.0;
     if (atlas >= 0)
-      surface.baseColorTexture.index = addTexture(source_.atlases[atlas], jpeg_quality);
+      surface.baseColorTexture.index = addTexture(image, jpeg_quality);
     else if (part.colors.empty())
       surface.baseColorFactor = {0.5, 0.5, 0.5, 1.0};
     if (atlas >= 0 || !part.colors.empty()) { // photographs hold the light already: they are shown as they are
@@ -149,13 +151,10 @@ public:
   }
 
 private:
-  int addTexture(const Image& atlas, int jpeg_quality)
+  int addTexture(const std::vector<std::uint8_t>& bytes, int jpeg_quality)
   {
-    const bool jpeg = jpeg_quality > 0;
-    const std::vector<std::uint8_t> bytes =
-        jpeg ? encodeImage(atlas, ".jpg", jpeg_quality) : encodeImage(atlas, ".png");
     tinygltf::Image image;
-    image.mimeType = jpeg ? "image/jpeg" : "image/png";
+    image.mimeType = jpeg_quality > 0 ? "image/jpeg" : "image/png";
     image.bufferView = addView(bytes.data(), bytes.size(), 0);
     gltf_.images.push_back(image);
     if (gltf_.samplers.empty()) {
@@ -243,6 +242,7 @@ private:
   }
 
   const TexturedMesh& source_;
+  Groups faces_;
   tinygltf::Model gltf_;
 };
 
@@ -269,13 +269,19 @@ private:
 };
 } // namespace
 
-void writeGlb(const std::string& path, const TexturedMesh& model, int jpeg_quality)
+std::vector<std::uint8_t> glbImage(const Image& atlas, int jpeg_quality)
+{
+  return jpeg_quality > 0 ? encodeImage(atlas, ".jpg", jpeg_quality) : encodeImage(atlas, ".png");
+}
+
+void writeGlb(const std::string& path, const TexturedMesh& model, int jpeg_quality,
+              const std::function<std::vector<std::uint8_t>(std::size_t)>& bytesOf)
 {
   OutputFile file(path);
   GltfBuilder builder(model);
   for (std::size_t i = 0; i < model.atlases.size(); ++i)
-    builder.addPart(i, jpeg_quality);
-  builder.addPart(-1, jpeg_quality);
+    builder.addPart(i, bytesOf(i), jpeg_quality);
+  builder.addPart(-1, {}, jpeg_quality);
   const tinygltf::Model& gltf = builder.finish();
   // The header of the format counts bytes with 32 bits; one MiB is left for the JSON part.
   if (gltf.buffers[0].data.size() > std::numeric_limits<std::uint32_t>::max() - (std::size_t{1} << 20))

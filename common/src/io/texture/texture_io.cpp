@@ -10,7 +10,9 @@ namespace {
 bool isGlb(const io::Format& format) { return format.extensions[0] == std::string(".glb"); }
 } // namespace
 
-void validateTexturedMesh(const TexturedMesh& model)
+namespace {
+/// All but the images.
+void validateFaces(const TexturedMesh& model)
 {
   validateMesh(model.mesh);
   const Index faces = model.mesh.faceCount(), texcoords = model.texcoords.cols();
@@ -28,6 +30,17 @@ void validateTexturedMesh(const TexturedMesh& model)
               " of atlas ", atlas, " names texture coordinate ", texcoord, ", there are ", texcoords);
     }
   }
+}
+
+void validateQuality(int quality)
+{
+  require(quality >= 0 && quality <= 100, "textured mesh: JPEG quality ", quality, " is not in 0..100");
+}
+} // namespace
+
+void validateTexturedMesh(const TexturedMesh& model)
+{
+  validateFaces(model);
   for (const Image& image : model.atlases)
     require(image.width > 0 && image.height > 0 && image.channels == 3 &&
                 image.data.size() == std::size_t{3} * image.width * image.height,
@@ -37,11 +50,56 @@ void validateTexturedMesh(const TexturedMesh& model)
 void writeTexturedMesh(const std::string& path, const TexturedMesh& model, int jpeg_quality)
 {
   validateTexturedMesh(model);
-  require(jpeg_quality >= 0 && jpeg_quality <= 100, "textured mesh: JPEG quality ", jpeg_quality, " is not in 0..100");
+  validateQuality(jpeg_quality);
   if (isGlb(io::formatToWrite(path, FileKind::textured_mesh)))
-    io::writeGlb(path, model, jpeg_quality);
+    io::writeGlb(path, model, jpeg_quality,
+                 [&](std::size_t i) { return io::glbImage(model.atlases[i], jpeg_quality); });
   else
     io::writeTexturedObj(path, model, jpeg_quality);
+}
+
+struct TexturedMeshWriter::Parts {
+  std::string path;
+  int quality;
+  std::unique_ptr<io::ObjWriter> obj;            ///< null: .glb
+  std::vector<std::vector<std::uint8_t>> images; ///< of a .glb
+  std::size_t count = 0;
+};
+
+TexturedMeshWriter::TexturedMeshWriter(const std::string& path, int jpeg_quality) : parts_(std::make_unique<Parts>())
+{
+  validateQuality(jpeg_quality);
+  parts_->path = path;
+  parts_->quality = jpeg_quality;
+  if (!isGlb(io::formatToWrite(path, FileKind::textured_mesh)))
+    parts_->obj = std::make_unique<io::ObjWriter>(path, jpeg_quality);
+}
+
+TexturedMeshWriter::~TexturedMeshWriter() = default;
+
+void TexturedMeshWriter::addAtlas(const Image& atlas)
+{
+  if (parts_->obj)
+    parts_->obj->addAtlas(atlas, concat('_', parts_->count));
+  else
+    parts_->images.push_back(io::glbImage(atlas, parts_->quality));
+  ++parts_->count;
+}
+
+void TexturedMeshWriter::finish(const TexturedMesh& model)
+{
+  validateFaces(model);
+  require(model.atlases.size() == parts_->count, "textured mesh: ", parts_->count, " atlases were added of ",
+          model.atlases.size());
+  if (parts_->obj)
+    parts_->obj->finish(model);
+  else
+    io::writeGlb(parts_->path, model, parts_->quality, [&](std::size_t i) { return std::move(parts_->images[i]); });
+}
+
+Groups io::facesByAtlas(const TexturedMesh& model)
+{
+  return grouped(model.mesh.faceCount(), model.atlases.size() + 1, [&](Index f) { return model.face_atlas[f] + 1; });
 }
 
 TexturedMesh readTexturedMesh(const std::string& path)

@@ -1,9 +1,33 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+#include <fresco/core/grouped.h>
 #include <fresco/core/textured_mesh.h>
+#include <fresco/io/file.h>
+#include <functional>
+#include <memory>
 #include <string>
 #include <string_view>
 namespace fresco::io {
+/// Faces of atlas i as group i + 1; those without texture as group 0.
+Groups facesByAtlas(const TexturedMesh& model);
+
+/// NAME.obj, NAME.mtl and the images, of which all or none get their names.
+class ObjWriter {
+public:
+  ObjWriter(const std::string& path, int jpeg_quality);
+  /// @param suffix of the image's name
+  void addAtlas(const Image& atlas, const std::string& suffix);
+  /// @param model whose atlases' pixels are not looked at
+  void finish(const TexturedMesh& model);
+
+private:
+  std::string folder_, stem_, kind_;
+  int quality_;
+  OutputFile object_, materials_;
+  std::vector<std::string> names_;
+  std::vector<std::unique_ptr<OutputFile>> images_;
+};
+
 /// NAME.obj, NAME.mtl and the images; the .obj appears last.
 /// @param jpeg_quality of the images, 1..100; 0: PNG
 void writeTexturedObj(const std::string& path, const TexturedMesh& model, int jpeg_quality);
@@ -16,7 +40,12 @@ TexturedMesh readTexturedObj(const std::string& path, bool empty_atlases = false
 /// coordinates have 16 bits. glTF is y-up and models
 /// are z-up: the node turns, and its translation is `origin`.
 /// @param jpeg_quality of the images inside, 1..100; 0: PNG
-void writeGlb(const std::string& path, const TexturedMesh& model, int jpeg_quality);
+/// @param bytesOf the image of an atlas as it is stored; asked for each once
+void writeGlb(const std::string& path, const TexturedMesh& model, int jpeg_quality,
+              const std::function<std::vector<std::uint8_t>(std::size_t)>& bytesOf);
+
+/// An image as it is stored in a .glb.
+std::vector<std::uint8_t> glbImage(const Image& atlas, int jpeg_quality);
 
 /// All triangles of all nodes, turned from y-up to z-up; vertices at the same place become one.
 /// @param folder of the file: buffers and images outside of it are read from there and below only

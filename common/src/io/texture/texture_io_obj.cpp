@@ -15,12 +15,12 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Writes `vt` lines and the faces of each material after another.
-void writeFaces(TextWriter& writer, const TexturedMesh& model, int atlas)
+/// @param faces see facesByAtlas()
+void writeFaces(TextWriter& writer, const TexturedMesh& model, const Groups& faces, int atlas)
 {
   const bool has_normals = model.mesh.normals.cols() > 0;
-  for (Index f = 0; f < model.mesh.faceCount(); ++f) {
-    if (model.face_atlas[f] != atlas)
-      continue;
+  for (Index i = faces.begin[atlas + 1]; i < faces.begin[atlas + 2]; ++i) {
+    const int f = faces.list[i];
     writer.text("f");
     for (int k = 0; k < 3; ++k) {
       const int vertex = model.mesh.faces(k, f) + 1;
@@ -52,13 +52,14 @@ void writeModel(OutputFile& file, const TexturedMesh& model, const std::string& 
   writeObjVertices(writer, model.mesh);
   for (Index i = 0; i < model.texcoords.cols(); ++i)
     writer.text("vt ").number(model.texcoords(0, i)).text(" ").number(model.texcoords(1, i)).text("\n");
+  const Groups faces = facesByAtlas(model);
   for (std::size_t i = 0; i < model.atlases.size(); ++i) {
     writer.text(concat("usemtl material_", i, "\n"));
-    writeFaces(writer, model, i);
+    writeFaces(writer, model, faces, i);
   }
   if (hasUntextured(model)) {
     writer.text("usemtl untextured\n");
-    writeFaces(writer, model, -1);
+    writeFaces(writer, model, faces, -1);
   }
   writer.flush();
 }
@@ -136,27 +137,36 @@ std::vector<std::string> entriesOf(std::string_view text, std::string_view keywo
 }
 } // namespace
 
+ObjWriter::ObjWriter(const std::string& path, int jpeg_quality)
+    : folder_(fs::path(path).parent_path().string()), stem_(fs::path(path).stem().string()),
+      kind_(jpeg_quality > 0 ? ".jpg" : ".png"), quality_(jpeg_quality), object_(path),
+      materials_((fs::path(folder_) / (stem_ + ".mtl")).string())
+{}
+
+void ObjWriter::addAtlas(const Image& atlas, const std::string& suffix)
+{
+  const std::vector<std::uint8_t> bytes = encodeImage(atlas, kind_, quality_);
+  names_.push_back(stem_ + suffix + kind_);
+  images_.push_back(std::make_unique<OutputFile>((fs::path(folder_) / names_.back()).string()));
+  images_.back()->write(bytes.data(), bytes.size());
+}
+
+void ObjWriter::finish(const TexturedMesh& model)
+{
+  writeMaterials(materials_, model, names_);
+  writeModel(object_, model, stem_ + ".mtl");
+  for (const auto& image : images_)
+    image->commit();
+  materials_.commit();
+  object_.commit();
+}
+
 void writeTexturedObj(const std::string& path, const TexturedMesh& model, int jpeg_quality)
 {
-  const std::string kind = jpeg_quality > 0 ? ".jpg" : ".png";
-  const fs::path folder = fs::path(path).parent_path();
-  const std::string stem = fs::path(path).stem().string();
-  std::vector<std::string> names;
+  ObjWriter writer(path, jpeg_quality);
   for (std::size_t i = 0; i < model.atlases.size(); ++i)
-    names.push_back(model.atlases.size() == 1 ? stem + kind : concat(stem, '_', i, kind));
-  OutputFile object(path), materials((folder / (stem + ".mtl")).string());
-  std::vector<std::unique_ptr<OutputFile>> images;
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    const std::vector<std::uint8_t> bytes = encodeImage(model.atlases[i], kind, jpeg_quality);
-    images.push_back(std::make_unique<OutputFile>((folder / names[i]).string()));
-    images.back()->write(bytes.data(), bytes.size());
-  }
-  writeMaterials(materials, model, names);
-  writeModel(object, model, stem + ".mtl");
-  for (const auto& image : images)
-    image->commit();
-  materials.commit();
-  object.commit();
+    writer.addAtlas(model.atlases[i], model.atlases.size() == 1 ? "" : concat('_', i));
+  writer.finish(model);
 }
 
 TexturedMesh readTexturedObj(const std::string& path, bool empty_atlases)

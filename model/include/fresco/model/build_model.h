@@ -22,6 +22,7 @@ struct ModelOptions {
   double texel = 0.0;             ///< side of a texel, >= 0; 0 = as fine as photographs, panoramas or points
   int atlas = 0;                  ///< largest side of a picture of the texture, 128..16384 pixels, more of them beyond;
                                   ///< 0 = 8192
+  int tile_faces = 0;             ///< most faces that are textured at a time; 0 = all, or as many as memory holds
   int quality = 0;                ///< JPEG quality of the texture's pictures, 1..100; 0 = PNG
   double panorama_direction = 0;  ///< degrees counter-clockwise from the scan's x axis to the middle of its panorama
   bool panorama_mirrored = false; ///< panoramas go around counter-clockwise from left to right

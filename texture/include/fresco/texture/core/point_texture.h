@@ -6,6 +6,7 @@
 #include <fresco/core/point_set.h>
 #include <fresco/core/progress.h>
 #include <fresco/core/textured_mesh.h>
+#include <fresco/texture/core/texture_reconstruction.h>
 #include <string>
 #include <vector>
 namespace fresco {
@@ -21,6 +22,7 @@ struct PointTextureOptions {
   bool exposure = true; ///< bring the brightness of scans together; intensities: also range and angle of incidence
   bool examples = true; ///< give larger unseen parts the fine structure of the seen surface beside them
   int threads = 0;      ///< 0 = all cores; the result does not depend on it
+  int tile_faces = 0;   ///< most faces that are textured at a time, see TextureOptions
 };
 
 /// What points say of the look of a surface.
@@ -49,11 +51,12 @@ struct PointTextureResult {
 /// left out.
 /// @param mesh   as validateMesh() wants it, with at least one face of positive area
 /// @param points with colors or intensities; else the model is untextured
+/// @param take   takes the atlases of a mesh in tiles
 /// @throws std::invalid_argument if mesh, points or an option are out of range
 /// @throws std::runtime_error if no point lies on the mesh, or there would be more than a thousand megatexels
-/// @throws std::runtime_error if the faces alone take more than machineMemory(): the whole mesh is textured at once
+/// @throws std::runtime_error if the mesh takes more than machineMemory() even in tiles
 /// @throws Cancelled if `progress` asks to stop
-FRESCO_EXPORT PointTextureResult reconstructPointTexture(const TriangleMesh& mesh, const PointSet& points,
+FRESCO_EXPORT PointTextureResult reconstructPointTexture(TriangleMesh mesh, const PointSet& points,
                                                          const PointTextureOptions& options = {},
-                                                         const Progress& progress = {});
+                                                         const Progress& progress = {}, const AtlasSink& take = {});
 } // namespace fresco

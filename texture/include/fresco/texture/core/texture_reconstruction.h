@@ -6,6 +6,7 @@
 #include <fresco/core/mesh.h>
 #include <fresco/core/progress.h>
 #include <fresco/core/textured_mesh.h>
+#include <functional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -37,7 +38,14 @@ struct TextureOptions {
   bool examples = true; ///< give larger unseen parts the fine structure of the seen surface beside them
   int memory = 1024;    ///< MB of photographs kept at a time, decoded or as grey copies, >= 1
   int threads = 0;      ///< 0 = all cores; the result does not depend on it
+  /// Most faces that are textured at a time, >= 0. A mesh of more is cut into tiles with atlases of their own. 0: all faces,
+  /// or as many as machineMemory() holds.
+  int tile_faces = 0;
 };
+
+/// Takes the atlases of a mesh in tiles, each with its mask as soon as it is painted, in their order; the result then has
+/// their sizes alone. It is not called where the mesh is textured as a whole.
+using AtlasSink = std::function<void(const Image& atlas, const Image& mask)>;
 
 /// One photograph or panorama (sphericalCamera(), cut into six views inside) with its calibration.
 struct TextureView {
@@ -96,13 +104,15 @@ struct TextureResult {
 /// Faces that are there twice are left out of the result, and faces that all photographs see from behind are turned, with
 /// a warning each.
 /// @param mesh  as validateMesh() wants it, with at least one face of positive area
+/// @param take  empty: atlases of tiles are kept
 /// @throws std::invalid_argument if the mesh, an option or a view (pose, intrinsics) is out of range
 /// @throws std::runtime_error naming the photograph or mask that is missing, no image, or of another size than its camera
 /// @throws std::runtime_error if the texture would be larger than a thousand megatexels
-/// @throws std::runtime_error if the faces alone take more than machineMemory(): the whole mesh is textured at once
+/// @throws std::runtime_error if the mesh takes more than machineMemory() even in tiles
 /// @throws Cancelled if `progress` asks to stop
-FRESCO_EXPORT TextureResult reconstructTexture(const TriangleMesh& mesh, const std::vector<TextureView>& views,
-                                               const TextureOptions& options = {}, const Progress& progress = {});
+FRESCO_EXPORT TextureResult reconstructTexture(TriangleMesh mesh, const std::vector<TextureView>& views,
+                                               const TextureOptions& options = {}, const Progress& progress = {},
+                                               const AtlasSink& take = {});
 
 /// The same, painted in the layout that the model has: its texture coordinates stay. Its atlases give their sizes alone;
 /// those below 16 texels or without any get what the photographs ask for. `options.atlas` is the longest side then, which
