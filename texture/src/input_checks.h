@@ -8,7 +8,7 @@ void validate(const TriangleMesh& mesh, const std::vector<TextureView>& views, c
 /// Bytes that texturing takes.
 struct MemoryNeed {
   std::size_t fixed;          ///< points
-  std::size_t fixed_of_tiles; ///< beside them of a mesh in tiles: maps of photographs
+  std::size_t fixed_of_tiles; ///< beside them of a mesh in tiles: photographs and their depth maps
   std::size_t face_at_once;   ///< of each face that is textured at a time
   std::size_t face_of_tiles;  ///< of each face of a mesh in tiles
 };

@@ -6,6 +6,7 @@
 #include "tiles/tiled_texture.h"
 #include "views/face_orientation.h"
 #include "views/patch_visibility.h"
+#include <algorithm>
 #include <fresco/core/require.h>
 #include <fresco/texture/core/texture_reconstruction.h>
 #include <memory>
@@ -57,9 +58,14 @@ TextureResult reconstruct(const TexturedMesh& given, const std::vector<TextureVi
   return result;
 }
 
-MemoryNeed memoryNeed(std::size_t views) // measured: docs/texture.md
+MemoryNeed memoryNeed(const std::vector<TextureView>& views, const TextureOptions& options)
 {
-  return {0, views * most_cells * sizeof(float), 540, 105};
+  constexpr std::size_t pixel = 4; // bytes: decoded and as a grey copy
+  std::size_t photographs = 0;
+  for (const TextureView& view : views)
+    photographs += pixel * view.camera.width * view.camera.height;
+  photographs = std::min(photographs, std::size_t(options.memory) << 20);
+  return {0, photographs + views.size() * most_cells * sizeof(float), 540, 105}; // measured: docs/texture.md
 }
 } // namespace
 
@@ -67,7 +73,7 @@ TextureResult reconstructTexture(TriangleMesh mesh, const std::vector<TextureVie
                                  const TextureOptions& options, const Progress& progress, const AtlasSink& take)
 {
   validate(mesh, views, options);
-  if (const Index most = tileFaces(mesh.faceCount(), options.tile_faces, memoryNeed(views.size()));
+  if (const Index most = tileFaces(mesh.faceCount(), options.tile_faces, memoryNeed(views, options));
       most < mesh.faceCount())
     return textureInTiles(std::move(mesh), views, options, progress, {most, take});
   TexturedMesh model;
@@ -82,7 +88,7 @@ TextureResult reconstructTexture(const TexturedMesh& model, const std::vector<Te
   validateLayout(model);
   require(options.texel == 0, "texture: texels of a given layout have their size");
   require(options.tile_faces == 0, "texture: a given layout is not cut into tiles");
-  if (tileFaces(model.mesh.faceCount(), 0, memoryNeed(views.size())) < model.mesh.faceCount())
+  if (tileFaces(model.mesh.faceCount(), 0, memoryNeed(views, options)) < model.mesh.faceCount())
     throw std::runtime_error(concat("texture: memory does not hold ", model.mesh.faceCount(),
                                     " faces at once, and a given layout is not cut into tiles"));
   return reconstruct(model, views, options, progress);

@@ -30,14 +30,22 @@ std::size_t groupMemory()
       return least;
   }
 }
+/// What a limit of the address space leaves beside programs, libraries and data that are mapped already.
+std::size_t leftOfAddressSpace()
+{
+  rlimit space{};
+  if (getrlimit(RLIMIT_AS, &space) != 0 || space.rlim_cur == RLIM_INFINITY)
+    return unlimited;
+  std::size_t mapped = 0; // pages
+  std::ifstream("/proc/self/statm") >> mapped;
+  mapped *= sysconf(_SC_PAGESIZE);
+  return space.rlim_cur - std::min<std::size_t>(space.rlim_cur, mapped);
+}
 } // namespace
 
 std::size_t machineMemory()
 {
   const auto pages = static_cast<std::size_t>(sysconf(_SC_PHYS_PAGES));
-  rlimit space{};
-  const bool limited = getrlimit(RLIMIT_AS, &space) == 0 && space.rlim_cur != RLIM_INFINITY;
-  return std::min({pages * static_cast<std::size_t>(sysconf(_SC_PAGESIZE)), groupMemory(),
-                   limited ? static_cast<std::size_t>(space.rlim_cur) : unlimited});
+  return std::min({pages * static_cast<std::size_t>(sysconf(_SC_PAGESIZE)), groupMemory(), leftOfAddressSpace()});
 }
 } // namespace fresco
