@@ -159,7 +159,9 @@ class Reader:
 
     @staticmethod
     def names_of(code: str) -> list[str]:
-        """Names that a declaration of fields declares; none for a method."""
+        """Names that a declaration of fields declares; none for a method, nor for what only C++ can make."""
+        if "_ptr<" in code:
+            return []
         code = re.sub(r"<[^;=]*>", "", code)
         code = re.sub(r"\{[^}]*\}", "", code)
         if re.match(r"[^=]*\(", code):
