@@ -112,22 +112,37 @@ FreeSpaceMap::FreeSpaceMap(const PointStream& beams)
       stations_.push_back(stationOf(Eigen::Vector3d(viewpoint[0], viewpoint[1], viewpoint[2]), std::move(bins)));
 }
 
+FreeSpaceMap::Answer FreeSpaceMap::ask(const Station& station, const Eigen::Vector3d& place, double tolerance)
+{
+  const Eigen::Vector3d to = place - station.viewpoint;
+  const double distance = to.norm();
+  const Lengths& beams = station.bins[binOf(to, station.side)];
+  if (!(distance > 0) || beams.longest == 0)
+    return Answer::Unknown;
+  if (distance > beams.longest + tolerance)
+    return Answer::Hidden;
+  return beams.shortest > distance + tolerance ? Answer::Through : Answer::There;
+}
+
+bool FreeSpaceMap::hidesByWhatMoved(const Station& station, const Eigen::Vector3d& place, double tolerance) const
+{
+  const Eigen::Vector3d to = place - station.viewpoint;
+  const Eigen::Vector3d end = station.viewpoint + station.bins[binOf(to, station.side)].longest * to.normalized();
+  return std::any_of(stations_.begin(), stations_.end(), [&](const Station& other) {
+    return &other != &station && ask(other, end, tolerance) == Answer::Through;
+  });
+}
+
 bool FreeSpaceMap::isFree(const Eigen::Vector3d& place, double tolerance) const
 {
   int through = 0, there = 0;
   for (const Station& station : stations_) {
-    const Eigen::Vector3d to = place - station.viewpoint;
-    const double distance = to.norm();
-    if (!(distance > 0))
-      continue;
-    const Lengths& beams = station.bins[binOf(to, station.side)];
-    if (distance > beams.longest + tolerance)
-      continue;
-    if (beams.shortest > distance + tolerance)
-      ++through;
-    else
-      ++there;
+    const Answer answer = ask(station, place, tolerance);
+    through += answer == Answer::Through;
+    there += answer == Answer::There;
   }
+  for (auto s = stations_.begin(); s != stations_.end() && through > 2 * there; ++s)
+    there += ask(*s, place, tolerance) == Answer::Hidden && hidesByWhatMoved(*s, place, tolerance);
   return through > 2 * there;
 }
 } // namespace fresco

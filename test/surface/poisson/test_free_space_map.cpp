@@ -104,6 +104,19 @@ Index verticesInFreeSpace(const VolumetricResult& result, const PointSet& points
   return count;
 }
 
+/// A ball in the room, of which a station in the middle sees the near half.
+PointSet ballInTheRoom(float radius)
+{
+  const Eigen::Vector3f middle(0, 0, -0.4f);
+  PointSet half = filtered(sphere(3000), [](const Eigen::Vector3f& p) { return p.z() > 0.1f; });
+  half.points = (radius * half.points).colwise() + middle;
+  half.viewpoints.setZero(3, 1);
+  const PointSet walls = filtered(room(40000, {0, 0, 0}), [&](const Eigen::Vector3f& p) {
+    return p.z() > 0 || p.cross(middle).norm() > radius * p.norm();
+  });
+  return mergePoints(walls, half);
+}
+
 VolumetricOptions withMap(int depth, const FreeSpaceMap& map)
 {
   VolumetricOptions options = atDepth(depth);
@@ -161,6 +174,21 @@ TEST(FreeSpaceMap, WhatOneStationFoundAnotherMustNotSeeThrough)
   EXPECT_TRUE(FreeSpaceMap(Sets({wall, thing, other_wall, third})).isFree(place, 0.02)) << "three of four saw through";
 }
 
+TEST(FreeSpaceMap, WhatMovedHidesWhatItMayHaveReached)
+{
+  const Eigen::Vector3d before(0.3, 0, 0), behind(0.7, 0, 0);
+  PointSet thing = room(20000, {0, 0, 0});
+  thing.points *= 0.5f;
+  std::vector<PointSet> sets{thing};
+  for (const Eigen::Vector3f& place : {Eigen::Vector3f(0.01f, 0, 0), {0, 0.01f, 0}, {0, 0, 0.01f}}) {
+    sets.push_back(room(20000, place));
+    const FreeSpaceMap map((Sets(sets)));
+    EXPECT_TRUE(map.isFree(before, 0.02)) << map.stations();
+    EXPECT_EQ(map.isFree(behind, 0.02), map.stations() == 4) << "three against one";
+  }
+  EXPECT_TRUE(FreeSpaceMap(Sets({sets[1]})).isFree(behind, 0.02));
+}
+
 TEST(FreeSpaceMap, WithoutStationsItSaysSo)
 {
   PointSet beams = room(5000, {0, 0, 0});
@@ -184,6 +212,17 @@ TEST(FreeSpaceReconstruction, NoSurfaceWhereBeamsPassed)
     EXPECT_EQ(topology.nonmanifold_edges, 0) << depth;
     EXPECT_EQ(topology.components, 2) << depth << ": the room and the can";
   }
+}
+
+TEST(FreeSpaceReconstruction, WhatMovedKeepsItsSurface)
+{
+  const PointSet with_ball = ballInTheRoom(0.12f), without = room(40000, {0.3f, 0.2f, 0.1f});
+  const FreeSpaceMap map(Sets({with_ball, without}));
+  const PointSet points = mergePoints(with_ball, without);
+  for (const int depth : {5, 6, 7})
+    EXPECT_EQ(reconstructVolumetric(points, atDepth(depth)).mesh.vertices,
+              reconstructVolumetric(points, withMap(depth, map)).mesh.vertices)
+        << depth << ": one against one";
 }
 
 TEST(FreeSpaceReconstruction, WhereBeamsAgreeNothingChanges)

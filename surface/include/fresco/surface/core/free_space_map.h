@@ -16,7 +16,8 @@ public:
   explicit FreeSpaceMap(const PointStream& beams);
 
   /// Whether more than twice as many stations saw through a place as found something there, or before it to the eye:
-  /// beams of unlike lengths around. Beams that end before the place say nothing.
+  /// beams of unlike lengths around. Beams that end before the place say nothing, unless another station saw through
+  /// their ends: what they met was moved, and may have reached to the place. Then they found something there.
   /// @param place     in the frame of the points, origin included
   /// @param tolerance by which all beams around it must end behind it, unit of the points
   bool isFree(const Eigen::Vector3d& place, double tolerance) const;
@@ -33,7 +34,10 @@ private:
     int side = 0;              ///< bins a side of a face of the cube
     std::vector<Lengths> bins; ///< 6 side^2
   };
+  enum class Answer { Through, There, Hidden, Unknown };
   static Station stationOf(const Eigen::Vector3d& viewpoint, std::vector<Lengths>&& bins);
+  static Answer ask(const Station& station, const Eigen::Vector3d& place, double tolerance);
+  bool hidesByWhatMoved(const Station& station, const Eigen::Vector3d& place, double tolerance) const;
 
   std::vector<Station> stations_;
 };
