@@ -89,13 +89,6 @@ CameraSet usedCameras(CameraSet set, const TextureResult& result)
   return set;
 }
 
-/// Name of a picture beside the model: room.obj -> room_mask.png, or room_mask_1.png of several.
-std::string maskPath(const std::string& model, std::size_t index, std::size_t count)
-{
-  const std::string stem = model.substr(0, model.size() - extension(model).size());
-  return stem + (count > 1 ? concat("_mask_", index, ".png") : "_mask.png");
-}
-
 /// The pictures beside the model must not replace photographs or other inputs.
 void requireOtherFiles(const std::string& out, const std::vector<TextureView>& views, std::vector<std::string> inputs)
 {
@@ -129,38 +122,10 @@ TriangleMesh readSurface(const std::string& path)
   return mesh;
 }
 
-/// Writes a model, atlas by atlas where it comes in tiles.
-class ModelOutput {
-public:
-  ModelOutput(std::string path, int quality) : path_(std::move(path)), quality_(quality) {}
-
-  AtlasSink sink()
-  {
-    return [this](const Image& atlas, const Image& mask) {
-      if (!tiles_)
-        tiles_ = std::make_unique<TexturedMeshWriter>(path_, quality_);
-      tiles_->addAtlas(atlas);
-      constexpr std::size_t several = 2;
-      writeImage(maskPath(path_, count_++, several), mask);
-    };
-  }
-
-  template <typename Result>
-  void write(const Result& result)
-  {
-    if (tiles_)
-      return tiles_->finish(result.model);
-    writeTexturedMesh(path_, result.model, quality_);
-    for (std::size_t i = 0; i < result.masks.size(); ++i)
-      writeImage(maskPath(path_, i, result.masks.size()), result.masks[i]);
-  }
-
-private:
-  std::string path_;
-  int quality_;
-  std::unique_ptr<TexturedMeshWriter> tiles_;
-  std::size_t count_ = 0;
-};
+AtlasSink sinkOf(TexturedModelWriter& writer)
+{
+  return [&](const Image& atlas, const Image& mask) { writer.addAtlas(atlas, mask); };
+}
 
 struct MeshFile {
   const std::string& path;
@@ -168,11 +133,11 @@ struct MeshFile {
 };
 
 TextureResult reconstruct(const MeshFile& file, const std::vector<TextureView>& views, const TextureOptions& options,
-                          const CommonOptions& common, ModelOutput& output)
+                          const CommonOptions& common, TexturedModelWriter& output)
 {
   const auto& [path, keep_uv] = file;
   if (!keep_uv)
-    return reconstructTexture(readSurface(path), views, options, printProgress(common.quiet), output.sink());
+    return reconstructTexture(readSurface(path), views, options, printProgress(common.quiet), sinkOf(output));
   const TexturedMesh model = readTextureLayout(path);
   requireSurface(path, model.mesh);
   return reconstructTexture(model, views, options, printProgress(common.quiet));
@@ -209,11 +174,11 @@ void textureFromPoints(const std::vector<std::string>& files, const ToolOptions&
                              (reasons.empty() ? "has neither colours nor intensities" : reasons[0]));
   PointTextureResult result;
   writeOutputs([&] {
-    ModelOutput output(files[1], tool.quality);
-    result = reconstructPointTexture(std::move(mesh), points, options, printProgress(quiet), output.sink());
+    TexturedModelWriter output({{files[1], tool.quality}});
+    result = reconstructPointTexture(std::move(mesh), points, options, printProgress(quiet), sinkOf(output));
     if (!(result.coverage > 0))
       throw std::runtime_error(tool.points + ": no part of " + files[0] + " is covered with points");
-    output.write(result);
+    output.finish(result.model, result.masks);
   });
   inform(quiet, format("%s of %td points, scans: %td, seen %.1f %% of the surface",
                        result.look == PointLook::colors ? "colours" : "intensities", points.size(), result.gains.cols(),
@@ -278,12 +243,12 @@ void run(int argc, char** argv)
     views[v].paint = (v + 1) % static_cast<std::size_t>(tool.keep_out) != 0;
   TextureResult result;
   writeOutputs([&] {
-    ModelOutput output(out, tool.quality);
+    TexturedModelWriter output({{out, tool.quality}});
     result = reconstruct({files[0], keep_uv}, views, options, common, output);
     if (!(result.coverage > 0))
       throw std::runtime_error(
           concat(files[1], ": none of the ", views.size(), " photographs sees any part of ", files[0]));
-    output.write(result);
+    output.finish(result.model, result.masks);
     if (!tool.cameras_out.empty())
       writeColmap(tool.cameras_out, usedCameras(set, result));
   });

@@ -14,11 +14,5 @@ struct ModelFiles {
   std::string poses = folder + "/poses.txt", mesh = folder + "/mesh.ply";
   std::string model_obj = folder + "/model.obj", model_glb = folder + "/model.glb";
   std::string report_json = folder + "/report.json", report_html = folder + "/report.html";
-
-  /// Mask `index` of `count`: white where no photograph saw the surface.
-  std::string mask(std::size_t index, std::size_t count) const
-  {
-    return folder + "/model_mask" + (count > 1 ? "_" + std::to_string(index) : "") + ".png";
-  }
 };
 } // namespace fresco::model

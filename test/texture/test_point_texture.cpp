@@ -94,8 +94,9 @@ TEST(PointTexture, SidesOfAThinWallDoNotMix)
   const PointTextureResult result = reconstructPointTexture(wall, points);
   forPlaces(wall, 200, [&](Index f, const Eigen::Vector3d& weights) {
     const Eigen::Vector3d p = pointAt(wall, f, weights);
-    if (p.cwiseAbs().head<2>().maxCoeff() < 0.95)
+    if (p.cwiseAbs().head<2>().maxCoeff() < 0.95) {
       EXPECT_LT((colorAt(result.model, f, weights) - sides(p)).cwiseAbs().maxCoeff(), 12);
+    }
   });
 }
 
@@ -175,8 +176,9 @@ TEST(PointTexture, WhereThereAreNoPointsTheMaskIsWhite)
     std::fill_n(image.data.begin() + 3 * i, 3, result.masks[0].data[i]);
   forPlaces(cube(), 60, [&](Index f, const Eigen::Vector3d& weights) {
     const Eigen::Vector3d p = pointAt(mask.mesh, f, weights);
-    if (p.head<2>().cwiseAbs().maxCoeff() < 0.95 || p.z() < 0.9)
+    if (p.head<2>().cwiseAbs().maxCoeff() < 0.95 || p.z() < 0.9) {
       EXPECT_NEAR(colorAt(mask, f, weights)[0], p.z() > 0.99 ? 0 : 255, 1);
+    }
   });
 }
 

@@ -120,7 +120,7 @@ void removeOldPictures(const ModelFiles& files, std::size_t masks)
   namespace fs = std::filesystem;
   std::set<std::string> present;
   for (std::size_t i = 0; i < masks; ++i)
-    present.insert(fs::path(files.mask(i, masks)).filename());
+    present.insert(fs::path(maskPath(files.model_obj, i, masks)).filename());
   std::ifstream materials(fs::path(files.model_obj).replace_extension(".mtl"));
   for (std::string word; materials >> word;)
     if (word == "map_Kd" && materials >> word)
@@ -134,45 +134,18 @@ void removeOldPictures(const ModelFiles& files, std::size_t masks)
     fs::remove(path);
 }
 
-/// Writes the model's files, atlas by atlas where it comes in tiles.
-class ModelOutput {
-public:
-  explicit ModelOutput(const Job& job)
-      : files_(job.files), outputs_{{job.files.model_glb, job.options.quality},
-                                    {job.files.model_obj, job.options.quality},
-                                    {job.files.viewer_glb, 90}} // smaller, since the report has it inside
-  {}
+TexturedModelWriter writerOf(const Job& job)
+{
+  constexpr int viewer_quality = 90; // smaller, since the report has it inside
+  return TexturedModelWriter({{job.files.model_obj, job.options.quality},
+                              {job.files.model_glb, job.options.quality},
+                              {job.files.viewer_glb, viewer_quality}});
+}
 
-  AtlasSink sink()
-  {
-    return [this](const Image& atlas, const Image& mask) {
-      constexpr std::size_t several = 2;
-      for (const auto& [path, quality] : outputs_)
-        if (tiles_.size() < outputs_.size())
-          tiles_.push_back(std::make_unique<TexturedMeshWriter>(path, quality));
-      for (const auto& writer : tiles_)
-        writer->addAtlas(atlas);
-      writeImage(files_.mask(masks_++, several), mask);
-    };
-  }
-
-  void write(const TexturedMesh& model, const std::vector<Image>& masks)
-  {
-    for (const auto& writer : tiles_)
-      writer->finish(model);
-    for (std::size_t i = masks_; i < masks.size(); ++i)
-      writeImage(files_.mask(i, masks.size()), masks[i]);
-    for (std::size_t i = tiles_.size(); i < outputs_.size(); ++i)
-      writeTexturedMesh(outputs_[i].first, model, outputs_[i].second);
-    removeOldPictures(files_, masks.size());
-  }
-
-private:
-  const ModelFiles& files_;
-  std::vector<std::pair<std::string, int>> outputs_; ///< with their JPEG quality
-  std::vector<std::unique_ptr<TexturedMeshWriter>> tiles_;
-  std::size_t masks_ = 0; ///< that are written
-};
+AtlasSink sinkOf(TexturedModelWriter& writer)
+{
+  return [&](const Image& atlas, const Image& mask) { writer.addAtlas(atlas, mask); };
+}
 
 /// Of a TextureResult or PointTextureResult, the figures that both have.
 template <typename Result>
@@ -197,10 +170,11 @@ Figures textureFromPoints(const Job& job, TriangleMesh mesh, const Progress& pro
   texture.atlas = job.options.atlas;
   texture.threads = job.options.threads;
   texture.tile_faces = job.options.tile_faces;
-  ModelOutput output(job);
+  TexturedModelWriter output = writerOf(job);
   const PointTextureResult result = reconstructPointTexture(
-      std::move(mesh), PlacedPoints(job.files.points).sample(most_points), texture, progress, output.sink());
-  output.write(result.model, result.masks);
+      std::move(mesh), PlacedPoints(job.files.points).sample(most_points), texture, progress, sinkOf(output));
+  output.finish(result.model, result.masks);
+  removeOldPictures(job.files, result.masks.size());
   Figures figures = {{"made_of", looks[int(result.look)]}};
   figures.update(figuresOf(result));
   if (result.look == PointLook::intensities)
@@ -217,9 +191,10 @@ Figures textureFromViews(const Job& job, TriangleMesh mesh, const std::vector<Te
   texture.atlas = job.options.atlas;
   texture.threads = job.options.threads;
   texture.tile_faces = job.options.tile_faces;
-  ModelOutput output(job);
-  TextureResult result = reconstructTexture(std::move(mesh), views, texture, progress, output.sink());
-  output.write(result.model, result.masks);
+  TexturedModelWriter output = writerOf(job);
+  TextureResult result = reconstructTexture(std::move(mesh), views, texture, progress, sinkOf(output));
+  output.finish(result.model, result.masks);
+  removeOldPictures(job.files, result.masks.size());
   const std::size_t given = input.panoramas.size() + input.inside.pictures.size() + placedCameras(job).views.size();
   if (views.size() < given)
     result.warnings.push_back(concat(given - views.size(), " pictures are not used: their scans have no place"));

@@ -71,7 +71,7 @@ PreparedScan prepareScan(const PointSet& scan, const Thinning& thinning, int thr
     return prepared.free_space.coherence() > coherence_limit;
   };
   prepared.oriented = look() && (center.given || center.assumed);
-  if (!prepared.oriented && !center.given)
+  if (!prepared.oriented && !center.given) {
     if (const auto place = findViewpoint(raw.points, prepared.size, threads)) {
       prepared.center += place->cast<double>();
       prepared.viewpoint_found = true;
@@ -80,6 +80,7 @@ PreparedScan prepareScan(const PointSet& scan, const Thinning& thinning, int thr
     } else {
       prepared.blind = prepared.free_space.coverage() > wide_view;
     }
+  }
   for (const float voxel : thinning.voxels) {
     ScanLevel& level = prepared.levels.emplace_back();
     level.voxel = voxel;

@@ -18,7 +18,8 @@ FRESCO_EXPORT TriangleMesh readMesh(const std::string& path);
 FRESCO_EXPORT void writeMesh(const std::string& path, const TriangleMesh& mesh);
 
 /// OBJ + MTL + PNG (`NAME.obj`, `NAME.mtl`, `NAME.png` or `NAME_0.png` ...; `.jpg` with `jpeg_quality`) or binary glTF
-/// (`.glb`, images inside, unlit, y-up by a node that turns), by extension. The set of files is whole or absent; the .obj appears last.
+/// (`.glb`, images inside, unlit, y-up by a node that turns), by extension. The set of files is whole or absent; the .obj
+/// appears last.
 /// @param jpeg_quality of the images, 1..100; 0: PNG, without loss
 /// @throws std::invalid_argument as validateTexturedMesh(), std::runtime_error "PATH: reason" if it cannot be written
 FRESCO_EXPORT void writeTexturedMesh(const std::string& path, const TexturedMesh& model, int jpeg_quality = 0);
@@ -37,6 +38,29 @@ public:
 private:
   struct Parts;
   std::unique_ptr<Parts> parts_;
+};
+
+/// Mask beside a model, of one or several: room.obj -> room_mask.png, room_mask_0.png ...
+FRESCO_EXPORT std::string maskPath(const std::string& model, std::size_t index, std::size_t count);
+
+/// A textured mesh in several formats, with the masks of its atlases beside the first file. Atlases may come one by one.
+class FRESCO_EXPORT TexturedModelWriter {
+public:
+  struct File {
+    std::string path;
+    int jpeg_quality = 0;
+  };
+  explicit TexturedModelWriter(std::vector<File> files);
+  ~TexturedModelWriter();
+  void addAtlas(const Image& atlas, const Image& mask);
+  /// @param model,masks whole; of what was added, their number and sizes count
+  /// @throws std::invalid_argument, std::runtime_error as writeTexturedMesh()
+  void finish(const TexturedMesh& model, const std::vector<Image>& masks);
+
+private:
+  std::vector<File> files_;
+  std::vector<std::unique_ptr<TexturedMeshWriter>> writers_; ///< none: no atlas was added
+  std::size_t masks_ = 0;                                    ///< that are written
 };
 
 /// What writeTexturedMesh() writes, and OBJ + MTL and .glb of others. Faces whose material has no image, or whose

@@ -13,11 +13,10 @@ struct HatWeights {
   /// @param position in cells
   explicit HatWeights(const Eigen::Vector3f& position)
   {
-    const Eigen::Vector3f base = position.array().floor();
-    const Eigen::Vector3f t = position - base;
-    x = base.x();
-    y = base.y();
-    z = base.z();
+    x = floorOf(position.x());
+    y = floorOf(position.y());
+    z = floorOf(position.z());
+    const Eigen::Vector3f t = position - Eigen::Vector3f(x, y, z);
     const float wx[2] = {1 - t.x(), t.x()}, wy[2] = {1 - t.y(), t.y()}, wz[2] = {1 - t.z(), t.z()};
     for (int i = 0; i < 8; ++i)
       value[i] = wx[i & 1] * wy[i >> 1 & 1] * wz[i >> 2];
@@ -28,6 +27,13 @@ struct HatWeights {
   {
     constexpr float last = brick_cells * (1 - 1e-6f);
     return HatWeights(position.cwiseMax(0.f).cwiseMin(last));
+  }
+
+  /// Positions are no larger than an integer.
+  static int floorOf(float position)
+  {
+    const int truncated = static_cast<int>(position);
+    return truncated - (position < truncated ? 1 : 0);
   }
 
   int nodeOf(int corner) const { return nodeIndex(x + (corner & 1), y + (corner >> 1 & 1), z + (corner >> 2)); }

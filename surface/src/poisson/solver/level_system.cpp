@@ -68,15 +68,15 @@ void LevelSystem::assemble(Index brick, const Neighbors& neighbors, Block& block
 {
   std::memcpy(block.rows, laplacian_rows_, sizeof(block.rows));
   const Eigen::Vector3f origin = level_.origin(brick);
-  for (int o = 0; o < 8; ++o) {
+  const int finer = 3 * (samples_.depth - level_.depth); // bits of a code
+  for (std::uint64_t o = 0; o < 8; ++o) {
     const int n = neighbors[offsetIndex(-(o & 1), -(o >> 1 & 1), -(o >> 2))];
     if (n < 0)
       continue;
-    for (const std::uint32_t i : ranges_[n]) {
-      const Eigen::Vector3f position = samples_.samples[i].position * scale_ - origin;
-      if (position.x() >= -1.f && position.y() >= -1.f && position.z() >= -1.f && weights_[i] > 0.f)
-        addScreening(HatWeights(position), weights_[i], block.rows);
-    }
+    const std::uint64_t last_cells = (o | o << 3) << finer; // of the neighbour, on the axes where it is below
+    for (const std::uint32_t i : ranges_[n])
+      if ((samples_.codes[i] & last_cells) == last_cells && weights_[i] > 0.f)
+        addScreening(HatWeights(samples_.samples[i].position * scale_ - origin), weights_[i], block.rows);
   }
   for (int i = 0; i < own_nodes; ++i)
     block.inverse[i] = 1.f / block.rows[offset_self][i];

@@ -30,9 +30,10 @@ NodeField solveComplete(const PoissonProblem& problem, const VolumetricOptions& 
     chi = solveBase(tree, constraints.fine, levels, options.point_weight, options.threads);
   if (tree.partition)
     broadcastNodes(tree.exchange(), tree.levels[depth], chi);
-  LevelSystem(tree.levels[depth], levels[std::min(depth + 1, tree.depth)], tree.depth, options.point_weight,
-              options.threads)
-      .keepFree(free_places, constraints.fine[depth], options.iterations, chi);
+  if (free_places.map)
+    LevelSystem(tree.levels[depth], levels[std::min(depth + 1, tree.depth)], tree.depth, options.point_weight,
+                options.threads)
+        .keepFree(free_places, constraints.fine[depth], options.iterations, chi);
   return chi;
 }
 } // namespace

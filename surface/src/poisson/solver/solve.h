@@ -22,7 +22,7 @@ struct PoissonProblem {
 
 struct Solution {
   std::vector<NodeField> chi; ///< by depth, from the complete depth on
-  double residual = 0;        ///< |A x - b| / |b| at the finest depth, before beams are asked
+  double residual = 0;        ///< VolumetricResult::residual, before free space is asked for
 };
 
 /// Frees what it does not need any more: of `levels` all but the finest remain empty.

@@ -43,7 +43,7 @@ struct VolumetricResult {
   TriangleMesh mesh;
   int depth = 0;             ///< depth used
   double cell_size = 0.0;    ///< side of the finest cell
-  double residual = 0.0;     ///< |A x - b| / |b| at the finest depth; below depth 8 of an eighth of the unknowns
+  double residual = 0.0;     ///< |A x - b| / |b| at the finest depth; from depth 9 on of an eighth of the unknowns
   double trim_depth = 0.0;   ///< depth below which the surface was cut away, 0 = nowhere
   Index used_points = 0;     ///< points that took part
   Index left_out_points = 0; ///< not finite, without normal or confidence, or far outliers
@@ -82,8 +82,9 @@ struct VolumetricPart {
   Index vertex_count = 0, face_count = 0; ///< of the whole mesh
 };
 
-/// All ranks call this, with the same options; of several ranks none can ask for free space. Octrees of depth 10 and more are divided; rank 0 makes shallower ones. A
-/// surface that is trimmed comes to rank 0 as a whole, before it is trimmed; the others have no part in the mesh.
+/// All ranks call this, with the same options; several ranks cannot take free space. Octrees of depth 10 and more are
+/// divided; rank 0 makes shallower ones. A surface that is trimmed comes to rank 0 as a whole, before it is trimmed; the
+/// others have no part in the mesh.
 /// @param points   of this rank, maybe none: any share of all points
 /// @param exchange with the other ranks; outlives the call
 /// @throws std::invalid_argument also if `min_depth` is below 5
