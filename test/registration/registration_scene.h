@@ -21,6 +21,27 @@ inline ScannedScene scanTwoRooms(Index rays = 20000, double noise = 0.004)
   return scene;
 }
 
+/// Two niches side by side at a long bare corridor, two stations in each (0, 1 and 2, 3). From one niche nothing of the
+/// other is seen: all that they share is the corridor, which is the same all along x.
+inline ScannedScene scanNiches(Index rays = 20000)
+{
+  Boxes boxes;
+  addBox(boxes, {-40, -1, -0.1}, {40, 5, 0});
+  addBox(boxes, {-40, -1, 2.6}, {40, 5, 2.7});
+  addBox(boxes, {-40, -0.1, 0}, {40, 0, 2.6});
+  addBox(boxes, {-40, 4, 0}, {40, 4.1, 2.6});
+  for (const auto& [from, to] : {std::pair(-40.0, -2.5), std::pair(-0.5, 0.5), std::pair(2.5, 40.0)})
+    addBox(boxes, {from, 2, 0}, {to, 4, 2.6});
+  addFurniture(boxes, {-2.3, 3.2, 0}, {-0.7, 3.8, 0}, 3, 3);
+  addFurniture(boxes, {0.7, 3.2, 0}, {2.3, 3.8, 0}, 3, 4);
+  ScannedScene scene;
+  scene.truth = {stationPose({-1.6, 2.4, 1.5}, 0.3, 0.02), stationPose({-1.1, 2.6, 1.4}, 1.3, 0.01),
+                 stationPose({1.5, 2.4, 1.5}, -2.3, 0.03), stationPose({1.9, 2.6, 1.4}, 2.3, 0.02)};
+  for (std::size_t i = 0; i < scene.truth.size(); ++i)
+    scene.scans.push_back(scanBoxes(boxes, scene.truth[i], rays, 0.004, static_cast<unsigned>(i) + 1));
+  return scene;
+}
+
 /// Corridor between two rooms that face each other; `telling`: with something in it that the rooms can see.
 inline void addCorridorBetweenRooms(bool telling, Boxes& boxes)
 {

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "refinement/free_motion.h"
+#include "refinement/placement.h"
 #include "registration/registration_scene.h"
 #include <fresco/registration/core/point_to_plane_registration.h>
 #include <fresco/registration/core/scan_registration.h>
@@ -137,6 +139,47 @@ TEST(ScanRefinement, FreeDirectionOfAPlaneIsNamed)
   const FreeMotion motion = *result.scans[1].free_motion;
   EXPECT_LT(std::abs(motion.translation.y()), 0.2);
   EXPECT_NEAR(motion.translation.norm() + motion.rotation.norm(), 1.0, 1e-6);
+}
+
+ScanRegistrationOptions withinOneNiche()
+{
+  ScanRegistrationOptions options;
+  options.voxel = 0.02f;
+  options.max_distance = 0.4f; // the next one is 3 m away
+  return options;
+}
+
+// Scans that hold each other hide that nothing holds them both.
+TEST(ScanRefinement, ScansThatSlideTogetherHaveAFreeMotion)
+{
+  const ScannedScene niches = test::scanNiches();
+  const auto result = registerScans(niches.scans, disturbed(niches, 0.02, 0.5), withinOneNiche());
+  EXPECT_FALSE(result.scans[0].free_motion || result.scans[1].free_motion);
+  for (const Index i : {2, 3}) {
+    ASSERT_EQ(result.scans[i].group, 0) << i;
+    ASSERT_TRUE(result.scans[i].free_motion.has_value()) << i;
+    EXPECT_GT(std::abs(result.scans[i].free_motion->translation.x()), 0.9) << i;
+    EXPECT_GT(result.scans[i].translation_deviation, 0.1) << i;
+    EXPECT_LT(result.scans[i].rotation_deviation, 0.01) << "only along the corridor";
+  }
+}
+
+// Without start poses, it is the smaller part that has no place.
+TEST(ScanRefinement, TheLargerPartIsNotTheFreeOne)
+{
+  const ScannedScene niches = test::scanNiches();
+  const ScanRegistrationOptions options = withinOneNiche();
+  std::vector<registration::PreparedScan> scans;
+  registration::Placement placement;
+  for (const Index i : {0, 2, 3}) {
+    scans.push_back(registration::prepareScan(niches.scans[i], registration::Thinning(options.voxel), 0));
+    placement.members.push_back(placement.members.size());
+    placement.poses.push_back(niches.truth[i]);
+  }
+  registration::refinePlacement(scans, options, placement, {});
+  EXPECT_TRUE(registration::findFreeMotion(placement.joint.information[0]));
+  EXPECT_FALSE(registration::findFreeMotion(placement.joint.information[1]));
+  EXPECT_FALSE(registration::findFreeMotion(placement.joint.information[2]));
 }
 
 TEST(ScanRefinement, WrongInputIsRefused)

@@ -21,7 +21,7 @@ void validate(const Eigen::Matrix4d& guess, const PointToPlaneOptions& options)
   require(options.samples >= 100, "point-to-plane registration: samples ", options.samples, " is below 100");
 }
 
-void summarize(const JointResult& joint, const PreparedScan& source, PointToPlaneResult& result)
+void summarize(const JointResult& joint, PointToPlaneResult& result)
 {
   double squares = 0.0;
   for (const JointPair& pair : joint.pairs) {
@@ -33,7 +33,7 @@ void summarize(const JointResult& joint, const PreparedScan& source, PointToPlan
   if (result.matches == 0)
     return;
   result.rms = std::sqrt(squares / result.matches);
-  result.free_motion = findFreeMotion(joint.information[1], source, joint.poses[1].linear());
+  result.free_motion = findFreeMotion(joint.information[1]);
 }
 } // namespace
 
@@ -74,7 +74,7 @@ PointToPlaneResult alignPointToPlane(const PreparedPair& pair, const PointToPlan
   PointToPlaneResult result;
   const Eigen::Isometry3d T_target_source = aligned.poses[1] * T_source.inverse();
   result.T_target_source = T_target_source.matrix();
-  summarize(aligned, source, result);
+  summarize(aligned, result);
   const PairCheck check = checkPair(target, source, aligned.poses[0].inverse() * aligned.poses[1], check_level);
   result.overlap = check.overlap;
   result.violation = check.violation;

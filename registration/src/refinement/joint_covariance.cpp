@@ -23,6 +23,7 @@ public:
   explicit CovarianceEstimator(const JointSystem& joint);
 
   Covariances run() const;
+  Covariances informations() const;
 
 private:
   bool held(Index scan) const { return joint_.holders[scan] == scan; }
@@ -30,8 +31,11 @@ private:
   void add(const CellSystem& cell, const std::vector<Index>& at, Eigen::MatrixXd& H, Eigen::VectorXd& g) const;
   void invert();
   CellPull pullOf(Index begin, Index end) const;
-  Matrix6d groupMotion(Index scan) const;
+  Matrix6d motionAlong(Index scan, Index with) const;
+  Matrix6d groupMotion(Index scan) const { return motionAlong(scan, joint_.holders[scan]); }
   Block fitRows(Index holder) const;
+  std::vector<char> goingAlong(Index scan) const;
+  Matrix6d bodyInformation(Index scan, const std::vector<Matrix6d>& pairs) const;
   double fewCellsFactor(Index scan, const Vector6d& direction, const std::vector<CellPull>& pulls) const;
   Matrix6d covarianceOf(Index scan, const std::vector<CellPull>& pulls) const;
 
@@ -119,12 +123,12 @@ CellPull CovarianceEstimator::pullOf(Index begin, Index end) const
   return result;
 }
 
-// Motion of a scan when its whole group moves, about its holder.
-Matrix6d CovarianceEstimator::groupMotion(Index scan) const
+// Motion of a scan that goes along with another one, as one body.
+Matrix6d CovarianceEstimator::motionAlong(Index scan, Index with) const
 {
   Matrix6d G = Matrix6d::Identity();
   G.bottomLeftCorner<3, 3>() =
-      -skew(joint_.poses[scan].translation() - joint_.poses[joint_.holders[scan]].translation()) / joint_.size;
+      -skew(joint_.poses[scan].translation() - joint_.poses[with].translation()) / joint_.size;
   return G;
 }
 
@@ -187,6 +191,54 @@ Matrix6d CovarianceEstimator::covarianceOf(Index scan, const std::vector<CellPul
   return scale_.asDiagonal() * larger * scale_.asDiagonal();
 }
 
+// Scans that move with one that is pulled where it is held least, rather than stay.
+std::vector<char> CovarianceEstimator::goingAlong(Index scan) const
+{
+  const auto part = [&](Index i) { return P_.block<6, 6>(6 * slots_[i], 6 * slots_[scan]); };
+  const Eigen::SelfAdjointEigenSolver<Matrix6d> solver(part(scan));
+  const Vector6d pull = solver.eigenvectors().col(5), own = part(scan) * pull;
+  std::vector<char> along(count_, 0);
+  for (Index i = 0; i < count_; ++i)
+    if (!held(i)) {
+      const Vector6d as_one = motionAlong(i, scan) * own;
+      along[i] = as_one.dot(part(i) * pull) >= 0.5 * as_one.squaredNorm();
+    }
+  return along;
+}
+
+/// @param pairs sums over the cells of each
+Matrix6d CovarianceEstimator::bodyInformation(Index scan, const std::vector<Matrix6d>& pairs) const
+{
+  if (held(scan))
+    return Matrix6d::Zero();
+  const std::vector<char> along = goingAlong(scan);
+  const auto seen = [&](Index i, const Matrix6d& M, const Matrix6d& H) -> Matrix6d {
+    const Matrix6d rows = motionAlong(i, scan).transpose() * scaled(M);
+    return rows * H * rows.transpose();
+  };
+  Matrix6d information = Matrix6d::Zero();
+  for (std::size_t p = 0; p < pairs.size(); ++p) {
+    const PairLink& link = joint_.links[p];
+    if (along[link.source] && !along[link.target])
+      information += seen(link.source, link.jacobian.M_source, pairs[p]);
+    else if (along[link.target] && !along[link.source])
+      information += seen(link.target, link.jacobian.M_target, pairs[p]);
+  }
+  const Vector6d back = scale_.cwiseInverse();
+  return back.asDiagonal() * information * back.asDiagonal();
+}
+
+Covariances CovarianceEstimator::informations() const
+{
+  std::vector<Matrix6d> pairs(joint_.links.size(), Matrix6d::Zero());
+  for (const CellSystem& cell : joint_.cells)
+    pairs[cell.pair] += cell.system.H;
+  Covariances informations(count_);
+  parallelFor(
+      count_, joint_.threads, [&](Index i) { informations[i] = bodyInformation(i, pairs); }, 1);
+  return informations;
+}
+
 Covariances CovarianceEstimator::run() const
 {
   std::vector<Index> begins;
@@ -205,6 +257,8 @@ Covariances CovarianceEstimator::run() const
 } // namespace
 
 Covariances jointCovariances(const JointSystem& joint) { return CovarianceEstimator(joint).run(); }
+
+Covariances bodyInformations(const JointSystem& joint) { return CovarianceEstimator(joint).informations(); }
 
 PairInformations pairInformations(const JointSystem& joint)
 {

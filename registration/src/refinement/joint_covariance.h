@@ -36,6 +36,11 @@ using Covariances = std::vector<Matrix6d, Eigen::aligned_allocator<Matrix6d>>;
 /// to the best fit of the whole group where that is larger; zero for the holders of groups that are not fitted.
 Covariances jointCovariances(const JointSystem& joint);
 
+/// Information of each pose: rotation (about the scan's centre, axes of the world) first; weights of one match sum up.
+/// What moves is the scan together with those that go along where it is held least, all others held: two scans of a room
+/// that hold each other may slide along a corridor as one. Zero for the holder of a group.
+Covariances bodyInformations(const JointSystem& joint);
+
 /// Inverse covariance of the pose of b relative to a by the matches of this pair alone, in both directions.
 struct PairInformation {
   Index a = 0, b = 0;                      ///< a < b

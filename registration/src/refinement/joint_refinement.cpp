@@ -294,6 +294,7 @@ void Refinement::findCovariances(JointResult& result) const
   std::stable_sort(joint.cells.begin(), joint.cells.end(),
                    [](const CellSystem& x, const CellSystem& y) { return x.cell < y.cell; });
   result.covariances = jointCovariances(joint);
+  result.information = bodyInformations(joint);
   result.informations = pairInformations(joint);
 }
 

@@ -34,6 +34,7 @@ struct JointResult {
   IsometryVector poses;         ///< world from working frame
   std::vector<JointPair> pairs; ///< both directions of each pair
   /// Per scan, all others held: rotation (about the scan's centre, axes of the world) first; weights of one match sum up.
+  /// With covariances see bodyInformations().
   std::vector<Matrix6d, Eigen::aligned_allocator<Matrix6d>> information;
   Covariances covariances;       ///< see jointCovariances(); empty unless asked for
   PairInformations informations; ///< see pairInformations(); empty unless asked for

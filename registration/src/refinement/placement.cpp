@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "refinement/placement.h"
 #include "pair/pair_overlap.h"
+#include "refinement/free_motion.h"
 #include <algorithm>
 #include <cmath>
 #include <fresco/core/parallel.h>
@@ -128,7 +129,18 @@ void refineWithin(const Reach& reach, const std::vector<PreparedScan>& scans, co
       if (pair.matches > 0 && pair.violation > options.max_violation)
         joint.excluded.emplace_back(memberOf(placement, pair.a), memberOf(placement, pair.b));
     if (joint.excluded.size() == before)
-      return;
+      break;
+  }
+  // What hangs together by surfaces that leave a motion free: the larger part stays.
+  std::vector<Index> loose;
+  for (std::size_t m = 0; m < placement.members.size(); ++m)
+    if (findFreeMotion(placement.joint.information[m]))
+      loose.push_back(m);
+  if (joint.anchors.empty() && 2 * loose.size() > placement.members.size()) {
+    joint.anchors = {loose.front()};
+    placement.joint = refineJointly(members, placement.poses, joint, progress);
+    placement.poses = placement.joint.poses;
+    placement.pairs = checkPairs(scans, options, placement);
   }
 }
 } // namespace

@@ -105,7 +105,7 @@ void Description::describeScans(const Placement& placement)
       scan(i).T_group_scan = *start_[i]; // to the last bit
       continue;
     }
-    scan(i).free_motion = findFreeMotion(placement.joint.information[m], prepared, placement.poses[m].linear());
+    scan(i).free_motion = findFreeMotion(placement.joint.information[m]);
     const Matrix6d& covariance = placement.joint.covariances[m];
     const FreeMotion free = scan(i).free_motion.value_or(FreeMotion());
     const auto deviation = [](double variance, const Eigen::Vector3d& free_direction, double reach) {
@@ -121,7 +121,7 @@ void Description::describeScans(const Placement& placement)
 void Description::placeMain(const std::vector<Index>& group)
 {
   for (const Index i : group) {
-    if (scan(i).free_motion && !started(i) && i != group.front()) {
+    if (scan(i).free_motion && !started(i)) {
       scan(i).problem = "its surfaces leave a motion free, and nothing tells where along it the scan belongs";
       continue;
     }

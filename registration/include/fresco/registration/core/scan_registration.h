@@ -68,7 +68,7 @@ struct PairResult {
 /// A motion of a scan that its surfaces leave free, such as along a corridor without features.
 struct FreeMotion {
   Eigen::Vector3d translation = Eigen::Vector3d::Zero(); ///< direction in the world
-  Eigen::Vector3d rotation = Eigen::Vector3d::Zero();    ///< axis through the middle of the scan's points, in the world
+  Eigen::Vector3d rotation = Eigen::Vector3d::Zero();    ///< axis in the world, through the surfaces that hold the scan
 };
 
 /// One scan at the end. Lengths are in the unit of the points.
