@@ -127,8 +127,7 @@ CellPull CovarianceEstimator::pullOf(Index begin, Index end) const
 Matrix6d CovarianceEstimator::motionAlong(Index scan, Index with) const
 {
   Matrix6d G = Matrix6d::Identity();
-  G.bottomLeftCorner<3, 3>() =
-      -skew(joint_.poses[scan].translation() - joint_.poses[with].translation()) / joint_.size;
+  G.bottomLeftCorner<3, 3>() = -skew(joint_.poses[scan].translation() - joint_.poses[with].translation()) / joint_.size;
   return G;
 }
 
