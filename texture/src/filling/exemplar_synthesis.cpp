@@ -30,16 +30,16 @@ private:
   std::uint64_t state_;
 };
 
-/// Sum of squared differences of two rows of a window.
-int rowDifference(const HolePicture::Color* a, const HolePicture::Color* b)
+/// Sum of squared differences of two rows of a window, in four parts.
+simd::Int4 rowDifference(const HolePicture::Color* a, const HolePicture::Color* b)
 {
   const std::int16_t *own = a->data(), *other = b->data();
-  int sum = 0;
-  for (int k = 0; k < 4 * (2 * reach + 1); ++k) {
-    const std::int16_t difference = own[k] - other[k];
-    sum += difference * difference;
-  }
-  return sum;
+  const auto squares = [&](int k, const simd::Short8& mask) {
+    return simd::squaresOf((simd::load<simd::Short8>(own + k) - simd::load<simd::Short8>(other + k)) & mask);
+  };
+  constexpr simd::Short8 both = {-1, -1, -1, -1, -1, -1, -1, -1}, second = {0, 0, 0, 0, -1, -1, -1, -1};
+  static_assert(2 * reach + 1 == 7); // three pairs of colours and one
+  return squares(0, both) + squares(8, both) + squares(16, both) + squares(20, second);
 }
 
 /// Half as wide and high. A pixel is known where all four are, hole where one is.
@@ -173,13 +173,15 @@ private:
       return differenceInside(target, source, limit);
     const std::size_t own = picture_.at(target.x() - reach, target.y() - reach),
                       other = picture_.at(source.x() - reach, source.y() - reach);
-    int sum = 0;
-    for (std::size_t row = 0; row < side * std::size_t(picture_.width); row += picture_.width) {
-      sum += rowDifference(&picture_.color[own + row], &picture_.color[other + row]);
-      if (sum > limit)
+    simd::Int4 sums{};
+    for (int row = 0; row < side; ++row) {
+      const std::size_t at = row * std::size_t(picture_.width);
+      sums += rowDifference(&picture_.color[own + at], &picture_.color[other + at]);
+      if (row % 2 == 1 && simd::total(sums) > limit) // adding up costs as much as a row
         return std::numeric_limits<float>::infinity();
     }
-    return float(sum) / (side * side);
+    const float sum = simd::total(sums);
+    return sum > limit ? std::numeric_limits<float>::infinity() : sum / (side * side);
   }
 
   /// The same where a part of the window is not.
@@ -259,24 +261,23 @@ private:
   /// @param weights of the targets' windows
   HolePicture::Color meanAt(const Pixel& p, const std::vector<float>& weights) const
   {
-    using Short4 = std::int16_t __attribute__((vector_size(8)));
     simd::Float4 sum{};
     float total = 0;
-    for (int j = -reach; j <= reach; ++j)
-      for (int i = -reach; i <= reach; ++i) {
-        const int x = p.x() - i, y = p.y() - j;
-        if (x < 0 || y < 0 || x >= picture_.width || y >= picture_.height)
-          continue;
-        const int slot = slot_[picture_.at(x, y)];
+    const int up = std::max(-reach, p.y() - picture_.height + 1), down = std::min(reach, p.y());
+    const int left = std::max(-reach, p.x() - picture_.width + 1), right = std::min(reach, p.x());
+    for (int j = up; j <= down; ++j)
+      for (int i = left; i <= right; ++i) {
+        const int slot = slot_[picture_.at(p.x() - i, p.y() - j)];
         if (slot < 0)
           continue;
         const HolePicture::Color& color = picture_.color[picture_.at(match_[slot].x() + i, match_[slot].y() + j)];
-        sum += weights[slot] * __builtin_convertvector(simd::load<Short4>(color.data()), simd::Float4);
+        sum += weights[slot] * simd::floatsOf(color.data());
         total += weights[slot];
       }
+    const simd::Int4 mean = simd::rounded(sum / total);
     HolePicture::Color out{};
     for (int c = 0; c < 3; ++c)
-      out[c] = std::lrint(sum[c] / total);
+      out[c] = mean[c];
     return out;
   }
 

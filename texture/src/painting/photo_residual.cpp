@@ -63,11 +63,10 @@ private:
 };
 
 /// In registers. Written to memory number by number, they would be waited for when read as one.
-Eigen::Vector4f vectorOf(float a, float b, float c, float d)
+Eigen::Vector4f vectorOf(const simd::Int4& numbers)
 {
-  const simd::Float4 all = {a, b, c, d};
   Eigen::Vector4f out;
-  simd::store(all, out.data());
+  simd::store(__builtin_convertvector(numbers, simd::Float4), out.data());
   return out;
 }
 
@@ -125,7 +124,7 @@ void draw(const Prediction& p, Index patch, Drawing& sums)
         green += c[1];
         blue += c[2];
       }
-      canvas.add(pixel, area * vectorOf(red, green, blue, texels));
+      canvas.add(pixel, area * vectorOf(simd::Int4{red, green, blue, texels}));
     };
     const int whole = own.length / together, left = own.length % together;
     const auto middleOf = [&](int first, int texels) {
@@ -161,7 +160,6 @@ float agreementWeight(float difference, float error)
 
 PhotoResidual residualOf(const Prediction& prediction, const Image& photo, const PixelGain& gain, float error)
 {
-
   constexpr std::uint8_t overexposed = 254; // grey level: the light may have been any brighter
   constexpr float largest = 127;            // of what is stored
   const std::size_t count = cellCount(photo.width, photo.height);
@@ -173,19 +171,22 @@ PhotoResidual residualOf(const Prediction& prediction, const Image& photo, const
     draw(prediction, patches[i], drawn);
   }
   PhotoResidual out{photo.width, photo.height, std::vector<PhotoResidual::Pixel>(count)};
-  const std::uint8_t* p = photo.data.data();
-  for (Index i = 0; i < Index(count); ++i, p += 3) {
-    const Eigen::Vector4f& pixel = drawn.pixels[i];
-    const float trust = std::max({p[0], p[1], p[2]}) < overexposed ? coverageWeight(pixel.w()) : 0.f;
-    if (!(trust > 0))
-      continue;
-    const Eigen::Vector3f more =
-        gain({i % photo.width + 0.5f, i / photo.width + 0.5f}, Eigen::Vector3f(p[0], p[1], p[2])) -
-        pixel.head<3>() / pixel.w();
-    const float weight = PhotoResidual::per_level * trust * agreementWeight(more.cwiseAbs().maxCoeff(), error);
-    for (int c = 0; c < 3; ++c)
-      out.pixels[i][c] = std::lrint(std::clamp(weight * more[c], -largest, largest));
-  }
+  for (int y = 0; y < photo.height; ++y)
+    for (int x = 0; x < photo.width; ++x) {
+      const std::size_t i = cellAt(x, y, photo.width);
+      const Eigen::Vector4f& pixel = drawn.pixels[i];
+      const std::uint8_t* p = photo.pixel(x, y);
+      const float trust = std::max({p[0], p[1], p[2]}) < overexposed ? coverageWeight(pixel.w()) : 0.f;
+      if (!(trust > 0))
+        continue;
+      const Eigen::Vector3f more =
+          gain({x + 0.5f, y + 0.5f}, Eigen::Vector3f(p[0], p[1], p[2])) - pixel.head<3>() / pixel.w();
+      const float weight = PhotoResidual::per_level * trust * agreementWeight(more.cwiseAbs().maxCoeff(), error);
+      const Eigen::Vector3f stored = (weight * more).cwiseMax(-largest).cwiseMin(largest);
+      const simd::Int4 rounded = simd::rounded(simd::Float4{stored[0], stored[1], stored[2], 0});
+      for (int c = 0; c < 3; ++c)
+        out.pixels[i][c] = rounded[c];
+    }
   return out;
 }
 } // namespace fresco::texture

@@ -22,14 +22,8 @@ struct PhotoResidual {
     const int i = std::min<int>(u, width - 2), j = std::min<int>(v, height - 2);
     const float a = u - i, b = v - j;
     const Pixel *p = pixels.data() + cellAt(i, j, width), *q = p + width;
-    return (1 - b) * ((1 - a) * wide(p[0]) + a * wide(p[1])) + b * ((1 - a) * wide(q[0]) + a * wide(q[1]));
-  }
-
-private:
-  static simd::Float4 wide(const Pixel& pixel)
-  {
-    using Byte4 = std::int8_t __attribute__((vector_size(4)));
-    return __builtin_convertvector(simd::load<Byte4>(pixel.data()), simd::Float4);
+    const auto floats = [](const Pixel& pixel) { return simd::floatsOf(pixel.data()); };
+    return (1 - b) * ((1 - a) * floats(p[0]) + a * floats(p[1])) + b * ((1 - a) * floats(q[0]) + a * floats(q[1]));
   }
 };
 

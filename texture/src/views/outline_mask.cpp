@@ -7,22 +7,23 @@ namespace fresco::texture {
 namespace {
 /// Inverse depth along a row or column of cells; over a plane it is linear.
 struct Line {
-  const DepthMap& map;
+  const DepthMap& inverses; ///< 1 / depth
   int x, y, dx, dy;
 
   float inverse(int k) const
   {
     const int i = x + k * dx, j = y + k * dy;
-    return i < 0 || j < 0 || i >= map.width || j >= map.height ? NAN : 1 / map.at(i, j);
+    return i < 0 || j < 0 || i >= inverses.width || j >= inverses.height ? NAN : inverses.at(i, j);
   }
 
   /// Whether depth jumps by more than `step`, and by more than the slope of both sides explains, from cell 0 to cell 1.
   bool jumps(float step) const
   {
-    const float before = inverse(-1), a = inverse(0), b = inverse(1), after = inverse(2), jump = std::abs(b - a);
+    const float a = inverse(0), b = inverse(1), jump = std::abs(b - a);
     const float nearer = std::max(a, b), farther = std::min(a, b);
     if (!(jump > step * nearer * farther))
       return false;
+    const float before = inverse(-1), after = inverse(2);
     const float slopes =
         std::max(std::isnan(before) ? 0.f : std::abs(a - before), std::isnan(after) ? 0.f : std::abs(after - b));
     const float from_before = std::isnan(before) ? jump : std::abs(b - 2 * a + before),
@@ -47,6 +48,9 @@ OutlineMask::OutlineMask(const DepthMap& map, float reach, float step)
     : width_(map.width), height_(map.height), per_pixel_(1 / map.step), near_(cellCount(map.width, map.height), false)
 {
   const int radius = std::ceil(reach / map.step);
+  DepthMap inverses = map;
+  for (float& depth : inverses.depth)
+    depth = 1 / depth;
   const auto spread = [&](const Line& line) {
     const float between = 0.5f * (line.inverse(0) + line.inverse(1));
     for (int y = std::max(0, line.y + line.dy - radius); y <= std::min(height_ - 1, line.y + radius); ++y)
@@ -56,7 +60,7 @@ OutlineMask::OutlineMask(const DepthMap& map, float reach, float step)
   for (int y = 0; y < height_; ++y)
     for (int x = 0; x < width_; ++x)
       for (int along = 0; along < 2; ++along)
-        if (const Line line{map, x, y, 1 - along, along};
+        if (const Line line{inverses, x, y, 1 - along, along};
             x + line.dx < width_ && y + line.dy < height_ && line.jumps(step))
           spread(line);
   // of several outlines the nearest

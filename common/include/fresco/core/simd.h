@@ -14,6 +14,8 @@ namespace {
 #pragma GCC diagnostic ignored "-Wpsabi" // vectors never pass from file to file
 using Float4 = float __attribute__((vector_size(16)));
 using Float8 = float __attribute__((vector_size(32)));
+using Int4 = std::int32_t __attribute__((vector_size(16)));
+using Short8 = std::int16_t __attribute__((vector_size(16)));
 using Int8 = std::int32_t __attribute__((vector_size(32)));
 using Double4 = double __attribute__((vector_size(32)));
 
@@ -33,6 +35,43 @@ template <typename Vector, typename T>
 inline void store(const Vector& vector, T* to)
 {
   std::memcpy(to, &vector, sizeof vector);
+}
+
+/// Four small numbers as floats: of less than a whole register the compiler would convert them one by one.
+inline Float4 floatsOf(const std::int16_t* from)
+{
+  using Long2 = std::int64_t __attribute__((vector_size(16)));
+  const auto all = reinterpret_cast<Short8>(Long2{load<std::int64_t>(from)});
+  const auto upper = reinterpret_cast<Int4>(__builtin_shufflevector(all, all, 0, 8, 1, 9, 2, 10, 3, 11));
+  return __builtin_convertvector(upper >> 16, Float4);
+}
+
+inline Float4 floatsOf(const std::int8_t* from)
+{
+  using Byte16 = std::int8_t __attribute__((vector_size(16)));
+  const auto all = reinterpret_cast<Byte16>(Int4{load<std::int32_t>(from)});
+  const auto twice = reinterpret_cast<Short8>(
+      __builtin_shufflevector(all, all, 0, 16, 1, 17, 2, 18, 3, 19, 4, 20, 5, 21, 6, 22, 7, 23));
+  const auto upper = reinterpret_cast<Int4>(__builtin_shufflevector(twice, twice, 0, 8, 1, 9, 2, 10, 3, 11));
+  return __builtin_convertvector(upper >> 24, Float4);
+}
+
+/// To the nearest integers, of which halves are even, as std::lrint(); of numbers below 2^22. That is a call of a function.
+inline Int4 rounded(const Float4& v)
+{
+  constexpr float no_fraction = 3 << 22; // beside it none has room
+  return __builtin_convertvector(v + no_fraction - no_fraction, Int4);
+}
+
+/// Squares of the numbers, those of each two added.
+inline Int4 squaresOf(const Short8& v)
+{
+#ifdef __SSE2__
+  return reinterpret_cast<Int4>(__builtin_ia32_pmaddwd128(v, v));
+#else
+  return Int4{v[0] * v[0] + v[1] * v[1], v[2] * v[2] + v[3] * v[3], v[4] * v[4] + v[5] * v[5],
+              v[6] * v[6] + v[7] * v[7]};
+#endif
 }
 
 /// The lanes of a mask that are set, as bits.
@@ -83,6 +122,8 @@ inline float joined(const Float8& v, const Join& join)
   const Float4 four = join(half[0], half[1]);
   return join(join(four[0], four[2]), join(four[1], four[3]));
 }
+
+inline std::int32_t total(const Int4& v) { return v[0] + v[1] + v[2] + v[3]; }
 
 inline float total(const Float8& v)
 {
