@@ -31,11 +31,19 @@ public:
       visit(chart.texels.spans[s]);
   }
 
-  /// visit(k, pixel) for the places of a row, k = 0..count-1.
+  /// visit(texels, pixel of their middle) for the texels of a span in their order, `together` at a time and the rest.
   template <typename Visit>
-  void forPixels(const PatchMap::Row& row, const Visit& visit) const
+  void forGroups(const TexelSpan& span, int together, const Visit& visit) const
   {
-    map.forPixels(row, visit);
+    const int whole = span.length / together, left = span.length % together;
+    const auto middleOf = [&](int first, int texels) {
+      return Eigen::Vector2f(place(span.x + first, span.y) + Eigen::Vector2f(0.5f * (texels - 1), 0.f));
+    };
+    map.forPixels({middleOf(0, together), float(together), whole},
+                  [&](int, const Eigen::Vector2f& pixel) { visit(together, pixel); });
+    if (left > 0)
+      map.forPixels({middleOf(whole * together, left), 1, 1},
+                    [&](int, const Eigen::Vector2f& pixel) { visit(left, pixel); });
   }
 
   std::size_t texels() const ///< number

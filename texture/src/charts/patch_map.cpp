@@ -57,4 +57,10 @@ Eigen::Matrix2f PatchMap::steps(float x, float y) const
   out.col(1) = pixel(x, y + 1) - at;
   return out;
 }
+
+Eigen::Matrix2f PatchMap::middleSteps() const
+{
+  const Eigen::Vector2f middle = place(Eigen::Vector3f::Constant(1.f / 3));
+  return steps(middle.x(), middle.y());
+}
 } // namespace fresco::texture

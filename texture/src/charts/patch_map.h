@@ -49,6 +49,7 @@ public:
   Eigen::Vector3f weights(float x, float y) const { return weights_ * Eigen::Vector3f(x, y, 1.f); }
   /// Pixels per texel at a place: columns are the steps of one texel to the right and down.
   Eigen::Matrix2f steps(float x, float y) const;
+  Eigen::Matrix2f middleSteps() const; ///< in the middle of the patch
   Eigen::Matrix<float, 2, 3> cornerPixels() const;
   /// Place with the given weights of the corners, texels from the origin.
   Eigen::Vector2f place(const Eigen::Vector3f& weights) const { return corners_ * weights; }

@@ -58,11 +58,11 @@ std::vector<Hole> holesOf(const ChartTexels& texels, std::size_t number)
   return holes;
 }
 
-/// The hole's box and as much again to each side, within the chart.
+/// The hole's box and as much again to each side, within the chart; around a long one as around a square of its area.
 Eigen::AlignedBox2i surroundingsOf(const Hole& hole, const Chart& chart)
 {
   constexpr int least_surroundings = 64; // texels around the box: several windows even for a small hole
-  const int spare = std::max(least_surroundings, hole.box.sizes().maxCoeff());
+  const int spare = std::max<int>(least_surroundings, std::sqrt(hole.box.sizes().cast<float>().prod()));
   const Eigen::Vector2i low = (hole.box.min().array() - spare).max(0),
                         high = (hole.box.max().array() + spare).min(Eigen::Array2i(chart.width - 1, chart.height - 1));
   return {low, high};

@@ -294,9 +294,9 @@ private:
 /// @param matchings fine to coarse
 void matchCoarseToFine(std::vector<Matching>& matchings)
 {
-  constexpr int rounds = 6, passes = 2; // finer levels start from coarser ones and need fewer
+  constexpr int rounds = 4, passes = 2; // 12 rounds find windows that are 4 % more alike; finer levels need fewer
   matchings.back().start();
-  matchings.back().refine(2 * rounds, passes);
+  matchings.back().refine(rounds, passes);
   for (std::size_t l = matchings.size() - 1; l-- > 0;) {
     matchings[l].startFrom(matchings[l + 1]);
     matchings[l].refine(l > 0 ? 2 : 1, l > 0 ? passes : 1);

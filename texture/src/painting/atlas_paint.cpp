@@ -28,9 +28,8 @@ public:
   {
     for (int k = 0; k < 3; ++k)
       least_[k] = goesOn(scene, patch, (k + 1) % 3) ? -far_beyond : inset(k);
-    const Eigen::Vector2f middle = map.place(Eigen::Vector3f::Constant(1.f / 3));
     constexpr float most = 16; // samples each way: enough for any mean
-    const float pixels_per_texel = map.steps(middle.x(), middle.y()).colwise().norm().maxCoeff();
+    const float pixels_per_texel = map.middleSteps().colwise().norm().maxCoeff();
     steps_ = std::isfinite(pixels_per_texel) ? std::lround(std::clamp(pixels_per_texel, 1.f, most)) : 1;
   }
 

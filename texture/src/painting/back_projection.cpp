@@ -108,9 +108,11 @@ private:
   void addView(const PatchFrame& frame, const Eigen::Vector3f& least, const PhotoResidual& residual, Sums& sums) const
   {
     std::size_t next = 0;
-    const auto add = [&](const Eigen::Vector2f& pixel) {
-      float* sum = sums.values[next++].data();
-      simd::store(simd::load<simd::Float4>(sum) + sums.weight * residual.at(pixel.x(), pixel.y()), sum);
+    const int together = texelsPerPixel(frame.map.middleSteps()); // as they were drawn
+    const auto add = [&](int texels, const Eigen::Vector2f& pixel) {
+      const simd::Float4 more = sums.weight * residual.at(pixel.x(), pixel.y());
+      for (const std::size_t end = next + texels; next < end; ++next)
+        simd::store(simd::load<simd::Float4>(sums.values[next].data()) + more, sums.values[next].data());
     };
     std::size_t number = 0;
     frame.forSpans([&](const TexelSpan& span) {
@@ -120,12 +122,11 @@ private:
           const Eigen::Vector2f at = frame.place(x, span.y);
           const Eigen::Vector3f inside = frame.map.weights(at.x(), at.y()).cwiseMax(least);
           const Eigen::Vector2f nearest = frame.map.place(inside / inside.sum());
-          add(frame.map.pixel(nearest.x(), nearest.y()));
+          add(1, frame.map.pixel(nearest.x(), nearest.y()));
         }
       };
       addBeyond(span.x, own.x);
-      frame.forPixels({frame.place(own.x, span.y), 1, own.length},
-                      [&](int, const Eigen::Vector2f& pixel) { add(pixel); });
+      frame.forGroups(own, together, add);
       addBeyond(own.x + own.length, span.x + span.length);
     });
   }

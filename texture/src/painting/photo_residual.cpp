@@ -77,24 +77,17 @@ Eigen::Vector2f boxOf(const Eigen::Matrix2f& steps, int texels)
   return (2 * steps.rowwise().squaredNorm() + (texels * texels - 1) * steps.col(0).cwiseAbs2()).cwiseSqrt();
 }
 
-/// How many texels of a row can be drawn as one, since together they are no wider than a pixel.
-int texelsPerPixel(const Eigen::Matrix2f& steps)
-{
-  constexpr int most = 4;
-  int texels = 1;
-  while (texels < most && boxOf(steps, texels + 1).maxCoeff() <= nearly_pixel)
-    ++texels;
-  return texels;
-}
-
 /// The rows of a patch lie far apart in memory: to be asked for before they are needed.
 void prefetch(const Prediction& p, Index patch)
 {
   const Chart& chart = p.scene.chartOf(patch);
   const Image& atlas = p.atlases[chart.atlas];
   const int slot = p.scene.slots[patch].number;
-  for (int s = chart.texels.begin[slot]; s < chart.texels.begin[slot + 1]; ++s)
-    __builtin_prefetch(atlas.pixel(chart.x + chart.texels.spans[s].x, chart.y + chart.texels.spans[s].y));
+  for (int s = chart.texels.begin[slot]; s < chart.texels.begin[slot + 1]; ++s) {
+    const TexelSpan& span = chart.texels.spans[s];
+    for (const int x : {0, span.length - 1})
+      __builtin_prefetch(atlas.pixel(chart.x + span.x + x, chart.y + span.y));
+  }
 }
 
 /// Adds a patch's colours, each texel times the area it covers in the photograph, and the areas.
@@ -105,8 +98,7 @@ void draw(const Prediction& p, Index patch, Drawing& sums)
   const Image& atlas = p.atlases[frame.chart.atlas];
   if (!frame.map.look(p.view))
     return;
-  const Eigen::Vector2f middle = frame.map.place(Eigen::Vector3f::Constant(1.f / 3));
-  const Eigen::Matrix2f steps = frame.map.steps(middle.x(), middle.y());
+  const Eigen::Matrix2f steps = frame.map.middleSteps();
   const Eigen::Vector2f texel = boxOf(steps, 1);
   if (!(texel.maxCoeff() <= largest_box && texel.minCoeff() > 0))
     return;
@@ -117,7 +109,7 @@ void draw(const Prediction& p, Index patch, Drawing& sums)
   frame.forSpans([&](const TexelSpan& span) {
     const TexelSpan own = frame.insideOf(span, edge);
     const std::uint8_t* c = atlas.pixel(frame.chart.x + own.x, frame.chart.y + own.y);
-    const auto add = [&](const Eigen::Vector2f& pixel, int texels) {
+    frame.forGroups(own, together, [&](int texels, const Eigen::Vector2f& pixel) {
       int red = 0, green = 0, blue = 0;
       for (const std::uint8_t* end = c + 3 * texels; c < end; c += 3) {
         red += c[0];
@@ -125,16 +117,7 @@ void draw(const Prediction& p, Index patch, Drawing& sums)
         blue += c[2];
       }
       canvas.add(pixel, area * vectorOf(simd::Int4{red, green, blue, texels}));
-    };
-    const int whole = own.length / together, left = own.length % together;
-    const auto middleOf = [&](int first, int texels) {
-      return Eigen::Vector2f(frame.place(own.x + first, own.y) + Eigen::Vector2f(0.5f * (texels - 1), 0.f));
-    };
-    frame.forPixels({middleOf(0, together), float(together), whole},
-                    [&](int, const Eigen::Vector2f& pixel) { add(pixel, together); });
-    if (left > 0)
-      frame.forPixels({middleOf(whole * together, left), 1, 1},
-                      [&](int, const Eigen::Vector2f& pixel) { add(pixel, left); });
+    });
   });
 }
 
@@ -157,6 +140,15 @@ float agreementWeight(float difference, float error)
   return w * w;
 }
 } // namespace
+
+int texelsPerPixel(const Eigen::Matrix2f& steps)
+{
+  constexpr int most = 4;
+  int texels = 1;
+  while (texels < most && boxOf(steps, texels + 1).maxCoeff() <= nearly_pixel)
+    ++texels;
+  return texels;
+}
 
 PhotoResidual residualOf(const Prediction& prediction, const Image& photo, const PixelGain& gain, float error)
 {

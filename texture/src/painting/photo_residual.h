@@ -27,6 +27,10 @@ struct PhotoResidual {
   }
 };
 
+/// How many texels of a row can be taken as one, since together they are no wider than a pixel.
+/// @param steps of one texel, see PatchMap::steps()
+int texelsPerPixel(const Eigen::Matrix2f& steps);
+
 /// The textured patches that a photograph shows.
 struct Prediction {
   const PaintScene& scene;

@@ -42,6 +42,20 @@ CellBox cellsOf(const Footprint& patch, const DepthMap& map)
           std::min<int>(map.height - 1, patch.corners.row(1).maxCoeff() + 0.5f)};
 }
 
+/// Whether any cell of the box is nearer than that.
+bool isAnyNearer(const DepthMap& map, const CellBox& box, float depth)
+{
+  for (int y = box.y0; y <= box.y1; ++y) {
+    int any = 0; // without jumps: most rows have none
+    const float* row = map.depth.data() + cellAt(box.x0, y, map.width);
+    for (int i = 0; i <= box.x1 - box.x0; ++i)
+      any |= row[i] < depth;
+    if (any)
+      return true;
+  }
+  return false;
+}
+
 /// Whether the ray through the middle of a cell ends clearly before the patch's plane.
 class PlaneTest {
 public:
@@ -123,6 +137,8 @@ Footprint footprintOf(const Eigen::Matrix3f& pixels, float step)
 Visibility visibilityOf(const Footprint& patch, const DepthMap& map, float tolerance)
 {
   const CellBox box = cellsOf(patch, map);
+  if (!isAnyNearer(map, box, patch.farthest - tolerance))
+    return Visibility::clear;
   const Eigen::Vector2i middle = patch.corners.rowwise().mean().array().floor().cast<int>().matrix();
   const PlaneTest plane(patch, tolerance);
   const Triangle triangle(patch);

@@ -2,7 +2,9 @@
 #include "views/photo_store.h"
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <fresco/core/require.h>
+#include <fresco/core/simd.h>
 #include <fresco/io/image_io.h>
 #include <opencv2/imgproc.hpp>
 namespace fresco::texture {
@@ -153,11 +155,11 @@ void PhotoStore::dropUnlessAll()
 namespace {
 constexpr int taps = 4; // of the cubic
 
-/// Rows weighted and added first: sum[3 * a + c] of tap a and channel c.
-void addRow(const std::uint8_t* row, float weight, float* sum)
+/// Rows weighted and added first: number 3 * a + c of tap a and channel c.
+void addRow(const std::uint8_t* row, float weight, simd::Float4 (&sum)[3])
 {
-  for (int i = 0; i < 3 * taps; ++i)
-    sum[i] += weight * row[i];
+  for (int i = 0; i < 3; ++i)
+    sum[i] += weight * simd::floatsOf(row + 4 * i);
 }
 } // namespace
 
@@ -166,19 +168,21 @@ Eigen::Vector3f samplePhoto(const Image& photo, float x, float y)
   const float u = std::clamp(x - 0.5f, 0.f, photo.width - 1.f), v = std::clamp(y - 0.5f, 0.f, photo.height - 1.f);
   const int i = u, j = v;
   const Eigen::Vector4f wx = cubicWeights(u - i), wy = cubicWeights(v - j);
-  float sum[3 * taps] = {};
+  simd::Float4 rows[3] = {};
   const bool inside = i >= 1 && i + 2 < photo.width;
   for (int b = 0; b < taps; ++b) {
     const int row = std::clamp(j + b - 1, 0, photo.height - 1);
     if (inside) {
-      addRow(photo.pixel(i - 1, row), wy[b], sum);
+      addRow(photo.pixel(i - 1, row), wy[b], rows);
       continue;
     }
     std::uint8_t pixels[3 * taps];
     for (int a = 0; a < taps; ++a)
       std::copy_n(photo.pixel(std::clamp(i + a - 1, 0, photo.width - 1), row), 3, pixels + 3 * a);
-    addRow(pixels, wy[b], sum);
+    addRow(pixels, wy[b], rows);
   }
+  float sum[3 * taps];
+  std::memcpy(sum, rows, sizeof sum);
   Eigen::Vector3f out;
   for (int c = 0; c < 3; ++c)
     out[c] = wx[0] * sum[c] + wx[1] * sum[3 + c] + wx[2] * sum[6 + c] + wx[3] * sum[9 + c];

@@ -3,8 +3,18 @@
 #include <algorithm>
 #include <cmath>
 #include <fresco/core/parallel.h>
+#include <fresco/core/simd.h>
 namespace fresco::texture {
 namespace {
+/// exp(-x) within 0.02, x >= 0.
+simd::Float4 bell(const simd::Float4& x)
+{
+  simd::Float4 y = simd::larger(1 - x / 16, simd::Float4{});
+  for (int k = 0; k < 4; ++k)
+    y *= y;
+  return y;
+}
+
 /// What one photograph shows of the patches, by place.
 class PictureEvidence {
 public:
@@ -25,42 +35,68 @@ public:
 
   void add(const Place& place, const Difference& difference)
   {
-    constexpr std::size_t most = 12; // per cell: what is beside looks alike
-    if (auto& cell = cells_[column(place.pixel) + columns_ * row(place.pixel)]; cell.size() < most)
-      cell.push_back({place, difference});
+    if (Cell& cell = cells_[column(place.pixel) + columns_ * row(place.pixel)]; cell.count < most) {
+      const int k = cell.count++;
+      for (int axis = 0; axis < 2; ++axis)
+        cell.pixel[axis][k] = place.pixel[axis];
+      for (int c = 0; c < 3; ++c)
+        cell.color[c][k] = place.color[c];
+      cell.value[k] = difference.value;
+      cell.certainty[k] = difference.certainty;
+    }
   }
 
   /// Of a place: that of places nearby which look like it.
   Difference expected(const Place& place) const
   {
-    constexpr float alike = 20, unlike = 3 * alike; // grey levels: deviation of a Gaussian, and where it ends
-    constexpr float innocence = 0.5f;               // weight of no difference: of half a sample at the place itself
-    float sum = 0, weights = innocence;
+    constexpr float innocence = 0.5f; // weight of no difference: of half a sample at the place itself
+    simd::Float4 sum{}, weights{};
     const int x = column(place.pixel), y = row(place.pixel);
     for (int j = std::max(y - reach, 0); j <= std::min(y + reach, rows_ - 1); ++j)
-      for (int i = std::max(x - reach, 0); i <= std::min(x + reach, columns_ - 1); ++i)
-        for (const auto& [other, difference] : cells_[i + columns_ * j]) {
-          const float colors = (other.color - place.color).squaredNorm();
-          if (colors > unlike * unlike)
-            continue;
-          const float pixels = (other.pixel - place.pixel).squaredNorm();
-          const float w =
-              difference.certainty * std::exp(-0.5f * (pixels / (4 * cell_ * cell_) + colors / (alike * alike)));
-          sum += w * difference.value;
+      for (int i = std::max(x - reach, 0); i <= std::min(x + reach, columns_ - 1); ++i) {
+        const Cell& cell = cells_[i + columns_ * j];
+        for (int k = 0; k < cell.count; k += 4) {
+          const simd::Float4 w = weightsOf(cell, k, place);
+          sum += w * simd::load<simd::Float4>(cell.value + k);
           weights += w;
         }
-    return {sum / weights, 1 - innocence / weights};
+      }
+    const float all = innocence + weights[0] + weights[1] + weights[2] + weights[3];
+    return {(sum[0] + sum[1] + sum[2] + sum[3]) / all, 1 - innocence / all};
   }
 
 private:
   static constexpr float cells_across = 40; // a cell is some patches wide
   static constexpr int reach = 4;           // cells: two deviations of the Gaussian
+  static constexpr int most = 12;           // samples of a cell: what is beside looks alike
+
+  struct Cell {
+    int count = 0;
+    float pixel[2][most] = {}, color[3][most] = {}, value[most] = {}, certainty[most] = {};
+  };
+
+  /// Of four samples; those that are not there have none.
+  simd::Float4 weightsOf(const Cell& cell, int first, const Place& place) const
+  {
+    constexpr float alike = 20, unlike = 3 * alike; // grey levels: deviation of a Gaussian, and where it ends
+    const auto squared = [&](const float* values, float own) {
+      const simd::Float4 apart = simd::load<simd::Float4>(values + first) - own;
+      return apart * apart;
+    };
+    const simd::Float4 pixels = squared(cell.pixel[0], place.pixel[0]) + squared(cell.pixel[1], place.pixel[1]),
+                       colors = squared(cell.color[0], place.color[0]) + squared(cell.color[1], place.color[1]) +
+                                squared(cell.color[2], place.color[2]);
+    const simd::Float4 w = simd::load<simd::Float4>(cell.certainty + first) *
+                           bell(pixels * (0.125f / (cell_ * cell_)) + colors * (0.5f / (alike * alike)));
+    return colors > unlike * unlike ? simd::Float4{} : w;
+  }
+
   int column(const Eigen::Vector2f& p) const { return std::clamp<int>(p.x() / cell_, 0, columns_ - 1); }
   int row(const Eigen::Vector2f& p) const { return std::clamp<int>(p.y() / cell_, 0, rows_ - 1); }
 
   float cell_;
   int columns_, rows_;
-  std::vector<std::vector<std::pair<Place, Difference>>> cells_;
+  std::vector<Cell> cells_;
 };
 
 /// Patch and candidate of a view.

@@ -56,6 +56,16 @@ inline Float4 floatsOf(const std::int8_t* from)
   return __builtin_convertvector(upper >> 24, Float4);
 }
 
+inline Float4 floatsOf(const std::uint8_t* from)
+{
+  using Byte16 = std::uint8_t __attribute__((vector_size(16)));
+  const auto all = reinterpret_cast<Byte16>(Int4{load<std::int32_t>(from)});
+  const auto wide = reinterpret_cast<Short8>(
+      __builtin_shufflevector(all, Byte16{}, 0, 16, 1, 17, 2, 18, 3, 19, 4, 20, 5, 21, 6, 22, 7, 23));
+  const auto wider = reinterpret_cast<Int4>(__builtin_shufflevector(wide, Short8{}, 0, 8, 1, 9, 2, 10, 3, 11));
+  return __builtin_convertvector(wider, Float4);
+}
+
 /// To the nearest integers, of which halves are even, as std::lrint(); of numbers below 2^22. That is a call of a function.
 inline Int4 rounded(const Float4& v)
 {
