@@ -61,7 +61,7 @@ Steps stepsOf(const TexturedMesh& model, const MeshTiles& tiles)
   for (Index t = 0; t < tiles.count(); ++t)
     for (Index i = tiles.begin[t]; i < tiles.begin[t + 1]; ++i)
       tile_of[tiles.order[i]] = static_cast<int>(t);
-  const Eigen::Matrix3Xi neighbors = faceNeighbors(model.mesh.faces);
+  const Eigen::Matrix3Xi neighbors = faceNeighbors(model.mesh.faces, 1);
   Steps out;
   for (Index f = 0; f < model.mesh.faceCount(); ++f)
     for (int k = 0; k < 3; ++k) {

@@ -342,16 +342,23 @@ TEST(TextureViews, OfManyViewsThoseThatShowAPatchBestAreKept)
   std::uniform_int_distribution<int> size(1, 12); // often the same
   CandidateTable table(patches, most);
   std::vector<std::vector<std::pair<float, int>>> added(patches); // -quality, view
-  for (int v = 0; v < views; ++v)
+  std::vector<std::vector<SeenPatch>> batch;
+  for (int v = 0; v < views; ++v) {
+    batch.emplace_back();
     for (Index p = 0; p < patches; ++p)
       if (random() % 2 == 0 && p % 5 != 0) {
         const float resolution = size(random);
         Candidate candidate{};
         candidate.view = v;
         candidate.resolution = resolution;
-        table.add(p, candidate);
+        batch.back().push_back({static_cast<int>(p), candidate});
         added[p].emplace_back(-resolution, v);
       }
+    if (v % 3 == 0 || v + 1 == views) {
+      table.add(batch, 1 + v % 2);
+      batch.clear();
+    }
+  }
   const Candidates kept = table.take();
   ASSERT_EQ(kept.begin.size(), static_cast<std::size_t>(patches + 1));
   for (Index p = 0; p < patches; ++p) {

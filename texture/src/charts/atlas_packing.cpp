@@ -20,6 +20,7 @@ struct Run {
 struct Mask {
   int width = 0, height = 0;
   std::vector<std::vector<Run>> rows;
+  std::vector<int> blocks; ///< of each row
 };
 
 Mask maskOf(const Chart& chart, int block)
@@ -32,6 +33,7 @@ Mask maskOf(const Chart& chart, int block)
     for (int x = span.x / block; x <= (span.x + span.length - 1) / block; ++x)
       taken[cellAt(x, span.y / block, mask.width)] = 1;
   mask.rows.resize(mask.height);
+  mask.blocks.assign(mask.height, 0);
   for (int y = 0; y < mask.height; ++y) {
     const char* row = taken.data() + cellAt(0, y, mask.width);
     for (int x = 0, end = 0; x < mask.width; x = end + 1) {
@@ -39,6 +41,7 @@ Mask maskOf(const Chart& chart, int block)
         ;
       if (end > x)
         mask.rows[y].push_back({x, end - x});
+      mask.blocks[y] += end - x;
     }
   }
   return mask;
@@ -69,6 +72,7 @@ public:
     for (int y = from; height_ == 0 || y + mask.height <= height_; ++y) {
       while (Index(rows_.size()) < y + mask.height)
         rows_.emplace_back(width_);
+      free_.resize(rows_.size(), width_);
       if (const int x = firstFree(mask, y); x >= 0) {
         place = {x, y};
         return true;
@@ -79,9 +83,11 @@ public:
 
   void take(const Mask& mask, const Eigen::Vector2i& place)
   {
-    for (int j = 0; j < mask.height; ++j)
+    for (int j = 0; j < mask.height; ++j) {
       for (const Run& run : mask.rows[j])
         rows_[place.y() + j].set(place.x() + run.begin, run.length, true);
+      free_[place.y() + j] -= mask.blocks[j];
+    }
     top_ = std::max(top_, place.y() + mask.height);
   }
 
@@ -90,6 +96,9 @@ public:
 private:
   int firstFree(const Mask& mask, int y) const
   {
+    for (int j = 0; j < mask.height; ++j)
+      if (mask.blocks[j] > free_[y + j])
+        return -1;
     BitRow taken(width_);
     taken.set(width_ - mask.width + 1, mask.width - 1, true);
     for (int j = 0; j < mask.height && !taken.all(); ++j)
@@ -100,7 +109,8 @@ private:
   }
 
   int width_, height_, top_ = 0;
-  std::vector<BitRow> rows_;
+  std::vector<BitRow> rows_; ///< blocks that are taken
+  std::vector<int> free_;    ///< blocks of each row that are not
 };
 
 int logSize(int length) { return std::lround(2 * std::log2(length)); }
@@ -175,8 +185,9 @@ double ownedTexels(const std::vector<Chart>& charts)
 int smallestSquare(Packer& packer, int least, double blocks)
 {
   constexpr int tries = 5;
-  int width = std::max<int>(least, std::ceil(std::sqrt(blocks / 0.9))), best = 0, best_width = width;
+  int width = std::max<int>(least, std::ceil(std::sqrt(blocks / 0.9))), best = 0, best_width = width, packed = 0;
   for (int i = 0; i < tries; ++i) {
+    packed = width;
     const int height = packer.pack(width, 0), side = std::max(width, height);
     if (best == 0 || side < best) {
       best = side;
@@ -186,7 +197,8 @@ int smallestSquare(Packer& packer, int least, double blocks)
       break;
     width = std::max(least, (width + height + 1) / 2);
   }
-  packer.pack(best_width, 0);
+  if (packed != best_width)
+    packer.pack(best_width, 0);
   return best;
 }
 

@@ -159,7 +159,7 @@ FaceGraph buildFaceGraph(const TriangleMesh& mesh, int threads)
   FaceGraph graph;
   const Index n = mesh.faceCount();
   graph.normals = faceNormals(mesh, threads);
-  graph.neighbors = faceNeighbors(mesh.faces);
+  graph.neighbors = faceNeighbors(mesh.faces, threads);
   graph.areas.resize(n);
   parallelFor(n, threads, [&](Index f) { graph.areas[f] = 0.5 * areaVector(mesh, f).norm(); });
   graph.smooth_normals = smoothed(graph, graph.normals, threads);

@@ -173,8 +173,10 @@ std::vector<Chart> makeAtlas(const PatchMesh& patches, const Eigen::VectorXf& re
     const Packing packing = packCharts(group, side);
     for (Chart& chart : group)
       chart.atlas += first;
-    result.model.atlases.resize(first + packing.atlases, Image(packing.side, packing.side, 3, 128));
-    result.masks.resize(first + packing.atlases, Image(packing.side, packing.side, 1));
+    for (int a = 0; a < packing.atlases; ++a) {
+      result.model.atlases.emplace_back(packing.side, packing.side, 3, 128);
+      result.masks.emplace_back(packing.side, packing.side, 1);
+    }
     return packing;
   };
   const Packing packing = pack(charts);

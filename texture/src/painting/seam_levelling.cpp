@@ -1,16 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "painting/seam_levelling.h"
-#include <Eigen/IterativeLinearSolvers>
-#include <Eigen/SparseCore>
+#include "painting/conjugate_gradient.h"
 #include <algorithm>
 #include <cmath>
 #include <fresco/core/parallel.h>
-#include <fresco/core/release.h>
 namespace fresco::texture {
 namespace {
-using Sparse = Eigen::SparseMatrix<float, Eigen::RowMajor>;
-using Triplet = Eigen::Triplet<float>;
-
 class Levelling {
 public:
   Levelling(const BlendInput& input, const Groups& around, const VertexViews& shares)
@@ -24,7 +19,7 @@ public:
   SeamOffsets run(const BlendOptions& options)
   {
     const Index n = out_.begin.back();
-    right_ = Eigen::MatrixXf::Zero(n, 3);
+    right_ = Points::Zero(3, n);
     constexpr float regularization = 1e-3f; // small against smoothness: offsets fade over tens of edges
     diagonal_ = Eigen::VectorXf::Constant(n, regularization);
     for (std::size_t v = 0; v < shares_.size(); ++v)
@@ -32,17 +27,9 @@ public:
     addSmoothness();
     if (options.border)
       holdBorder(*options.border);
-    const Sparse A = matrix();
-    Eigen::MatrixXf channels(n, 3); // columns, so that threads do not write side by side
-    const auto solve = [&](Index c) {
-      Eigen::ConjugateGradient<Sparse, Eigen::Lower> solver;
-      solver.setMaxIterations(300);
-      solver.setTolerance(1e-3); // of a grey level, about
-      solver.compute(A);
-      channels.col(c) = solver.solve(right_.col(c));
-    };
-    parallelFor(n > 0 ? 3 : 0, options.threads, solve, 1);
-    out_.offsets = channels.transpose();
+    constexpr int iterations = 300;
+    constexpr float tolerance = 1e-3f; // of a grey level, about
+    out_.offsets = solveSymmetric({diagonal_, std::move(entries_)}, right_, {iterations, tolerance, options.threads});
     if (options.border)
       keepBorder(*options.border);
     return std::move(out_);
@@ -56,7 +43,7 @@ private:
     border.forKnown(patches_, shares_, [&](Index v, std::size_t share, const Eigen::Vector3f& offset) {
       const Index i = out_.begin[v] + share;
       diagonal_[i] += strong;
-      right_.row(i) += strong * offset.transpose();
+      right_.col(i) += strong * offset;
     });
   }
 
@@ -69,25 +56,14 @@ private:
                [&](Index v, std::size_t share) -> Eigen::Vector3f { return out_.offsets.col(out_.begin[v] + share); });
   }
 
-  /// Of the normal equations the lower half, which is all that the solver reads.
-  Sparse matrix()
-  {
-    for (Index i = 0; i < diagonal_.size(); ++i)
-      entries_.emplace_back(i, i, diagonal_[i]);
-    Sparse A(diagonal_.size(), diagonal_.size());
-    A.setFromTriplets(entries_.begin(), entries_.end());
-    releaseMemory(entries_);
-    return A;
-  }
-
   /// weight * (x_i - x_j - difference)^2
   void addEquation(int i, int j, float weight, const Eigen::Vector3f& difference)
   {
     diagonal_[i] += weight;
     diagonal_[j] += weight;
-    entries_.emplace_back(std::max(i, j), std::min(i, j), -weight);
-    right_.row(i) += weight * difference.transpose();
-    right_.row(j) -= weight * difference.transpose();
+    entries_.push_back({i, j, -weight});
+    right_.col(i) += weight * difference;
+    right_.col(j) -= weight * difference;
   }
 
   /// What two views at a vertex differ by is to go. Steps larger than `implausible` rather come from something that
@@ -120,14 +96,18 @@ private:
   void addSmoothness()
   {
     constexpr float smoothness = 0.3f; // against a step between views: steps vanish, what they change spreads
-    entries_.reserve(entries_.size() + 4 * patches_.size() + diagonal_.size());
+    entries_.reserve(entries_.size() + 2 * patches_.size());
     for (Index i = 0; i < patches_.size(); ++i)
       for (int k = 0; k < 3; ++k) {
+        const int other = patches_.neighbors(k, i);
+        if (other >= 0 && other < i)
+          continue;
+        const float weight = other >= 0 ? 2 * smoothness : smoothness; // of both patches
         const int p = patches_.faces(k, i), q = patches_.faces((k + 1) % 3, i);
         const auto &a = shares_[p], &b = shares_[q];
         for (std::size_t s = 0, t = 0; s < a.size() && t < b.size();) {
           if (a[s].view == b[t].view)
-            addEquation(out_.begin[p] + s, out_.begin[q] + t, smoothness, Eigen::Vector3f::Zero());
+            addEquation(out_.begin[p] + s, out_.begin[q] + t, weight, Eigen::Vector3f::Zero());
           const bool next_a = a[s].view <= b[t].view, next_b = b[t].view <= a[s].view;
           s += next_a;
           t += next_b;
@@ -141,9 +121,9 @@ private:
   const BlendInput& input_;
   const Photometry& photometry_;
   SeamOffsets out_;
-  std::vector<Triplet> entries_; ///< below the diagonal
+  std::vector<OffDiagonal> entries_;
   Eigen::VectorXf diagonal_;
-  Eigen::MatrixXf right_;
+  Points right_; ///< 3xN
 };
 } // namespace
 

@@ -16,7 +16,7 @@ struct SideCounts {
 /// Number of the surface of each face: its lowest face.
 std::vector<int> surfacesOf(const TriangleMesh& mesh)
 {
-  const Eigen::Matrix3Xi neighbors = faceNeighbors(mesh.faces);
+  const Eigen::Matrix3Xi neighbors = faceNeighbors(mesh.faces, 0);
   const auto runs = [&](Index face, int from, int to) {
     for (int k = 0; k < 3; ++k)
       if (mesh.faces(k, face) == from && mesh.faces((k + 1) % 3, face) == to)

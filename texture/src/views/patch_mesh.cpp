@@ -3,13 +3,13 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cstdint>
+#include <fresco/core/grouped.h>
 #include <fresco/core/parallel.h>
 #include <numeric>
 #include <unordered_map>
 namespace fresco::texture {
 namespace {
 using EdgeKey = std::uint64_t;
-using Midpoints = std::unordered_map<EdgeKey, int>;
 
 EdgeKey edgeKey(int a, int b)
 {
@@ -24,23 +24,39 @@ struct Patches {
   std::vector<int> parent;
 };
 
-/// Middles of the edges for which want(patch, corner at which the edge begins) holds.
+/// Middles of edges.
+struct Cuts {
+  std::unordered_map<EdgeKey, int> middle;
+  std::vector<char> touched; ///< vertices at which such edges end
+
+  /// -1 = none
+  int at(int a, int b) const
+  {
+    if (!touched[a] || !touched[b])
+      return -1;
+    const auto found = middle.find(edgeKey(a, b));
+    return found == middle.end() ? -1 : found->second;
+  }
+};
+
+/// The edges for which want(patch, corner at which the edge begins) holds.
 template <typename Want>
-Midpoints cutEdges(Patches& patches, const Want& want)
+Cuts cutEdges(Patches& patches, const Want& want)
 {
-  Midpoints middle;
+  Cuts cuts{{}, std::vector<char>(patches.vertices.size(), 0)};
   for (std::size_t i = 0; i < patches.faces.size(); ++i)
     for (int k = 0; k < 3; ++k) {
       const int a = patches.faces[i][k], b = patches.faces[i][(k + 1) % 3];
       if (!want(i, k))
         continue;
-      if (!middle.emplace(edgeKey(a, b), patches.vertices.size()).second)
+      if (!cuts.middle.emplace(edgeKey(a, b), patches.vertices.size()).second)
         continue;
+      cuts.touched[a] = cuts.touched[b] = 1;
       patches.vertices.push_back(0.5f * (patches.vertices[a] + patches.vertices[b]));
       if (!patches.colors.empty())
         patches.colors.push_back(0.5f * (patches.colors[a] + patches.colors[b]));
     }
-  return middle;
+  return cuts;
 }
 
 /// Parts of a face with corners f whose edges k -> k+1 are cut at m[k] (-1 = not cut).
@@ -67,16 +83,17 @@ void appendParts(const Eigen::Vector3i& f, const Eigen::Vector3i& m, std::vector
 }
 
 /// Cuts every patch at the middles that its edges have.
-void cutAt(const Midpoints& middle, Patches& patches)
+void cutAt(const Cuts& cuts, Patches& patches)
 {
   std::vector<Eigen::Vector3i> faces;
   std::vector<int> parent;
+  faces.reserve(patches.faces.size());
+  parent.reserve(patches.faces.size());
   for (std::size_t i = 0; i < patches.faces.size(); ++i) {
     const Eigen::Vector3i f = patches.faces[i];
-    Eigen::Vector3i m(-1, -1, -1);
+    Eigen::Vector3i m;
     for (int k = 0; k < 3; ++k)
-      if (const auto at = middle.find(edgeKey(f[k], f[(k + 1) % 3])); at != middle.end())
-        m[k] = at->second;
+      m[k] = cuts.at(f[k], f[(k + 1) % 3]);
     appendParts(f, m, faces);
     parent.resize(faces.size(), patches.parent[i]);
   }
@@ -87,13 +104,13 @@ void cutAt(const Midpoints& middle, Patches& patches)
 /// @return whether anything was cut
 bool cutLongEdges(Patches& patches, float longest_edge)
 {
-  const Midpoints middle = cutEdges(patches, [&](std::size_t i, int k) {
+  const Cuts cuts = cutEdges(patches, [&](std::size_t i, int k) {
     const Eigen::Vector3i& f = patches.faces[i];
     return (patches.vertices[f[k]] - patches.vertices[f[(k + 1) % 3]]).norm() > longest_edge;
   });
-  if (!middle.empty())
-    cutAt(middle, patches);
-  return !middle.empty();
+  if (!cuts.middle.empty())
+    cutAt(cuts, patches);
+  return !cuts.middle.empty();
 }
 
 /// @param mesh a TriangleMesh or PatchMesh
@@ -101,6 +118,8 @@ template <typename Mesh>
 Patches copyOf(const Mesh& mesh)
 {
   Patches patches;
+  patches.vertices.reserve(mesh.vertices.cols());
+  patches.faces.reserve(mesh.faces.cols());
   for (Index v = 0; v < mesh.vertices.cols(); ++v)
     patches.vertices.emplace_back(mesh.vertices.col(v));
   for (Index v = 0; v < mesh.colors.cols(); ++v)
@@ -120,7 +139,7 @@ PatchMesh finish(const Patches& patches, int threads)
     out.colors = Eigen::Map<const Points>(patches.colors.front().data(), 3, corners);
   out.faces = Eigen::Map<const Faces>(patches.faces.front().data(), 3, n);
   out.parent = Eigen::Map<const Eigen::VectorXi>(patches.parent.data(), n);
-  out.neighbors = faceNeighbors(out.faces);
+  out.neighbors = faceNeighbors(out.faces, threads);
   out.normals.resize(3, n);
   out.areas.resize(n);
   parallelFor(n, threads, [&](Index i) {
@@ -149,36 +168,40 @@ PatchMesh cutPatches(const PatchMesh& patches, const std::vector<char>& marked, 
 {
   Patches parts = copyOf(patches);
   parts.parent.assign(patches.parent.begin(), patches.parent.end());
-  const Midpoints middle = cutEdges(parts, [&](std::size_t i, int) { return marked[i] != 0; });
-  if (middle.empty())
+  const Cuts cuts = cutEdges(parts, [&](std::size_t i, int) { return marked[i] != 0; });
+  if (cuts.middle.empty())
     return patches;
-  cutAt(middle, parts);
+  cutAt(cuts, parts);
   return finish(parts, threads);
 }
 
-Eigen::Matrix3Xi faceNeighbors(const Faces& faces)
+Eigen::Matrix3Xi faceNeighbors(const Faces& faces, int threads)
 {
-  struct Side {
-    EdgeKey key;
-    int slot; ///< 3 * face + corner
-  };
-  std::vector<Side> sides;
-  sides.reserve(faces.size());
-  for (Index f = 0; f < faces.cols(); ++f)
-    for (int k = 0; k < 3; ++k)
-      if (faces(k, f) != faces((k + 1) % 3, f))
-        sides.push_back({edgeKey(faces(k, f), faces((k + 1) % 3, f)), static_cast<int>(3 * f + k)});
-  std::sort(sides.begin(), sides.end(),
-            [](const Side& a, const Side& b) { return a.key != b.key ? a.key < b.key : a.slot < b.slot; });
   Eigen::Matrix3Xi neighbors = Eigen::Matrix3Xi::Constant(3, faces.cols(), -1);
-  for (std::size_t i = 0, end = 0; i < sides.size(); i = end) {
-    for (end = i; end < sides.size() && sides[end].key == sides[i].key; ++end)
-      ;
-    if (end - i != 2)
-      continue;
-    neighbors.data()[sides[i].slot] = sides[i + 1].slot / 3;
-    neighbors.data()[sides[i + 1].slot] = sides[i].slot / 3;
-  }
+  if (faces.cols() == 0)
+    return neighbors;
+  const auto endsOf = [&](int slot) { // slot: 3 * face + corner at which the side begins
+    return std::minmax({faces.data()[slot], faces.data()[slot % 3 == 2 ? slot - 2 : slot + 1]});
+  };
+  const Groups sides = grouped(faces.size(), faces.maxCoeff() + 1, [&](Index slot) { return endsOf(slot).first; });
+  parallelRanges(sides.begin.size() - 1, threads, [&](Index begin, Index end) {
+    std::vector<std::pair<int, int>> around; // other end, slot
+    for (Index v = begin; v < end; ++v) {
+      around.clear();
+      for (Index s = sides.begin[v]; s < sides.begin[v + 1]; ++s)
+        if (const int other = endsOf(sides.list[s]).second; other != v)
+          around.emplace_back(other, sides.list[s]);
+      std::sort(around.begin(), around.end());
+      for (std::size_t i = 0, next = 0; i < around.size(); i = next) {
+        for (next = i + 1; next < around.size() && around[next].first == around[i].first; ++next)
+          ;
+        if (next - i != 2)
+          continue;
+        neighbors.data()[around[i].second] = around[i + 1].second / 3;
+        neighbors.data()[around[i + 1].second] = around[i].second / 3;
+      }
+    }
+  });
   return neighbors;
 }
 } // namespace fresco::texture

@@ -28,5 +28,5 @@ PatchMesh cutFaces(const TriangleMesh& mesh, float longest_edge, int threads);
 PatchMesh cutPatches(const PatchMesh& patches, const std::vector<char>& marked, int threads);
 
 /// 3xF, face across the edge from corner k to corner k+1; -1 at boundaries and where more than two faces meet.
-Eigen::Matrix3Xi faceNeighbors(const Faces& faces);
+Eigen::Matrix3Xi faceNeighbors(const Faces& faces, int threads);
 } // namespace fresco::texture

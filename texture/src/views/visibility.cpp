@@ -14,11 +14,6 @@ constexpr float outline_penalty = 5; // near the outline of what stands before: 
 constexpr float rim_penalty = 2;     // at its own outline, where pixels mix with what lies behind
 constexpr float beside_penalty = 1;  // where a pixel next to it shows something a little nearer
 
-struct Seen {
-  int patch;
-  Candidate candidate;
-};
-
 /// @param step length by which depth jumps at an outline
 bool isNearOutline(const Footprint& patch, const DepthMap& nearest, float radius, float step)
 {
@@ -64,9 +59,9 @@ public:
   /// Whether a vertex lies in the image: else no patch does.
   bool mayShow() const { return (pixels_.row(2).array() > 0).any(); }
 
-  std::vector<Seen> run(const VisibilityInput& input, Index number, const DepthMap& map) const
+  std::vector<SeenPatch> run(const VisibilityInput& input, Index number, const DepthMap& map) const
   {
-    std::vector<Seen> seen;
+    std::vector<SeenPatch> seen;
     const std::shared_ptr<const Image> photo = input.views.photos.get(number);
     const float misfit = input.views.misfits.empty() ? 0.f : input.views.misfits[number];
     const float radius = limits_.margin / map.step;
@@ -90,6 +85,7 @@ public:
           penalty += limits_.pose_uncertainty * rim_penalty;
         const float resolution = view_.focal() * cosine / (0.5f * (patch.nearest + patch.farthest));
         Candidate candidate = colored(*photo, i);
+        candidate.view = number;
         candidate.penalty = 16 * penalty;
         candidate.resolution = resolution;
         seen.push_back({static_cast<int>(i), candidate});
@@ -164,7 +160,7 @@ DepthMap finestDepth(const VisibilityInput& input, Index view, DepthMap map)
 }
 } // namespace
 
-CandidateTable::CandidateTable(Index patches, Index most) : most_(most), counts_(patches, 0), slots_(patches * most) {}
+CandidateTable::CandidateTable(Index patches, Index most) : most_(most) { kept_.begin.assign(patches + 1, 0); }
 
 Index CandidateTable::mostPerPatch(Index patches, Index views)
 {
@@ -173,10 +169,39 @@ Index CandidateTable::mostPerPatch(Index patches, Index views)
   return std::clamp(most / std::max<Index>(patches, 1), least, std::max(views, least));
 }
 
-void CandidateTable::add(Index patch, const Candidate& candidate)
+void CandidateTable::add(const std::vector<std::vector<SeenPatch>>& views, int threads)
 {
-  Candidate *first = slots_.data() + patch * most_, *last = first + counts_[patch];
-  if (counts_[patch] == most_) {
+  const Index patches = kept_.begin.size() - 1;
+  Candidates all;
+  all.begin.assign(patches + 1, 0);
+  for (const auto& view : views)
+    for (const SeenPatch& seen : view)
+      ++all.begin[seen.patch + 1];
+  for (Index i = 0; i < patches; ++i)
+    all.begin[i + 1] = all.begin[i] + std::min(most_, kept_.count(i) + all.begin[i + 1]);
+  all.list.resize(all.begin.back());
+  parallelRanges(patches, threads, [&](Index begin, Index end) {
+    std::vector<const SeenPatch*> next; // of each view
+    for (const auto& view : views)
+      next.push_back(std::lower_bound(view.data(), view.data() + view.size(), begin,
+                                      [](const SeenPatch& seen, Index patch) { return seen.patch < patch; }));
+    for (Index i = begin; i < end; ++i) {
+      Index count = kept_.count(i);
+      Candidate* first = all.list.data() + all.begin[i];
+      std::copy_n(kept_.of(i), count, first);
+      for (std::size_t v = 0; v < views.size(); ++v)
+        if (next[v] != views[v].data() + views[v].size() && next[v]->patch == i)
+          keep((next[v]++)->candidate, first, count);
+    }
+  });
+  kept_ = std::move(all);
+}
+
+/// @param first of `count` candidates of a patch
+void CandidateTable::keep(const Candidate& candidate, Candidate* first, Index& count) const
+{
+  Candidate* last = first + count;
+  if (count == most_) {
     Candidate* worst = first; // of equal ones the last
     for (Candidate* c = first + 1; c < last; ++c)
       if (!(c->quality() > worst->quality()))
@@ -186,25 +211,9 @@ void CandidateTable::add(Index patch, const Candidate& candidate)
     std::move(worst + 1, last, worst);
     --last;
   } else {
-    ++counts_[patch];
+    ++count;
   }
   *last = candidate;
-}
-
-Candidates CandidateTable::take()
-{
-  Candidates out;
-  out.begin.assign(counts_.size() + 1, 0);
-  for (std::size_t i = 0; i < counts_.size(); ++i) {
-    const Index from = i * most_;
-    for (int k = 0; k < counts_[i]; ++k)
-      slots_[out.begin[i] + k] = slots_[from + k]; // never to behind where it was
-    out.begin[i + 1] = out.begin[i] + counts_[i];
-  }
-  slots_.resize(out.begin.back());
-  slots_.shrink_to_fit();
-  out.list = std::move(slots_);
-  return out;
 }
 
 float Candidates::bestQuality(Index patch) const
@@ -251,7 +260,7 @@ Candidates findCandidates(const PatchMesh& patches, const VisibilityInput& input
   constexpr Index batch = 16; // views between two reports
   const Index n = views.used.size();
   CandidateTable table(patches.size(), CandidateTable::mostPerPatch(patches.size(), n));
-  std::vector<std::vector<Seen>> seen(batch);
+  std::vector<std::vector<SeenPatch>> seen;
   const VisibilityLimits limits = limitsFor(patches, input);
   maps.resize(n);
   if (outlines)
@@ -259,8 +268,8 @@ Candidates findCandidates(const PatchMesh& patches, const VisibilityInput& input
   for (Index first = 0; first < n; first += batch) {
     report(progress, "visibility", 1.0 * first / n);
     const Index count = std::min(batch, n - first);
+    seen.assign(count, {});
     const auto test = [&](Index i) {
-      seen[i].clear();
       const Index v = first + i;
       if (!views.used[v])
         return;
@@ -274,11 +283,7 @@ Candidates findCandidates(const PatchMesh& patches, const VisibilityInput& input
         (*outlines)[v] = OutlineMask(map, OutlineMask::pixel_reach, limits.tolerance);
     };
     parallelFor(count, input.options.threads, test, 1);
-    for (Index i = 0; i < count; ++i)
-      for (Seen& s : seen[i]) {
-        s.candidate.view = first + i;
-        table.add(s.patch, s.candidate);
-      }
+    table.add(seen, input.options.threads);
   }
   views.photos.dropUnlessAll();
   return table.take();

@@ -39,6 +39,12 @@ struct Candidates {
   const Candidate* find(Index patch, int view) const;
 };
 
+/// What one view shows.
+struct SeenPatch {
+  int patch;
+  Candidate candidate;
+};
+
 /// Collects candidates view by view and keeps the best ones of each patch.
 class CandidateTable {
 public:
@@ -46,15 +52,16 @@ public:
   CandidateTable(Index patches, Index most);
   /// How many are to be kept: all, unless patches and views are so many that this would need much memory.
   static Index mostPerPatch(Index patches, Index views);
-  /// @param candidate of a later view than any that was added for this patch; of equal ones the earlier view stays
-  void add(Index patch, const Candidate& candidate);
+  /// @param views by patch what each shows, later ones than any before; of equal candidates the earlier view's stays
+  void add(const std::vector<std::vector<SeenPatch>>& views, int threads);
   /// Everything that was kept; the table is of no use afterwards.
-  Candidates take();
+  Candidates take() { return std::move(kept_); }
 
 private:
+  void keep(const Candidate& candidate, Candidate* first, Index& count) const;
+
   Index most_;
-  std::vector<int> counts_;      ///< per patch
-  std::vector<Candidate> slots_; ///< most_ per patch
+  Candidates kept_;
 };
 
 struct ViewList {

@@ -123,6 +123,7 @@ PatchMesh cutHiddenParts(PatchMesh patches, const VisibilityInput& input, const 
   }
   return patches;
 }
+
 VisibleSurface findVisibleSurface(const TriangleMesh& mesh, const VisibilityInput& input, const Progress& progress)
 {
   const bool exact = input.views.pose_uncertainty < 1; // else outlines are too uncertain to be followed closely

@@ -2,6 +2,7 @@
 #include "io/points/parse_file.h"
 #include "io/texture/image_size.h"
 #include "io/texture/jpeg_reader.h"
+#include "io/texture/png_writer.h"
 #include "io/texture/texture_io.h"
 #include <algorithm>
 #include <filesystem>
@@ -169,12 +170,11 @@ std::vector<std::uint8_t> encodeImage(const Image& image, const std::string& ext
   require(extension == ".png" || extension == ".jpg" || extension == ".jpeg", "image: '", extension,
           "' is not .png, .jpg or .jpeg");
   validate(image);
+  if (extension == ".png")
+    return io::encodePng(image);
   prepareImageCodecs();
-  // With runs for matches: rows of a photograph, once filtered, repeat little else. The level resets the strategy.
-  const std::vector<int> png = {cv::IMWRITE_PNG_COMPRESSION, 1, cv::IMWRITE_PNG_STRATEGY, cv::IMWRITE_PNG_STRATEGY_RLE};
   std::vector<std::uint8_t> bytes;
-  cv::imencode(extension, toOpenCv(image), bytes,
-               extension == ".png" ? png : std::vector<int>{cv::IMWRITE_JPEG_QUALITY, quality});
+  cv::imencode(extension, toOpenCv(image), bytes, {cv::IMWRITE_JPEG_QUALITY, quality});
   return bytes;
 }
 
