@@ -168,6 +168,16 @@ TEST(Volumetric, ScreeningPullsTheSurfaceTowardsThePoints)
   EXPECT_LT(strong, weak);
 }
 
+TEST(Volumetric, DenseExactPointsHoldCreasesTighter)
+{
+  const auto errorOf = [](Index count) {
+    const VolumetricResult result = reconstructVolumetric(box(count, 9), atDepth(6));
+    EXPECT_EQ(meshTopology(result.mesh).euler, 2) << count;
+    return meanDistance(result.mesh, boxDistance);
+  };
+  EXPECT_LT(errorOf(80000), 0.7 * errorOf(20000)); // 4 and 1 a face of a cell
+}
+
 TEST(Volumetric, DensityThatDiffersFiftyfoldTearsNothing)
 {
   const PointSet dense = sphere(200000);

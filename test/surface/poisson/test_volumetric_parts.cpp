@@ -64,6 +64,20 @@ TEST(VolumetricParts, InterpolationIsExactForLinearFunctionsAndRestrictionItsTra
   }
 }
 
+TEST(VolumetricParts, SamplesHoldHarderTheDenserTheyAreAndNoneTheNoisierTheyAre)
+{
+  EXPECT_EQ(softnessOf(-1.f, 0.f), 1.f);
+  EXPECT_EQ(softnessOf(3.f, 0.1f), 1.f);
+  for (float surplus = -2.f; surplus < 3.f; surplus += 0.25f)
+    for (float noise = 0.f; noise < 0.2f; noise += 0.01f) {
+      EXPECT_LE(softnessOf(surplus + 0.25f, noise), softnessOf(surplus, noise));
+      EXPECT_GE(softnessOf(surplus, noise + 0.01f), softnessOf(surplus, noise));
+      const float weight = screeningWeight(noise, softnessOf(surplus, noise));
+      EXPECT_GE(weight, screeningWeight(noise));
+      EXPECT_GE(weight, screeningWeight(noise + 0.01f, softnessOf(surplus, noise + 0.01f)));
+    }
+}
+
 /// Entries of the matrix by which point_weight enters the system: weight B_j(p) B_k(p).
 TEST(VolumetricParts, ScreeningAddsProductsOfHatFunctions)
 {

@@ -19,13 +19,19 @@
 // the one of Kazhdan, Bolitho & Hoppe 2006.
 namespace fresco::poisson {
 /// s_i: noisy samples hold chi less.
-/// @param noise in cells of the depth that is solved
-inline float screeningWeight(float noise)
+/// @param noise    in cells of the depth that is solved
+/// @param softness 1, less where the data are dense: see softnessOf()
+inline float screeningWeight(float noise, float softness = 1.f)
 {
   constexpr float gain = 2.5f;      // measured: less leaves ripples of the normal field, more follows every sample
   constexpr float tolerated = 0.2f; // noise at which the weight is halved; far beyond, it falls as 1 / variance
-  return gain / (1.f + noise * noise / (tolerated * tolerated));
+  return gain / (softness + noise * noise / (tolerated * tolerated));
 }
+
+/// Samples that are means of many points without noise hold chi harder than their normals, which are means over shape.
+/// @param surplus depths that the data sustain beyond the finest
+/// @param noise   in cells of the finest depth
+float softnessOf(float surplus, float noise);
 
 /// alpha f_i s_i at a depth. @param scale cells of the depth per finest cell
 Array<float> screeningWeights(const SampleLevel& samples, float scale, float point_weight, int threads);
