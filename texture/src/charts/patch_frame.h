@@ -31,19 +31,21 @@ public:
       visit(chart.texels.spans[s]);
   }
 
-  /// visit(texels, pixel of their middle) for the texels of a span in their order, `together` at a time and the rest.
+  /// visit(first, groups, pixels of their middles) for the texels of a span in their order: groups of `together` texels,
+  /// the last one of what is left; up to four groups at a time, the first of which begins at that texel of the span.
   template <typename Visit>
   void forGroups(const TexelSpan& span, int together, const Visit& visit) const
   {
-    const int whole = span.length / together, left = span.length % together;
-    const auto middleOf = [&](int first, int texels) {
-      return Eigen::Vector2f(place(span.x + first, span.y) + Eigen::Vector2f(0.5f * (texels - 1), 0.f));
-    };
-    map.forPixels({middleOf(0, together), float(together), whole},
-                  [&](int, const Eigen::Vector2f& pixel) { visit(together, pixel); });
-    if (left > 0)
-      map.forPixels({middleOf(whole * together, left), 1, 1},
-                    [&](int, const Eigen::Vector2f& pixel) { visit(left, pixel); });
+    const int groups = (span.length + together - 1) / together;
+    const Eigen::Vector2f start = place(span.x, span.y);
+    const PatchMap::Row row(map, start.y());
+    constexpr simd::Float4 lanes = {0, 1, 2, 3};
+    const float last = 0.5f * (span.length + (groups - 1) * together - 1); // middle of the last group, texels
+    for (int first = 0; first < groups; first += 4) {
+      simd::Float4 middle = (lanes + float(first)) * float(together) + 0.5f * (together - 1);
+      middle = middle < last ? middle : simd::Float4{} + last;
+      visit(first * together, std::min(4, groups - first), row.pixels(middle + start.x()));
+    }
   }
 
   std::size_t texels() const ///< number

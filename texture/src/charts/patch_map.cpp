@@ -12,11 +12,13 @@ PatchMap::PatchMap(const PatchMesh& patches, Index patch, const Eigen::Matrix<do
   places.topRows<2>() = corners.colwise() - origin;
   places.row(2).setOnes();
   corners_ = places.topRows<2>().cast<float>();
-  inverse_.setZero();
-  if (std::abs(places.determinant()) > 1e-12)
-    inverse_ = places.inverse();
-  else
+  constexpr double least_area = 1e-12; // square texels
+  bool has_area = false;
+  places.computeInverseWithCheck(inverse_, has_area, least_area);
+  if (!has_area) {
+    inverse_.setZero();
     inverse_.col(2).setConstant(1.0 / 3);
+  }
   weights_ = inverse_.cast<float>();
 }
 

@@ -2,7 +2,13 @@
 #pragma once
 #include "cameras/projector.h"
 #include "views/patch_mesh.h"
+#include <fresco/core/simd.h>
 namespace fresco::texture {
+/// Four of them.
+struct Pixels {
+  simd::Float4 x, y;
+};
+
 /// From a chart's texels to a photograph's pixels over one patch: exact for a pinhole, with the lens' distortion linear
 /// over the patch. Places are given in texels from `origin` so that single precision suffices.
 class PatchMap {
@@ -23,24 +29,25 @@ public:
                 lens_(1, 2)};
   }
 
-  struct Row {
-    Eigen::Vector2f start; ///< place of the first
-    float step = 1;        ///< texels to the right
-    int count;
-  };
-  /// visit(i, pixel(x + i step, y)), i = 0..count-1.
-  template <typename Visit>
-  void forPixels(const Row& row, const Visit& visit) const
-  {
-    const float y = row.start.y();
-    const Eigen::Vector3f camera = camera_.col(1) * y + camera_.col(2), camera_step = camera_.col(0);
-    const Eigen::Vector2f lens = lens_.col(1) * y + lens_.col(2), lens_step = lens_.col(0);
-    for (int i = 0; i < row.count; ++i) {
-      const float x = row.start.x() + row.step * i, scale = 1 / (camera_step[2] * x + camera[2]);
-      visit(i, Eigen::Vector2f((camera_step[0] * x + camera[0]) * scale + lens_step[0] * x + lens[0],
-                               (camera_step[1] * x + camera[1]) * scale + lens_step[1] * x + lens[1]));
+  /// Pixels of places of a row, four at a time.
+  class Row {
+  public:
+    Row(const PatchMap& map, float y)
+        : camera_(map.camera_.col(1) * y + map.camera_.col(2)), camera_step_(map.camera_.col(0)),
+          lens_(map.lens_.col(1) * y + map.lens_.col(2)), lens_step_(map.lens_.col(0))
+    {}
+
+    Pixels pixels(const simd::Float4& x) const
+    {
+      const simd::Float4 scale = 1 / (camera_step_[2] * x + camera_[2]);
+      return {(camera_step_[0] * x + camera_[0]) * scale + lens_step_[0] * x + lens_[0],
+              (camera_step_[1] * x + camera_[1]) * scale + lens_step_[1] * x + lens_[1]};
     }
-  }
+
+  private:
+    Eigen::Vector3f camera_, camera_step_;
+    Eigen::Vector2f lens_, lens_step_;
+  };
 
   /// Of the surface, along the camera's axis.
   float inverseDepth(float x, float y) const { return 1 / (camera_(2, 0) * x + camera_(2, 1) * y + camera_(2, 2)); }

@@ -299,7 +299,8 @@ void matchCoarseToFine(std::vector<Matching>& matchings)
   matchings.back().refine(rounds, passes);
   for (std::size_t l = matchings.size() - 1; l-- > 0;) {
     matchings[l].startFrom(matchings[l + 1]);
-    matchings[l].refine(l > 0 ? 2 : 1, l > 0 ? passes : 1);
+    if (l > 0)
+      matchings[l].refine(2, passes);
   }
   matchings.front().finish(1);
 }

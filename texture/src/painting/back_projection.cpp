@@ -109,8 +109,8 @@ private:
   {
     std::size_t next = 0;
     const int together = texelsPerPixel(frame.map.middleSteps()); // as they were drawn
-    const auto add = [&](int texels, const Eigen::Vector2f& pixel) {
-      const simd::Float4 more = sums.weight * residual.at(pixel.x(), pixel.y());
+    const auto add = [&](int texels, const simd::Float4& mean) {
+      const simd::Float4 more = sums.weight * mean;
       for (const std::size_t end = next + texels; next < end; ++next)
         simd::store(simd::load<simd::Float4>(sums.values[next].data()) + more, sums.values[next].data());
     };
@@ -122,11 +122,17 @@ private:
           const Eigen::Vector2f at = frame.place(x, span.y);
           const Eigen::Vector3f inside = frame.map.weights(at.x(), at.y()).cwiseMax(least);
           const Eigen::Vector2f nearest = frame.map.place(inside / inside.sum());
-          add(1, frame.map.pixel(nearest.x(), nearest.y()));
+          const Eigen::Vector2f pixel = frame.map.pixel(nearest.x(), nearest.y());
+          residual.at({simd::Float4{pixel.x()}, simd::Float4{pixel.y()}}, 1,
+                      [&](int, const simd::Float4& mean) { add(1, mean); });
         }
       };
       addBeyond(span.x, own.x);
-      frame.forGroups(own, together, add);
+      frame.forGroups(own, together, [&](int first, int groups, const Pixels& pixels) {
+        residual.at(pixels, groups, [&](int lane, const simd::Float4& mean) {
+          add(std::min(together, own.length - first - lane * together), mean);
+        });
+      });
       addBeyond(own.x + own.length, span.x + span.length);
     });
   }

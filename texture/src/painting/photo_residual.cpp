@@ -7,6 +7,7 @@
 #include <fresco/core/simd.h>
 namespace fresco::texture {
 namespace {
+constexpr int largest_box = 6;       // pixels: beyond, the photograph shows more than the texture can hold
 constexpr float nearly_pixel = 1.2f; // width of a box that is taken as one pixel, which touches four at most
 
 /// What was drawn of each pixel: colours times area, and the area.
@@ -15,10 +16,10 @@ struct Drawing {
   std::vector<Eigen::Vector4f> pixels;
 };
 
-/// Adds a texel's value to the pixels under its box, by the area of each in it.
+/// Adds texels' values to the pixels under their boxes, by the area of each in them.
 class Canvas {
 public:
-  /// @param size of the box, pixels
+  /// @param size of the boxes, pixels
   Canvas(Drawing& sums, const Eigen::Vector2f& size) : sums_(sums), small_(size.maxCoeff() <= nearly_pixel)
   {
     const Eigen::Vector2f box = small_ ? Eigen::Vector2f(size.cwiseMin(1.f)) : size;
@@ -26,34 +27,65 @@ public:
     per_size_ = box.cwiseInverse();
   }
 
-  void add(const Eigen::Vector2f& center, const Eigen::Vector4f& value)
+  /// @param valueOf valueOf(lane), for the first `count` lanes in their order
+  template <typename ValueOf>
+  void add(const Pixels& centers, int count, const ValueOf& valueOf)
   {
-    const Eigen::Vector2f low = center - half_, high = center + half_;
-    if (!(low.x() >= 0 && low.y() >= 0 && high.x() < sums_.width - 1 && high.y() < sums_.height - 1))
-      return;
-    const int x = low.x(), y = low.y();
-    if (!small_)
-      return addLarge(low, high, value);
-    const float right = std::max(0.f, high.x() - (x + 1)) * per_size_.x(),
-                down = std::max(0.f, high.y() - (y + 1)) * per_size_.y();
-    Eigen::Vector4f *p = sums_.pixels.data() + cellAt(x, y, sums_.width), *q = p + sums_.width;
-    const Eigen::Vector4f upper = (1 - down) * value, lower = down * value;
-    p[0] += (1 - right) * upper;
-    p[1] += right * upper;
-    q[0] += (1 - right) * lower;
-    q[1] += right * lower;
+    const simd::Float4 low_x = centers.x - half_.x(), low_y = centers.y - half_.y(), high_x = centers.x + half_.x(),
+                       high_y = centers.y + half_.y(), right = high_x - float(sums_.width - 1),
+                       bottom = high_y - float(sums_.height - 1);
+    const simd::Int4 inside = (low_x >= 0.f) & (low_y >= 0.f) & (right < 0.f) & (bottom < 0.f);
+    const simd::Float4 nowhere{};
+    const simd::Int4 x = __builtin_convertvector(inside ? low_x : nowhere, simd::Int4),
+                     y = __builtin_convertvector(inside ? low_y : nowhere, simd::Int4);
+    const simd::Float4 next_x = __builtin_convertvector(x + 1, simd::Float4),
+                       next_y = __builtin_convertvector(y + 1, simd::Float4);
+    const simd::Float4 across = simd::larger(high_x - next_x, nowhere) * per_size_.x(),
+                       down = simd::larger(high_y - next_y, nowhere) * per_size_.y(), both = across * down;
+    const simd::Float4 weights[4] = {1 - across - down + both, across - both, down - both, both};
+    simd::Float4 values[4]; // read before anything is written, so that nothing is waited for
+    for (int lane = 0; lane < count; ++lane)
+      values[lane] = valueOf(lane);
+    for (int lane = 0; lane < count; ++lane) {
+      const simd::Float4& value = values[lane];
+      if (!inside[lane])
+        continue;
+      if (small_)
+        addSmall(cellAt(x[lane], y[lane], sums_.width), value,
+                 simd::Float4{weights[0][lane], weights[1][lane], weights[2][lane], weights[3][lane]});
+      else
+        addLarge({low_x[lane], low_y[lane]}, {high_x[lane], high_y[lane]}, value);
+    }
   }
 
 private:
-  void addLarge(const Eigen::Vector2f& low, const Eigen::Vector2f& high, const Eigen::Vector4f& value)
+  static void increase(Eigen::Vector4f& pixel, const simd::Float4& value)
   {
-    const Eigen::Vector4f share = value * per_size_.prod();
-    const int right = high.x(), bottom = high.y();
-    for (int y = low.y(); y <= bottom; ++y) {
-      const float down = std::min<float>(high.y(), y + 1) - std::max<float>(low.y(), y);
-      Eigen::Vector4f* row = sums_.pixels.data() + cellAt(0, y, sums_.width);
-      for (int x = low.x(); x <= right; ++x)
-        row[x] += (down * (std::min<float>(high.x(), x + 1) - std::max<float>(low.x(), x))) * share;
+    simd::store(simd::load<simd::Float4>(pixel.data()) + value, pixel.data());
+  }
+
+  /// To a pixel, the one to the right, and those below. @param weights of the four
+  void addSmall(std::size_t cell, const simd::Float4& value, const simd::Float4& weights)
+  {
+    Eigen::Vector4f *p = sums_.pixels.data() + cell, *q = p + sums_.width;
+    increase(p[0], weights[0] * value);
+    increase(p[1], weights[1] * value);
+    increase(q[0], weights[2] * value);
+    increase(q[1], weights[3] * value);
+  }
+
+  void addLarge(const Eigen::Vector2f& low, const Eigen::Vector2f& high, const simd::Float4& value)
+  {
+    const int left = low.x(), top = low.y(), columns = int(high.x()) - left + 1, bottom = high.y();
+    float across[largest_box + 2]; // of the box in each column
+    for (int k = 0; k < columns; ++k)
+      across[k] = std::min<float>(high.x(), left + k + 1) - std::max<float>(low.x(), left + k);
+    const simd::Float4 share = value * per_size_.prod();
+    for (int y = top; y <= bottom; ++y) {
+      const simd::Float4 in_row = (std::min<float>(high.y(), y + 1) - std::max<float>(low.y(), y)) * share;
+      Eigen::Vector4f* row = sums_.pixels.data() + cellAt(left, y, sums_.width);
+      for (int k = 0; k < columns; ++k)
+        increase(row[k], across[k] * in_row);
     }
   }
 
@@ -62,12 +94,15 @@ private:
   bool small_;
 };
 
-/// In registers. Written to memory number by number, they would be waited for when read as one.
-Eigen::Vector4f vectorOf(const simd::Int4& numbers)
+/// Sum of texels side by side, and their number. @param end of the image's data
+simd::Float4 sumOf(const std::uint8_t* texel, int texels, const std::uint8_t* end)
 {
-  Eigen::Vector4f out;
-  simd::store(__builtin_convertvector(numbers, simd::Float4), out.data());
-  return out;
+  constexpr simd::Float4 colors = {1, 1, 1, 0}, one = {0, 0, 0, 1};
+  simd::Float4 sum{};
+  for (; texels > 0; --texels, texel += 3)
+    sum += end - texel >= 4 ? simd::floatsOf(texel) * colors + one
+                            : simd::Float4{float(texel[0]), float(texel[1]), float(texel[2]), 1};
+  return sum;
 }
 
 /// Box in the photograph, pixels, of so many texels of a row: as wide as their bilinear interpolation by its deviation.
@@ -93,7 +128,6 @@ void prefetch(const Prediction& p, Index patch)
 /// Adds a patch's colours, each texel times the area it covers in the photograph, and the areas.
 void draw(const Prediction& p, Index patch, Drawing& sums)
 {
-  constexpr float largest_box = 6; // pixels: beyond, the photograph shows more than the texture can hold
   PatchFrame frame(p.scene, patch);
   const Image& atlas = p.atlases[frame.chart.atlas];
   if (!frame.map.look(p.view))
@@ -108,15 +142,13 @@ void draw(const Prediction& p, Index patch, Drawing& sums)
   const float area = std::abs(steps.determinant());
   frame.forSpans([&](const TexelSpan& span) {
     const TexelSpan own = frame.insideOf(span, edge);
-    const std::uint8_t* c = atlas.pixel(frame.chart.x + own.x, frame.chart.y + own.y);
-    frame.forGroups(own, together, [&](int texels, const Eigen::Vector2f& pixel) {
-      int red = 0, green = 0, blue = 0;
-      for (const std::uint8_t* end = c + 3 * texels; c < end; c += 3) {
-        red += c[0];
-        green += c[1];
-        blue += c[2];
-      }
-      canvas.add(pixel, area * vectorOf(simd::Int4{red, green, blue, texels}));
+    const std::uint8_t *c = atlas.pixel(frame.chart.x + own.x, frame.chart.y + own.y),
+                       *end = atlas.data.data() + atlas.data.size();
+    frame.forGroups(own, together, [&](int first, int groups, const Pixels& pixels) {
+      canvas.add(pixels, groups, [&](int lane) {
+        const int at = first + lane * together;
+        return area * sumOf(c + 3 * at, std::min(together, own.length - at), end);
+      });
     });
   });
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+#include "charts/patch_map.h"
 #include "grid.h"
 #include "painting/atlas_paint.h"
 #include <algorithm>
@@ -15,15 +16,26 @@ struct PhotoResidual {
   int width = 0, height = 0;
   std::vector<Pixel> pixels; ///< rows from the top; red, green, blue, 0
 
-  /// Bilinear mean around a place in pixels, in stored numbers.
-  simd::Float4 at(float x, float y) const
+  /// visit(lane, bilinear mean around a place in pixels, in stored numbers) for the first `count` places.
+  template <typename Visit>
+  void at(const Pixels& places, int count, const Visit& visit) const
   {
-    const float u = std::clamp<float>(x - 0.5f, 0, width - 1), v = std::clamp<float>(y - 0.5f, 0, height - 1);
-    const int i = std::min<int>(u, width - 2), j = std::min<int>(v, height - 2);
-    const float a = u - i, b = v - j;
-    const Pixel *p = pixels.data() + cellAt(i, j, width), *q = p + width;
+    const auto within = [](const simd::Float4& v, int most) {
+      return simd::smaller(simd::larger(v - 0.5f, simd::Float4{}), simd::Float4{} + float(most));
+    };
+    const simd::Float4 u = within(places.x, width - 1), v = within(places.y, height - 1);
+    const simd::Int4 i = simd::smaller(__builtin_convertvector(u, simd::Int4), simd::Int4{} + (width - 2)),
+                     j = simd::smaller(__builtin_convertvector(v, simd::Int4), simd::Int4{} + (height - 2));
+    const simd::Float4 a = u - __builtin_convertvector(i, simd::Float4),
+                       b = v - __builtin_convertvector(j, simd::Float4), right = a * (1 - b), below = (1 - a) * b,
+                       both = a * b;
+    const simd::Float4 left = (1 - a) * (1 - b);
     const auto floats = [](const Pixel& pixel) { return simd::floatsOf(pixel.data()); };
-    return (1 - b) * ((1 - a) * floats(p[0]) + a * floats(p[1])) + b * ((1 - a) * floats(q[0]) + a * floats(q[1]));
+    for (int lane = 0; lane < count; ++lane) {
+      const Pixel *p = pixels.data() + cellAt(i[lane], j[lane], width), *q = p + width;
+      visit(lane, left[lane] * floats(p[0]) + right[lane] * floats(p[1]) + below[lane] * floats(q[0]) +
+                      both[lane] * floats(q[1]));
+    }
   }
 };
 

@@ -64,6 +64,9 @@ public:
         slope_(std::abs(patch.inverse_depth[0]) + std::abs(patch.inverse_depth[1]))
   {}
 
+  /// What is not nearer ends nowhere before the plane.
+  float bound() const { return patch_.farthest - tolerance_ - patch_.nearest * patch_.nearest * slope_; }
+
   bool endsBefore(float hit, const Eigen::Vector2f& cell) const
   {
     const float inverse = patch_.inverse_depth.dot(cell.homogeneous()), z = inverse > 0 ? 1 / inverse : patch_.farthest;
@@ -137,16 +140,17 @@ Footprint footprintOf(const Eigen::Matrix3f& pixels, float step)
 Visibility visibilityOf(const Footprint& patch, const DepthMap& map, float tolerance)
 {
   const CellBox box = cellsOf(patch, map);
-  if (!isAnyNearer(map, box, patch.farthest - tolerance))
+  const PlaneTest plane(patch, tolerance);
+  const float bound = plane.bound();
+  if (!isAnyNearer(map, box, bound))
     return Visibility::clear;
   const Eigen::Vector2i middle = patch.corners.rowwise().mean().array().floor().cast<int>().matrix();
-  const PlaneTest plane(patch, tolerance);
   const Triangle triangle(patch);
   Visibility visibility = Visibility::clear;
   for (int y = box.y0; y <= box.y1; ++y)
     for (int x = box.x0; x <= box.x1; ++x) {
       const float hit = map.at(x, y);
-      if (!(hit < patch.farthest - tolerance))
+      if (!(hit < bound))
         continue;
       const Eigen::Vector2f p(x + 0.5f, y + 0.5f);
       if (!triangle.holds(p, 1) || !plane.endsBefore(hit, p))
