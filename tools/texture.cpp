@@ -10,6 +10,9 @@
 #include <fresco/io/point_io.h>
 #include <fresco/texture/core/point_texture.h>
 #include <fresco/texture/core/texture_reconstruction.h>
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
 #include <memory>
 namespace {
 using namespace fresco;
@@ -202,8 +205,17 @@ void printResult(const TextureResult& result, const std::vector<TextureView>& vi
     say("  %-16s %7.2f s", phase.c_str(), seconds);
 }
 
+/// What one thread freed serves the others: an arena for each holds 40 MB more of 700, and no time is gained by it.
+void shareFreedMemory()
+{
+#ifdef __GLIBC__
+  mallopt(M_ARENA_MAX, 1);
+#endif
+}
+
 void run(int argc, char** argv)
 {
+  shareFreedMemory();
   TextureOptions options;
   ToolOptions tool;
   CommonOptions common;
