@@ -6,6 +6,7 @@
 namespace fresco::texture {
 namespace {
 using Array3 = Eigen::Array3d;
+using Array32 = Eigen::Array<double, 3, 2>;
 
 struct Entry {
   int column;
@@ -34,14 +35,6 @@ Rows rowsOf(const std::vector<OffDiagonal>& entries, Index n)
   return rows;
 }
 
-/// Of each row. @param f 3 numbers of a column
-template <typename Function>
-Array3 sumOver(Index n, int threads, const Function& f)
-{
-  return parallelSum(n, threads, Array3(Array3::Zero()),
-                     [&](Index i) -> Array3 { return f(i).template cast<double>(); });
-}
-
 /// 0 where there is nothing to divide.
 Array3 ratioOf(const Array3& a, const Array3& b) { return (b > 0).select(a / b, 0.0); }
 } // namespace
@@ -54,26 +47,32 @@ Points solveSymmetric(SymmetricMatrix matrix, const Points& right, const SolverL
   const Rows rows = rowsOf(std::exchange(matrix.entries, {}), n);
   Points x = Points::Zero(3, n), residual = right, direction(3, n), product(3, n);
   const auto preconditioned = [&](Index i) { return residual.col(i).array() / diagonal[i]; };
-  const auto squares = [&](Index i) { return residual.col(i).array().square(); };
-  const Array3 enough = sumOver(n, threads, squares) * (limits.tolerance * limits.tolerance);
+  const auto norms = [&] { // squares of the residual, and in the measure of the preconditioner
+    return parallelSum(n, threads, Array32(Array32::Zero()), [&](Index i) -> Array32 {
+      Array32 both;
+      both.col(0) = residual.col(i).array().square().cast<double>();
+      both.col(1) = (residual.col(i).array() * preconditioned(i)).cast<double>();
+      return both;
+    });
+  };
+  Array32 before = norms();
+  const Array3 enough = before.col(0) * (limits.tolerance * limits.tolerance);
   parallelFor(n, threads, [&](Index i) { direction.col(i) = preconditioned(i); });
-  const auto energy = [&](Index i) { return residual.col(i).array() * preconditioned(i); };
-  Array3 before = sumOver(n, threads, energy);
-  for (int k = 0; k < limits.iterations && (sumOver(n, threads, squares) > enough).any(); ++k) {
-    const Array3 curvature = sumOver(n, threads, [&](Index i) {
+  for (int k = 0; k < limits.iterations && (before.col(0) > enough).any(); ++k) {
+    const Array3 curvature = parallelSum(n, threads, Array3(Array3::Zero()), [&](Index i) -> Array3 {
       Eigen::Vector3f sum = diagonal[i] * direction.col(i);
       for (Index e = rows.begin[i]; e < rows.begin[i + 1]; ++e)
         sum += rows.list[e].value * direction.col(rows.list[e].column);
       product.col(i) = sum;
-      return (direction.col(i).array() * sum.array()).eval();
+      return (direction.col(i).array() * sum.array()).cast<double>();
     });
-    const Eigen::Array3f step = ratioOf(before, curvature).cast<float>();
+    const Eigen::Array3f step = ratioOf(before.col(1), curvature).cast<float>();
     parallelFor(n, threads, [&](Index i) {
       x.col(i).array() += step * direction.col(i).array();
       residual.col(i).array() -= step * product.col(i).array();
     });
-    const Array3 now = sumOver(n, threads, energy);
-    const Eigen::Array3f keep = ratioOf(now, before).cast<float>();
+    const Array32 now = norms();
+    const Eigen::Array3f keep = ratioOf(now.col(1), before.col(1)).cast<float>();
     parallelFor(n, threads,
                 [&](Index i) { direction.col(i) = (preconditioned(i) + keep * direction.col(i).array()).matrix(); });
     before = now;
