@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "refinement/free_motion.h"
 #include "refinement/placement.h"
+#include "refinement/registration_result.h"
 #include "registration/registration_scene.h"
 #include <fresco/registration/core/point_to_plane_registration.h>
 #include <fresco/registration/core/scan_registration.h>
@@ -164,12 +165,23 @@ TEST(ScanRefinement, ScansThatSlideTogetherHaveAFreeMotion)
   }
 }
 
-// Without start poses, it is the smaller part that has no place.
-TEST(ScanRefinement, TheLargerPartIsNotTheFreeOne)
+// Other walls within the reach do not matter where the right ones are near.
+TEST(ScanRefinement, NearStartPosesDoNotDependOnTheReach)
+{
+  const auto start = disturbed(scene(), 0.02, 0.5);
+  ScanRegistrationOptions near, far;
+  near.max_distance = 0.3f;
+  far.max_distance = 2.f;
+  const auto result = registerScans(scene().scans, start, far);
+  EXPECT_LT(relativeError(result.poses, scene()).translation, 0.002);
+  EXPECT_EQ(result.poses, registerScans(scene().scans, start, near).poses);
+}
+
+// Scans 0, 2 and 3 of the niches, of which those that stand alone slide.
+registration::Placement refinedNiches(const ScanRegistrationOptions& options,
+                                      std::vector<registration::PreparedScan>& scans)
 {
   const ScannedScene niches = test::scanNiches();
-  const ScanRegistrationOptions options = withinOneNiche();
-  std::vector<registration::PreparedScan> scans;
   registration::Placement placement;
   for (const Index i : {0, 2, 3}) {
     scans.push_back(registration::prepareScan(niches.scans[i], registration::Thinning(options.voxel), 0));
@@ -177,6 +189,33 @@ TEST(ScanRefinement, TheLargerPartIsNotTheFreeOne)
     placement.poses.push_back(niches.truth[i]);
   }
   registration::refinePlacement(scans, options, placement, {});
+  return placement;
+}
+
+// A free motion counts beside the placed group as within it.
+TEST(ScanRefinement, FreeMotionsBesideThePlacedGroupAreTold)
+{
+  ScanRegistrationOptions options = withinOneNiche();
+  std::vector<registration::PreparedScan> scans;
+  const registration::Placement beside = refinedNiches(options, scans);
+  scans.push_back(registration::prepareScan(scene().scans[0], registration::Thinning(options.voxel), 0));
+  registration::Placement main;
+  main.members = {3};
+  main.poses = {scene().truth[0]};
+  registration::refinePlacement(scans, options, main, {});
+  const auto result = registration::describeRegistration({scans, {}, options, {main, beside}, {}});
+  EXPECT_TRUE(result.scans[3].placed);
+  ASSERT_TRUE(result.scans[0].free_motion);
+  EXPECT_FALSE(result.scans[0].placed);
+  EXPECT_EQ(result.scans[0].translation_deviation, options.max_distance);
+  EXPECT_NE(result.scans[0].problem.find("motion free"), std::string::npos) << result.scans[0].problem;
+}
+
+// Without start poses, it is the smaller part that has no place.
+TEST(ScanRefinement, TheLargerPartIsNotTheFreeOne)
+{
+  std::vector<registration::PreparedScan> scans;
+  const registration::Placement placement = refinedNiches(withinOneNiche(), scans);
   EXPECT_TRUE(registration::findFreeMotion(placement.joint.information[0]));
   EXPECT_FALSE(registration::findFreeMotion(placement.joint.information[1]));
   EXPECT_FALSE(registration::findFreeMotion(placement.joint.information[2]));

@@ -36,10 +36,16 @@ Eigen::Isometry3d filePose(const std::vector<PreparedScan>& scans, const Placeme
   return placement.poses[member] * Eigen::Translation3d(-scans[placement.members[member]].center);
 }
 
-// Of two members, at the refined poses.
-PairResult checkMembers(const std::vector<PreparedScan>& scans, const Placement& placement, Index a, Index b)
-{
+struct MemberCheck {
   PairResult pair;
+  Index violating_points = 0;
+};
+
+// Of two members, at the refined poses.
+MemberCheck checkMembers(const std::vector<PreparedScan>& scans, const Placement& placement, Index a, Index b)
+{
+  MemberCheck result;
+  PairResult& pair = result.pair;
   pair.a = placement.members[a];
   pair.b = placement.members[b];
   const PreparedScan &first = scans[pair.a], &second = scans[pair.b];
@@ -48,21 +54,21 @@ PairResult checkMembers(const std::vector<PreparedScan>& scans, const Placement&
   pair.violation = check.violation;
   pair.T_a_b = (filePose(scans, placement, a).inverse() * filePose(scans, placement, b)).matrix();
   pair.information_point = second.center;
-  return pair;
+  result.violating_points = check.violating_points;
+  return result;
 }
 
-// Every pair of members that overlaps.
-std::vector<PairResult> checkPairs(const std::vector<PreparedScan>& scans, const ScanRegistrationOptions& options,
-                                   const Placement& placement)
+// Finds every pair of members that overlaps.
+void checkPairs(const std::vector<PreparedScan>& scans, const ScanRegistrationOptions& options, Placement& placement)
 {
   const std::vector<std::pair<Index, Index>> pairs = memberPairs(placement);
-  std::vector<PairResult> all(pairs.size());
+  std::vector<MemberCheck> all(pairs.size());
   parallelFor(
       pairs.size(), options.threads,
       [&](Index k) { all[k] = checkMembers(scans, placement, pairs[k].first, pairs[k].second); }, 1);
   const auto find = [&](Index a, Index b) -> PairResult& {
     const std::pair<Index, Index> wanted = std::minmax(a, b); // pairs are in order
-    return all[std::lower_bound(pairs.begin(), pairs.end(), wanted) - pairs.begin()];
+    return all[std::lower_bound(pairs.begin(), pairs.end(), wanted) - pairs.begin()].pair;
   };
   for (const JointPair& joint : placement.joint.pairs) {
     PairResult& pair = find(joint.source, joint.target);
@@ -74,15 +80,16 @@ std::vector<PairResult> checkPairs(const std::vector<PreparedScan>& scans, const
     R.topLeftCorner<3, 3>() = R.bottomRightCorner<3, 3>() = placement.poses[joint.a].linear();
     find(joint.a, joint.b).information = R.transpose() * joint.information * R;
   }
-  std::vector<PairResult> kept;
-  for (PairResult& pair : all) {
+  placement.pairs.clear();
+  placement.violating_points = 0;
+  for (auto& [pair, violating_points] : all) {
+    placement.violating_points += violating_points;
     if (pair.overlap < 0.5 * options.min_overlap && pair.violation <= options.max_violation)
       continue;
     pair.rms = std::sqrt(pair.rms / std::max<Index>(1, pair.matches));
     pair.accepted = pair.overlap >= options.min_overlap && pair.violation <= options.max_violation && pair.matches > 0;
-    kept.push_back(pair);
+    placement.pairs.push_back(pair);
   }
-  return kept;
 }
 
 Index memberOf(const Placement& placement, Index scan)
@@ -100,6 +107,25 @@ Index heldTogether(const Placement& placement)
   for (std::size_t m = 0; m < sizes.size(); ++m)
     ++sizes[held.root(m)];
   return *std::max_element(sizes.begin(), sizes.end());
+}
+
+// Whether all members are held together, and free space hardly contradicts start poses: a scan that lies on another wall
+// of the same room overlaps with it by its floor.
+bool suffices(const Placement& placement)
+{
+  constexpr double sound_violation = 0.01; // others may have seen a pane
+  const bool started = !placement.anchors.empty();
+  return heldTogether(placement) == static_cast<Index>(placement.members.size()) &&
+         std::none_of(placement.pairs.begin(), placement.pairs.end(),
+                      [&](const PairResult& pair) { return started && pair.violation > sound_violation; });
+}
+
+// Whether more members are held together; of as many, whether free space contradicts less, by more than counts vary.
+bool isBetter(const Placement& placement, const Placement& other)
+{
+  const Index held = heldTogether(placement), other_held = heldTogether(other);
+  const double points = placement.violating_points, other_points = other.violating_points;
+  return held != other_held ? held > other_held : other_points > points + 3.0 * std::sqrt(points + other_points);
 }
 
 struct Reach {
@@ -123,7 +149,7 @@ void refineWithin(const Reach& reach, const std::vector<PreparedScan>& scans, co
   for (int round = 0; round < most_rounds; ++round) {
     placement.joint = refineJointly(members, start, joint, progress);
     placement.poses = placement.joint.poses;
-    placement.pairs = checkPairs(scans, options, placement);
+    checkPairs(scans, options, placement);
     const std::size_t before = joint.excluded.size();
     for (const PairResult& pair : placement.pairs)
       if (pair.matches > 0 && pair.violation > options.max_violation)
@@ -140,7 +166,7 @@ void refineWithin(const Reach& reach, const std::vector<PreparedScan>& scans, co
     joint.anchors = {loose.front()};
     placement.joint = refineJointly(members, placement.poses, joint, progress);
     placement.poses = placement.joint.poses;
-    placement.pairs = checkPairs(scans, options, placement);
+    checkPairs(scans, options, placement);
   }
 }
 } // namespace
@@ -148,19 +174,14 @@ void refineWithin(const Reach& reach, const std::vector<PreparedScan>& scans, co
 void refinePlacement(const std::vector<PreparedScan>& scans, const ScanRegistrationOptions& options,
                      Placement& placement, const Progress& progress)
 {
-  constexpr float found_reach = 4.f; // voxels: poses that were found are mostly nearer, and other rooms are further off
-  const Placement start = placement;
-  const Index all = placement.members.size();
-  Placement near = start;
-  if (start.anchors.empty() && all > 1) {
-    refineWithin({std::min(options.max_distance, found_reach * options.voxel), 1}, scans, options, near, progress);
-    if (heldTogether(near) == all) {
-      placement = near;
+  constexpr float near_reach = 4.f; // voxels: poses are mostly nearer, and other walls and rooms are further off
+  Placement near = placement;
+  refineWithin({std::min(options.max_distance, near_reach * options.voxel), 1}, scans, options, near, progress);
+  if (!suffices(near)) {
+    refineWithin({options.max_distance, 0}, scans, options, placement, progress);
+    if (isBetter(placement, near))
       return;
-    }
   }
-  refineWithin({options.max_distance, 0}, scans, options, placement, progress);
-  if (!near.pairs.empty() && heldTogether(near) >= heldTogether(placement))
-    placement = near;
+  placement = std::move(near);
 }
 } // namespace fresco::registration

@@ -11,6 +11,7 @@ struct Placement {
   std::vector<char> fixed;       ///< per member, whether it does not move; empty = none
   JointResult joint;             ///< of the last refinement, indices into members
   std::vector<PairResult> pairs; ///< overlapping pairs, indices of scans
+  Index violating_points = 0;    ///< of all pairs of members, see PairCheck
   bool look_alike = false;       ///< see ScanCluster
 };
 

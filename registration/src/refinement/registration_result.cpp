@@ -148,6 +148,8 @@ void Description::placeOther(const std::vector<Index>& group, const std::vector<
       scan(i).problem = look_alike_[i] ? "fits in several places that look alike, and nothing seen tells which is right"
                                        : "no place among the other scans is certain";
     }
+    if (scan(i).free_motion)
+      scan(i).problem += "; within its group, its surfaces leave a motion free";
   }
 }
 
