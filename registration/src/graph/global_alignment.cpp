@@ -202,6 +202,8 @@ GlobalAlignment GlobalAligner::run(const Progress& progress)
     if (!in_rounds || pairs.empty() || result_.graph.clusters.size() <= 1)
       break;
   }
+  if (!manyPlaces())
+    splitUndecided({scans_, result_.pairs, graphOptions()}, result_.graph);
   for (ScanCluster& cluster : result_.graph.clusters)
     closeLoops({scans_, result_.pairs, graphOptions()}, known_, cluster);
   return std::move(result_);

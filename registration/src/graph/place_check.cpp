@@ -258,6 +258,31 @@ bool isContested(const GraphInput& input, const ScanCluster& cluster, const Scan
          });
 }
 
+std::vector<Index> scansOfEither(const GraphInput& input, const ScanCluster& cluster, const ScanCluster& other)
+{
+  const Index n = cluster.scans.size();
+  std::vector<char> either(n, 0);
+  parallelFor(
+      n, input.options.threads,
+      [&](Index k) {
+        if (!sawAround(input.scans[cluster.scans[k]]))
+          return;
+        const ScanCluster moving = {{cluster.scans[k]}, {cluster.poses[k]}};
+        ScanCluster others = cluster;
+        others.scans.erase(others.scans.begin() + k);
+        others.poses.erase(others.poses.begin() + k);
+        const ClusterPose here = PlaceSearch(input, others, moving).evidence(Eigen::Isometry3d::Identity());
+        const ClusterPoses places = findPlaces(input, other, moving);
+        either[k] = std::any_of(places.begin(), places.end(), [&](const auto& place) { return contests(place, here); });
+      },
+      1);
+  std::vector<Index> scans;
+  for (Index k = 0; k < n; ++k)
+    if (either[k])
+      scans.push_back(cluster.scans[k]);
+  return scans;
+}
+
 ClusterPoses findPlaces(const GraphInput& input, const ScanCluster& cluster, const ScanCluster& moving)
 {
   return PlaceSearch(input, cluster, moving).run();
