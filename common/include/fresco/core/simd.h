@@ -66,10 +66,11 @@ inline Float4 floatsOf(const std::uint8_t* from)
   return __builtin_convertvector(wider, Float4);
 }
 
-/// To the nearest integers, of which halves are even, as std::lrint(); of numbers below 2^22. That is a call of a function.
+/// Nearest integers, halves to the even one, as std::lrint(), which compilers call as a function, lane by lane.
+/// @param v below 2^22 in magnitude
 inline Int4 rounded(const Float4& v)
 {
-  constexpr float no_fraction = 3 << 22; // beside it none has room
+  constexpr float no_fraction = 3 << 22; // 1.5 * 2^23: floats of this size are whole, so sums are rounded
   return __builtin_convertvector(v + no_fraction - no_fraction, Int4);
 }
 

@@ -29,7 +29,8 @@ struct HatWeights {
     return HatWeights(position.cwiseMax(0.f).cwiseMin(last));
   }
 
-  /// Positions are no larger than an integer.
+  /// std::floor() without the call of a function.
+  /// @param position within the range of int
   static int floorOf(float position)
   {
     const int truncated = static_cast<int>(position);
