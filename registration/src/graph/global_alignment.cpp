@@ -2,9 +2,11 @@
 #include "graph/global_alignment.h"
 #include "graph/loop_closing.h"
 #include "graph/pair_ranking.h"
+#include "graph/scan_assembly.h"
 #include "graph/scan_exchange.h"
 #include "graph/viewpoint_check.h"
 #include "pair/partial_alias.h"
+#include "pair/plan_alignment.h"
 #include "pair/self_alignment.h"
 #include <algorithm>
 #include <fresco/core/parallel.h>
@@ -43,6 +45,11 @@ private:
     const Index step = ranks_.size(), first = ranks_.rank();
     parallelFor((n - first + step - 1) / step, options_.threads, [&](Index k) { body(first + k * step); }, 1);
   }
+  bool drawPlans();
+  std::vector<RankedPair> pairsByPlans() const;
+  void assembleByPlans(const Progress& progress);
+  void alignInRounds(const Progress& progress);
+  void addPairs(std::vector<PairAlignment>& aligned);
   void describe(const Progress& progress);
   void describeAliases(const std::vector<RankedPair>& round);
   bool manyPlaces() const;
@@ -57,10 +64,78 @@ private:
   const ScanCluster& known_;
   Exchange& ranks_;
   const ScanRegistrationOptions& options_;
+  std::vector<PlanSpectrum> plans_; // of all usable scans, or none
   std::vector<ScanFeatures> features_;
   std::vector<char> has_aliases_; // per scan, whether they were looked for
   GlobalAlignment result_;
 };
+
+// Where there are many scans, and all scanners stood upright and saw around.
+bool GlobalAligner::drawPlans()
+{
+  if (!manyPlaces() || !known_.scans.empty())
+    return false;
+  std::vector<std::optional<PlanFrame>> frames(scans_.size());
+  for (std::size_t k = 0; k < scans_.size(); ++k) {
+    if (!scans_[k].problem.empty())
+      continue;
+    if (sawAround(scans_[k]) && scans_[k].viewpoint_given)
+      frames[k] = findPlanFrame(scans_[k], findPlanes(scans_[k]));
+    if (!frames[k])
+      return false;
+  }
+  const PlanGrid grid = choosePlanGrid(frames, scans_);
+  plans_.resize(scans_.size());
+  parallelFor(
+      scans_.size(), options_.threads,
+      [&](Index k) {
+        if (frames[k])
+          plans_[k] = PlanSpectrum(drawFloorPlan(scans_[k], *frames[k], grid), *frames[k], grid);
+      },
+      1);
+  return grid.side > 0;
+}
+
+// The likeliest partners of each scan.
+std::vector<RankedPair> GlobalAligner::pairsByPlans() const
+{
+  constexpr Index partners = 12; // overlap by a quarter with fewer
+  std::vector<RankedPair> pairs = possiblePairs(scans_, known_);
+  parallelFor(
+      pairs.size(), options_.threads,
+      [&](Index k) {
+        const Index a = pairs[k].a, b = pairs[k].b;
+        pairs[k].likeness = planLikeness({scans_[a], plans_[a]}, {scans_[b], plans_[b]});
+      },
+      1);
+  return firstPartners(std::move(pairs), scans_.size(), partners);
+}
+
+void GlobalAligner::assembleByPlans(const Progress& progress)
+{
+  VerificationOptions options;
+  options.min_overlap = options_.min_overlap;
+  options.max_violation = options_.max_violation;
+  const std::vector<RankedPair> pairs = pairsByPlans();
+  report(progress, "align pairs", 0.3);
+  std::vector<PairAlignment> aligned(pairs.size());
+  forOwn(pairs.size(), [&](Index k) {
+    const Index a = pairs[k].a, b = pairs[k].b;
+    aligned[k] = alignByPlans({scans_[a], plans_[a]}, {scans_[b], plans_[b]}, options);
+    aligned[k].a = a;
+    aligned[k].b = b;
+  });
+  shareItems(ranks_, aligned);
+  addPairs(aligned);
+  std::vector<ScanAliases> aliases(scans_.size());
+  forOwn(scans_.size(), [&](Index k) { aliases[k] = findAliasesByPlan({scans_[k], plans_[k]}); });
+  shareItems(ranks_, aliases);
+  for (std::size_t k = 0; k < scans_.size(); ++k)
+    scans_[k].aliases = std::move(aliases[k]);
+  sharePartialAliases(scans_, result_.pairs);
+  report(progress, "assemble", 0.7);
+  result_.graph = assembleScans({scans_, result_.pairs, graphOptions()}, known_);
+}
 
 void GlobalAligner::describe(const Progress& progress)
 {
@@ -111,6 +186,11 @@ void GlobalAligner::alignPairs(const std::vector<RankedPair>& round)
     aligned[k].b = b;
   });
   shareItems(ranks_, aligned);
+  addPairs(aligned);
+}
+
+void GlobalAligner::addPairs(std::vector<PairAlignment>& aligned)
+{
   result_.pairs.insert(result_.pairs.end(), aligned.begin(), aligned.end());
   std::sort(result_.pairs.begin(), result_.pairs.end(),
             [](const PairAlignment& x, const PairAlignment& y) { return std::pair(x.a, x.b) < std::pair(y.a, y.b); });
@@ -180,7 +260,7 @@ std::vector<RankedPair> GlobalAligner::orderedPairs() const
   return pairs;
 }
 
-GlobalAlignment GlobalAligner::run(const Progress& progress)
+void GlobalAligner::alignInRounds(const Progress& progress)
 {
   constexpr int most_rounds = 6;       // 24 partners of each scan: more than overlap with it
   constexpr int most_place_rounds = 4; // the right ones come sooner
@@ -204,6 +284,14 @@ GlobalAlignment GlobalAligner::run(const Progress& progress)
   }
   if (!manyPlaces())
     splitUndecided({scans_, result_.pairs, graphOptions()}, result_.graph);
+}
+
+GlobalAlignment GlobalAligner::run(const Progress& progress)
+{
+  if (drawPlans())
+    assembleByPlans(progress);
+  else
+    alignInRounds(progress);
   for (ScanCluster& cluster : result_.graph.clusters)
     closeLoops({scans_, result_.pairs, graphOptions()}, known_, cluster);
   return std::move(result_);

@@ -15,6 +15,11 @@ double agreeingFeatures(const PlaceSample& a, const PlaceSample& b)
   const PoseHypotheses best = runSc2Pcr(a.features, b.features, matchFeatures(a.features, b.features, 400), options);
   return best.empty() ? 0.0 : best[0].votes;
 }
+
+void sortByLikeness(std::vector<RankedPair>& pairs)
+{
+  std::stable_sort(pairs.begin(), pairs.end(), [](const auto& x, const auto& y) { return x.likeness > y.likeness; });
+}
 } // namespace
 
 void rankPairs(std::vector<RankedPair>& pairs, const std::vector<PreparedScan>& scans,
@@ -31,7 +36,21 @@ void rankPairs(std::vector<RankedPair>& pairs, const std::vector<PreparedScan>& 
         pair.likeness = options.by_place ? placeLikeness(a, b, options.upright) : agreeingFeatures(a, b);
       },
       1);
-  std::stable_sort(pairs.begin(), pairs.end(), [](const auto& x, const auto& y) { return x.likeness > y.likeness; });
+  sortByLikeness(pairs);
+}
+
+std::vector<RankedPair> firstPartners(std::vector<RankedPair> pairs, Index scan_count, Index partners)
+{
+  sortByLikeness(pairs);
+  std::vector<Index> better(scan_count, 0); // pairs of a scan so far
+  std::vector<RankedPair> first;
+  for (const RankedPair& pair : pairs) {
+    if (std::min(better[pair.a], better[pair.b]) < partners)
+      first.push_back(pair);
+    ++better[pair.a];
+    ++better[pair.b];
+  }
+  return first;
 }
 
 std::vector<RankedPair> takeRound(std::vector<RankedPair>& pairs, const std::vector<char>& known)

@@ -17,6 +17,9 @@ struct RankingOptions {
 void rankPairs(std::vector<RankedPair>& pairs, const std::vector<PreparedScan>& scans,
                const std::vector<ScanFeatures>& features, const RankingOptions& options);
 
+/// Pairs that are among the `partners` likeliest of either of their scans, likeliest first.
+std::vector<RankedPair> firstPartners(std::vector<RankedPair> pairs, Index scan_count, Index partners);
+
 /// The best pairs not yet tried, a few of each scan but the known ones; they are taken out of `pairs`.
 /// @param known per scan, whether its place is known: how many look for places with it does not matter
 std::vector<RankedPair> takeRound(std::vector<RankedPair>& pairs, const std::vector<char>& known);

@@ -14,13 +14,13 @@ ScanFeatures mostDistinctive(const ScanFeatures& features)
   return {features.points.leftCols(n), features.normals.leftCols(n), features.descriptors.leftCols(n), features.planes};
 }
 
-double overlap(const PlaceSample& a, const PlaceSample& b, const Eigen::Isometry3d& T_a_b)
+double overlap(const PreparedScan& a, const PreparedScan& b, const Eigen::Isometry3d& T_a_b)
 {
-  const ScanLevel &level_a = a.scan.levels[overlap_level], &level_b = b.scan.levels[overlap_level];
+  const ScanLevel &level_a = a.levels[overlap_level], &level_b = b.levels[overlap_level];
   OverlapTest test;
   test.distance = 2.f * std::max(level_a.voxel, level_b.voxel);
   test.most = 150; // the share is known to 4 %
-  test.oriented = a.scan.oriented && b.scan.oriented;
+  test.oriented = a.oriented && b.oriented;
   return std::max(overlapShare(level_b, level_a, T_a_b.cast<float>(), test),
                   overlapShare(level_a, level_b, T_a_b.inverse().cast<float>(), test));
 }
@@ -46,16 +46,18 @@ PlaceSample::PlaceSample(const PreparedScan& prepared, const ScanFeatures& all)
     : scan(prepared), features(mostDistinctive(all))
 {}
 
-double placeLikeness(const PlaceSample& a, const PlaceSample& b, bool upright)
+double roughLikeness(const PreparedScan& a, const PreparedScan& b, const Eigen::Isometry3d& T_a_b, double least)
 {
   constexpr double likeness_scale = 0.02; // of violations, as violation_scale, for poses that are not refined
+  const double discount = std::exp(-sampledViolation(a, b, T_a_b) / likeness_scale);
+  return discount > least ? discount * overlap(a, b, T_a_b) : 0.0;
+}
+
+double placeLikeness(const PlaceSample& a, const PlaceSample& b, bool upright)
+{
   double best = 0.0;
-  for (const PoseHypothesis& pose : likelyPoses(a, b, upright)) {
-    const Eigen::Isometry3d& T = pose.T_a_b;
-    const double discount = std::exp(-sampledViolation(a.scan, b.scan, T) / likeness_scale);
-    if (discount > best)
-      best = std::max(best, discount * overlap(a, b, T));
-  }
+  for (const PoseHypothesis& pose : likelyPoses(a, b, upright))
+    best = std::max(best, roughLikeness(a.scan, b.scan, pose.T_a_b, best));
   return best;
 }
 } // namespace fresco::registration

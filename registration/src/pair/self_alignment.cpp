@@ -25,6 +25,8 @@ VerifiedHypotheses alignToSelf(const PreparedScan& scan, const ScanFeatures& fea
   return verifyHypotheses(PairGeometry(scan, scan), {runSc2Pcr(features, features, matches, sc2_pcr), {}}, options);
 }
 
+} // namespace
+
 ScanAlias toAlias(const VerifiedHypothesis& own)
 {
   constexpr double certain_overlap = 0.5;     // with itself: less, and the scan is laid where it saw nothing
@@ -37,8 +39,6 @@ ScanAlias toAlias(const VerifiedHypothesis& own)
   alias.likeness = wide && own.check.violation <= VerificationOptions().max_violation ? own.check.overlap : 0.0;
   return alias;
 }
-} // namespace
-
 ScanAliases findAliases(const PreparedScan& scan, const ScanFeatures& features)
 {
   if (!sawAround(scan)) // it knows too little that could reject an alias

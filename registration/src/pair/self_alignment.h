@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+#include "pair/pair_verification.h"
 #include "pair/sc2_pcr.h"
 namespace fresco::registration {
 constexpr double alias_distance = 0.5; ///< of a scan's size: nearer places that look alike are one place
@@ -7,6 +8,9 @@ constexpr double alias_color = 0.6;    ///< correlation of two places: below, th
 
 /// Motions other than the identity that map a part of a scan onto another part of it: it saw two places that look
 /// alike, such as the next bay of a corridor. Where there is such a motion S, a pose T of another scan has the
+/// Of a verified pose of a scan on itself.
+ScanAlias toAlias(const VerifiedHypothesis& own);
+
 /// alternative S T, and only measurement can tell which is right. None without free space or of a narrow view.
 ScanAliases findAliases(const PreparedScan& scan, const ScanFeatures& features);
 } // namespace fresco::registration

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "graph/free_space_evidence.h"
+#include <algorithm>
+#include <cmath>
+#include <fresco/core/statistics.h>
+namespace fresco::registration {
+FreeSpaceEvidence& FreeSpaceEvidence::operator+=(const FreeSpaceEvidence& other)
+{
+  agree += other.agree;
+  violating += other.violating;
+  clustered += other.clustered;
+  return *this;
+}
+
+bool isContradicted(const FreeSpaceEvidence& evidence)
+{
+  constexpr double stray = 0.002;  // of one scan's points: what moved, panes
+  constexpr double usual = 0.0012; // of the points that agree: twice what right places have
+  return evidence.clustered > stray + usual * evidence.agree;
+}
+
+bool contradictsMore(const FreeSpaceEvidence& other, const FreeSpaceEvidence& here, double unit)
+{
+  // Points that violate lie together: their number varies as that of groups of so many.
+  constexpr double clustered_group = 6.0, group = 3.0;
+  const auto exceeds = [&](double more, double less, double size) {
+    return unit * (more - less) > 3.0 * std::sqrt(size * unit * (more + less) + 9.0);
+  };
+  return exceeds(other.clustered, here.clustered, clustered_group) || exceeds(other.violating, here.violating, group);
+}
+
+FreeSpaceJudge::FreeSpaceJudge(const std::vector<PreparedScan>& scans) : scans_(scans)
+{
+  constexpr double ranges = 5.0; // beyond, few points say much and errors of rotations count
+  std::vector<double> sizes;
+  double points = 0.0;
+  for (const PreparedScan& scan : scans)
+    if (scan.problem.empty()) {
+      sizes.push_back(scan.size);
+      points += scan.levels[check_level].points.cols();
+    }
+  if (sizes.empty())
+    return;
+  unit_ = points / sizes.size();
+  reach_ = ranges * median(sizes);
+}
+
+FreeSpaceEvidence FreeSpaceJudge::judgeSeen(const PreparedScan& seer, const PreparedScan& seen,
+                                            const Eigen::Isometry3d& T_seer_seen) const
+{
+  constexpr int fewest_violating = 6; // of a point and its 7 neighbours
+  const ScanLevel& level = seen.levels[check_level];
+  const Eigen::Isometry3f T = T_seer_seen.cast<float>();
+  using Verdict = ScanFreeSpace::Verdict;
+  const std::vector<Verdict> verdicts = seer.free_space.judge(level.points, T, {1.5f * level.voxel, 0.02f});
+  Index agree = 0, violating = 0, clustered = 0;
+  for (Index i = 0; i < level.points.cols(); ++i) {
+    if (verdicts[i] == Verdict::unknown || (T * level.points.col(i)).squaredNorm() > reach_ * reach_)
+      continue;
+    agree += verdicts[i] == Verdict::agrees ? 1 : 0;
+    if (verdicts[i] != Verdict::violates)
+      continue;
+    ++violating;
+    Index around = 0;
+    for (const std::int32_t near : level.around.col(i))
+      around += near >= 0 && verdicts[near] == Verdict::violates ? 1 : 0;
+    clustered += around >= fewest_violating ? 1 : 0;
+  }
+  return {agree / unit_, violating / unit_, clustered / unit_};
+}
+
+FreeSpaceEvidence FreeSpaceJudge::judge(Index a, Index b, const Eigen::Isometry3d& T_a_b) const
+{
+  FreeSpaceEvidence evidence;
+  if (T_a_b.translation().norm() > 2.5 * reach_)
+    return evidence;
+  evidence += judgeSeen(scans_[a], scans_[b], T_a_b);
+  evidence += judgeSeen(scans_[b], scans_[a], T_a_b.inverse());
+  return evidence;
+}
+
+FreeSpaceEvidence FreeSpaceJudge::judge(const ScanCluster& first, const ScanCluster& second,
+                                        const Eigen::Isometry3d& T_first_second) const
+{
+  constexpr double much = 0.1; // of one scan's points: no others make up for it
+  FreeSpaceEvidence evidence;
+  for (std::size_t i = 0; i < first.scans.size(); ++i)
+    for (std::size_t k = 0; k < second.scans.size(); ++k) {
+      evidence += judge(first.scans[i], second.scans[k], first.poses[i].inverse() * T_first_second * second.poses[k]);
+      if (evidence.clustered > much && isContradicted(evidence))
+        return evidence;
+    }
+  return evidence;
+}
+} // namespace fresco::registration

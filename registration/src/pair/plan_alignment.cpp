@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "pair/plan_alignment.h"
+#include "pair/place_likeness.h"
+#include "pair/self_alignment.h"
+#include <algorithm>
+namespace fresco::registration {
+namespace {
+constexpr std::size_t most_by_plans = 8; // of pairs that overlap by 0.25, three of four are first among them
+} // namespace
+
+double planLikeness(const PlannedScan& a, const PlannedScan& b)
+{
+  double best = 0.0;
+  for (const PoseHypothesis& pose : matchPlans(a.plan, b.plan, most_by_plans))
+    best = std::max(best, roughLikeness(a.scan, b.scan, pose.T_a_b, best));
+  return best;
+}
+
+PairAlignment alignByPlans(const PlannedScan& a, const PlannedScan& b, const VerificationOptions& options)
+{
+  FoundHypotheses found;
+  found.planes = matchPlans(a.plan, b.plan, most_by_plans);
+  PairAlignment alignment;
+  alignment.hypotheses = verifyHypotheses(PairGeometry(a.scan, b.scan), found, options);
+  for (std::size_t k = 1; k < alignment.hypotheses.size(); ++k)
+    alignment.ambiguous = alignment.ambiguous || comparable(alignment.hypotheses[0], alignment.hypotheses[k]);
+  return alignment;
+}
+
+ScanAliases findAliasesByPlan(const PlannedScan& scan)
+{
+  constexpr std::size_t most_aliases = 16;
+  constexpr double partial_violation = 0.002; // what noise causes: a place of which little is seen must fit
+  VerificationOptions options;
+  options.max_violation *= 2.f; // of a pair: the best of a family of poses violates less
+  options.refined = options.checked;
+  FoundHypotheses found;
+  found.planes = matchPlans(scan.plan, scan.plan, most_aliases);
+  ScanAliases aliases;
+  if (scan.plan.empty())
+    return aliases;
+  for (const VerifiedHypothesis& own : verifyHypotheses(PairGeometry(scan.scan, scan.scan), found, options))
+    if (poseDistance(own.T_a_b, Eigen::Isometry3d::Identity(), scan.scan.size) > alias_distance * scan.scan.size) {
+      aliases.push_back(toAlias(own));
+      ScanAlias& alias = aliases.back();
+      if (!alias.certain && own.check.violation < partial_violation && own.check.color.value_or(1.0) > alias_color)
+        alias.certain = alias.partial = true;
+    }
+  return aliases;
+}
+} // namespace fresco::registration

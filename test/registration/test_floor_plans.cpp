@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "pair/plan_alignment.h"
+#include "registration/registration_scene.h"
+#include <fresco/registration/core/scan_registration.h>
+#include <gtest/gtest.h>
+namespace fresco::registration {
+using test::relativeError;
+using test::ScannedScene;
+namespace {
+struct Planned {
+  PreparedScan scan;
+  PlanSpectrum plan;
+};
+
+std::vector<Planned> drawPlans(const std::vector<PointSet>& scans)
+{
+  std::vector<PreparedScan> prepared;
+  std::vector<std::optional<PlanFrame>> frames;
+  for (const PointSet& scan : scans) {
+    prepared.push_back(prepareScan(scan, Thinning(0.04), 0));
+    frames.push_back(findPlanFrame(prepared.back(), findPlanes(prepared.back())));
+  }
+  const PlanGrid grid = choosePlanGrid(frames, prepared);
+  std::vector<Planned> planned;
+  for (std::size_t k = 0; k < scans.size(); ++k) {
+    PlanSpectrum plan;
+    if (frames[k])
+      plan = PlanSpectrum(drawFloorPlan(prepared[k], *frames[k], grid), *frames[k], grid);
+    planned.push_back({prepared[k], plan});
+  }
+  return planned;
+}
+
+Eigen::Isometry3d truth(const ScannedScene& scene, const std::vector<Planned>& planned, std::size_t a, std::size_t b)
+{
+  const auto working = [&](std::size_t k) {
+    return Eigen::Isometry3d(scene.truth[k] * Eigen::Translation3d(planned[k].scan.center));
+  };
+  return working(a).inverse() * working(b);
+}
+
+TEST(FloorPlans, OneOfTheFirstPosesIsRight)
+{
+  const ScannedScene scene = test::scanTwoRooms();
+  const std::vector<Planned> planned = drawPlans(scene.scans);
+  for (std::size_t a = 0; a < 3; ++a) // of one room
+    for (std::size_t b = a + 1; b < 3; ++b) {
+      double nearest = 1e9;
+      for (const PoseHypothesis& pose : matchPlans(planned[a].plan, planned[b].plan, 4))
+        nearest = std::min(nearest, poseDistance(pose.T_a_b, truth(scene, planned, a, b), planned[a].scan.size));
+      EXPECT_LT(nearest, 0.3) << a << " and " << b; // a cell and a half
+    }
+}
+
+TEST(FloorPlans, PairsAreAligned)
+{
+  const ScannedScene scene = test::scanTwoRooms();
+  const std::vector<Planned> planned = drawPlans(scene.scans);
+  const PairAlignment pair = alignByPlans({planned[0].scan, planned[0].plan}, {planned[1].scan, planned[1].plan}, {});
+  ASSERT_FALSE(pair.hypotheses.empty());
+  EXPECT_LT(poseDistance(pair.hypotheses[0].T_a_b, truth(scene, planned, 0, 1), planned[0].scan.size), 0.03);
+}
+
+TEST(FloorPlans, ScannersThatDidNotStandUprightHaveNone)
+{
+  ScannedScene scene = test::scanTwoRooms();
+  Eigen::Matrix4d T = Eigen::Matrix4d::Identity();
+  T.topLeftCorner<3, 3>() = Eigen::AngleAxisd(0.6, Eigen::Vector3d(1, 1, 0).normalized()).toRotationMatrix();
+  const std::vector<Planned> planned = drawPlans({transformPoints(scene.scans[0], T), scene.scans[1]});
+  EXPECT_TRUE(planned[0].plan.empty());
+  EXPECT_TRUE(matchPlans(planned[0].plan, planned[1].plan, 4).empty());
+}
+} // namespace
+
+// More than 30 scans, in two rooms with different furniture.
+TEST(FloorPlans, ManyScansArePlacedWhateverTheThreads)
+{
+  constexpr int across = 4, along = 8;
+  const test::Boxes boxes = test::twoRooms();
+  ScannedScene scene;
+  for (int i = 0; i < across * along; ++i) {
+    const double x = 0.9 + 6.8 * (i / across) / (along - 1), y = 0.8 + 2.4 * (i % across) / (across - 1);
+    scene.truth.push_back(test::stationPose({x, y, 1.5}, 0.7 * i, 0.02));
+    scene.scans.push_back(test::scanBoxes(boxes, scene.truth.back(), 6000, 0.004, static_cast<unsigned>(i) + 1));
+  }
+  ScanRegistrationOptions options;
+  options.threads = 1;
+  const auto alone = registerScans(scene.scans, {}, options);
+  options.threads = 3;
+  const auto result = registerScans(scene.scans, {}, options);
+  const Index placed =
+      std::count_if(result.poses.begin(), result.poses.end(), [](const Pose& pose) { return pose.has_value(); });
+  EXPECT_GE(placed, 30);
+  EXPECT_LT(relativeError(result.poses, scene).translation, 0.02);
+  for (std::size_t k = 0; k < scene.scans.size(); ++k)
+    EXPECT_EQ(alone.poses[k], result.poses[k]) << k;
+}
+} // namespace fresco::registration
