@@ -48,11 +48,10 @@ FreeSpaceJudge::FreeSpaceJudge(const std::vector<PreparedScan>& scans) : scans_(
 FreeSpaceEvidence FreeSpaceJudge::judgeSeen(const PreparedScan& seer, const PreparedScan& seen,
                                             const Eigen::Isometry3d& T_seer_seen) const
 {
-  constexpr int fewest_violating = 6; // of a point and its 7 neighbours
   const ScanLevel& level = seen.levels[check_level];
   const Eigen::Isometry3f T = T_seer_seen.cast<float>();
   using Verdict = ScanFreeSpace::Verdict;
-  const std::vector<Verdict> verdicts = seer.free_space.judge(level.points, T, {1.5f * level.voxel, 0.02f});
+  const std::vector<Verdict> verdicts = seer.free_space.judge(level.points, T, slackOf(level));
   Index agree = 0, violating = 0, clustered = 0;
   for (Index i = 0; i < level.points.cols(); ++i) {
     if (verdicts[i] == Verdict::unknown || (T * level.points.col(i)).squaredNorm() > reach_ * reach_)
@@ -61,10 +60,7 @@ FreeSpaceEvidence FreeSpaceJudge::judgeSeen(const PreparedScan& seer, const Prep
     if (verdicts[i] != Verdict::violates)
       continue;
     ++violating;
-    Index around = 0;
-    for (const std::int32_t near : level.around.col(i))
-      around += near >= 0 && verdicts[near] == Verdict::violates ? 1 : 0;
-    clustered += around >= fewest_violating ? 1 : 0;
+    clustered += violatesWithNeighbours(level, verdicts, i) ? 1 : 0;
   }
   return {agree / unit_, violating / unit_, clustered / unit_};
 }

@@ -49,7 +49,8 @@ private:
   std::vector<RankedPair> pairsByPlans() const;
   void assembleByPlans(const Progress& progress);
   void alignInRounds(const Progress& progress);
-  void addPairs(std::vector<PairAlignment>& aligned);
+  template <typename Align>
+  void alignEach(const std::vector<RankedPair>& pairs, const Align& align);
   void describe(const Progress& progress);
   void describeAliases(const std::vector<RankedPair>& round);
   bool manyPlaces() const;
@@ -69,6 +70,22 @@ private:
   std::vector<char> has_aliases_; // per scan, whether they were looked for
   GlobalAlignment result_;
 };
+
+// align(a, b) for all of them, shared out to the ranks.
+template <typename Align>
+void GlobalAligner::alignEach(const std::vector<RankedPair>& pairs, const Align& align)
+{
+  std::vector<PairAlignment> aligned(pairs.size());
+  forOwn(pairs.size(), [&](Index k) {
+    aligned[k] = align(pairs[k].a, pairs[k].b);
+    aligned[k].a = pairs[k].a;
+    aligned[k].b = pairs[k].b;
+  });
+  shareItems(ranks_, aligned);
+  result_.pairs.insert(result_.pairs.end(), aligned.begin(), aligned.end());
+  std::sort(result_.pairs.begin(), result_.pairs.end(),
+            [](const PairAlignment& x, const PairAlignment& y) { return std::pair(x.a, x.b) < std::pair(y.a, y.b); });
+}
 
 // Where there are many scans, and all scanners stood upright and saw around.
 bool GlobalAligner::drawPlans()
@@ -118,15 +135,9 @@ void GlobalAligner::assembleByPlans(const Progress& progress)
   options.max_violation = options_.max_violation;
   const std::vector<RankedPair> pairs = pairsByPlans();
   report(progress, "align pairs", 0.3);
-  std::vector<PairAlignment> aligned(pairs.size());
-  forOwn(pairs.size(), [&](Index k) {
-    const Index a = pairs[k].a, b = pairs[k].b;
-    aligned[k] = alignByPlans({scans_[a], plans_[a]}, {scans_[b], plans_[b]}, options);
-    aligned[k].a = a;
-    aligned[k].b = b;
+  alignEach(pairs, [&](Index a, Index b) {
+    return alignByPlans({scans_[a], plans_[a]}, {scans_[b], plans_[b]}, options);
   });
-  shareItems(ranks_, aligned);
-  addPairs(aligned);
   std::vector<ScanAliases> aliases(scans_.size());
   forOwn(scans_.size(), [&](Index k) { aliases[k] = findAliasesByPlan({scans_[k], plans_[k]}); });
   shareItems(ranks_, aliases);
@@ -178,22 +189,9 @@ void GlobalAligner::alignPairs(const std::vector<RankedPair>& round)
   options.verification.max_violation = options_.max_violation;
   options.upright = options_.upright;
   describeAliases(round);
-  std::vector<PairAlignment> aligned(round.size());
-  forOwn(round.size(), [&](Index k) {
-    const Index a = round[k].a, b = round[k].b;
-    aligned[k] = alignPair({scans_[a], features_[a]}, {scans_[b], features_[b]}, options);
-    aligned[k].a = a;
-    aligned[k].b = b;
+  alignEach(round, [&](Index a, Index b) {
+    return alignPair({scans_[a], features_[a]}, {scans_[b], features_[b]}, options);
   });
-  shareItems(ranks_, aligned);
-  addPairs(aligned);
-}
-
-void GlobalAligner::addPairs(std::vector<PairAlignment>& aligned)
-{
-  result_.pairs.insert(result_.pairs.end(), aligned.begin(), aligned.end());
-  std::sort(result_.pairs.begin(), result_.pairs.end(),
-            [](const PairAlignment& x, const PairAlignment& y) { return std::pair(x.a, x.b) < std::pair(y.a, y.b); });
 }
 
 // Aligns the pairs of scans with wrong viewpoints again, without their free space.

@@ -20,9 +20,18 @@ double overlapShare(const ScanLevel& source, const ScanLevel& target, const Eige
   return count > 0 ? 1.0 * found / count : 0.0;
 }
 
-namespace {
 ScanFreeSpace::Slack slackOf(const ScanLevel& level) { return {1.5f * level.voxel, 0.02f}; }
 
+bool violatesWithNeighbours(const ScanLevel& level, const std::vector<ScanFreeSpace::Verdict>& verdicts, Index point)
+{
+  constexpr int fewest_violating = 6; // of the point and its 7 neighbours
+  int around = 0;
+  for (const std::int32_t hit : level.around.col(point))
+    around += hit >= 0 && verdicts[hit] == ScanFreeSpace::Verdict::violates ? 1 : 0;
+  return around >= fewest_violating;
+}
+
+namespace {
 struct Violation {
   double of_comparable = 0.0, share = 0.0; // share: of at least half of all points
   Index points = 0;
@@ -32,8 +41,6 @@ struct Violation {
 // without them.
 Violation findViolation(const PreparedScan& seer, const ScanLevel& level, const Eigen::Isometry3f& T_seer_level)
 {
-  constexpr int fewest_violating =
-      6; // of a point and its 7 neighbours: mixed pixels at edges violate alone, misplaced surfaces all over
   if (seer.free_space.empty())
     return {};
   const auto verdicts = seer.free_space.judge(level.points, T_seer_level, slackOf(level));
@@ -43,10 +50,7 @@ Violation findViolation(const PreparedScan& seer, const ScanLevel& level, const 
     if (verdicts[i] != ScanFreeSpace::Verdict::violates)
       continue;
     ++points;
-    int around = 0;
-    for (const std::int32_t hit : level.around.col(i))
-      around += hit >= 0 && verdicts[hit] == ScanFreeSpace::Verdict::violates ? 1 : 0;
-    violating += around >= fewest_violating ? 1 : 0;
+    violating += violatesWithNeighbours(level, verdicts, i) ? 1 : 0;
   }
   // Half of all points: of few, a handful that are misread is a large share. Who looks one way compares few anyway.
   const double least_comparable = sawAround(seer) ? 0.5 * level.points.cols() : 1.0;

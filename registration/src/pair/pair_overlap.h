@@ -16,6 +16,14 @@ struct OverlapTest {
 double overlapShare(const ScanLevel& source, const ScanLevel& target, const Eigen::Isometry3f& T_target_source,
                     const OverlapTest& test);
 
+/// How far in front of measured ranges points of a level still agree with them.
+ScanFreeSpace::Slack slackOf(const ScanLevel& level);
+
+/// Whether most neighbours of a point that violates do so, too: mixed pixels at edges violate alone, misplaced surfaces
+/// all over.
+/// @param verdicts on all points of the level
+bool violatesWithNeighbours(const ScanLevel& level, const std::vector<ScanFreeSpace::Verdict>& verdicts, Index point);
+
 /// What a pair of scans says about their relative pose.
 struct PairCheck {
   double overlap = 0.0; ///< larger of the two shares of points with a counterpart, 0..1

@@ -31,14 +31,14 @@ ScanAliases findAliasesByPlan(const PlannedScan& scan)
 {
   constexpr std::size_t most_aliases = 16;
   constexpr double partial_violation = 0.002; // what noise causes: a place of which little is seen must fit
+  if (scan.plan.empty())
+    return {};
   VerificationOptions options;
   options.max_violation *= 2.f; // of a pair: the best of a family of poses violates less
   options.refined = options.checked;
   FoundHypotheses found;
   found.planes = matchPlans(scan.plan, scan.plan, most_aliases);
   ScanAliases aliases;
-  if (scan.plan.empty())
-    return aliases;
   for (const VerifiedHypothesis& own : verifyHypotheses(PairGeometry(scan.scan, scan.scan), found, options))
     if (poseDistance(own.T_a_b, Eigen::Isometry3d::Identity(), scan.scan.size) > alias_distance * scan.scan.size) {
       aliases.push_back(toAlias(own));

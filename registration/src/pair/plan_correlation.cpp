@@ -83,7 +83,6 @@ std::pair<Complex, Complex> PlanScores::at(Index row, Index column) const
 cv::Mat PlanScores::compute() const
 {
   cv::Mat spectrum(side_, side_, CV_32FC2), scores;
-  const Complex i(0.f, 1.f);
   for (int y = 0; y < side_; ++y)
     for (int x = 0; x <= side_ / 2; ++x) {
       const auto [plain, turned] = at(y, x);
