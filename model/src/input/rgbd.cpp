@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "input/rgbd.h"
 #include <algorithm>
+#include <fresco/core/parallel.h>
 #include <fresco/core/require.h>
 #include <fresco/core/statistics.h>
 #include <fresco/io/image_io.h>
@@ -9,16 +10,16 @@ namespace {
 /// Metres between which depth cameras of structured light and time of flight measure within 2 % of the depth.
 constexpr float nearest_depth = 0.3f, farthest_depth = 4.f;
 
-DepthImage depthOf(const Image16& image, const RgbdFolder& folder, const std::string& path)
+DepthImage depthOf(const Image16& image, const RgbdFolder& folder, const std::string& path, int threads)
 {
   if (image.width != folder.camera.width || image.height != folder.camera.height)
     throw std::runtime_error(concat(path, ": ", image.width, "x", image.height, " pixels, but the first frame has ",
                                     folder.camera.width, "x", folder.camera.height));
   DepthImage depth(image.height, image.width);
-  for (Index i = 0; i < depth.size(); ++i) {
+  parallelFor(depth.size(), threads, [&](Index i) {
     const float z = 1e-3f * image.data[i];
     depth.data()[i] = image.data[i] != 65535 && z >= nearest_depth && z <= farthest_depth ? z : 0.f;
-  }
+  });
   return depth;
 }
 } // namespace
@@ -49,26 +50,29 @@ RgbdFolder readRgbdFolder(const std::string& folder)
 DepthImage readDepth(const RgbdFolder& folder, Index frame)
 {
   const std::string& path = folder.frames.at(frame).depth;
-  return depthOf(readImage16(path), folder, path);
+  return depthOf(readImage16(path), folder, path, 1);
 }
 
-DepthReader::DepthReader(const RgbdFolder& folder) : folder_(folder), kept_(folder.frames.size()) {}
+DepthReader::DepthReader(const RgbdFolder& folder, int threads)
+    : folder_(folder), threads_(threads), kept_(folder.frames.size())
+{}
 
 DepthImage DepthReader::operator()(Index frame)
 {
-  constexpr Index room = 512 << 20; // bytes of images that are kept: 870 of 640 x 480
+  if (kept_[frame].data.empty())
+    readAhead(frame);
   const std::string& path = folder_.frames.at(frame).depth;
-  Image16& kept = kept_[frame];
-  if (!kept.data.empty())
-    return depthOf(kept, folder_, path);
-  Image16 image = readImage16(path);
-  const DepthImage depth = depthOf(image, folder_, path);
-  const Index bytes = 2 * image.data.size();
-  if (bytes_ + bytes <= room) {
-    bytes_ += bytes;
-    kept = std::move(image);
-  }
-  return depth;
+  return depthOf(kept_[frame].data.empty() ? readImage16(path) : kept_[frame], folder_, path, threads_);
+}
+
+void DepthReader::readAhead(Index frame)
+{
+  constexpr Index room = 512 << 20, ahead = 16; // bytes of images that are kept: 870 of 640 x 480
+  const Index bytes = 2 * Index(folder_.camera.width) * folder_.camera.height;
+  const Index count = std::min<Index>({ahead, Index(kept_.size()) - frame, (room - bytes_) / bytes});
+  bytes_ += count * bytes;
+  parallelFor(
+      count, threads_, [&](Index i) { kept_[frame + i] = readImage16(folder_.frames[frame + i].depth); }, 1);
 }
 
 double pixelFootprint(const RgbdFolder& folder)

@@ -28,14 +28,18 @@ RgbdFolder readRgbdFolder(const std::string& folder);
 /// @throws std::runtime_error naming the file if it is damaged or has another size than the first frame's
 DepthImage readDepth(const RgbdFolder& folder, Index frame);
 
-/// The same for frames that are asked for several times: decoded images are kept while there is room.
+/// The same for frames that are asked for several times in their order: decoded images are kept while there is room.
 class DepthReader {
 public:
-  explicit DepthReader(const RgbdFolder& folder);
+  DepthReader(const RgbdFolder& folder, int threads);
   DepthImage operator()(Index frame);
 
 private:
+  /// Keeps this frame and those after it.
+  void readAhead(Index frame);
+
   const RgbdFolder& folder_;
+  int threads_;
   std::vector<Image16> kept_; ///< by frame; empty where not kept
   Index bytes_ = 0;
 };

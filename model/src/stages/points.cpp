@@ -189,7 +189,7 @@ Figures pointsFromFrames(const Job& job, const Progress& progress)
   frames.camera = rgbd.camera;
   for (const RgbdFrame& frame : rgbd.frames)
     frames.T_world_camera.push_back(frame.T_world_camera);
-  DepthReader reader(rgbd);
+  DepthReader reader(rgbd, options.threads);
   frames.depth = [&](Index f) { return reader(f); };
   DepthFusionOptions fusion;
   fusion.cell = options.fuse > 0 ? options.fuse : finestCell(job);

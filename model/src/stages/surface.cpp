@@ -69,15 +69,28 @@ private:
   const Job& job_;
 };
 
+void askFrames(const RgbdFolder& rgbd, const std::vector<Pose>& poses, int threads, FreeSpace& space)
+{
+  constexpr Index at_once = 16; // images, 10 MB of 640 x 480
+  const Index count = rgbd.frames.size();
+  std::vector<Image16> images(at_once);
+  for (Index begin = 0; begin < count; begin += at_once) {
+    const Index end = std::min(count, begin + at_once);
+    const auto read = [&](Index i) { images[i] = readImage16(rgbd.frames[begin + i].depth); };
+    parallelFor(end - begin, threads, read, 1);
+    for (Index f = begin; f < end; ++f)
+      if (poses.at(f))
+        space.ask(images[f - begin], rgbd.camera, Eigen::Isometry3d(*poses[f]));
+  }
+}
+
 FreeSpace askAllViews(const Points& places, const Job& job, double cell)
 {
   const auto& [input, files, options, ranks] = job;
   FreeSpace space(places, cell, options.threads);
   const std::vector<Pose> poses = readPoses(files.poses);
   if (input.rgbd)
-    for (std::size_t f = 0; f < input.rgbd->frames.size(); ++f)
-      if (poses.at(f))
-        space.ask(readImage16(input.rgbd->frames[f].depth), input.rgbd->camera, Eigen::Isometry3d(*poses[f]));
+    askFrames(*input.rgbd, poses, options.threads, space);
   forEachScan(job,
               [&](const Points& scan, const Eigen::Isometry3d& T_world_scanner) { space.ask(scan, T_world_scanner); });
   return space;

@@ -1,26 +1,31 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "fusion/depth_frame.h"
 #include <algorithm>
-#include <cmath>
+#include <fresco/core/parallel.h>
 #include <utility>
 namespace fresco::fusion {
 namespace {
 constexpr int tile = 16; // pixels: about what a brick of cells covers at two metres
 } // namespace
 
-DepthFrame::DepthFrame(const CameraModel& camera, DepthImage image, const Eigen::Isometry3d& T_world_camera)
+DepthFrame::DepthFrame(const CameraModel& camera, DepthImage image, const Eigen::Isometry3d& T_world_camera,
+                       int threads)
     : width(camera.width), height(camera.height), fx(camera.fx), fy(camera.fy), cx(camera.cx - 0.5),
       cy(camera.cy - 0.5), depth(std::move(image)), R_world_camera(T_world_camera.linear().cast<float>()),
       center(T_world_camera.translation().cast<float>()), tile_columns_((width + tile - 1) / tile),
       tile_rows_((height + tile - 1) / tile), tiles_(Index(tile_columns_) * tile_rows_)
 {
-  depth = (depth > 0.f && depth.isFinite()).select(depth, 0.f);
-  for (int v = 0; v < height; ++v)
-    for (int u = 0; u < width; ++u) {
-      DepthRange& range = tiles_[v / tile * tile_columns_ + u / tile];
-      range.least = std::min(range.least, depth(v, u));
-      range.greatest = std::max(range.greatest, depth(v, u));
-    }
+  parallelFor(
+      tile_rows_, threads,
+      [&](Index row) {
+        auto rows = depth.middleRows(row * tile, std::min<Index>(tile, height - row * tile));
+        rows = (rows > 0.f && rows.isFinite()).select(rows, 0.f);
+        for (int column = 0; column < tile_columns_; ++column) {
+          const auto part = rows.middleCols(column * tile, std::min(tile, width - column * tile));
+          tiles_[row * tile_columns_ + column] = {part.minCoeff(), part.maxCoeff()};
+        }
+      },
+      4);
 }
 
 DepthRange DepthFrame::range(float left, float top, float right, float bottom) const

@@ -43,7 +43,7 @@ public:
       DistanceGrid grid(coarse * options_.cell, coarse * options_.cell * options_.truncation);
       const Progress part = subProgress(progress, double(round) / rounds, double(round + 1) / rounds);
       forEachFrame("poses", subProgress(part, 0.0, 0.7), [&](const DepthFrame& frame, Index) {
-        grid.allocate(frame);
+        grid.allocate(frame, options_.threads);
         grid.integrate(frame, nullptr, 1.f, options_.threads);
       });
       grid.finish(nullptr, options_.threads);
@@ -59,7 +59,7 @@ public:
   {
     DistanceGrid mean(options_.cell, options_.cell * options_.truncation);
     forEachFrame("fusion", subProgress(progress, 0.0, 0.1),
-                 [&](const DepthFrame& frame, Index) { mean.allocate(frame); });
+                 [&](const DepthFrame& frame, Index) { mean.allocate(frame, options_.threads); });
     forEachFrame("fusion", subProgress(progress, 0.1, 0.5), [&](const DepthFrame& frame, Index) {
       mean.integrate(frame, nullptr, options_.free_weight, options_.threads);
     });
@@ -102,7 +102,7 @@ private:
       require(depth.rows() == frames_.camera.height && depth.cols() == frames_.camera.width, "depth fusion: frame ", f,
               " has ", depth.cols(), "x", depth.rows(), " pixels, the camera ", frames_.camera.width, "x",
               frames_.camera.height);
-      visit(DepthFrame(frames_.camera, std::move(depth), poses_[f]), f);
+      visit(DepthFrame(frames_.camera, std::move(depth), poses_[f], options_.threads), f);
     }
   }
 

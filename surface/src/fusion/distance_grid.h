@@ -1,19 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include "fusion/depth_frame.h"
+#include "fusion/vote_kernels.h"
 #include <array>
 #include <cstdint>
 #include <optional>
 #include <unordered_map>
 namespace fresco::fusion {
-constexpr int brick_side = 8, brick_size = brick_side * brick_side * brick_side;
-
 /// Of a node within its brick.
 inline int nodeIndex(int x, int y, int z) { return x + brick_side * (y + brick_side * z); }
 
 /// Of 8^3 nodes, x fastest. 4 kB.
 struct Brick {
-  std::array<float, brick_size> distance{}; ///< weighted mean, in the unit of the frames; meaningless without weight
+  std::array<float, brick_size> distance{}; ///< weighted mean, in the unit of the frames; in the end NaN without weight
   std::array<float, brick_size> weight{};
 };
 
@@ -24,7 +23,7 @@ public:
   DistanceGrid(double cell, double truncation);
 
   /// Makes bricks around the surface in a frame.
-  void allocate(const DepthFrame& frame);
+  void allocate(const DepthFrame& frame, int threads);
 
   /// One vote of a frame for each node that it sees. A vote far from what `reference` says counts less.
   /// @param reference the same grid before, or null: all votes count alike
@@ -53,8 +52,9 @@ public:
     Eigen::Vector3f gradient; ///< dimensionless
   };
 
-  /// Trilinear; nothing where a node around `point` has no votes.
-  std::optional<Distance> at(const Eigen::Vector3f& point) const;
+  /// Trilinear; nothing where a node around `point` has no votes. After finish().
+  /// @param near a brick to look into first, -1 = none; becomes that of `point`
+  std::optional<Distance> at(const Eigen::Vector3f& point, Index& near) const;
 
 private:
   struct BestView {
@@ -63,12 +63,11 @@ private:
   };
   enum class Visibility { Hidden, Free, Surface };
   struct Seen {
-    Index brick;
     Visibility visibility;
     float depth; ///< of its centre
   };
-  std::vector<Seen> visibleBricks(const DepthFrame& frame) const;
-  void integrateBrick(const DepthFrame& frame, Index b, const Brick* reference, float free_weight);
+  Seen see(const DepthFrame& frame, Index b) const;
+  void integrateBrick(const DepthFrame& frame, Index b, const float* reference, float free_weight);
   bool makeBrick(const Eigen::Vector3i& place);
 
   float cell_, truncation_;
@@ -77,5 +76,6 @@ private:
   std::vector<Eigen::Vector3i> places_;
   std::vector<float> free_; ///< weight of the frames that saw through the whole brick
   std::vector<BestView> best_;
+  std::vector<std::array<Index, 8>> next_; ///< itself and those one on along the axes (bits 0..2); -1 = none
 };
 } // namespace fresco::fusion

@@ -32,24 +32,27 @@ NormalEquations equationsOfRow(const DistanceGrid& grid, const DepthFrame& frame
   NormalEquations sums;
   const float reach = 0.9f * grid.truncation(); // beyond, distances are cut off
   const Eigen::Isometry3f T_world_camera = T.cast<float>();
+  Index near = -1;
   for (int u = 0; u < frame.width; u += stride) {
     const float z = frame.depth(v, u);
     if (z <= 0.f)
       continue;
     const Eigen::Vector3f in_camera(z * (u - frame.cx) / frame.fx, z * (v - frame.cy) / frame.fy, z);
     const Eigen::Vector3f p = T_world_camera * in_camera;
-    const auto distance = grid.at(p);
+    const auto distance = grid.at(p, near);
     if (!distance)
       continue;
     const float slope = distance->gradient.norm();
     if (!(slope > 0.3f) || std::abs(distance->value) > reach) // flatter: between two surfaces
       continue;
     const double residual = distance->value / slope, share = residual / grid.truncation();
-    const double weight = std::pow(1.0 - share * share, 2) / z;
+    const double kept = 1.0 - share * share, weight = kept * kept / z;
     Vector6 J;
     const Eigen::Vector3d normal = (distance->gradient / slope).cast<double>();
     J << (p - T_world_camera.translation()).cast<double>().cross(normal), normal;
-    sums.H += weight * J * J.transpose();
+    for (int i = 0; i < 6; ++i) // what the factorization reads
+      for (int j = 0; j <= i; ++j)
+        sums.H(i, j) += weight * J[i] * J[j];
     sums.b += weight * residual * J;
     sums.weight += weight;
   }

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "fusion/vote_kernels.h"
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
@@ -190,6 +191,30 @@ TEST(DepthFusion, FramesWithoutDepthGiveNoPoints)
     return DepthImage::Constant(90, 120, f == 0 ? 0.f : std::numeric_limits<float>::quiet_NaN());
   };
   EXPECT_EQ(fuseDepthImages(scene.frames, options()).points.size(), 0);
+}
+
+TEST(DepthFusion, KernelsOfAllProcessorsAgree)
+{
+  if (!fusion::avx2VoteKernels())
+    GTEST_SKIP() << "no AVX2";
+  const Scene scene(1);
+  const DepthImage depth = scene.depthOf(0); // with silhouettes
+  const CameraModel& camera = scene.frames.camera;
+  const fusion::DepthPixels image{depth.data(), camera.width, camera.height, 100.f, 100.f, 59.5f, 44.5f};
+  const std::vector<float> reference(fusion::brick_size, 0.01f);
+  for (const float u : {-0.95f, -0.4f, -0.1f, 0.2f}) { // bricks across the border, too
+    const fusion::BrickView view{{u, -0.2f, 1.2f}, {{0.06f, 0.01f, 0.f}, {-0.01f, 0.06f, 0.02f}, {0.f, -0.02f, 0.06f}}};
+    std::vector<float> votes[2];
+    for (const bool fast : {false, true}) {
+      const auto& kernels = fast ? *fusion::avx2VoteKernels() : fusion::portableVoteKernels();
+      votes[fast].assign(2 * fusion::brick_size + 1, 0.f);
+      for (const float* mean : {static_cast<const float*>(nullptr), reference.data()})
+        votes[fast].back() += kernels.vote(image, view, {0.02f, 0.08f, 1.25f, 0.04f},
+                                           {mean, votes[fast].data(), votes[fast].data() + fusion::brick_size});
+    }
+    EXPECT_EQ(votes[0], votes[1]);
+    EXPECT_GT(votes[0].back(), 0.f) << u;
+  }
 }
 
 TEST(DepthFusion, BadInputIsRefused)
