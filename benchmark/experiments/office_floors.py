@@ -38,7 +38,7 @@ def fit(found, truth):
     return T
 
 
-def errors(found, truth):
+def errors(found, truth, distance=FALSE_DISTANCE, angle=FALSE_DEGREES):
     """Translation (m) and rotation (degrees) of each scan after the fit to the largest set that agrees."""
     def off(T):
         differences = [np.linalg.inv(T @ t) @ f for f, t in zip(found, truth)]
@@ -47,7 +47,7 @@ def errors(found, truth):
     best = None
     for f, t in zip(found, truth):
         shift, turn = off(f @ np.linalg.inv(t))
-        good = (shift < FALSE_DISTANCE) & (turn < FALSE_DEGREES)
+        good = (shift < distance) & (turn < angle)
         if best is None or good.sum() > best.sum():
             best = good
     keep = [k for k in range(len(found)) if best[k]]

@@ -1,23 +1,18 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Registers whole floors by Open3D's multiway registration, judged as office_floors.py does.
+"""Registers scans without start poses by Open3D's multiway registration.
 
-open3d_multiway.py VOXEL FLOOR...: FLOOR is a folder with scans/*.pcd and poses.txt. Every pair by FPFH, RANSAC and
-point-to-plane ICP as in Open3D's tutorial; pairs that overlap by 30 % are uncertain edges of a pose graph, optimised
-with line processes. Placed are the scans of the largest set that hangs together by the edges it keeps.
+open3d_multiway.py FOLDER POSES.txt VOXEL: the scans are FOLDER/*.pcd. Every pair by FPFH, RANSAC and point-to-plane ICP
+as in Open3D's tutorial; pairs that overlap by 30 % are uncertain edges of a pose graph, optimised with line processes.
+Placed are the scans of the largest set that hangs together by the edges it keeps; the others are `none`.
 """
 import glob
-import os
 import sys
-import time
 
 import numpy as np
 import open3d as o3d
 
 from open3d_registration import align, prepare, registration
-
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "experiments"))
-from office_floors import FALSE_DEGREES, FALSE_DISTANCE, errors, read_poses  # noqa: E402
 
 CERTAIN_OVERLAP = 0.3
 
@@ -71,19 +66,14 @@ def multiway(clouds, voxel):
 
 
 def main():
-    if len(sys.argv) < 3:
+    if len(sys.argv) != 4:
         sys.exit(__doc__)
     o3d.utility.random.seed(1)
-    print("| floor | stations | placed / false | worst of the others, mm | processor, s |\n|---|---|---|---|---|")
-    for folder in sys.argv[2:]:
-        clouds = [o3d.io.read_point_cloud(path) for path in sorted(glob.glob(folder + "/scans/*.pcd"))]
-        truth, start = read_poses(folder + "/poses.txt"), time.process_time()
-        poses, placed = multiway(clouds, float(sys.argv[1]))
-        spent = time.process_time() - start
-        shift, turn = errors([poses[k] for k in placed], [truth[k] for k in placed])
-        wrong = (shift > FALSE_DISTANCE) | (turn > FALSE_DEGREES)
-        print(f"| {os.path.basename(folder.rstrip('/'))} | {len(clouds)} | {len(placed)} / {wrong.sum()} | "
-              f"{1000 * shift[~wrong].max():.0f} | {spent:.0f} |", flush=True)
+    clouds = [o3d.io.read_point_cloud(path) for path in sorted(glob.glob(sys.argv[1] + "/*.pcd"))]
+    poses, placed = multiway(clouds, float(sys.argv[3]))
+    with open(sys.argv[2], "w") as file:
+        for k, pose in enumerate(poses):
+            file.write(" ".join(repr(float(x)) for x in pose.ravel()) + "\n" if k in placed else "none\n")
 
 
 if __name__ == "__main__":

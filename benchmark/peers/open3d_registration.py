@@ -26,6 +26,7 @@ def error(found, truth, middle):
 def prepare(cloud, voxel):
     thinned = cloud.voxel_down_sample(voxel)
     thinned.estimate_normals(o3d.geometry.KDTreeSearchParamHybrid(2 * voxel, 30))
+    thinned.orient_normals_towards_camera_location(np.zeros(3))
     return thinned, registration.compute_fpfh_feature(thinned, o3d.geometry.KDTreeSearchParamHybrid(5 * voxel, 100))
 
 
