@@ -9,8 +9,11 @@ namespace {
 void declare(Args& args, DatasetOptions& options, int& seed)
 {
   args.option("stations", options.stations, "laser stations, 1..1000");
-  args.option("rooms", options.rooms, "of the scene office, 4..32; the seed makes the floor");
+  args.option("rooms", options.rooms, "of a storey of the scene office, 4..32; the seed makes the floor");
+  args.option("storeys", options.storeys, "of the scene office, 1..2; two with a stairwell and stations in it");
   args.option("points", options.laser.points, "laser points per station, about, 100..100000000");
+  args.flag("turned", options.turned,
+            "each scan in a frame turned arbitrarily, as of a scanner that knows no vertical");
   args.option("noise", options.laser.noise,
               "deviation of the range at 4 m, metres, 0..1; it grows with range and incidence");
   args.flag("no_veil", options.laser.veil, "thin laser beams: no mixed pixels (veil points) at depth jumps", false);

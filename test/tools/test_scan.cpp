@@ -81,6 +81,26 @@ TEST(VirtualDataset, SameSeedSameBytesForAnyNumberOfThreads)
   EXPECT_NE(a.at("images/view_000.jpg"), c.at("images/view_000.jpg"));
 }
 
+TEST(VirtualDataset, TurnedScansShowTheSameWorld)
+{
+  const std::string folder = test::scratchFolder(), box = boxFile(folder);
+  DatasetOptions options = small();
+  options.views = 0;
+  writeDataset(box, folder + "/upright", options);
+  options.turned = true;
+  writeDataset(box, folder + "/turned", options);
+  EXPECT_EQ(contents(folder + "/upright").at("truth.ply"), contents(folder + "/turned").at("truth.ply"));
+  const auto upright = readPoses(folder + "/upright/poses.txt"), turned = readPoses(folder + "/turned/poses.txt");
+  for (std::size_t k = 0; k < upright.size(); ++k) {
+    const std::string scan = "/scans/scan_0" + std::to_string(k) + ".pcd";
+    const auto world = [&](const std::string& name, const Eigen::Matrix4d& pose) -> Eigen::Matrix4Xd {
+      return pose * readPoints(folder + name + scan).points.cast<double>().colwise().homogeneous();
+    };
+    EXPECT_LT((world("/upright", *upright[k]) - world("/turned", *turned[k])).cwiseAbs().maxCoeff(), 1e-5);
+    EXPECT_LT((*turned[k])(2, 2), 0.99) << "not upright";
+  }
+}
+
 TEST(VirtualDataset, ReplacesAnEarlierRun)
 {
   const std::string folder = test::scratchFolder(), box = boxFile(folder);

@@ -36,7 +36,9 @@ const Scene& coarseRoom(const std::string& name)
   const auto found = built.find(name);
   if (found != built.end())
     return found->second;
-  return built.emplace(name, name == "office" ? makeOffice({4, 3}) : makeScene(name, 0.4f)).first->second;
+  if (name == "office")
+    return built.emplace(name, makeOffice({4, 3})).first->second;
+  return built.emplace(name, name == "two storeys" ? makeOffice({4, 3, 2}) : makeScene(name, 0.4f)).first->second;
 }
 
 Scene emptyRoom()
@@ -89,7 +91,7 @@ TEST_P(VirtualRooms, CellsAndFacesAgree)
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(All, VirtualRooms, testing::Values("conference_room", "apartment", "office"));
+INSTANTIATE_TEST_SUITE_P(All, VirtualRooms, testing::Values("conference_room", "apartment", "office", "two storeys"));
 
 TEST(VirtualOffice, TheSeedMakesTheFloor)
 {
@@ -101,6 +103,8 @@ TEST(VirtualOffice, TheSeedMakesTheFloor)
       << "the shells look inwards";
   EXPECT_THROW(makeOffice({3, 1}), std::invalid_argument);
   EXPECT_THROW(makeOffice({33, 1}), std::invalid_argument);
+  EXPECT_THROW(makeOffice({4, 1, 0}), std::invalid_argument);
+  EXPECT_THROW(makeOffice({4, 1, 3}), std::invalid_argument);
 }
 
 TEST(VirtualScene, RefusesBadRequests)

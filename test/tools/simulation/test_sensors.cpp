@@ -229,6 +229,34 @@ TEST(VirtualPlaces, StationsKeepTheirDistanceAndSeeTheRoom)
   EXPECT_THROW(chooseStations(room().planning, 100000), std::runtime_error);
 }
 
+TEST(VirtualPlaces, TheStairwellLinksTwoStoreys)
+{
+  const Scene scene = makeOffice({4, 2, 2}, 2.f);
+  const RayScene rays(scene.mesh);
+  const Lightmap light = bakeLight(scene, rays, Room::coarse());
+  const ScenePlaces samples = sampleSurface(scene, 2000, 1);
+  const PlanningInput planning{scene, rays, samples, 1, 0};
+  const Points stations = chooseStations(planning, 6);
+  EXPECT_EQ(stations.leftCols(2), (Points(3, 2) << scene.stations[0], scene.stations[1]).finished());
+  const Eigen::ArrayXXf sees = (viewQuality(planning, stations, 4.f).array() > 0.f).cast<float>();
+  const auto shared = [&](Index a, Index b) { return (sees.row(a) * sees.row(b)).sum() / sees.row(b).sum(); };
+  EXPECT_GT(shared(0, 1), 0.3f) << "foot and landing";
+  float from_below = 0.f, from_above = 0.f;
+  for (Index k = 2; k < stations.cols(); ++k)
+    (stations(2, k) < scene.floors[1] ? from_below : from_above) += shared(1, k);
+  EXPECT_GT(from_below, 0.f);
+  EXPECT_GT(from_above, 0.3f);
+  for (const Index k : {0, 1, 2}) {
+    const Eigen::Matrix4d pose = poseAt(stations.col(k).cast<double>());
+    const LaserScan scan = scanScene({scene, rays, light}, pose, quiet(3000), k);
+    for (Index i = 0; i < scan.points.size(); ++i)
+      EXPECT_LT(
+          offPlane(scene, scan.faces[i], (pose * scan.points.points.col(i).cast<double>().homogeneous()).head<3>()),
+          1e-4);
+  }
+  EXPECT_THROW(chooseStations(planning, 1), std::invalid_argument);
+}
+
 TEST(VirtualPlaces, PosesAreRigidAndNearlyUpright)
 {
   for (int k = 0; k < 50; ++k) {

@@ -45,6 +45,13 @@ private:
   Json things_, materials_; ///< materials: numbers by name
 };
 
+/// Measures of stairs with two equal flights, metres.
+struct Stairs {
+  int risers = 9; ///< of a flight
+  float tread = 0.28f, landing = 1.3f, half_width = 1.25f;
+  float length() const { return tread * (risers - 1) + landing; }
+};
+
 /// Adds a thing that is computed. @return whether there is one of that name
 bool addComputed(Furniture& furniture, const Json& placed);
 } // namespace fresco::simulation

@@ -141,6 +141,29 @@ void radiator(Furniture& f, const Json& placed)
     b.tube({{half, 0.06f, z}, {half + 0.05f, 0.06f, z}, {half + 0.05f, 0.06f, 0.f}}, 0.009f, f.material("chrome"));
 }
 
+/// Two flights with a landing between them, up to "height": the first climbs along -x at +y, the second comes back. The
+/// origin lies before the middle of the foot; a board keeps people from falling at the head. See Stairs.
+void stairs(Furniture& f, const Json& placed)
+{
+  const Stairs s;
+  constexpr float apart = 0.05f, thick = 0.2f, board = 1.f; // half of the way between the flights; of slabs; metres
+  const float rise = float(placed.at("height")) / (2 * s.risers), end = -s.tread * (s.risers - 1),
+              top = 2 * s.risers * rise;
+  BoxMaterials paint = allSides(f.material("wall"));
+  paint[5] = f.material("oak");
+  std::vector<Box> boxes = {
+      {{end - s.landing, -s.half_width, s.risers * rise - thick}, {end, s.half_width, s.risers * rise}, paint}};
+  for (int k = 0; k + 1 < s.risers; ++k) {
+    const float below = -k * s.tread, above = end + k * s.tread, up = (s.risers + k + 1) * rise;
+    boxes.push_back({{below - s.tread, apart, 0}, {below, s.half_width, (k + 1) * rise}, paint});
+    boxes.push_back({{above, -s.half_width, up - rise - thick}, {above + s.tread, -apart, up}, paint});
+  }
+  f.builder().beginObject("stairs", poseOf(placed));
+  f.builder().boxes(boxes);
+  f.builder().beginObject("stair board", poseOf(placed));
+  f.builder().boxes({solid({0, apart, top}, {0.04f, s.half_width, top + board}, f.material("oak"))});
+}
+
 /// Along the Catmull-Rom spline through "line" [[x, y] ...] on the floor.
 void cable(Furniture& f, const Json& placed)
 {
@@ -253,10 +276,10 @@ bool addComputed(Furniture& furniture, const Json& placed)
 {
   using Make = void (*)(Furniture&, const Json&);
   static const std::map<std::string, Make> known = {
-      {"book_shelf", bookShelf}, {"cable", cable},        {"clock", wallClock},
-      {"coat_stand", coatStand}, {"curtain", curtain},    {"framed_picture", framedPicture},
-      {"handle", handle},        {"papers", papers},      {"plant", plant},
-      {"radiator", radiator},    {"sideboard", sideboard}};
+      {"book_shelf", bookShelf}, {"cable", cable},         {"clock", wallClock},
+      {"coat_stand", coatStand}, {"curtain", curtain},     {"framed_picture", framedPicture},
+      {"handle", handle},        {"papers", papers},       {"plant", plant},
+      {"radiator", radiator},    {"sideboard", sideboard}, {"stairs", stairs}};
   const auto found = known.find(placed.at("thing"));
   if (found == known.end())
     return false;

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simulation/scene/office.h"
+#include "simulation/scene/furniture.h"
 #include "simulation/sensors/random.h"
 #include <algorithm>
 #include <array>
 #include <fresco/core/require.h>
 #include <vector>
 namespace fresco::simulation {
-using Json = nlohmann::json;
-
 namespace {
-constexpr float wall = 0.12f, height = 2.6f, door_width = 0.95f, door_height = 2.06f;
+constexpr float wall = 0.12f, height = 2.6f, storey_height = 2.9f; // the slab between storeys: 30 cm
+constexpr float door_width = 0.95f, door_height = 2.06f;
 
 enum class Front { open, closed, glass }; ///< of a room to its corridor
 
@@ -28,10 +28,12 @@ struct Row {
 
 class Floor {
 public:
-  explicit Floor(const OfficeOptions& options) : random_(options.seed, 91, 0) {}
-  Json describe(int rooms);
+  explicit Floor(const OfficeOptions& options) : options_(options), random_(options.seed, 91, 0) {}
+  Json describe();
 
 private:
+  void addStorey();
+  Json addStairwell();
   std::vector<OfficeRoom> drawRow(int rooms);
   void build(const Row& row, const std::vector<OfficeRoom>& rooms);
   void addRoom(const OfficeRoom& room);
@@ -49,7 +51,10 @@ private:
   float worldX(float x) const { return row_.x + (row_.turned ? -x : x); }
   float worldY(float y) const { return row_.y + (row_.turned ? -y : y); }
 
+  const OfficeOptions& options_;
   CounterRandom random_;
+  float base_ = 0.f;                 ///< height of the floor of the storey that is being built
+  float across_ = 0.f, begin_ = 0.f; ///< width of the corridors, x where the first one begins
   Json shell_ = Json::array(), things_ = Json::array();
   Row row_; ///< of the room that is being built, its origin
 };
@@ -59,15 +64,15 @@ void Floor::box(const std::array<float, 3>& a, const std::array<float, 3>& b, co
   const auto [x0, x1] = std::minmax({worldX(a[0]), worldX(b[0])});
   const auto [y0, y1] = std::minmax({worldY(a[1]), worldY(b[1])});
   Json described = how;
-  described["from"] = {x0, y0, a[2]};
-  described["to"] = {x1, y1, b[2]};
+  described["from"] = {x0, y0, base_ + a[2]};
+  described["to"] = {x1, y1, base_ + b[2]};
   shell_.push_back(described);
 }
 
 void Floor::thing(const char* name, const std::array<float, 3>& at, float turn, Json how)
 {
   how["thing"] = name;
-  how["at"] = {worldX(at[0]), worldY(at[1]), at[2]};
+  how["at"] = {worldX(at[0]), worldY(at[1]), base_ + at[2]};
   how["turn"] = turn + (row_.turned ? 180.f : 0.f);
   things_.push_back(how);
 }
@@ -272,11 +277,13 @@ float lengthOf(const std::vector<OfficeRoom>& row)
   return length;
 }
 
-Json Floor::describe(int rooms)
+void Floor::addStorey()
 {
   constexpr int most_around_one = 10; // rooms around one corridor
+  const int rooms = options_.rooms;
   const int corridors = rooms <= most_around_one ? 1 : 2, rows = 2 * corridors;
-  const float across = random_.uniformFloat(1.6, 2.3);
+  const float drawn_across = random_.uniformFloat(1.6, 2.3), across = across_ > 0.f ? across_ : drawn_across;
+  across_ = across;
   std::vector<std::vector<OfficeRoom>> drawn; // above and below the first corridor, above and below the second
   float length = 0.f;
   for (int r = 0; r < rows; ++r) {
@@ -286,20 +293,65 @@ Json Floor::describe(int rooms)
   const float between = corridors == 2 ? greatestDepth(drawn[0]) + greatestDepth(drawn[3]) + 3 * wall : 0.f;
   for (int c = 0; c < corridors; ++c) {
     const float y = c * (across + between), beyond = corridors == 2 ? across : 0.f;
-    addCorridor(beyond > 0.f ? -across - wall : 0.f, y, length + beyond, y + across);
+    const float stairs = options_.storeys > 1 && c == 0 ? wall : 0.f; // no room beside the stairwell
+    const float begin = (beyond > 0.f ? -across - wall : 0.f) - stairs;
+    addCorridor(begin, y, length + beyond, y + across);
+    begin_ = c == 0 ? begin : begin_;
     build({0.f, y + across + wall, false}, drawn[2 * c]);
     build({length - wall, y - wall, true}, drawn[2 * c + 1]);
   }
   if (corridors == 2)
     for (const float x : {-across - wall, length})
       addCorridor(x, across, x + across, across + between);
-  return {{"object", "rooms"}, {"shell", shell_}, {"things", things_}};
+}
+
+/// A shaft through both storeys, open to their corridors; the slab ends where the stairs arrive. @return stations
+Json Floor::addStairwell()
+{
+  constexpr float arrival = 1.3f; // metres of floor before the stairs, on both storeys
+  const Stairs stairs;
+  const float middle = 0.5f * across_, foot = begin_ - arrival, x0 = foot - stairs.length();
+  const float y0 = middle - stairs.half_width, y1 = middle + stairs.half_width;
+  const Json free = {{"free", true},
+                     {"sides", {"wall_soft", "wall_soft", "wall_soft", "wall_soft", "parquet", "ceiling_plain"}}};
+  row_ = {};
+  base_ = 0.f;
+  box({x0, y0, 0}, {begin_, y1, height}, free);
+  box({x0, y0, storey_height}, {begin_, y1, storey_height + height}, free);
+  box({x0, y0, height}, {foot, y1, storey_height}, free);
+  thing("stairs", {foot, middle, 0}, 0, {{"height", storey_height}});
+  thing("ceiling_lamp", {foot + 0.5f * arrival, middle, 0}, 0);
+  thing("ceiling_lamp", {0.5f * (x0 + foot), middle, storey_height}, 0);
+  const auto station = [&](float x, float floor) -> Json {
+    const float aside = random_.uniformFloat(-0.3, 0.3);
+    return {x + random_.uniformFloat(-0.1, 0.1), middle + aside, floor + random_.uniformFloat(1.2, 1.6)};
+  };
+  const Json at_foot = station(foot + 0.5f * arrival, 0.f),
+             on_landing = station(x0 + 0.5f * stairs.landing, 0.5f * storey_height);
+  return {at_foot, on_landing};
+}
+
+Json Floor::describe()
+{
+  Json office = {{"object", "rooms"}};
+  for (int storey = 0; storey < options_.storeys; ++storey) {
+    random_ = CounterRandom(options_.seed, 91, storey);
+    base_ = storey * storey_height;
+    office["floors"].push_back(base_);
+    addStorey();
+  }
+  if (options_.storeys > 1)
+    office["stations"] = addStairwell();
+  office["shell"] = shell_;
+  office["things"] = things_;
+  return office;
 }
 } // namespace
 
 Json officeFloor(const OfficeOptions& options)
 {
   require(options.rooms >= 4 && options.rooms <= 32, "office: ", options.rooms, " rooms are not in 4..32");
-  return Floor(options).describe(options.rooms);
+  require(options.storeys >= 1 && options.storeys <= 2, "office: ", options.storeys, " storeys are not in 1..2");
+  return Floor(options).describe();
 }
 } // namespace fresco::simulation

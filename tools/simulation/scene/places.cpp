@@ -44,7 +44,8 @@ bool isFree(const PlanningInput& in, const Vector3f& place, float clearance)
 bool aboveFloor(const PlanningInput& in, const Vector3f& place)
 {
   const RayHit hit = in.rays.intersect({place, -Vector3f::UnitZ()});
-  return hit.face >= 0 && place.z() - hit.distance < 0.02f;
+  const auto meets = [&](float floor) { return std::fabs(place.z() - hit.distance - floor) < 0.02f; };
+  return hit.face >= 0 && std::any_of(in.scene.floors.begin(), in.scene.floors.end(), meets);
 }
 
 Eigen::AlignedBox3f bounds(const Scene& scene)
@@ -60,8 +61,10 @@ std::vector<Vector3f> roomGrid(const PlanningInput& in, const PlaceRules& rules)
   std::vector<Vector3f> grid;
   for (float x = box.min().x() + rules.spacing; x < box.max().x(); x += rules.spacing)
     for (float y = box.min().y() + rules.spacing; y < box.max().y(); y += rules.spacing)
-      for (const float height : rules.heights)
-        grid.push_back({x + stray(0.3f * rules.spacing), y + stray(0.3f * rules.spacing), height + stray(0.1f)});
+      for (const float floor : in.scene.floors)
+        for (const float height : rules.heights)
+          grid.push_back(
+              {x + stray(0.3f * rules.spacing), y + stray(0.3f * rules.spacing), floor + height + stray(0.1f)});
   return grid;
 }
 
@@ -182,7 +185,13 @@ Points chooseStations(const PlanningInput& in, int count)
   PlaceRules rules;
   rules.heights = {1.2f, 1.6f};
   rules.spacing *= std::max(1.f, 0.4f / in.scene.detail);
-  const Points places = freePlaces(in, rules);
+  const Points free = freePlaces(in, rules);
+  const int given = in.scene.stations.size();
+  require(count >= given, "stations: ", count, " are fewer than the ", given, " of the stairwell");
+  Points places(3, given + free.cols());
+  for (int k = 0; k < given; ++k)
+    places.col(k) = in.scene.stations[k];
+  places.rightCols(free.cols()) = free;
   if (places.cols() < count)
     throw std::runtime_error(concat("only ", places.cols(), " free places for ", count, " stations"));
   const Eigen::MatrixXf sees = viewQuality(in, places, 4.f * sceneUnit(in.scene));
@@ -190,7 +199,7 @@ Points chooseStations(const PlanningInput& in, int count)
   std::vector<bool> taken(places.cols(), false);
   Points stations(3, count);
   for (int k = 0; k < count; ++k) {
-    const Index best = bestStation(sees, seen, taken);
+    const Index best = k < given ? k : bestStation(sees, seen, taken);
     taken[best] = true;
     stations.col(k) = places.col(best);
     for (Index s = 0; s < sees.cols(); ++s)

@@ -32,8 +32,10 @@ struct PlaceRules {
 /// @throws std::runtime_error if there is no such place
 Points freePlaces(const PlanningInput& input, const PlaceRules& rules);
 
-/// `count` laser stations: together they see as much as possible, each overlaps with one chosen before.
+/// `count` laser stations: those that the scene gives, then others. Together they see as much as possible, each overlaps
+/// with one chosen before.
 /// @return 3xcount
+/// @throws std::invalid_argument if the scene gives more
 /// @throws std::runtime_error if there are fewer free places
 Points chooseStations(const PlanningInput& input, int count);
 

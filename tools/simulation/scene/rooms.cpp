@@ -161,8 +161,13 @@ Scene makeScene(const std::string& name, float max_edge)
 
 Scene makeOffice(const OfficeOptions& options, float max_edge)
 {
-  Scene scene = sceneOf("office", officeFloor(options), max_edge);
+  const Json office = officeFloor(options);
+  Scene scene = sceneOf("office", office, max_edge);
   scene.detail = 0.2f;
+  if (office.contains("floors"))
+    scene.floors = office["floors"].get<std::vector<float>>();
+  for (const Json& at : office.value("stations", Json::array()))
+    scene.stations.push_back(vectorOf(at));
   return scene;
 }
 } // namespace fresco::simulation

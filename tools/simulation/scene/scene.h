@@ -46,8 +46,10 @@ struct Scene {
   std::vector<Material> materials;
   std::vector<Lamp> lamps;
   std::vector<SceneObject> objects;
-  float detail = 1.f;    ///< of light and of the places for stations, 0..1: whole floors get by with less
-  bool furnished = true; ///< a room of makeScene(): metres, stations stand on the floor
+  float detail = 1.f;                ///< of light and of the places for stations, 0..1: whole floors get by with less
+  bool furnished = true;             ///< a room of makeScene(): metres, stations stand on the floor
+  std::vector<float> floors = {0.f}; ///< heights of the floors that stations stand on
+  std::vector<Eigen::Vector3f> stations; ///< places that are scanned from before others are chosen
 };
 
 /// Unit; of a face as it lies in the frame of the vertices.
@@ -90,8 +92,9 @@ inline Eigen::Vector3f cellPosition(const Scene& scene, const Cell& cell, const 
 Scene makeScene(const std::string& name, float max_edge = 0.1f);
 
 struct OfficeOptions {
-  int rooms = 8; ///< 4..32
+  int rooms = 8; ///< of a storey, 4..32
   std::uint64_t seed = 1;
+  int storeys = 1; ///< 1..2
 };
 
 /// A floor of an office, see officeFloor(). @throws std::invalid_argument if an option is out of range

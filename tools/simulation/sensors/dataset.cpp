@@ -56,6 +56,17 @@ struct Run {
   const DatasetOptions& options;
 };
 
+/// Turns the frame of a scan arbitrarily: any rotation is as likely. World from scan, as turned.
+Eigen::Matrix4d turnFrame(LaserScan& scan, const Eigen::Matrix4d& T_world_scan, CounterRandom random)
+{
+  const double w = random.gaussian(), x = random.gaussian(), y = random.gaussian(), z = random.gaussian();
+  const Eigen::Matrix3d R = Eigen::Quaterniond(w, x, y, z).normalized().toRotationMatrix();
+  scan.points.points = (R.transpose() * scan.points.points.cast<double>()).cast<float>().eval();
+  Eigen::Matrix4d T = T_world_scan;
+  T.topLeftCorner<3, 3>() *= R;
+  return T;
+}
+
 /// Scans from all stations; counts returns per face.
 std::vector<Pose> writeScans(const Run& run, const Points& stations, std::vector<int>& returns,
                              const Progress& progress)
@@ -70,14 +81,16 @@ std::vector<Pose> writeScans(const Run& run, const Points& stations, std::vector
     report(progress, "scan " + std::to_string(k + 1) + " of " + std::to_string(stations.cols()),
            static_cast<double>(k) / stations.cols());
     const Eigen::Vector3d station = stations.col(k).cast<double>() + run.lit.scene.mesh.origin;
-    const Eigen::Matrix4d pose = randomPose(station, run.options.seed, k);
+    Eigen::Matrix4d pose = randomPose(station, run.options.seed, k);
     LaserOptions laser = run.options.laser;
     laser.seed = run.options.seed;
     laser.threads = run.options.threads;
-    const LaserScan scan = scanScene(run.lit, pose, laser, k);
+    LaserScan scan = scanScene(run.lit, pose, laser, k);
     if (scan.points.size() == 0)
       throw std::runtime_error("scan " + std::to_string(k) +
                                " has no point: nothing sends enough light back within the range");
+    if (run.options.turned)
+      pose = turnFrame(scan, pose, CounterRandom(run.options.seed, 82, k));
     for (const int face : scan.faces)
       ++returns[face];
     const std::string file = concat(folder, "/scan_", std::setfill('0'), std::setw(2), k, ".pcd");
@@ -248,7 +261,7 @@ void writeDataset(const std::string& name, const std::string& folder, const Data
 {
   validate(options);
   report(progress, "scene", 0.0);
-  const Scene scene = name == "office" ? makeOffice({options.rooms, options.seed}, options.max_edge)
+  const Scene scene = name == "office" ? makeOffice({options.rooms, options.seed, options.storeys}, options.max_edge)
                                        : loadScene(name, options.max_edge);
   makeFolder(folder);
   const FolderLock lock(folder, "fresco_scan");

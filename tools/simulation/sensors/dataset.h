@@ -9,7 +9,9 @@ namespace fresco::simulation {
 struct DatasetOptions {
   int stations = 6; ///< laser scans, >= 1
   LaserOptions laser;
-  int rooms = 8;                  ///< of the scene office, 4..32
+  int rooms = 8;                  ///< of a storey of the scene office, 4..32
+  int storeys = 1;                ///< of the scene office, 1..2
+  bool turned = false;            ///< each scan in a frame turned arbitrarily: its z axis tells nothing
   int views = 60;                 ///< photographs, >= 1; 0 = none
   int width = 1280, height = 960; ///< pixels of a photograph, 16..20000
   bool panoramas = false;         ///< one from each station, JPEG
