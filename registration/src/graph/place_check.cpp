@@ -175,19 +175,7 @@ ClusterPose PlaceSearch::evidence(const Eigen::Isometry3d& T) const
 // One scan alone moves; clusters of several are left as they are.
 Eigen::Isometry3d PlaceSearch::refined(const Eigen::Isometry3d& T) const
 {
-  if (moving_.scans.size() > 1)
-    return T;
-  ScanPointers scans = {&input_.scans[moving_.scans[0]]};
-  IsometryVector poses = {T * moving_.poses[0]};
-  JointOptions options = settlingOptions(input_);
-  options.threads = 1;
-  options.fixed = {0};
-  for (std::size_t k = 0; k < cluster_.scans.size(); ++k) {
-    scans.push_back(&input_.scans[cluster_.scans[k]]);
-    poses.push_back(cluster_.poses[k]);
-    options.fixed.push_back(1);
-  }
-  return refineJointly(scans, poses, options, {}).poses[0] * moving_.poses[0].inverse();
+  return moving_.scans.size() > 1 ? T : settledPose(input_, cluster_, moving_, T);
 }
 
 bool PlaceSearch::isKnown(const RoughPlace& rough, const Eigen::Isometry3d& T, double tolerances,
@@ -243,6 +231,26 @@ void settle(const GraphInput& input, const ScanCluster& known, ScanCluster& clus
       options.fixed.push_back(contains(known, scan));
   }
   cluster.poses = refineJointly(scans, cluster.poses, options, {}).poses;
+}
+
+Eigen::Isometry3d settledPose(const GraphInput& input, const ScanCluster& cluster, const ScanCluster& moving,
+                              const Eigen::Isometry3d& T)
+{
+  ScanPointers scans;
+  IsometryVector poses;
+  JointOptions options = settlingOptions(input);
+  options.threads = 1;
+  for (std::size_t k = 0; k < moving.scans.size(); ++k) {
+    scans.push_back(&input.scans[moving.scans[k]]);
+    poses.push_back(T * moving.poses[k]);
+    options.fixed.push_back(0);
+  }
+  for (std::size_t k = 0; k < cluster.scans.size(); ++k) {
+    scans.push_back(&input.scans[cluster.scans[k]]);
+    poses.push_back(cluster.poses[k]);
+    options.fixed.push_back(1);
+  }
+  return refineJointly(scans, poses, options, {}).poses[0] * moving.poses[0].inverse();
 }
 
 bool isContested(const GraphInput& input, const ScanCluster& cluster, const ScanCluster& moving,

@@ -1,28 +1,40 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "graph/scan_assembly.h"
 #include "graph/alias_check.h"
-#include "graph/free_space_evidence.h"
+#include "graph/cluster_fits.h"
 #include "graph/place_check.h"
 #include <algorithm>
 #include <fresco/core/parallel.h>
 #include <map>
 namespace fresco::registration {
 namespace {
-// A place of one cluster in another.
-struct ClusterFit {
-  Eigen::Isometry3d T = Eigen::Isometry3d::Identity(); // frame of the first from that of the second
-  Index pairs = 0;                                     // that lead to it
-  double overlap = 0.0;                                // the largest of theirs
-  bool sound = false;                                  // one of them is sure of it
-  FreeSpaceEvidence evidence;
-};
-using ClusterFits = std::vector<ClusterFit, Eigen::aligned_allocator<ClusterFit>>;
+bool holds(const ScanCluster& cluster, Index scan)
+{
+  return std::find(cluster.scans.begin(), cluster.scans.end(), scan) != cluster.scans.end();
+}
+
+bool holdsAny(const ScanCluster& cluster, const ScanCluster& scans)
+{
+  return std::any_of(scans.scans.begin(), scans.scans.end(), [&](Index scan) { return holds(cluster, scan); });
+}
+
+// Those of its scans that are in a list, and the others.
+std::pair<ScanCluster, ScanCluster> divided(const ScanCluster& cluster, const std::vector<Index>& listed)
+{
+  std::pair<ScanCluster, ScanCluster> sides;
+  for (std::size_t k = 0; k < cluster.scans.size(); ++k) {
+    const bool in = std::find(listed.begin(), listed.end(), cluster.scans[k]) != listed.end();
+    ScanCluster& side = in ? sides.first : sides.second;
+    side.scans.push_back(cluster.scans[k]);
+    side.poses.push_back(cluster.poses[k]);
+  }
+  return sides;
+}
 
 class Assembler {
 public:
   Assembler(const GraphInput& input, const ScanCluster& known)
-      : input_(input), known_(known), judge_(input.scans), least_color_(leastColor(input.pairs)),
-        pairs_of_(input.scans.size())
+      : input_(input), known_(known), judge_(input.scans), fitter_(input, judge_)
   {
     begin();
   }
@@ -33,6 +45,7 @@ private:
   struct Group {
     Index id; // changes with its members
     ScanCluster cluster;
+    std::vector<std::vector<Index>> parts = {}; // the scans of the groups that it was joined of, and of theirs
   };
   struct Join {
     std::size_t first, second; // groups
@@ -41,26 +54,27 @@ private:
   using Joins = std::vector<Join, Eigen::aligned_allocator<Join>>;
 
   void begin();
-  bool isSound(const PairAlignment& pair, const VerifiedHypothesis& hypothesis) const;
-  void addFit(const ScanCluster& second, const ClusterFit& fit, ClusterFits& fits) const;
-  ClusterFits findFits(const ScanCluster& first, const ScanCluster& second) const;
   void findAllFits();
   ClusterFits fitsOf(std::size_t first, std::size_t second) const;
-  bool isSame(const ScanCluster& moving, const Eigen::Isometry3d& T, const Eigen::Isometry3d& other,
-              double tolerances) const;
   bool rivals(const ClusterFit& other, const ClusterFit& fit) const;
   bool hasAlias(const Join& join) const;
   bool hasSecondPlace(const Join& join) const;
-  bool fitsThird(std::size_t stays, std::size_t moves, const ClusterFit& fit);
+  bool fitsThird(std::size_t stays, std::size_t moves, const ClusterFit& fit, bool by_chains) const;
+  bool areApart(std::size_t stays, std::size_t third, const ClusterFit& moved, const ClusterFit& other,
+                bool by_chains) const;
+  bool fitsInstead(std::size_t stays, std::size_t moves, std::size_t third, const ClusterFit& moved,
+                   const ClusterFit& other) const;
   Joins likelyJoins() const;
   bool joinBest();
   void join(const Join& join);
+  bool fitsElsewhere(const ScanCluster& rest, const ScanCluster& part) const;
+  bool splitContested();
+  void split(std::size_t group, const ScanCluster& part);
 
   const GraphInput& input_;
   const ScanCluster& known_;
   FreeSpaceJudge judge_;
-  double least_color_;
-  std::vector<std::vector<const PairAlignment*>> pairs_of_; // per scan
+  ClusterFitter fitter_;
   std::vector<Group> groups_;
   Index next_id_ = 0;
   std::map<std::pair<Index, Index>, ClusterFits> fits_; // by the ids of two groups, the lower first
@@ -68,78 +82,12 @@ private:
 
 void Assembler::begin()
 {
-  for (const PairAlignment& pair : input_.pairs) {
-    pairs_of_[pair.a].push_back(&pair);
-    pairs_of_[pair.b].push_back(&pair);
-  }
   if (!known_.scans.empty())
     groups_.push_back({next_id_++, known_});
   const Index n = input_.scans.size();
   for (Index i = 0; i < n; ++i)
     if (input_.scans[i].problem.empty() && std::find(known_.scans.begin(), known_.scans.end(), i) == known_.scans.end())
       groups_.push_back({next_id_++, {{i}, {Eigen::Isometry3d::Identity()}}});
-}
-
-// Whether two scans alone are sure of their pose.
-bool Assembler::isSound(const PairAlignment& pair, const VerifiedHypothesis& hypothesis) const
-{
-  constexpr double noise_violation = 0.002; // mixed pixels do not cause more
-  return !pair.ambiguous && &hypothesis == &pair.hypotheses.front() &&
-         hypothesis.check.overlap >= input_.options.strong_overlap && hypothesis.check.violation <= noise_violation;
-}
-
-bool Assembler::isSame(const ScanCluster& moving, const Eigen::Isometry3d& T, const Eigen::Isometry3d& other,
-                       double tolerances) const
-{
-  return poseDistance(T * moving.poses[0], other * moving.poses[0], input_.scans[moving.scans[0]].size) <
-         tolerances * input_.options.tolerance;
-}
-
-void Assembler::addFit(const ScanCluster& second, const ClusterFit& fit, ClusterFits& fits) const
-{
-  for (ClusterFit& known : fits)
-    if (isSame(second, known.T, fit.T, 2.0)) {
-      ++known.pairs;
-      known.sound = known.sound || fit.sound;
-      if (fit.overlap > known.overlap) {
-        known.overlap = fit.overlap;
-        known.T = fit.T;
-      }
-      return;
-    }
-  fits.push_back(fit);
-}
-
-ClusterFits Assembler::findFits(const ScanCluster& first, const ScanCluster& second) const
-{
-  constexpr double loose_violation = 0.01; // of one pair: others may have seen a pane
-  ClusterFits fits;
-  std::map<Index, std::size_t> positions;
-  for (std::size_t k = 0; k < second.scans.size(); ++k)
-    positions[second.scans[k]] = k;
-  for (std::size_t i = 0; i < first.scans.size(); ++i)
-    for (const PairAlignment* pair : pairs_of_[first.scans[i]]) {
-      const bool turned = pair->b == first.scans[i];
-      const auto other = positions.find(turned ? pair->a : pair->b);
-      if (other == positions.end())
-        continue;
-      for (const VerifiedHypothesis& hypothesis : pair->hypotheses) {
-        if (hypothesis.check.violation > loose_violation || hypothesis.check.color.value_or(1.0) < least_color_)
-          continue;
-        ClusterFit fit;
-        fit.T = first.poses[i] * (turned ? hypothesis.T_a_b.inverse() : hypothesis.T_a_b) *
-                second.poses[other->second].inverse();
-        fit.pairs = 1;
-        fit.overlap = hypothesis.check.overlap;
-        fit.sound = isSound(*pair, hypothesis);
-        addFit(second, fit, fits);
-      }
-    }
-  for (ClusterFit& fit : fits)
-    fit.evidence = judge_.judge(first, second, fit.T);
-  fits.erase(std::remove_if(fits.begin(), fits.end(), [](const auto& fit) { return isContradicted(fit.evidence); }),
-             fits.end());
-  return fits;
 }
 
 // Of all groups in each other, those that are new.
@@ -156,7 +104,7 @@ void Assembler::findAllFits()
   std::vector<ClusterFits> found(fresh.size());
   parallelFor(
       fresh.size(), input_.options.threads,
-      [&](Index k) { found[k] = findFits(fresh[k].first->cluster, fresh[k].second->cluster); }, 1);
+      [&](Index k) { found[k] = fitter_.find(fresh[k].first->cluster, fresh[k].second->cluster); }, 1);
   for (std::size_t k = 0; k < fresh.size(); ++k)
     fits_[{fresh[k].first->id, fresh[k].second->id}] = std::move(found[k]);
 }
@@ -179,7 +127,7 @@ bool Assembler::rivals(const ClusterFit& other, const ClusterFit& fit) const
   constexpr double overlap_share = 0.4; // likewise
   return other.evidence.agree >= least_share * fit.evidence.agree &&
          !contradictsMore(other.evidence, fit.evidence, judge_.unit()) &&
-         (other.sound || other.overlap >= overlap_share * fit.overlap);
+         (other.certain || other.overlap >= overlap_share * fit.overlap);
 }
 
 // Whether a scan of either group saw two places that look alike, and the other group fits at both.
@@ -193,25 +141,56 @@ bool Assembler::hasSecondPlace(const Join& join) const
 {
   const ClusterFits fits = fitsOf(join.first, join.second);
   return std::any_of(fits.begin(), fits.end(), [&](const ClusterFit& other) {
-    return !isSame(groups_[join.second].cluster, other.T, join.fit.T, 3.0) && rivals(other, join.fit);
+    return !fitter_.isSame(groups_[join.second].cluster, other.T, join.fit.T, 3.0) && rivals(other, join.fit);
   });
 }
 
-// Whether a group that moves has a place in a third one, and free space contradicts the first and the third there.
-bool Assembler::fitsThird(std::size_t stays, std::size_t moves, const ClusterFit& fit)
+// Whether a group that moves has a place in a third one, and the first and the third cannot both be where that leads to.
+bool Assembler::fitsThird(std::size_t stays, std::size_t moves, const ClusterFit& fit, bool by_chains) const
 {
   for (std::size_t third = 0; third < groups_.size(); ++third) {
     if (third == stays || third == moves)
       continue;
-    for (const ClusterFit& other : fitsOf(third, moves)) {
-      if (!other.sound || !rivals(other, fit))
-        continue;
-      const Eigen::Isometry3d T_stays_third = fit.T * other.T.inverse();
-      if (isContradicted(judge_.judge(groups_[stays].cluster, groups_[third].cluster, T_stays_third)))
+    for (const ClusterFit& other : fitsOf(third, moves))
+      if (other.certain && rivals(other, fit) && areApart(stays, third, fit, other, by_chains) &&
+          !fitsInstead(stays, moves, third, fit, other))
         return true;
-    }
   }
   return false;
+}
+
+// Whether free space contradicts the first and the third group where a fit in either brings them, or, if these places
+// agree as scans of one room do, a fourth group does: of three equal rooms, a scan may have seen that two are apart.
+bool Assembler::areApart(std::size_t stays, std::size_t third, const ClusterFit& moved, const ClusterFit& other,
+                         bool by_chains) const
+{
+  constexpr double one_room = 0.8; // of what agrees at either fit
+  ClusterFit composed = moved;
+  composed.T = moved.T * other.T.inverse();
+  composed.evidence = judge_.judge(groups_[stays].cluster, groups_[third].cluster, composed.T);
+  if (isContradicted(composed.evidence) || !by_chains)
+    return isContradicted(composed.evidence);
+  if (composed.evidence.agree <= one_room * std::max(moved.evidence.agree, other.evidence.agree))
+    return false;
+  ClusterFit back = composed;
+  back.T = back.T.inverse();
+  return fitsThird(stays, third, composed, false) || fitsThird(third, stays, back, false);
+}
+
+// Whether the third group fits in the first one, and the two fits there explain more than the one of the third with
+// what moves, which then is a look-alike: it would bring what moves to a place that free space contradicts.
+bool Assembler::fitsInstead(std::size_t stays, std::size_t moves, std::size_t third, const ClusterFit& moved,
+                            const ClusterFit& other) const
+{
+  bool explains = false;
+  for (const ClusterFit& own : fitsOf(stays, third)) {
+    if (!own.certain)
+      continue;
+    if (!isContradicted(judge_.judge(groups_[stays].cluster, groups_[moves].cluster, own.T * other.T)))
+      return false;
+    explains = explains || own.evidence.agree + moved.evidence.agree > other.evidence.agree;
+  }
+  return explains;
 }
 
 // Most agreement first.
@@ -237,8 +216,8 @@ bool Assembler::joinBest()
     ClusterFit back = candidate.fit;
     back.T = back.T.inverse();
     if (hasAlias(candidate) || hasSecondPlace(candidate) ||
-        fitsThird(candidate.first, candidate.second, candidate.fit) ||
-        fitsThird(candidate.second, candidate.first, back)) {
+        fitsThird(candidate.first, candidate.second, candidate.fit, true) ||
+        fitsThird(candidate.second, candidate.first, back, true)) {
       groups_[candidate.first].cluster.look_alike = groups_[candidate.second].cluster.look_alike = true;
       continue;
     }
@@ -252,6 +231,9 @@ bool Assembler::joinBest()
 void Assembler::join(const Join& join)
 {
   Group &first = groups_[join.first], &second = groups_[join.second];
+  first.parts.push_back(first.cluster.scans);
+  first.parts.push_back(second.cluster.scans);
+  first.parts.insert(first.parts.end(), second.parts.begin(), second.parts.end());
   for (std::size_t k = 0; k < second.cluster.scans.size(); ++k) {
     first.cluster.scans.push_back(second.cluster.scans[k]);
     first.cluster.poses.push_back(join.fit.T * second.cluster.poses[k]);
@@ -263,9 +245,78 @@ void Assembler::join(const Join& join)
     group.cluster.look_alike = false; // joinBest() tells anew
 }
 
+// Whether what two pairs or a certain one say of a part of a group leads to another place in it, which free space
+// contradicts no more. Agreement hardly counts: of equal rooms, the wrong one may be seen best.
+bool Assembler::fitsElsewhere(const ScanCluster& rest, const ScanCluster& part) const
+{
+  constexpr double least_overlap = 0.15, least_agreement = 0.3; // of a scan's points: less, and chance explains it
+  const FreeSpaceEvidence here = judge_.judge(rest, part, Eigen::Isometry3d::Identity());
+  for (const ClusterFit& rough : fitter_.rough(rest, part)) {
+    if (!rough.certain && (rough.pairs < 2 || rough.overlap < least_overlap))
+      continue;
+    const ClusterFit fit = fitter_.settled(rest, part, rough);
+    if (fit.evidence.agree >= least_agreement && !isContradicted(fit.evidence) &&
+        fit.evidence.violating <= noise_violation * fit.evidence.agree &&
+        !fitter_.isSame(part, fit.T, Eigen::Isometry3d::Identity(), 3.0) &&
+        !contradictsMore(fit.evidence, here, judge_.unit()))
+      return true;
+  }
+  return false;
+}
+
+// What was joined first may be contested by what joined later.
+bool Assembler::splitContested()
+{
+  for (std::size_t g = 0; g < groups_.size(); ++g) {
+    std::vector<std::vector<Index>>& parts = groups_[g].parts;
+    std::stable_sort(parts.begin(), parts.end(), [](const auto& x, const auto& y) { return x.size() < y.size(); });
+    std::vector<char> contested(parts.size(), 0);
+    parallelFor(
+        parts.size(), input_.options.threads,
+        [&](Index k) {
+          const auto [part, rest] = divided(groups_[g].cluster, parts[k]);
+          contested[k] = !part.scans.empty() && part.scans.size() <= rest.scans.size() && !holdsAny(part, known_) &&
+                         fitsElsewhere(rest, part);
+        },
+        1);
+    const auto first = std::find(contested.begin(), contested.end(), 1);
+    if (first == contested.end())
+      continue;
+    split(g, divided(groups_[g].cluster, parts[first - contested.begin()]).first);
+    return true;
+  }
+  return false;
+}
+
+// Scans that see the same room as the part may be the wrong ones as well, and become alone.
+void Assembler::split(std::size_t group, const ScanCluster& part)
+{
+  constexpr double one_room = 0.8; // overlap
+  std::vector<Index> alone;
+  const ScanCluster rest = divided(groups_[group].cluster, part.scans).second;
+  for (std::size_t i = 0; i < rest.scans.size(); ++i)
+    for (std::size_t k = 0; k < part.scans.size() && !holds(known_, rest.scans[i]); ++k)
+      if (checkRoughly(input_.scans[rest.scans[i]], input_.scans[part.scans[k]],
+                       rest.poses[i].inverse() * part.poses[k], check_level)
+              .overlap > one_room) {
+        alone.push_back(rest.scans[i]);
+        break;
+      }
+  std::vector<std::vector<Index>> parts = std::move(groups_[group].parts);
+  groups_[group] = {next_id_++, divided(rest, alone).second, parts};
+  if (groups_[group].cluster.scans.empty())
+    groups_.erase(groups_.begin() + group);
+  groups_.push_back({next_id_++, part, parts});
+  groups_.back().cluster.look_alike = true;
+  for (const Index scan : alone)
+    groups_.push_back({next_id_++, {{scan}, {Eigen::Isometry3d::Identity()}, true}});
+}
+
 ScanGraph Assembler::run()
 {
   while (joinBest())
+    ;
+  while (splitContested())
     ;
   ScanGraph graph;
   for (const Group& group : groups_)

@@ -6,11 +6,11 @@ namespace fresco::registration {
 constexpr double alias_distance = 0.5; ///< of a scan's size: nearer places that look alike are one place
 constexpr double alias_color = 0.6;    ///< correlation of two places: below, their colours differ more than light does
 
-/// Motions other than the identity that map a part of a scan onto another part of it: it saw two places that look
-/// alike, such as the next bay of a corridor. Where there is such a motion S, a pose T of another scan has the
 /// Of a verified pose of a scan on itself.
 ScanAlias toAlias(const VerifiedHypothesis& own);
 
+/// Motions other than the identity that map a part of a scan onto another part of it: it saw two places that look
+/// alike, such as the next bay of a corridor. Where there is such a motion S, a pose T of another scan has the
 /// alternative S T, and only measurement can tell which is right. None without free space or of a narrow view.
 ScanAliases findAliases(const PreparedScan& scan, const ScanFeatures& features);
 } // namespace fresco::registration

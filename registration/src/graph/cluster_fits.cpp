@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "graph/cluster_fits.h"
+#include "graph/place_check.h"
+#include <algorithm>
+#include <map>
+namespace fresco::registration {
+ClusterFitter::ClusterFitter(const GraphInput& input, const FreeSpaceJudge& judge)
+    : input_(input), judge_(judge), least_color_(leastColor(input.pairs)),
+      usual_violation_(usualViolation(input.pairs)), pairs_of_(input.scans.size())
+{
+  for (const PairAlignment& pair : input_.pairs) {
+    pairs_of_[pair.a].push_back(&pair);
+    pairs_of_[pair.b].push_back(&pair);
+  }
+}
+
+bool ClusterFitter::isSame(const ScanCluster& moving, const Eigen::Isometry3d& T, const Eigen::Isometry3d& other,
+                           double tolerances) const
+{
+  return poseDistance(T * moving.poses[0], other * moving.poses[0], input_.scans[moving.scans[0]].size) <
+         tolerances * input_.options.tolerance;
+}
+
+void ClusterFitter::add(const ScanCluster& second, const ClusterFit& fit, ClusterFits& fits) const
+{
+  for (ClusterFit& known : fits)
+    if (isSame(second, known.T, fit.T, 2.0)) {
+      ++known.pairs;
+      known.sound = known.sound || fit.sound;
+      known.certain = known.certain || fit.certain;
+      if (fit.overlap > known.overlap) {
+        known.overlap = fit.overlap;
+        known.T = fit.T;
+      }
+      return;
+    }
+  fits.push_back(fit);
+}
+
+ClusterFits ClusterFitter::rough(const ScanCluster& first, const ScanCluster& second) const
+{
+  constexpr double loose_violation = 0.01; // of one pair: others may have seen a pane
+  ClusterFits fits;
+  std::map<Index, std::size_t> positions;
+  for (std::size_t k = 0; k < second.scans.size(); ++k)
+    positions[second.scans[k]] = k;
+  for (std::size_t i = 0; i < first.scans.size(); ++i)
+    for (const PairAlignment* pair : pairs_of_[first.scans[i]]) {
+      const bool turned = pair->b == first.scans[i];
+      const auto other = positions.find(turned ? pair->a : pair->b);
+      if (other == positions.end())
+        continue;
+      for (const VerifiedHypothesis& hypothesis : pair->hypotheses) {
+        if (hypothesis.check.violation > loose_violation || hypothesis.check.color.value_or(1.0) < least_color_ ||
+            contradictsOneRoom(hypothesis.check, usual_violation_))
+          continue;
+        ClusterFit fit;
+        fit.T = first.poses[i] * (turned ? hypothesis.T_a_b.inverse() : hypothesis.T_a_b) *
+                second.poses[other->second].inverse();
+        fit.pairs = 1;
+        fit.overlap = hypothesis.check.overlap;
+        fit.sound = &hypothesis == &pair->hypotheses.front() && isSound(hypothesis.check);
+        fit.certain = fit.sound && !pair->ambiguous;
+        add(second, fit, fits);
+      }
+    }
+  for (ClusterFit& fit : fits)
+    fit.evidence = judge_.judge(first, second, fit.T);
+  return fits;
+}
+
+ClusterFits ClusterFitter::find(const ScanCluster& first, const ScanCluster& second) const
+{
+  ClusterFits fits = rough(first, second);
+  fits.erase(std::remove_if(fits.begin(), fits.end(), [](const auto& fit) { return isContradicted(fit.evidence); }),
+             fits.end());
+  return fits;
+}
+
+ClusterFit ClusterFitter::settled(const ScanCluster& first, const ScanCluster& second, ClusterFit fit) const
+{
+  constexpr double hopeless = 0.1; // of one scan's points: no small motion mends it
+  constexpr double least_overlap = 0.1;
+  if (!isContradicted(fit.evidence) || fit.evidence.clustered > hopeless || fit.overlap < least_overlap)
+    return fit;
+  const Eigen::Isometry3d T = settledPose(input_, first, second, fit.T);
+  if (!isSame(second, T, fit.T, 2.0))
+    return fit;
+  fit.T = T;
+  fit.evidence = judge_.judge(first, second, T);
+  return fit;
+}
+} // namespace fresco::registration

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include "graph/free_space_evidence.h"
+namespace fresco::registration {
+constexpr double noise_violation = 0.002; ///< of a pair: mixed pixels do not cause more
+
+/// A place of one cluster in another.
+struct ClusterFit {
+  Eigen::Isometry3d T = Eigen::Isometry3d::Identity(); ///< frame of the first from that of the second
+  Index pairs = 0;                                     ///< that lead to it
+  double overlap = 0.0;                                ///< the largest of theirs, 0..1
+  bool sound = false;   ///< it is the best of one of them, and nothing contradicts it there
+  bool certain = false; ///< likewise, and that pair has no other
+  FreeSpaceEvidence evidence;
+};
+using ClusterFits = std::vector<ClusterFit, Eigen::aligned_allocator<ClusterFit>>;
+
+/// Finds places of clusters in each other by the hypotheses of pairs of their scans.
+class ClusterFitter {
+public:
+  /// Both have to outlive it.
+  ClusterFitter(const GraphInput& input, const FreeSpaceJudge& judge);
+
+  /// All that pairs lead to, distinct.
+  ClusterFits rough(const ScanCluster& first, const ScanCluster& second) const;
+
+  /// Those that free space does not contradict.
+  ClusterFits find(const ScanCluster& first, const ScanCluster& second) const;
+
+  /// A pair may slide along a corridor; all scans together hold it. As it is where a small motion mends nothing.
+  ClusterFit settled(const ScanCluster& first, const ScanCluster& second, ClusterFit fit) const;
+
+  /// Whether a cluster is at the same place with either of two motions. @param tolerances see GraphOptions
+  bool isSame(const ScanCluster& moving, const Eigen::Isometry3d& T, const Eigen::Isometry3d& other,
+              double tolerances) const;
+
+private:
+  void add(const ScanCluster& second, const ClusterFit& fit, ClusterFits& fits) const;
+  bool isSound(const PairCheck& check) const
+  {
+    return check.overlap >= input_.options.strong_overlap && check.violation <= noise_violation;
+  }
+
+  const GraphInput& input_;
+  const FreeSpaceJudge& judge_;
+  double least_color_, usual_violation_;
+  std::vector<std::vector<const PairAlignment*>> pairs_of_; // per scan
+};
+} // namespace fresco::registration
