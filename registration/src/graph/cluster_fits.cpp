@@ -59,7 +59,7 @@ ClusterFits ClusterFitter::rough(const ScanCluster& first, const ScanCluster& se
                 second.poses[other->second].inverse();
         fit.pairs = 1;
         fit.overlap = hypothesis.check.overlap;
-        fit.sound = &hypothesis == &pair->hypotheses.front() && isSound(hypothesis.check);
+        fit.sound = isSound(*pair, hypothesis, input_.options.strong_overlap);
         fit.certain = fit.sound && !pair->ambiguous;
         add(second, fit, fits);
       }

@@ -2,8 +2,6 @@
 #pragma once
 #include "graph/free_space_evidence.h"
 namespace fresco::registration {
-constexpr double noise_violation = 0.002; ///< of a pair: mixed pixels do not cause more
-
 /// A place of one cluster in another.
 struct ClusterFit {
   Eigen::Isometry3d T = Eigen::Isometry3d::Identity(); ///< frame of the first from that of the second
@@ -36,10 +34,6 @@ public:
 
 private:
   void add(const ScanCluster& second, const ClusterFit& fit, ClusterFits& fits) const;
-  bool isSound(const PairCheck& check) const
-  {
-    return check.overlap >= input_.options.strong_overlap && check.violation <= noise_violation;
-  }
 
   const GraphInput& input_;
   const FreeSpaceJudge& judge_;

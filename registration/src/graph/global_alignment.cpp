@@ -12,11 +12,6 @@
 #include <fresco/core/parallel.h>
 namespace fresco::registration {
 namespace {
-bool isKnown(const ScanCluster& known, Index scan)
-{
-  return std::find(known.scans.begin(), known.scans.end(), scan) != known.scans.end();
-}
-
 std::vector<RankedPair> possiblePairs(const std::vector<PreparedScan>& scans, const ScanCluster& known)
 {
   std::vector<RankedPair> pairs;
@@ -24,7 +19,7 @@ std::vector<RankedPair> possiblePairs(const std::vector<PreparedScan>& scans, co
   const auto usable = [&](Index i) { return scans[i].problem.empty(); };
   for (Index a = 0; a < n; ++a)
     for (Index b = a + 1; b < n; ++b)
-      if (usable(a) && usable(b) && !(isKnown(known, a) && isKnown(known, b)))
+      if (usable(a) && usable(b) && !(contains(known, a) && contains(known, b)))
         pairs.push_back({a, b, 0.0});
   return pairs;
 }

@@ -9,11 +9,6 @@ namespace fresco::registration {
 namespace {
 constexpr double telling_overlap = 0.25; // of a pair: hardly by chance
 
-bool contains(const ScanCluster& cluster, Index scan)
-{
-  return std::find(cluster.scans.begin(), cluster.scans.end(), scan) != cluster.scans.end();
-}
-
 JointOptions settlingOptions(const GraphInput& input)
 {
   JointOptions options;
@@ -65,7 +60,6 @@ public:
 private:
   // Errors of a pose that is not refined may cause it.
   double loose() const { return 0.5 * input_.options.max_violation; }
-  bool isSound(const PairAlignment& pair, const VerifiedHypothesis& hypothesis) const;
   void addPlaces(Index scan, Index from, const RoughPlace& pose, bool sound_only, RoughPlaces& places) const;
   RoughPlaces placesOf(Index scan, bool sound_only) const;
   void addChains(RoughPlaces& places) const;
@@ -78,13 +72,6 @@ private:
   double size_, usual_violation_, least_color_;
 };
 
-bool PlaceSearch::isSound(const PairAlignment& pair, const VerifiedHypothesis& hypothesis) const
-{
-  constexpr double noise_violation = 0.002; // mixed pixels do not cause more
-  return &hypothesis == &pair.hypotheses.front() && hypothesis.check.overlap >= telling_overlap &&
-         hypothesis.check.violation <= noise_violation;
-}
-
 // Where a scan at a pose sees another one.
 void PlaceSearch::addPlaces(Index scan, Index from, const RoughPlace& pose, bool sound_only, RoughPlaces& places) const
 {
@@ -93,9 +80,10 @@ void PlaceSearch::addPlaces(Index scan, Index from, const RoughPlace& pose, bool
       continue;
     for (const VerifiedHypothesis& hypothesis : pair.hypotheses)
       if (hypothesis.check.color.value_or(1.0) >= least_color_ &&
-          (sound_only ? isSound(pair, hypothesis) : hypothesis.check.violation <= loose())) {
+          (sound_only ? isSound(pair, hypothesis, telling_overlap) : hypothesis.check.violation <= loose())) {
         const Eigen::Isometry3d& T = hypothesis.T_a_b;
-        places.push_back({pose.T * (pair.a == scan ? T.inverse() : T), isSound(pair, hypothesis), pose.chained});
+        places.push_back(
+            {pose.T * (pair.a == scan ? T.inverse() : T), isSound(pair, hypothesis, telling_overlap), pose.chained});
       }
   }
 }
@@ -210,10 +198,7 @@ ClusterPoses PlaceSearch::run() const
 
 bool isContestedMember(const GraphInput& input, const ScanCluster& cluster, std::size_t member)
 {
-  ScanCluster others = cluster;
-  others.scans.erase(others.scans.begin() + member);
-  others.poses.erase(others.poses.begin() + member);
-  const ScanCluster moving = {{cluster.scans[member]}, {cluster.poses[member]}};
+  const auto [moving, others] = divide(cluster, {cluster.scans[member]});
   return isContested(input, others, moving, Eigen::Isometry3d::Identity());
 }
 } // namespace
@@ -275,10 +260,7 @@ std::vector<Index> scansOfEither(const GraphInput& input, const ScanCluster& clu
       [&](Index k) {
         if (!sawAround(input.scans[cluster.scans[k]]))
           return;
-        const ScanCluster moving = {{cluster.scans[k]}, {cluster.poses[k]}};
-        ScanCluster others = cluster;
-        others.scans.erase(others.scans.begin() + k);
-        others.poses.erase(others.poses.begin() + k);
+        const auto [moving, others] = divide(cluster, {cluster.scans[k]});
         const ClusterPose here = PlaceSearch(input, others, moving).evidence(Eigen::Isometry3d::Identity());
         const ClusterPoses places = findPlaces(input, other, moving);
         either[k] = std::any_of(places.begin(), places.end(), [&](const auto& place) { return contests(place, here); });

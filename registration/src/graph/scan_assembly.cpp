@@ -8,35 +8,13 @@
 #include <map>
 namespace fresco::registration {
 namespace {
-bool holds(const ScanCluster& cluster, Index scan)
-{
-  return std::find(cluster.scans.begin(), cluster.scans.end(), scan) != cluster.scans.end();
-}
-
-bool holdsAny(const ScanCluster& cluster, const ScanCluster& scans)
-{
-  return std::any_of(scans.scans.begin(), scans.scans.end(), [&](Index scan) { return holds(cluster, scan); });
-}
-
-// Those of its scans that are in a list, and the others.
-std::pair<ScanCluster, ScanCluster> divided(const ScanCluster& cluster, const std::vector<Index>& listed)
-{
-  std::pair<ScanCluster, ScanCluster> sides;
-  for (std::size_t k = 0; k < cluster.scans.size(); ++k) {
-    const bool in = std::find(listed.begin(), listed.end(), cluster.scans[k]) != listed.end();
-    ScanCluster& side = in ? sides.first : sides.second;
-    side.scans.push_back(cluster.scans[k]);
-    side.poses.push_back(cluster.poses[k]);
-  }
-  return sides;
-}
-
 class Assembler {
 public:
   Assembler(const GraphInput& input, const ScanCluster& known)
       : input_(input), known_(known), judge_(input.scans), fitter_(input, judge_)
   {
-    begin();
+    for (const ScanCluster& cluster : startingClusters(input, known))
+      groups_.push_back({next_id_++, cluster});
   }
 
   ScanGraph run();
@@ -53,7 +31,6 @@ private:
   };
   using Joins = std::vector<Join, Eigen::aligned_allocator<Join>>;
 
-  void begin();
   void findAllFits();
   ClusterFits fitsOf(std::size_t first, std::size_t second) const;
   bool rivals(const ClusterFit& other, const ClusterFit& fit) const;
@@ -68,8 +45,8 @@ private:
   bool joinBest();
   void join(const Join& join);
   bool fitsElsewhere(const ScanCluster& rest, const ScanCluster& part) const;
-  bool splitContested();
-  void split(std::size_t group, const ScanCluster& part);
+  bool splitContested(std::size_t group);
+  void split(std::size_t group, const std::vector<Index>& listed);
 
   const GraphInput& input_;
   const ScanCluster& known_;
@@ -79,16 +56,6 @@ private:
   Index next_id_ = 0;
   std::map<std::pair<Index, Index>, ClusterFits> fits_; // by the ids of two groups, the lower first
 };
-
-void Assembler::begin()
-{
-  if (!known_.scans.empty())
-    groups_.push_back({next_id_++, known_});
-  const Index n = input_.scans.size();
-  for (Index i = 0; i < n; ++i)
-    if (input_.scans[i].problem.empty() && std::find(known_.scans.begin(), known_.scans.end(), i) == known_.scans.end())
-      groups_.push_back({next_id_++, {{i}, {Eigen::Isometry3d::Identity()}}});
-}
 
 // Of all groups in each other, those that are new.
 void Assembler::findAllFits()
@@ -264,38 +231,38 @@ bool Assembler::fitsElsewhere(const ScanCluster& rest, const ScanCluster& part) 
   return false;
 }
 
-// What was joined first may be contested by what joined later.
-bool Assembler::splitContested()
+// What was joined first may be contested by what joined later. @return whether a part was split off
+bool Assembler::splitContested(std::size_t group)
 {
-  for (std::size_t g = 0; g < groups_.size(); ++g) {
-    std::vector<std::vector<Index>>& parts = groups_[g].parts;
-    std::stable_sort(parts.begin(), parts.end(), [](const auto& x, const auto& y) { return x.size() < y.size(); });
-    std::vector<char> contested(parts.size(), 0);
-    parallelFor(
-        parts.size(), input_.options.threads,
-        [&](Index k) {
-          const auto [part, rest] = divided(groups_[g].cluster, parts[k]);
-          contested[k] = !part.scans.empty() && part.scans.size() <= rest.scans.size() && !holdsAny(part, known_) &&
-                         fitsElsewhere(rest, part);
-        },
-        1);
-    const auto first = std::find(contested.begin(), contested.end(), 1);
-    if (first == contested.end())
-      continue;
-    split(g, divided(groups_[g].cluster, parts[first - contested.begin()]).first);
-    return true;
-  }
-  return false;
+  const ScanCluster& cluster = groups_[group].cluster;
+  std::vector<std::vector<Index>>& parts = groups_[group].parts;
+  std::stable_sort(parts.begin(), parts.end(), [](const auto& x, const auto& y) { return x.size() < y.size(); });
+  std::vector<char> contested(parts.size(), 0);
+  parallelFor(
+      parts.size(), input_.options.threads,
+      [&](Index k) {
+        const auto [part, rest] = divide(cluster, parts[k]);
+        const bool has_known =
+            std::any_of(part.scans.begin(), part.scans.end(), [&](Index i) { return contains(known_, i); });
+        contested[k] =
+            !part.scans.empty() && part.scans.size() <= rest.scans.size() && !has_known && fitsElsewhere(rest, part);
+      },
+      1);
+  const auto first = std::find(contested.begin(), contested.end(), 1);
+  if (first == contested.end())
+    return false;
+  split(group, parts[first - contested.begin()]);
+  return true;
 }
 
 // Scans that see the same room as the part may be the wrong ones as well, and become alone.
-void Assembler::split(std::size_t group, const ScanCluster& part)
+void Assembler::split(std::size_t group, const std::vector<Index>& listed)
 {
   constexpr double one_room = 0.8; // overlap
+  const auto [part, rest] = divide(groups_[group].cluster, listed);
   std::vector<Index> alone;
-  const ScanCluster rest = divided(groups_[group].cluster, part.scans).second;
   for (std::size_t i = 0; i < rest.scans.size(); ++i)
-    for (std::size_t k = 0; k < part.scans.size() && !holds(known_, rest.scans[i]); ++k)
+    for (std::size_t k = 0; k < part.scans.size() && !contains(known_, rest.scans[i]); ++k)
       if (checkRoughly(input_.scans[rest.scans[i]], input_.scans[part.scans[k]],
                        rest.poses[i].inverse() * part.poses[k], check_level)
               .overlap > one_room) {
@@ -303,7 +270,7 @@ void Assembler::split(std::size_t group, const ScanCluster& part)
         break;
       }
   std::vector<std::vector<Index>> parts = std::move(groups_[group].parts);
-  groups_[group] = {next_id_++, divided(rest, alone).second, parts};
+  groups_[group] = {next_id_++, divide(rest, alone).second, parts};
   if (groups_[group].cluster.scans.empty())
     groups_.erase(groups_.begin() + group);
   groups_.push_back({next_id_++, part, parts});
@@ -316,13 +283,12 @@ ScanGraph Assembler::run()
 {
   while (joinBest())
     ;
-  while (splitContested())
-    ;
+  for (std::size_t g = 0; g < groups_.size();)
+    g += splitContested(g) ? 0 : 1;
   ScanGraph graph;
   for (const Group& group : groups_)
     graph.clusters.push_back(group.cluster);
-  std::stable_sort(graph.clusters.begin() + (known_.scans.empty() ? 0 : 1), graph.clusters.end(),
-                   [](const ScanCluster& x, const ScanCluster& y) { return x.scans.size() > y.scans.size(); });
+  sortBySize(graph.clusters, known_.scans.empty() ? 0 : 1);
   return graph;
 }
 } // namespace

@@ -41,11 +41,7 @@ private:
       return check.violation > mostViolation();
     return check.violation > noiseViolation() || contradictsOneRoom(check, usual_violation_);
   }
-  double noiseViolation() const
-  {
-    constexpr double noise_violation = 0.002; // mixed pixels do not cause more
-    return std::max(noise_violation, usual_violation_);
-  }
+  double noiseViolation() const { return std::max(noise_violation, usual_violation_); }
   // Of any two scans of clusters of one state of a place: what moves or is misread, panes for one.
   double mostViolation() const
   {
@@ -71,18 +67,11 @@ private:
   std::vector<ClusterPlace> places_; // of all scans in graph_
 };
 
-// Every scan alone, but the known ones.
 void GraphBuilder::begin()
 {
-  graph_.clusters.clear();
   aliased_.clear();
-  if (!known_.scans.empty())
-    graph_.clusters.push_back(known_);
-  const Index n = input_.scans.size();
-  for (Index i = 0; i < n; ++i)
-    if (input_.scans[i].problem.empty() && std::find(known_.scans.begin(), known_.scans.end(), i) == known_.scans.end())
-      graph_.clusters.push_back({{i}, {Eigen::Isometry3d::Identity()}});
-  places_ = placesOf(graph_.clusters, n);
+  graph_.clusters = startingClusters(input_, known_);
+  places_ = placesOf(graph_.clusters, input_.scans.size());
 }
 
 // Scans that would fit elsewhere join last: another round is built without them.
@@ -297,11 +286,51 @@ ScanGraph GraphBuilder::build()
   while (joinUncontested() || joinBlind())
     ;
   markLookAlikes();
-  std::stable_sort(graph_.clusters.begin() + (known_.scans.empty() ? 0 : 1), graph_.clusters.end(),
-                   [](const ScanCluster& x, const ScanCluster& y) { return x.scans.size() > y.scans.size(); });
+  sortBySize(graph_.clusters, known_.scans.empty() ? 0 : 1);
   return std::move(graph_);
 }
 } // namespace
+
+bool contains(const ScanCluster& cluster, Index scan)
+{
+  return std::find(cluster.scans.begin(), cluster.scans.end(), scan) != cluster.scans.end();
+}
+
+std::pair<ScanCluster, ScanCluster> divide(const ScanCluster& cluster, const std::vector<Index>& listed)
+{
+  std::pair<ScanCluster, ScanCluster> sides;
+  for (std::size_t k = 0; k < cluster.scans.size(); ++k) {
+    const bool in = std::find(listed.begin(), listed.end(), cluster.scans[k]) != listed.end();
+    ScanCluster& side = in ? sides.first : sides.second;
+    side.scans.push_back(cluster.scans[k]);
+    side.poses.push_back(cluster.poses[k]);
+  }
+  return sides;
+}
+
+void sortBySize(std::vector<ScanCluster>& clusters, Index first)
+{
+  std::stable_sort(clusters.begin() + first, clusters.end(),
+                   [](const ScanCluster& x, const ScanCluster& y) { return x.scans.size() > y.scans.size(); });
+}
+
+std::vector<ScanCluster> startingClusters(const GraphInput& input, const ScanCluster& known)
+{
+  std::vector<ScanCluster> clusters;
+  if (!known.scans.empty())
+    clusters.push_back(known);
+  const Index n = input.scans.size();
+  for (Index i = 0; i < n; ++i)
+    if (input.scans[i].problem.empty() && !contains(known, i))
+      clusters.push_back({{i}, {Eigen::Isometry3d::Identity()}});
+  return clusters;
+}
+
+bool isSound(const PairAlignment& pair, const VerifiedHypothesis& hypothesis, double least_overlap)
+{
+  return &hypothesis == &pair.hypotheses.front() && hypothesis.check.overlap >= least_overlap &&
+         hypothesis.check.violation <= noise_violation;
+}
 
 double leastColor(const std::vector<PairAlignment>& pairs)
 {
@@ -366,7 +395,6 @@ void splitUndecided(const GraphInput& input, ScanGraph& graph)
       clusters[c].poses.erase(clusters[c].poses.begin() + k);
       clusters.push_back({{scan}, {Eigen::Isometry3d::Identity()}, true});
     }
-  std::stable_sort(clusters.begin() + (clusters.empty() ? 0 : 1), clusters.end(),
-                   [](const ScanCluster& x, const ScanCluster& y) { return x.scans.size() > y.scans.size(); });
+  sortBySize(clusters, clusters.empty() ? 0 : 1);
 }
 } // namespace fresco::registration

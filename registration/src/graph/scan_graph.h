@@ -10,6 +10,15 @@ struct ScanCluster {
   bool look_alike = false; ///< whether it fits to other clusters in several ways between which nothing decides
 };
 
+bool contains(const ScanCluster& cluster, Index scan);
+
+/// The part of a cluster whose scans are listed, and the rest; the frame stays.
+std::pair<ScanCluster, ScanCluster> divide(const ScanCluster& cluster, const std::vector<Index>& listed);
+
+/// Largest first.
+/// @param first of those that are sorted; the ones before stay
+void sortBySize(std::vector<ScanCluster>& clusters, Index first);
+
 /// Where a scan is.
 struct ClusterPlace {
   Index cluster = 0, position = 0;
@@ -35,6 +44,14 @@ struct GraphInput {
   const std::vector<PairAlignment>& pairs;
   GraphOptions options;
 };
+
+/// Every scan without a problem alone, but the known ones, which come first.
+std::vector<ScanCluster> startingClusters(const GraphInput& input, const ScanCluster& known);
+
+constexpr double noise_violation = 0.002; ///< of a pair: mixed pixels do not cause more
+
+/// Whether a pose is the best of its pair, and nothing that the two see contradicts it.
+bool isSound(const PairAlignment& pair, const VerifiedHypothesis& hypothesis, double least_overlap);
 
 /// Where most pairs agree well in colour, one below this correlation is a look-alike; else -1.
 double leastColor(const std::vector<PairAlignment>& pairs);
