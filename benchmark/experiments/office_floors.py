@@ -83,6 +83,14 @@ def deviation_ratios(report, found, truth):
     return ratios
 
 
+def processor_seconds(command, env=None):
+    """Runs a command; user and system time of it and its children."""
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    subprocess.run(command, check=True, env=env)
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return after.ru_utime - before.ru_utime + after.ru_stime - before.ru_stime
+
+
 def run(args, seed):
     rooms, stations = args.rooms or 6 + seed % 5, args.stations or 8 + 2 * (3 * seed % 5)
     folder = f"{args.work}/floor_{seed}_{rooms}_{stations}_{args.points}" + re.sub(r"\W+", "_", args.scan)
@@ -94,10 +102,7 @@ def run(args, seed):
     if args.disturbed:
         write_disturbed(folder + "/start.txt", read_poses(folder + "/poses.txt"), seed)
         command += ["-poses", folder + "/start.txt"]
-    before = resource.getrusage(resource.RUSAGE_CHILDREN)
-    subprocess.run(command + args.register.split(), check=True)
-    after = resource.getrusage(resource.RUSAGE_CHILDREN)
-    seconds = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+    seconds = processor_seconds(command + args.register.split())
     report = json.load(open(folder + "/registered/registration.json"))
     truth, found = read_poses(folder + "/poses.txt"), read_poses(folder + "/registered/poses.txt")
     placed = [k for k in range(len(found)) if found[k] is not None]

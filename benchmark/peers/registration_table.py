@@ -8,13 +8,11 @@ to the largest set that agrees, as office_floors.py has it, and processor second
 """
 import argparse
 import os
-import resource
-import subprocess
 import sys
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, os.path.join(HERE, "..", "experiments"))
-from office_floors import FALSE_DEGREES, FALSE_DISTANCE, errors, read_poses  # noqa: E402
+from office_floors import FALSE_DEGREES, FALSE_DISTANCE, errors, processor_seconds, read_poses  # noqa: E402
 
 
 def commands(args, scans, out):
@@ -24,13 +22,6 @@ def commands(args, scans, out):
     return {"fresco": [args.bin + "/fresco_register", scans, "-o", out, "-quiet", "-threads", "1"],
             "open3d": ["/usr/bin/python3", HERE + "/open3d_multiway.py", scans, poses, str(args.voxel)],
             "pcl": pcl + ["-graph", "none"], "pcl_lum": pcl, "pcl_elch": pcl + ["-graph", "elch"]}
-
-
-def processor_seconds(command):
-    before = resource.getrusage(resource.RUSAGE_CHILDREN)
-    subprocess.run(command, check=True, env={**os.environ, "OMP_NUM_THREADS": "1"})
-    after = resource.getrusage(resource.RUSAGE_CHILDREN)
-    return after.ru_utime - before.ru_utime + after.ru_stime - before.ru_stime
 
 
 def judge(found, truth, args):
@@ -50,13 +41,14 @@ def main():
     parser.add_argument("-distance", type=float, default=FALSE_DISTANCE, help="above, a scan is false; metres")
     parser.add_argument("-degrees", type=float, default=FALSE_DEGREES)
     args = parser.parse_args()
+    one_thread = {**os.environ, "OMP_NUM_THREADS": "1"}
     print("| floor | method | scans | placed / false | worst of the others | processor, s |\n|---|---|---|---|---|---|")
     for floor in args.floors:
         name, truth = os.path.basename(floor.rstrip("/")), read_poses(floor + "/poses.txt")
         for method in args.methods.split(","):
             out = f"{args.out}/{name}_{method}"
             os.makedirs(out, exist_ok=True)
-            seconds = processor_seconds(commands(args, floor + "/scans", out)[method])
+            seconds = processor_seconds(commands(args, floor + "/scans", out)[method], one_thread)
             placed, false, worst, turn = judge(read_poses(out + "/poses.txt"), truth, args)
             print(f"| {name} | {method} | {len(truth)} | {placed} / {false} | {worst:.1f} mm, {turn:.3f} degrees | "
                   f"{seconds:.0f} |", flush=True)

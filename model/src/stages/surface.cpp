@@ -72,15 +72,18 @@ private:
 void askFrames(const RgbdFolder& rgbd, const std::vector<Pose>& poses, int threads, FreeSpace& space)
 {
   constexpr Index at_once = 16; // images, 10 MB of 640 x 480
-  const Index count = rgbd.frames.size();
+  std::vector<Index> placed;
+  for (std::size_t f = 0; f < rgbd.frames.size(); ++f)
+    if (poses.at(f))
+      placed.push_back(f);
+  const Index count = placed.size();
   std::vector<Image16> images(at_once);
   for (Index begin = 0; begin < count; begin += at_once) {
     const Index end = std::min(count, begin + at_once);
-    const auto read = [&](Index i) { images[i] = readImage16(rgbd.frames[begin + i].depth); };
+    const auto read = [&](Index i) { images[i] = readImage16(rgbd.frames[placed[begin + i]].depth); };
     parallelFor(end - begin, threads, read, 1);
-    for (Index f = begin; f < end; ++f)
-      if (poses.at(f))
-        space.ask(images[f - begin], rgbd.camera, Eigen::Isometry3d(*poses[f]));
+    for (Index k = begin; k < end; ++k)
+      space.ask(images[k - begin], rgbd.camera, Eigen::Isometry3d(*poses[placed[k]]));
   }
 }
 

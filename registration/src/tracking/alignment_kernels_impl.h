@@ -8,18 +8,6 @@ namespace fresco::tracking {
 namespace {
 using namespace simd;
 
-inline Float8 gathered(const float* image, const Int8& at)
-{
-#ifdef __AVX2__
-  return _mm256_i32gather_ps(image, reinterpret_cast<__m256i>(at), 4);
-#else
-  Float8 values;
-  for (int lane = 0; lane < 8; ++lane)
-    values[lane] = image[at[lane]];
-  return values;
-#endif
-}
-
 inline Float8 ones(const Int8& mask) { return mask ? Float8{} + 1.f : Float8{}; }
 
 /// w(r) = (5 + 1) / (5 + r^2 / s^2): Kerl, Sturm, Cremers 2013.

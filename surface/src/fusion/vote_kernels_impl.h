@@ -8,18 +8,6 @@ namespace fresco::fusion {
 namespace {
 using namespace simd;
 
-inline Float8 gathered(const float* image, const Int8& at)
-{
-#ifdef __AVX2__
-  return _mm256_i32gather_ps(image, reinterpret_cast<__m256i>(at), 4);
-#else
-  Float8 values;
-  for (int lane = 0; lane < 8; ++lane)
-    values[lane] = image[at[lane]];
-  return values;
-#endif
-}
-
 /// @param u, v  lanes within the image
 /// @param depth out: as a result, compilers would warn of its registers
 inline void readDepth(const DepthPixels& image, const Float8& u, const Float8& v, Float8& depth)

@@ -164,8 +164,7 @@ Scene makeOffice(const OfficeOptions& options, float max_edge)
   const Json office = officeFloor(options);
   Scene scene = sceneOf("office", office, max_edge);
   scene.detail = 0.2f;
-  if (office.contains("floors"))
-    scene.floors = office["floors"].get<std::vector<float>>();
+  scene.floors = office["floors"].get<std::vector<float>>();
   for (const Json& at : office.value("stations", Json::array()))
     scene.stations.push_back(vectorOf(at));
   return scene;

@@ -98,6 +98,19 @@ inline unsigned lanesOf(const Int8& mask)
 #endif
 }
 
+/// The numbers at eight places.
+inline Float8 gathered(const float* from, const Int8& at)
+{
+#ifdef __AVX2__
+  return _mm256_i32gather_ps(from, reinterpret_cast<__m256i>(at), 4);
+#else
+  Float8 values;
+  for (int lane = 0; lane < 8; ++lane)
+    values[lane] = from[at[lane]];
+  return values;
+#endif
+}
+
 /// Four floats in double precision.
 inline Double4 widened(const float* from) { return __builtin_convertvector(load<Float4>(from), Double4); }
 
