@@ -48,7 +48,7 @@ template <typename Archive>
 void fields(Archive& archive, VerifiedHypothesis& hypothesis)
 {
   archive(hypothesis.T_a_b, hypothesis.check, hypothesis.votes, hypothesis.support, hypothesis.score,
-          hypothesis.has_alias);
+          hypothesis.has_free_motion, hypothesis.has_alias);
 }
 
 template <typename Archive>

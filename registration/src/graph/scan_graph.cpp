@@ -268,7 +268,7 @@ void GraphBuilder::markLookAlikes()
     const Index a = places_[pair.a].cluster, b = places_[pair.b].cluster;
     const bool contested =
         late_[pair.a] || late_[pair.b] || std::find(aliased_.begin(), aliased_.end(), &pair) != aliased_.end();
-    if (a != b && !pair.hypotheses.empty() && !blind(pair) && (pair.ambiguous || contested))
+    if (a != b && !blind(pair) && (contested ? !pair.hypotheses.empty() : pair.ambiguous && pair.hypotheses.size() > 1))
       graph_.clusters[a].look_alike = graph_.clusters[b].look_alike = true;
   }
 }

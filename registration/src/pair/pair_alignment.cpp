@@ -97,8 +97,7 @@ PairAlignment alignPair(const DescribedScan& a, const DescribedScan& b, const Pa
   PairAlignment alignment;
   alignment.hypotheses = verifyHypotheses(pair, found, options.verification);
   AliasHypotheses(pair, options).addTo(alignment.hypotheses);
-  for (std::size_t k = 1; k < alignment.hypotheses.size(); ++k)
-    alignment.ambiguous = alignment.ambiguous || comparable(alignment.hypotheses[0], alignment.hypotheses[k]);
+  alignment.ambiguous = isAmbiguous(pair, alignment.hypotheses);
   const PoseHypotheses& popular_first = found.features;
   if (alignment.hypotheses.empty() && !popular_first.empty() && popular_first[0].votes >= many_votes) {
     const VerifiedHypothesis popular = verifyHypothesis(pair, popular_first[0]);

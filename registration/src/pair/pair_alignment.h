@@ -6,7 +6,7 @@ namespace fresco::registration {
 struct PairAlignment {
   Index a = 0, b = 0;
   VerifiedHypotheses hypotheses; ///< best first, distinct; empty = the pair has no acceptable relative pose
-  bool ambiguous = false;        ///< several hypotheses explain the scans about equally well
+  bool ambiguous = false;        ///< see isAmbiguous()
   VerifiedHypotheses rejected;   ///< none or one: pose that many features agree on, but which free space contradicts
 };
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pair/pair_verification.h"
+#include "refinement/free_motion.h"
 #include "refinement/joint_refinement.h"
 #include <algorithm>
 #include <cmath>
@@ -8,17 +9,6 @@ namespace {
 constexpr double violation_scale = 0.005; // of violations that costs a factor e: little contradiction outweighs much
                                           // overlap
 
-double quickOverlap(const PreparedScan& a, const PreparedScan& b, const Eigen::Isometry3d& T_a_b)
-{
-  const ScanLevel &level_a = a.levels.front(), &level_b = b.levels.front();
-  OverlapTest test;
-  test.distance = 2.f * level_a.voxel;
-  test.most = 300; // the share is known to 3 %: enough to drop the worst
-  test.oriented = a.oriented && b.oriented;
-  return std::max(overlapShare(level_b, level_a, T_a_b.cast<float>(), test),
-                  overlapShare(level_a, level_b, T_a_b.inverse().cast<float>(), test));
-}
-
 void keepBest(PoseHypotheses& hypotheses, std::size_t most)
 {
   std::stable_sort(hypotheses.begin(), hypotheses.end(),
@@ -26,7 +16,7 @@ void keepBest(PoseHypotheses& hypotheses, std::size_t most)
   hypotheses.resize(std::min(most, hypotheses.size()));
 }
 
-Eigen::Isometry3d refined(const PreparedScan& a, const PreparedScan& b, const Eigen::Isometry3d& T_a_b)
+JointResult refine(const PreparedScan& a, const PreparedScan& b, const Eigen::Isometry3d& T_a_b)
 {
   JointOptions options;
   options.max_distance = 2.f * a.levels.front().voxel;
@@ -35,7 +25,7 @@ Eigen::Isometry3d refined(const PreparedScan& a, const PreparedScan& b, const Ei
   options.last_level = 1;
   options.min_overlap = 0.f;
   options.threads = 1;
-  return refineJointly({&a, &b}, {Eigen::Isometry3d::Identity(), T_a_b}, options, {}).poses[1];
+  return refineJointly({&a, &b}, {Eigen::Isometry3d::Identity(), T_a_b}, options, {});
 }
 
 // Keeps those that are best by their check on a level.
@@ -52,9 +42,6 @@ void rankByCheck(const PairGeometry& pair, int level, std::size_t most, PoseHypo
 // The hypotheses worth refining, best first.
 void rankHypotheses(const PairGeometry& pair, std::size_t most, FoundHypotheses& found)
 {
-  for (PoseHypothesis& hypothesis : found.features)
-    hypothesis.score = quickOverlap(pair.a, pair.b, hypothesis.T_a_b);
-  keepBest(found.features, most);
   rankByCheck(pair, 0, most, found.features);
   rankByCheck(pair, 0, most, found.planes);
   rankByCheck(pair, 1, most, found.planes);
@@ -80,6 +67,28 @@ void refineHypotheses(const PairGeometry& pair, const PoseHypotheses& hypotheses
       verified.push_back(next);
   }
 }
+
+constexpr double comparable_overlap = 0.3; // share of the best support: less, and mere chance explains it
+
+// Whether scans that do not overlap would explain what was found about as well.
+bool isChance(const PairCheck& check)
+{
+  constexpr double chance_overlap = 0.1; // that a pose without contradiction has by chance
+  return check.overlap * std::exp(-check.violation / violation_scale) < comparable_overlap * chance_overlap;
+}
+
+// Whether `other` explains two scans about as well as `best` does.
+bool comparable(const VerifiedHypothesis& best, const VerifiedHypothesis& other)
+{
+  constexpr double color_difference = 0.3; // of correlations: sampling does not cause it, so colours decide
+  const PairCheck &first = best.check, &second = other.check;
+  if (first.color && second.color && std::abs(*first.color - *second.color) > color_difference)
+    return false;
+  if (best.has_alias && other.has_alias)
+    return !clearlyWorse(second.violation, first.violation);
+  return second.violation <= std::max(2.0 * first.violation, first.violation + violation_scale) &&
+         other.support > comparable_overlap * best.support;
+}
 } // namespace
 
 PairGeometry::PairGeometry(const PreparedScan& scan_a, const PreparedScan& scan_b)
@@ -98,23 +107,24 @@ bool clearlyWorse(double violation, double other)
   return violation > std::max(2.0 * other, other + clear_difference);
 }
 
-bool comparable(const VerifiedHypothesis& best, const VerifiedHypothesis& other)
+bool isAmbiguous(const PairGeometry& pair, const VerifiedHypotheses& hypotheses)
 {
-  constexpr double comparable_overlap = 0.3; // share of the best support: less, and mere chance explains it
-  constexpr double color_difference = 0.3;   // of correlations: sampling does not cause it, so colours decide
-  const PairCheck &first = best.check, &second = other.check;
-  if (first.color && second.color && std::abs(*first.color - *second.color) > color_difference)
+  if (hypotheses.empty())
     return false;
-  if (best.has_alias && other.has_alias)
-    return !clearlyWorse(second.violation, first.violation);
-  return second.violation <= std::max(2.0 * first.violation, first.violation + violation_scale) &&
-         other.support > comparable_overlap * best.support;
+  const VerifiedHypothesis& best = hypotheses.front();
+  // Of hundreds of poses by planes one fits by chance, where scanners that saw around do not rule it out.
+  const bool by_planes = best.votes == 0 && !(sawAround(pair.a) && sawAround(pair.b));
+  return by_planes || best.has_free_motion || isChance(best.check) ||
+         std::any_of(hypotheses.begin() + 1, hypotheses.end(),
+                     [&](const VerifiedHypothesis& other) { return comparable(best, other); });
 }
 
 VerifiedHypothesis verifyHypothesis(const PairGeometry& pair, const PoseHypothesis& hypothesis)
 {
   VerifiedHypothesis verified;
-  verified.T_a_b = refined(pair.a, pair.b, hypothesis.T_a_b);
+  const JointResult refined = refine(pair.a, pair.b, hypothesis.T_a_b);
+  verified.T_a_b = refined.poses[1];
+  verified.has_free_motion = findFreeMotion(refined.information[1]).has_value();
   verified.votes = hypothesis.votes;
   verified.check = checkPair(pair.a, pair.b, verified.T_a_b, check_level);
   // Without free space on both sides, features are the only other witnesses.

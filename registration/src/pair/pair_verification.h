@@ -7,9 +7,10 @@ namespace fresco::registration {
 struct VerifiedHypothesis {
   Eigen::Isometry3d T_a_b = Eigen::Isometry3d::Identity();
   PairCheck check;
-  Index votes = 0;        ///< features that agree
-  double support = 0.0;   ///< overlap; less where few features agree and no free space bears witness, 0..1
-  double score = 0.0;     ///< support, discounted by violations; larger is better
+  Index votes = 0;              ///< features that agree
+  double support = 0.0;         ///< overlap; less where few features agree and no free space bears witness, 0..1
+  double score = 0.0;           ///< support, discounted by violations; larger is better
+  bool has_free_motion = false; ///< whether the surfaces leave a motion free, as of a single wall
   bool has_alias = false; ///< one of several places that look alike to a scan: little overlap says nothing against it
 };
 using VerifiedHypotheses = std::vector<VerifiedHypothesis, Eigen::aligned_allocator<VerifiedHypothesis>>;
@@ -27,13 +28,13 @@ struct PairGeometry {
 struct VerificationOptions {
   float min_overlap = 0.1f;
   float max_violation = 0.04f;
-  std::size_t checked = 20; ///< hypotheses that are checked for violations
+  std::size_t checked = 20; ///< hypotheses that are left by the first check of few samples
   std::size_t refined = 8;  ///< hypotheses that are refined
 };
 
 /// Poses of a pair before they are refined.
 struct FoundHypotheses {
-  PoseHypotheses features; ///< by features: coarse, sorted out by overlap first
+  PoseHypotheses features; ///< by features: coarse
   PoseHypotheses planes;   ///< by planes: fine, but most of them wrong
 };
 
@@ -43,8 +44,10 @@ double alignmentScore(const PairCheck& check);
 /// Whether free space speaks clearly against a pose with `violation` when another one has `other`.
 bool clearlyWorse(double violation, double other);
 
-/// Whether `other` explains two scans about as well as `best` does.
-bool comparable(const VerifiedHypothesis& best, const VerifiedHypothesis& other);
+/// Whether the best hypothesis cannot be believed by itself: another one or mere chance explains the scans about as well,
+/// surfaces leave a motion free, or no features agree on it and the scans saw too little to rule out wrong ones.
+/// @param hypotheses best first
+bool isAmbiguous(const PairGeometry& pair, const VerifiedHypotheses& hypotheses);
 
 /// Refined and checked.
 VerifiedHypothesis verifyHypothesis(const PairGeometry& pair, const PoseHypothesis& hypothesis);

@@ -22,9 +22,9 @@ PairAlignment alignByPlans(const PlannedScan& a, const PlannedScan& b, const Ver
   FoundHypotheses found;
   found.planes = matchPlans(a.plan, b.plan, most_aligned);
   PairAlignment alignment;
-  alignment.hypotheses = verifyHypotheses(PairGeometry(a.scan, b.scan), found, options);
-  for (std::size_t k = 1; k < alignment.hypotheses.size(); ++k)
-    alignment.ambiguous = alignment.ambiguous || comparable(alignment.hypotheses[0], alignment.hypotheses[k]);
+  const PairGeometry pair(a.scan, b.scan);
+  alignment.hypotheses = verifyHypotheses(pair, found, options);
+  alignment.ambiguous = isAmbiguous(pair, alignment.hypotheses);
   return alignment;
 }
 
