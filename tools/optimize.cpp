@@ -76,7 +76,8 @@ Request parse(int argc, char** argv)
                 readableExtensions(FileKind::mesh) + "; OUT: " + writableExtensions(FileKind::mesh) +
                 ";\nCLOUD: " + readableExtensions(FileKind::points) +
                 ", with or without normals.\n"
-                "OUT has the faces, colours and other attributes of MESH. Vertices without data stay where they were.");
+                "OUT has the faces, colours and other attributes of MESH. Vertices without data stay where they were;\n"
+                "those whose data would be farther off than before go back.");
   declare(args, request);
   const std::vector<std::string> files = args.parse(argc, argv, 3);
   request.mesh = files[0];

@@ -137,13 +137,13 @@ public:
     const Eigen::VectorXd around = countAround();
     const std::vector<double> areas = vertexAreas(graph_, x_, threads_);
     std::vector<double> rate(areas.size()); // of a datum on the vertex
-    const std::vector<int> nearest = nearestData(graph_, x_, data_, lists_, threads_);
-    const std::vector<double> spacing = spacingOf(graph_, data_, nearest);
+    coverage_.nearest = nearestData(graph_, x_, data_, lists_, threads_);
+    const std::vector<double> spacing = spacingOf(graph_, data_, coverage_.nearest);
     for (Index v = 0; v < graph_.vertexCount(); ++v) {
       constexpr double enough = 0.5; // of a datum: takes the whole area
       const double own = ramp(around[v], 0.0, enough);
       rate[v] = areas[v] / std::max(around[v], enough);
-      giveToNearest(v, (1.0 - own) * areas[v], nearest, spacing);
+      giveToNearest(v, (1.0 - own) * areas[v], spacing);
     }
     for (Index f = 0; f < graph_.faceCount(); ++f)
       for (int j = lists_.begin[f]; j < lists_.begin[f + 1]; ++j) {
@@ -174,12 +174,12 @@ private:
     return around;
   }
 
-  void giveToNearest(Index v, double area, const std::vector<int>& nearest, const std::vector<double>& spacing)
+  void giveToNearest(Index v, double area, const std::vector<double>& spacing)
   {
     // Lengths of an edge, or of the distance between neighbouring data where that is longer: two and a half pass over
     // one missing datum, but not over two.
     constexpr double reach_lengths = 2.5, near_lengths = 2.25;
-    findNear(graph_, x_, data_, nearest, v, near_);
+    findNear(graph_, x_, data_, coverage_.nearest, v, near_);
     double nearness = 0.0;
     for (const NearDatum& n : near_) {
       const double unit = std::max(1.0, spacing[n.datum]);

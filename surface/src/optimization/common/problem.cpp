@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "optimization/common/problem.h"
 #include "optimization/common/inversion_guard.h"
+#include "optimization/common/worsening_guard.h"
 #include <algorithm>
 #include <cmath>
 #include <fresco/core/machine_memory.h>
@@ -84,6 +85,7 @@ OptimizationProblem makeProblem(const TriangleMesh& mesh, const PointSet& points
           reach, " mean edge lengths) of the mesh");
   problem.coverage = findCoverage(problem.graph, problem.x, problem.data,
                                   sharePoints(problem.graph, problem.x, problem.data, threads), threads);
+  problem.start_distance = dataDistances(problem.graph, problem.x, problem.data, threads);
   return problem;
 }
 
@@ -95,6 +97,7 @@ void finish(const TriangleMesh& mesh, OptimizationProblem& problem, int threads,
   result.used_points = problem.data.size();
   result.left_out_points = problem.data.left_out;
   result.covered_vertices = std::count(covered.begin(), covered.end(), char{1});
+  undoWorsening(problem, threads);
   result.restored_vertices =
       repairInverted(problem.graph, problem.start, problem.coverage.nearness, problem.x, threads);
   result.mesh = movedMesh(mesh, problem, threads);

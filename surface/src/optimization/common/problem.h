@@ -10,6 +10,7 @@ struct OptimizationProblem {
   Positions start, x; ///< at the beginning and now; columns of vertices without faces are not used
   DataPoints data;
   DataCoverage coverage;
+  Eigen::VectorXf start_distance; ///< of each datum from its face at the start
 };
 
 /// Residual in mean edge lengths at which a datum has lost three quarters of its weight. A reconstruction is off by a
