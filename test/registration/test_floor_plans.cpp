@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "graph/scan_assembly.h"
+#include "pair/partial_alias.h"
 #include "pair/plan_alignment.h"
-#include "registration/registration_scene.h"
+#include "registration/look_alike_scenes.h"
+#include <fresco/registration/core/point_to_plane_registration.h>
 #include <fresco/registration/core/scan_registration.h>
 #include <gtest/gtest.h>
 namespace fresco::registration {
@@ -12,12 +15,12 @@ struct Planned {
   PlanSpectrum plan;
 };
 
-std::vector<Planned> drawPlans(const std::vector<PointSet>& scans)
+std::vector<Planned> drawPlans(const std::vector<PointSet>& scans, double voxel = 0.04)
 {
   std::vector<PreparedScan> prepared;
   std::vector<std::optional<PlanFrame>> frames;
   for (const PointSet& scan : scans) {
-    prepared.push_back(prepareScan(scan, Thinning(0.04), 0));
+    prepared.push_back(prepareScan(scan, Thinning(voxel), 0));
     frames.push_back(findPlanFrame(prepared.back(), findPlanes(prepared.back())));
   }
   const PlanGrid grid = choosePlanGrid(frames, prepared);
@@ -69,6 +72,55 @@ TEST(FloorPlans, ScannersThatDidNotStandUprightHaveNone)
   const std::vector<Planned> planned = drawPlans({transformPoints(scene.scans[0], T), scene.scans[1]});
   EXPECT_TRUE(planned[0].plan.empty());
   EXPECT_TRUE(matchPlans(planned[0].plan, planned[1].plan, 4).empty());
+}
+
+// An equal room behind two doors is a partial alias, however dense the scan is.
+TEST(FloorPlans, EqualRoomsBehindDoorsArePartialAliases)
+{
+  const Eigen::Isometry3d half_turn(Eigen::Translation3d(10, 4, 0) * Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitZ()));
+  for (const bool equal : {true, false})
+    for (const Index rays : {15000, 60000}) {
+      const ScannedScene scene = test::facingRooms({equal, false, false, test::Paint::none}, rays).scene;
+      const std::vector<Planned> planned = drawPlans(scene.scans, registrationVoxel(scene.scans[0]));
+      int partial = 0;
+      for (std::size_t i = 0; i < planned.size(); ++i) {
+        const Eigen::Isometry3d T_world_scan(scene.truth[i] * Eigen::Translation3d(planned[i].scan.center));
+        for (const ScanAlias& alias : findAliasesByPlan({planned[i].scan, planned[i].plan}))
+          if (alias.partial) {
+            ++partial;
+            EXPECT_LT(poseDistance(T_world_scan * alias.T * T_world_scan.inverse(), half_turn, 2.0), 0.5);
+          }
+      }
+      EXPECT_EQ(partial > 0, equal) << rays;
+    }
+}
+
+// Scans of equal rooms fit each other best, but those in front of the doors show that there are three.
+TEST(FloorPlans, ScansOfEqualRoomsInARowFallApart)
+{
+  const ScannedScene scene = test::roomsInARow(false, 60000).scene;
+  std::vector<Planned> planned = drawPlans(scene.scans);
+  std::vector<PreparedScan> scans;
+  for (Planned& one : planned) {
+    one.scan.aliases = findAliasesByPlan({one.scan, one.plan});
+    scans.push_back(one.scan);
+  }
+  std::vector<PairAlignment> pairs;
+  for (std::size_t a = 0; a < scans.size(); ++a)
+    for (std::size_t b = a + 1; b < scans.size(); ++b) {
+      pairs.push_back(alignByPlans({scans[a], planned[a].plan}, {scans[b], planned[b].plan}, {}));
+      pairs.back().a = static_cast<Index>(a);
+      pairs.back().b = static_cast<Index>(b);
+    }
+  sharePartialAliases(scans, pairs);
+  GraphOptions options;
+  options.tolerance = 4.f * scans[0].levels.back().voxel;
+  for (const ScanCluster& cluster : assembleScans({scans, pairs, options}, {}).clusters)
+    for (std::size_t k = 1; k < cluster.scans.size(); ++k)
+      EXPECT_LT(poseDistance(cluster.poses[0].inverse() * cluster.poses[k],
+                             truth(scene, planned, cluster.scans[0], cluster.scans[k]), 2.0),
+                0.3)
+          << cluster.scans[0] << " and " << cluster.scans[k];
 }
 } // namespace
 

@@ -107,6 +107,8 @@ TEST(LookAlikes, EqualRoomsThatSeeEachOtherAreNotMerged)
     EXPECT_EQ(outcome.held.wrong, 0) << place.name;
     EXPECT_EQ(outcome.held.right, paint == test::Paint::different ? 2 : 0) << place.name;
   }
+  for (const Index rays : {15000, 60000})
+    EXPECT_EQ(registered(test::facingRooms({true, false, false, test::Paint::none}, rays)).held.wrong, 0) << rays;
 }
 
 TEST(SelfAlignment, EqualRoomsBehindDoorsArePartialAliases)

@@ -48,6 +48,7 @@ private:
   void alignEach(const std::vector<RankedPair>& pairs, const Align& align);
   void describe(const Progress& progress);
   void describeAliases(const std::vector<RankedPair>& round);
+  ScanAliases aliasesOf(Index scan) const;
   bool manyPlaces() const;
   bool hasMany(std::size_t pairs) const;
   std::vector<RankedPair> orderedPairs() const;
@@ -60,7 +61,7 @@ private:
   const ScanCluster& known_;
   Exchange& ranks_;
   const ScanRegistrationOptions& options_;
-  std::vector<PlanSpectrum> plans_; // of all usable scans, or none
+  std::vector<PlanSpectrum> plans_; // of all scans, empty where there is none
   std::vector<ScanFeatures> features_;
   std::vector<char> has_aliases_; // per scan, whether they were looked for
   GlobalAlignment result_;
@@ -82,10 +83,10 @@ void GlobalAligner::alignEach(const std::vector<RankedPair>& pairs, const Align&
             [](const PairAlignment& x, const PairAlignment& y) { return std::pair(x.a, x.b) < std::pair(y.a, y.b); });
 }
 
-// Where there are many scans, and all scanners stood upright and saw around.
+// Where all scanners stood upright and saw around.
 bool GlobalAligner::drawPlans()
 {
-  if (!manyPlaces() || !known_.scans.empty())
+  if (!known_.scans.empty())
     return false;
   std::vector<std::optional<PlanFrame>> frames(scans_.size());
   for (std::size_t k = 0; k < scans_.size(); ++k) {
@@ -97,6 +98,8 @@ bool GlobalAligner::drawPlans()
       return false;
   }
   const PlanGrid grid = choosePlanGrid(frames, scans_);
+  if (grid.side == 0)
+    return false;
   plans_.resize(scans_.size());
   parallelFor(
       scans_.size(), options_.threads,
@@ -105,7 +108,7 @@ bool GlobalAligner::drawPlans()
           plans_[k] = PlanSpectrum(drawFloorPlan(scans_[k], *frames[k], grid), *frames[k], grid);
       },
       1);
-  return grid.side > 0;
+  return true;
 }
 
 // The likeliest partners of each scan.
@@ -171,10 +174,17 @@ void GlobalAligner::describeAliases(const std::vector<RankedPair>& round)
   if (fresh.empty())
     return;
   std::vector<ScanAliases> aliases(fresh.size());
-  forOwn(fresh.size(), [&](Index k) { aliases[k] = findAliases(scans_[fresh[k]], features_[fresh[k]]); });
+  forOwn(fresh.size(), [&](Index k) { aliases[k] = aliasesOf(fresh[k]); });
   shareItems(ranks_, aliases);
   for (std::size_t k = 0; k < fresh.size(); ++k)
     scans_[fresh[k]].aliases = std::move(aliases[k]);
+}
+
+ScanAliases GlobalAligner::aliasesOf(Index scan) const
+{
+  ScanAliases aliases = findAliases(scans_[scan], features_[scan]);
+  addAliases(findAliasesByPlan({scans_[scan], plans_[scan]}), scans_[scan].size, aliases);
+  return aliases;
 }
 
 void GlobalAligner::alignPairs(const std::vector<RankedPair>& round)
@@ -185,7 +195,7 @@ void GlobalAligner::alignPairs(const std::vector<RankedPair>& round)
   options.upright = options_.upright;
   describeAliases(round);
   alignEach(round, [&](Index a, Index b) {
-    return alignPair({scans_[a], features_[a]}, {scans_[b], features_[b]}, options);
+    return alignPair({scans_[a], features_[a], &plans_[a]}, {scans_[b], features_[b], &plans_[b]}, options);
   });
 }
 
@@ -281,7 +291,9 @@ void GlobalAligner::alignInRounds(const Progress& progress)
 
 GlobalAlignment GlobalAligner::run(const Progress& progress)
 {
-  if (drawPlans())
+  const bool drawn = drawPlans();
+  plans_.resize(scans_.size());
+  if (drawn && manyPlaces())
     assembleByPlans(progress);
   else
     alignInRounds(progress);

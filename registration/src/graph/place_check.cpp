@@ -39,7 +39,7 @@ bool contests(const ClusterPose& other, const ClusterPose& place)
 // A place before it is refined.
 struct RoughPlace {
   Eigen::Isometry3d T;
-  bool sound, chained;
+  bool sound, chained, faded; // as of ClusterPose
 };
 using RoughPlaces = std::vector<RoughPlace, Eigen::aligned_allocator<RoughPlace>>;
 
@@ -60,6 +60,8 @@ public:
 private:
   // Errors of a pose that is not refined may cause it.
   double loose() const { return 0.5 * input_.options.max_violation; }
+  // Right poses of little overlap are often below that from which a place is believed.
+  double contestingColor() const { return least_color_ > 0.0 ? 0.5 * least_color_ : least_color_; }
   void addPlaces(Index scan, Index from, const RoughPlace& pose, bool sound_only, RoughPlaces& places) const;
   RoughPlaces placesOf(Index scan, bool sound_only) const;
   void addChains(RoughPlaces& places) const;
@@ -78,13 +80,14 @@ void PlaceSearch::addPlaces(Index scan, Index from, const RoughPlace& pose, bool
   for (const PairAlignment& pair : input_.pairs) {
     if (!((pair.a == scan && pair.b == from) || (pair.a == from && pair.b == scan)))
       continue;
-    for (const VerifiedHypothesis& hypothesis : pair.hypotheses)
-      if (hypothesis.check.color.value_or(1.0) >= least_color_ &&
-          (sound_only ? isSound(pair, hypothesis, telling_overlap) : hypothesis.check.violation <= loose())) {
-        const Eigen::Isometry3d& T = hypothesis.T_a_b;
-        places.push_back(
-            {pose.T * (pair.a == scan ? T.inverse() : T), isSound(pair, hypothesis, telling_overlap), pose.chained});
-      }
+    for (const VerifiedHypothesis& hypothesis : pair.hypotheses) {
+      const double color = hypothesis.check.color.value_or(1.0);
+      const bool sound = isSound(pair, hypothesis, telling_overlap), faded = pose.faded || color < least_color_;
+      if (color < contestingColor() || (sound_only ? !sound : hypothesis.check.violation > loose()))
+        continue;
+      const Eigen::Isometry3d& T = hypothesis.T_a_b;
+      places.push_back({pose.T * (pair.a == scan ? T.inverse() : T), sound, pose.chained, faded});
+    }
   }
 }
 
@@ -93,7 +96,7 @@ RoughPlaces PlaceSearch::placesOf(Index scan, bool sound_only) const
 {
   RoughPlaces places;
   for (std::size_t k = 0; k < cluster_.scans.size(); ++k)
-    addPlaces(scan, cluster_.scans[k], {cluster_.poses[k], false, sound_only}, sound_only, places);
+    addPlaces(scan, cluster_.scans[k], {cluster_.poses[k], false, sound_only, false}, sound_only, places);
   return places;
 }
 
@@ -118,7 +121,7 @@ void PlaceSearch::addChains(RoughPlaces& places) const
         RoughPlaces ends;
         addPlaces(moving_.scans[k], i, place, true, ends);
         for (const RoughPlace& end : ends)
-          places.push_back({end.T * moving_.poses[k].inverse(), end.sound, true});
+          places.push_back({end.T * moving_.poses[k].inverse(), end.sound, true, end.faded});
       }
   }
 }
@@ -128,7 +131,7 @@ RoughPlaces PlaceSearch::roughPlaces() const
   RoughPlaces places;
   for (std::size_t k = 0; k < moving_.scans.size(); ++k)
     for (const RoughPlace& place : placesOf(moving_.scans[k], false))
-      places.push_back({place.T * moving_.poses[k].inverse(), place.sound, false});
+      places.push_back({place.T * moving_.poses[k].inverse(), place.sound, false, place.faded});
   addChains(places);
   return places;
 }
@@ -173,6 +176,7 @@ bool PlaceSearch::isKnown(const RoughPlace& rough, const Eigen::Isometry3d& T, d
     if (distance(place.T, T) < tolerances * input_.options.tolerance) {
       place.sound = place.sound || rough.sound;
       place.chained = place.chained || rough.chained;
+      place.faded = place.faded && rough.faded;
       return true;
     }
   return false;
@@ -190,6 +194,7 @@ ClusterPoses PlaceSearch::run() const
     ClusterPose place = evidence(T);
     place.sound = rough.sound;
     place.chained = rough.chained;
+    place.faded = rough.faded;
     if (place.violation <= loose())
       places.push_back(place);
   }
@@ -284,7 +289,8 @@ const ClusterPose* uncontested(const ClusterPoses& places, double least_overlap,
     const bool contested = std::any_of(places.begin(), places.end(), [&](const ClusterPose& other) {
       return &other != &place && contests(other, place);
     });
-    if (!contested && !place.doubtful && place.overlap >= least_overlap && place.violation <= most_violation)
+    if (!contested && !place.doubtful && !place.faded && place.overlap >= least_overlap &&
+        place.violation <= most_violation)
       return &place;
   }
   return nullptr;

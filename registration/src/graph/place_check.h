@@ -10,6 +10,7 @@ struct ClusterPose {
   Index violating_points = 0;                          ///< of all pairs, see PairCheck
   bool sound = false;    ///< the best that a pair of scans says of itself, and nothing that they see contradicts it
   bool chained = false;  ///< by sound pairs over one or two scans of neither
+  bool faded = false;    ///< by pairs whose colours agree too little to believe them, but enough to contest others
   bool doubtful = false; ///< no more pairs agree there than contradict each other, see contradictsOneRoom()
 };
 using ClusterPoses = std::vector<ClusterPose, Eigen::aligned_allocator<ClusterPose>>;

@@ -46,6 +46,8 @@ private:
   void join(const Join& join);
   bool fitsElsewhere(const ScanCluster& rest, const ScanCluster& part) const;
   bool splitContested(std::size_t group);
+  bool haveTwinPlaces(const ScanCluster& whole, const ScanCluster& part, const ScanCluster& rest) const;
+  bool splitTwins(std::size_t group);
   void split(std::size_t group, const std::vector<Index>& listed);
 
   const GraphInput& input_;
@@ -255,6 +257,40 @@ bool Assembler::splitContested(std::size_t group)
   return true;
 }
 
+// Whether two parts of one cluster fit at two places of another one alike: they may be at one each.
+bool Assembler::haveTwinPlaces(const ScanCluster& whole, const ScanCluster& part, const ScanCluster& rest) const
+{
+  ClusterFits shared;
+  const ClusterFits of_rest = fitter_.find(whole, rest);
+  for (const ClusterFit& fit : fitter_.find(whole, part))
+    if (std::any_of(of_rest.begin(), of_rest.end(),
+                    [&](const ClusterFit& other) { return fitter_.isSame(part, fit.T, other.T, 3.0); }))
+      shared.push_back(fit);
+  return std::any_of(shared.begin(), shared.end(), [&](const ClusterFit& fit) {
+    return std::any_of(shared.begin(), shared.end(),
+                       [&](const ClusterFit& other) { return &fit != &other && rivals(other, fit); });
+  });
+}
+
+// What was joined by the sight of equal rooms falls apart once another group shows that there are two of them.
+bool Assembler::splitTwins(std::size_t group)
+{
+  const ScanCluster cluster = groups_[group].cluster;
+  for (const std::vector<Index>& listed : groups_[group].parts) {
+    const auto [part, rest] = divide(cluster, listed);
+    if (part.scans.empty() || rest.scans.empty())
+      continue;
+    for (std::size_t other = 0; other < groups_.size(); ++other)
+      if (other != group && groups_[other].cluster.scans.size() > 1 &&
+          haveTwinPlaces(groups_[other].cluster, part, rest)) {
+        const std::vector<Index> scans = listed;
+        split(group, scans);
+        return true;
+      }
+  }
+  return false;
+}
+
 // Scans that see the same room as the part may be the wrong ones as well, and become alone.
 void Assembler::split(std::size_t group, const std::vector<Index>& listed)
 {
@@ -285,6 +321,8 @@ ScanGraph Assembler::run()
     ;
   for (std::size_t g = 0; g < groups_.size();)
     g += splitContested(g) ? 0 : 1;
+  for (std::size_t g = 0; g < groups_.size();)
+    g += splitTwins(g) ? 0 : 1;
   ScanGraph graph;
   for (const Group& group : groups_)
     graph.clusters.push_back(group.cluster);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pair/pair_alignment.h"
+#include "pair/plan_correlation.h"
 #include "pair/plane_matching.h"
 #include <algorithm>
 namespace fresco::registration {
@@ -68,6 +69,7 @@ private:
 FoundHypotheses findHypotheses(const DescribedScan& a, const DescribedScan& b, const PairGeometry& pair,
                                const PairAlignmentOptions& options)
 {
+  constexpr std::size_t most_by_plans = 16;
   constexpr std::size_t most_by_planes = 200; // the right one is among the first hundred where a tenth overlaps
   Sc2PcrOptions sc2_pcr;
   sc2_pcr.tolerance = 1.5f * a.scan.levels[1].voxel;
@@ -76,8 +78,10 @@ FoundHypotheses findHypotheses(const DescribedScan& a, const DescribedScan& b, c
   found.features = runSc2Pcr(a.features, b.features, matchFeatures(a.features, b.features, options.matches), sc2_pcr);
   if (!a.scan.free_space.empty() && !b.scan.free_space.empty())
     found.planes = matchPlanes(a.features.planes, b.features.planes, most_by_planes);
+  if (a.plan && b.plan)
+    found.plans = matchPlans(*a.plan, *b.plan, most_by_plans);
   if (options.upright)
-    for (PoseHypotheses* poses : {&found.features, &found.planes})
+    for (PoseHypotheses* poses : {&found.features, &found.planes, &found.plans})
       keepUpright(*poses);
   return found;
 }

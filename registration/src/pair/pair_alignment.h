@@ -16,15 +16,18 @@ struct PairAlignmentOptions {
   std::size_t matches = 1500; ///< correspondences of features
 };
 
+class PlanSpectrum;
+
 struct DescribedScan {
   const PreparedScan& scan;
   const ScanFeatures& features;
+  const PlanSpectrum* plan = nullptr; ///< null or empty: none
 };
 
 /// Leaves the poses between scanners that both stood upright.
 void keepUpright(PoseHypotheses& poses);
 
-/// Global alignment of two scans from their features: hypotheses by SC2-PCR, the best by overlap and free space,
-/// refined and checked again; and, for each alias of a scan, the hypothesis that lies at the other place.
+/// Global alignment of two scans: hypotheses by features (SC2-PCR), planes and floor plans, the best by overlap and free
+/// space, refined and checked again; and, for each alias of a scan, the hypothesis that lies at the other place.
 PairAlignment alignPair(const DescribedScan& a, const DescribedScan& b, const PairAlignmentOptions& options);
 } // namespace fresco::registration

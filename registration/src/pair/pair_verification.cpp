@@ -43,6 +43,7 @@ void rankByCheck(const PairGeometry& pair, int level, std::size_t most, PoseHypo
 void rankHypotheses(const PairGeometry& pair, std::size_t most, FoundHypotheses& found)
 {
   rankByCheck(pair, 0, most, found.features);
+  rankByCheck(pair, 0, most, found.plans);
   rankByCheck(pair, 0, most, found.planes);
   rankByCheck(pair, 1, most, found.planes);
 }
@@ -139,8 +140,8 @@ VerifiedHypotheses verifyHypotheses(const PairGeometry& pair, FoundHypotheses fo
 {
   rankHypotheses(pair, options.checked, found);
   VerifiedHypotheses refined_all, accepted;
-  refineHypotheses(pair, found.features, options.refined, refined_all);
-  refineHypotheses(pair, found.planes, options.refined, refined_all);
+  for (const PoseHypotheses* poses : {&found.features, &found.planes, &found.plans})
+    refineHypotheses(pair, *poses, options.refined, refined_all);
   for (const VerifiedHypothesis& verified : refined_all)
     if (verified.check.overlap >= options.min_overlap && verified.check.violation <= options.max_violation)
       accepted.push_back(verified);

@@ -36,6 +36,7 @@ struct VerificationOptions {
 struct FoundHypotheses {
   PoseHypotheses features; ///< by features: coarse
   PoseHypotheses planes;   ///< by planes: fine, but most of them wrong
+  PoseHypotheses plans;    ///< by floor plans: coarse in place, few
 };
 
 /// Discount of an overlap by violations.

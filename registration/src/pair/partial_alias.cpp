@@ -6,12 +6,12 @@
 #include <algorithm>
 namespace fresco::registration {
 namespace {
+constexpr double far_range = 1.5;     // of the scan's size: what lies beyond may have been seen through an opening
 constexpr double least_overlap = 0.1; // of a scan with itself: less is no evidence of a second place
 
 // Features that are far from every place the scan was seen from.
 std::vector<Index> farFeatures(const ScanFeatures& features, const PreparedScan& scan)
 {
-  constexpr double far_range = 1.5; // of the scan's size: what lies beyond may have been seen through an opening
   std::vector<Index> far;
   const float range = far_range * scan.size;
   const Points& viewpoints = scan.levels.front().viewpoints;
@@ -50,15 +50,15 @@ Eigen::Vector3d weakestDirection(const ScanLevel& level, const Eigen::Isometry3d
 
 // The little that is seen of a second place leaves a direction nearly free, in which refinement drifts: the best place
 // along it.
-Eigen::Isometry3d bestAlongWeakest(const PreparedScan& scan, const Eigen::Isometry3d& T)
+Eigen::Isometry3d bestAlongWeakest(const PreparedScan& scan, const Eigen::Isometry3d& T, int level)
 {
   constexpr int steps = 4; // of half a voxel to either side: how far refinement drifts
-  const Eigen::Vector3d step = 0.5 * scan.levels[1].voxel * weakestDirection(scan.levels[1], T);
+  const Eigen::Vector3d step = 0.5 * scan.levels[1].voxel * weakestDirection(scan.levels[level], T);
   Eigen::Isometry3d best = T;
   double most = -1.0;
   for (int k = -steps; k <= steps; ++k) {
     const Eigen::Isometry3d shifted = Eigen::Translation3d(k * step) * T;
-    const double score = alignmentScore(checkPair(scan, scan, shifted, 1));
+    const double score = alignmentScore(checkPair(scan, scan, shifted, level));
     if (score > most) {
       most = score;
       best = shifted;
@@ -76,32 +76,32 @@ bool isElsewhere(const PreparedScan& scan, const Eigen::Isometry3d& T)
 bool fitsPartially(const PreparedScan& scan, const Eigen::Isometry3d& T)
 {
   constexpr double most_violation = 0.002; // what noise causes: a place of which little is seen must fit
+  constexpr double most_strays = 0.005;    // of the points that agree, single ones among them
+  constexpr double fewest_points = 200.0;  // that agree: fewer do so by chance in many a room
   if (!isElsewhere(scan, T))
     return false;
   const PairCheck check = checkPair(scan, scan, T, check_level);
-  return check.overlap >= least_overlap && check.violation < most_violation && check.color.value_or(1.0) > alias_color;
+  const double agreeing = check.overlap * static_cast<double>(scan.levels[check_level].points.cols());
+  return check.overlap >= least_overlap && check.violation < most_violation && agreeing >= fewest_points &&
+         static_cast<double>(check.violating_points) <= most_strays * agreeing &&
+         check.color.value_or(1.0) > alias_color;
 }
 
-// Poses that bring what is far onto what is near, the best first.
-PoseHypotheses farToNear(const PreparedScan& scan, const ScanFeatures& features, const Sc2PcrOptions& sc2_pcr)
+// The best of those that lead to a place near enough to be told.
+void keepLikely(const PreparedScan& scan, PoseHypotheses& hypotheses)
 {
   constexpr double next_door = 3.0;        // of the scan's size: a place further off is seen too badly to be told
-  constexpr int matches_a_feature = 6;     // places of the near part that look like a far feature's
   constexpr std::size_t most_refined = 15; // bounds the time
-  const float apart = alias_distance * scan.size;
-  const std::vector<Correspondence> matches =
-      matchToSelf(features, {farFeatures(features, scan), apart, 0.5f * apart, matches_a_feature});
-  PoseHypotheses hypotheses = runSc2Pcr(features, features, matches, sc2_pcr);
-  const auto too_far = [&](const PoseHypothesis& hypothesis) {
-    return hypothesis.T_a_b.translation().norm() > next_door * scan.size;
+  const auto unlikely = [&](const PoseHypothesis& hypothesis) {
+    const double distance = hypothesis.T_a_b.translation().norm();
+    return distance < far_range * scan.size || distance > next_door * scan.size;
   };
-  hypotheses.erase(std::remove_if(hypotheses.begin(), hypotheses.end(), too_far), hypotheses.end());
+  hypotheses.erase(std::remove_if(hypotheses.begin(), hypotheses.end(), unlikely), hypotheses.end());
   for (PoseHypothesis& hypothesis : hypotheses)
     hypothesis.score = alignmentScore(checkPair(scan, scan, hypothesis.T_a_b, 0));
   std::stable_sort(hypotheses.begin(), hypotheses.end(),
                    [](const PoseHypothesis& x, const PoseHypothesis& y) { return x.score > y.score; });
   hypotheses.resize(std::min(most_refined, hypotheses.size()));
-  return hypotheses;
 }
 
 bool isKnown(const PreparedScan& scan, const Eigen::Isometry3d& T)
@@ -148,22 +148,34 @@ private:
 };
 } // namespace
 
-ScanAliases findPartialAliases(const PreparedScan& scan, const ScanFeatures& features, const Sc2PcrOptions& sc2_pcr)
+PoseHypotheses matchFarToNear(const PreparedScan& scan, const ScanFeatures& features, const Sc2PcrOptions& sc2_pcr)
+{
+  constexpr int matches_a_feature = 6; // places of the near part that look like a far feature's
+  const float apart = alias_distance * scan.size;
+  return runSc2Pcr(features, features,
+                   matchToSelf(features, {farFeatures(features, scan), apart, 0.5f * apart, matches_a_feature}),
+                   sc2_pcr);
+}
+
+ScanAliases findPartialAliases(const PreparedScan& scan, PoseHypotheses starts)
 {
   constexpr double hopeless_violation = 0.02; // before the last refinement: ten times what may be left after it
+  keepLikely(scan, starts);
   ScanAliases found;
   IsometryVector tried;
-  for (const PoseHypothesis& hypothesis : farToNear(scan, features, sc2_pcr)) {
-    const Eigen::Isometry3d rough = refined(scan, hypothesis.T_a_b, 0, 1);
-    const PairCheck check = checkPair(scan, scan, rough, 1);
+  for (const PoseHypothesis& hypothesis : starts) {
+    const Eigen::Isometry3d rough = refined(scan, hypothesis.T_a_b, 0, 1), along = bestAlongWeakest(scan, rough, 1);
+    const PairCheck check = checkPair(scan, scan, along, 1);
     const bool known = std::any_of(tried.begin(), tried.end(), [&](const Eigen::Isometry3d& other) {
-      return poseDistance(rough, other, scan.size) < scan.levels[1].voxel;
+      return poseDistance(along, other, scan.size) < scan.levels[1].voxel;
     });
-    if (known || check.violation > hopeless_violation || check.overlap < least_overlap || !isElsewhere(scan, rough))
+    if (known || check.violation > hopeless_violation || check.overlap < least_overlap || !isElsewhere(scan, along))
       continue;
-    tried.push_back(rough);
-    for (const Eigen::Isometry3d& start : {rough, bestAlongWeakest(scan, rough)}) {
-      const Eigen::Isometry3d T = refined(scan, start, check_level, level_count - 1);
+    tried.push_back(along);
+    for (const Eigen::Isometry3d& start : {rough, along}) {
+      Eigen::Isometry3d T = refined(scan, start, check_level, level_count - 1);
+      if (!fitsPartially(scan, T))
+        T = bestAlongWeakest(scan, T, check_level);
       if (fitsPartially(scan, T)) {
         found.push_back({T, true, 0.0, 0.0, true});
         break;

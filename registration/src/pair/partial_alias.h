@@ -2,9 +2,13 @@
 #pragma once
 #include "pair/pair_alignment.h"
 namespace fresco::registration {
+/// Motions that bring what is far from the scanner onto what is near it, by features.
+PoseHypotheses matchFarToNear(const PreparedScan& scan, const ScanFeatures& features, const Sc2PcrOptions& sc2_pcr);
+
 /// Aliases of which the scan saw little, such as an equal room through two doors: what is far fits to what is near, and
 /// nothing contradicts it.
-ScanAliases findPartialAliases(const PreparedScan& scan, const ScanFeatures& features, const Sc2PcrOptions& sc2_pcr);
+/// @param starts motions of the scan to begin from, a few of the coarsest voxels off
+ScanAliases findPartialAliases(const PreparedScan& scan, PoseHypotheses starts);
 
 /// A second place of which one scan saw little counts for all scans of the first: each scan receives the partial
 /// aliases of those it overlaps largely. What one of them contradicts is dropped.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pair/plan_alignment.h"
+#include "pair/partial_alias.h"
 #include "pair/place_likeness.h"
 #include "pair/self_alignment.h"
 #include <algorithm>
@@ -31,8 +32,7 @@ PairAlignment alignByPlans(const PlannedScan& a, const PlannedScan& b, const Ver
 ScanAliases findAliasesByPlan(const PlannedScan& scan)
 {
   constexpr std::size_t most_aliases = 16;
-  constexpr double partial_violation = 0.002; // what noise causes: a place of which little is seen must fit
-  if (scan.plan.empty())
+  if (scan.plan.empty() || !sawAround(scan.scan)) // else it knows too little that could reject an alias
     return {};
   VerificationOptions options;
   options.max_violation *= 2.f; // of a pair: the best of a family of poses violates less
@@ -41,12 +41,11 @@ ScanAliases findAliasesByPlan(const PlannedScan& scan)
   found.planes = matchPlans(scan.plan, scan.plan, most_aliases);
   ScanAliases aliases;
   for (const VerifiedHypothesis& own : verifyHypotheses(PairGeometry(scan.scan, scan.scan), found, options))
-    if (poseDistance(own.T_a_b, Eigen::Isometry3d::Identity(), scan.scan.size) > alias_distance * scan.scan.size) {
+    if (poseDistance(own.T_a_b, Eigen::Isometry3d::Identity(), scan.scan.size) > alias_distance * scan.scan.size)
       aliases.push_back(toAlias(own));
-      ScanAlias& alias = aliases.back();
-      if (!alias.certain && own.check.violation < partial_violation && own.check.color.value_or(1.0) > alias_color)
-        alias.certain = alias.partial = true;
-    }
+  if (std::none_of(aliases.begin(), aliases.end(), [](const ScanAlias& alias) { return alias.certain; }))
+    for (const ScanAlias& alias : findPartialAliases(scan.scan, found.planes))
+      aliases.push_back(alias);
   return aliases;
 }
 } // namespace fresco::registration

@@ -22,7 +22,7 @@ VerifiedHypotheses alignToSelf(const PreparedScan& scan, const ScanFeatures& fea
   options.refined = options.checked;
   const float apart = alias_distance * scan.size;
   const std::vector<Correspondence> matches = matchToSelf(features, {allOf(features), apart, apart, matches_a_feature});
-  return verifyHypotheses(PairGeometry(scan, scan), {runSc2Pcr(features, features, matches, sc2_pcr), {}}, options);
+  return verifyHypotheses(PairGeometry(scan, scan), {runSc2Pcr(features, features, matches, sc2_pcr), {}, {}}, options);
 }
 
 } // namespace
@@ -39,6 +39,7 @@ ScanAlias toAlias(const VerifiedHypothesis& own)
   alias.likeness = wide && own.check.violation <= VerificationOptions().max_violation ? own.check.overlap : 0.0;
   return alias;
 }
+
 ScanAliases findAliases(const PreparedScan& scan, const ScanFeatures& features)
 {
   if (!sawAround(scan)) // it knows too little that could reject an alias
@@ -53,8 +54,17 @@ ScanAliases findAliases(const PreparedScan& scan, const ScanFeatures& features)
     if (poseDistance(own.T_a_b, Eigen::Isometry3d::Identity(), scan.size) > apart)
       aliases.push_back(toAlias(own));
   if (std::none_of(aliases.begin(), aliases.end(), [](const ScanAlias& alias) { return alias.certain; }))
-    for (const ScanAlias& alias : findPartialAliases(scan, features, sc2_pcr))
+    for (const ScanAlias& alias : findPartialAliases(scan, matchFarToNear(scan, features, sc2_pcr)))
       aliases.push_back(alias);
   return aliases;
+}
+
+void addAliases(const ScanAliases& more, double size, ScanAliases& aliases)
+{
+  for (const ScanAlias& alias : more)
+    if (std::none_of(aliases.begin(), aliases.end(), [&](const ScanAlias& known) {
+          return (known.certain || !alias.certain) && poseDistance(known.T, alias.T, size) < alias_distance * size;
+        }))
+      aliases.push_back(alias);
 }
 } // namespace fresco::registration

@@ -13,4 +13,8 @@ ScanAlias toAlias(const VerifiedHypothesis& own);
 /// alike, such as the next bay of a corridor. Where there is such a motion S, a pose T of another scan has the
 /// alternative S T, and only measurement can tell which is right. None without free space or of a narrow view.
 ScanAliases findAliases(const PreparedScan& scan, const ScanFeatures& features);
+
+/// Adds those of `more` of which the scan does not know as much.
+/// @param size of the scan, length
+void addAliases(const ScanAliases& more, double size, ScanAliases& aliases);
 } // namespace fresco::registration
