@@ -44,6 +44,10 @@ private:
   Joins likelyJoins() const;
   bool joinBest();
   void join(const Join& join);
+  bool hasKnown(const ScanCluster& cluster) const
+  {
+    return std::any_of(cluster.scans.begin(), cluster.scans.end(), [&](Index i) { return contains(known_, i); });
+  }
   bool fitsElsewhere(const ScanCluster& rest, const ScanCluster& part) const;
   bool splitContested(std::size_t group);
   bool haveTwinPlaces(const ScanCluster& whole, const ScanCluster& part, const ScanCluster& rest) const;
@@ -244,10 +248,8 @@ bool Assembler::splitContested(std::size_t group)
       parts.size(), input_.options.threads,
       [&](Index k) {
         const auto [part, rest] = divide(cluster, parts[k]);
-        const bool has_known =
-            std::any_of(part.scans.begin(), part.scans.end(), [&](Index i) { return contains(known_, i); });
-        contested[k] =
-            !part.scans.empty() && part.scans.size() <= rest.scans.size() && !has_known && fitsElsewhere(rest, part);
+        contested[k] = !part.scans.empty() && part.scans.size() <= rest.scans.size() && !hasKnown(part) &&
+                       fitsElsewhere(rest, part);
       },
       1);
   const auto first = std::find(contested.begin(), contested.end(), 1);
@@ -278,7 +280,7 @@ bool Assembler::splitTwins(std::size_t group)
   const ScanCluster cluster = groups_[group].cluster;
   for (const std::vector<Index>& listed : groups_[group].parts) {
     const auto [part, rest] = divide(cluster, listed);
-    if (part.scans.empty() || rest.scans.empty())
+    if (part.scans.empty() || rest.scans.empty() || hasKnown(part))
       continue;
     for (std::size_t other = 0; other < groups_.size(); ++other)
       if (other != group && groups_[other].cluster.scans.size() > 1 &&

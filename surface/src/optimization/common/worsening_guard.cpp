@@ -79,6 +79,7 @@ float partBySupport(const OptimizationProblem& problem, const FacePoints& lists,
   const double before = std::max(near, distance(problem.start, nearest[v]));
   return ramp(std::min(now, distance(problem.x, nearest[v])), before + away, before);
 }
+
 // At a boundary vertex, the direction in which the surface of the start ends; zero elsewhere.
 Vector3d endDirection(const OptimizationProblem& problem, Index v)
 {
