@@ -113,9 +113,10 @@ bool isAmbiguous(const PairGeometry& pair, const VerifiedHypotheses& hypotheses)
   if (hypotheses.empty())
     return false;
   const VerifiedHypothesis& best = hypotheses.front();
-  // Of hundreds of poses by planes one fits by chance, where scanners that saw around do not rule it out.
-  const bool by_planes = best.votes == 0 && !(sawAround(pair.a) && sawAround(pair.b));
-  return by_planes || best.has_free_motion || isChance(best.check) ||
+  // A camera sees too little to rule out what fits by chance, as one of hundreds of poses by planes does. Of scanners
+  // that saw around no wrong pose has much overlap, and with coarse noise the true one violates, too.
+  const bool narrow = !(sawAround(pair.a) && sawAround(pair.b));
+  return (narrow && (best.votes == 0 || isChance(best.check))) || best.has_free_motion ||
          std::any_of(hypotheses.begin() + 1, hypotheses.end(),
                      [&](const VerifiedHypothesis& other) { return comparable(best, other); });
 }

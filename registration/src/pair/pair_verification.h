@@ -45,8 +45,8 @@ double alignmentScore(const PairCheck& check);
 /// Whether free space speaks clearly against a pose with `violation` when another one has `other`.
 bool clearlyWorse(double violation, double other);
 
-/// Whether the best hypothesis cannot be believed by itself: another one or mere chance explains the scans about as well,
-/// surfaces leave a motion free, or no features agree on it and the scans saw too little to rule out wrong ones.
+/// Whether the best hypothesis cannot be believed by itself: another one explains the scans about as well, surfaces leave
+/// a motion free, or the scans saw too little to rule out wrong ones and it rests on planes alone or may be mere chance.
 /// @param hypotheses best first
 bool isAmbiguous(const PairGeometry& pair, const VerifiedHypotheses& hypotheses);
 
