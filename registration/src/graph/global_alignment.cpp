@@ -291,6 +291,7 @@ void GlobalAligner::alignInRounds(const Progress& progress)
 
 GlobalAlignment GlobalAligner::run(const Progress& progress)
 {
+  prepareManySearches(scans_, options_.threads);
   const bool drawn = drawPlans();
   plans_.resize(scans_.size());
   if (drawn && manyPlaces())

@@ -76,6 +76,10 @@ std::vector<char> Refinement::overlaps(float distance) const
         const DirectedPair pair{k / n, k % n, {}, 0.0};
         if (pair.source == pair.target || (fixed(pair.source) && fixed(pair.target)))
           return;
+        if (options_.min_overlap <= 0.f) {
+          overlaps[k] = 1;
+          return;
+        }
         OverlapTest test;
         test.distance = distance;
         test.most = 400; // in each of many rounds: the share is known to 2.5 %

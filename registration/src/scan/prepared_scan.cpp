@@ -3,6 +3,7 @@
 #include "scan/surface_normals.h"
 #include "scan/viewpoint_search.h"
 #include <algorithm>
+#include <fresco/core/parallel.h>
 #include <fresco/core/require.h>
 namespace fresco::registration {
 namespace {
@@ -29,12 +30,34 @@ void ScanLevel::prepareSearch() const
 
 Neighbor ScanLevel::nearest(const Eigen::Vector3f& query, float max_distance) const
 {
+  if (!search && grid) {
+    const Neighbor near = grid->nearest(query, std::min(max_distance, grid->reach()));
+    if (near.index >= 0 || max_distance <= grid->reach())
+      return near;
+  }
   if (!search)
     return tree->nearest(query, max_distance);
   std::vector<Neighbor> found;
   search->nearest(query, 1, found);
   const bool near = !found.empty() && found[0].squared_distance < max_distance * max_distance;
   return near ? found[0] : Neighbor{-1, 0.f};
+}
+
+void prepareManySearches(std::vector<PreparedScan>& scans, int threads)
+{
+  constexpr float reach = 2.f;          // voxels, for correspondences
+  const Index levels = check_level + 1; // in the finest one few are searched
+  parallelFor(
+      static_cast<Index>(scans.size()) * levels, threads,
+      [&](Index k) {
+        if (!scans[k / levels].problem.empty())
+          return;
+        ScanLevel& level = scans[k / levels].levels[k % levels];
+        const bool fits = level.points.cwiseAbs().maxCoeff() < NearestGrid::most_cells * level.voxel;
+        if (fits && !level.search)
+          level.grid = std::make_shared<NearestGrid>(*level.tree, reach * level.voxel, level.voxel);
+      },
+      1);
 }
 
 void distrustViewpoint(PreparedScan& scan, const std::string& reason)
