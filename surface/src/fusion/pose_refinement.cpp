@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "fusion/pose_refinement.h"
 #include <Eigen/Cholesky>
+#include <algorithm>
 #include <cmath>
 #include <fresco/core/parallel.h>
 #include <fresco/core/rigid_motion.h>
@@ -68,6 +69,7 @@ Eigen::Isometry3d alignToGrid(const DistanceGrid& grid, const DepthFrame& frame,
   // Of the pixels' weight. A direction that few pixels hold stays as given; one that half of them hold moves by 96 %.
   constexpr double prior = 0.02;
   Eigen::Isometry3d T = T_world_camera;
+  double before = 0, damping = 1;
   for (int i = 0; i < iterations; ++i) {
     const NormalEquations sums = parallelSum((frame.height + stride - 1) / stride, threads, NormalEquations{},
                                              [&](Index row) { return equationsOfRow(grid, frame, T, row * stride); });
@@ -77,7 +79,13 @@ Eigen::Isometry3d alignToGrid(const DistanceGrid& grid, const DepthFrame& frame,
     Vector6 moved;
     moved << turn.angle() * turn.axis(), T.translation() - given.translation();
     const Matrix6 H = sums.H + prior * sums.weight * Matrix6::Identity();
-    const Vector6 step = -H.ldlt().solve(sums.b + prior * sums.weight * moved);
+    Vector6 step = -H.ldlt().solve(sums.b + prior * sums.weight * moved);
+    // Where the mean of frames that disagree is flat, whole steps go too far and swing about the minimum, or grow.
+    const double length = std::max(step.head<3>().norm(), step.tail<3>().norm());
+    if (i > 0 && length > 0.5 * before)
+      damping *= 0.5;
+    before = length;
+    step *= damping;
     T.linear() = rotation(step.head<3>()) * T.linear();
     T.translation() += step.tail<3>();
     constexpr double rest = 1e-5; // rad and metres per step: a thousandth of the noise of a depth camera
