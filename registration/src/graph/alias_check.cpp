@@ -39,7 +39,8 @@ bool isElsewhere(const GraphInput& input, const ScanCluster& first, const Cluste
 class ChainCheck {
 public:
   ChainCheck(const GraphInput& input, const std::vector<ScanCluster>& clusters, const ClusterJoin& join)
-      : input_(input), clusters_(clusters), join_(join)
+      : input_(input), clusters_(clusters), join_(join),
+        most_violation_(mostViolation(input.pairs, input.options.max_violation))
   {}
 
   bool run() const;
@@ -55,6 +56,7 @@ private:
   const GraphInput& input_;
   const std::vector<ScanCluster>& clusters_;
   const ClusterJoin& join_;
+  const double most_violation_; // of a link: one that cannot be joined says nothing
 };
 
 // To clusters other than the two to be joined. Scans without free space cannot speak for an alias.
@@ -72,7 +74,7 @@ ChainLinks ChainCheck::linksFrom(Index cluster) const
     for (const VerifiedHypothesis& hypothesis : soundHypotheses(pair)) {
       const Eigen::Isometry3d T =
           clusters_[a.cluster].poses[a.position] * hypothesis.T_a_b * clusters_[b.cluster].poses[b.position].inverse();
-      if (hypothesis.check.overlap > least_overlap * join_.overlap)
+      if (hypothesis.check.overlap > least_overlap * join_.overlap && hypothesis.check.violation <= most_violation_)
         links.push_back({cluster, far, a.cluster == cluster ? T : Eigen::Isometry3d(T.inverse())});
     }
   }

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "graph/scan_graph.h"
 #include "graph/alias_check.h"
+#include "graph/free_space_evidence.h"
 #include "graph/place_check.h"
 #include <algorithm>
-#include <fresco/core/statistics.h>
 #include <numeric>
+#include <optional>
 namespace fresco::registration {
 namespace {
 struct Candidate {
@@ -15,8 +16,9 @@ struct Candidate {
 class GraphBuilder {
 public:
   GraphBuilder(const GraphInput& input, const ScanCluster& known)
-      : input_(input), known_(known), least_color_(leastColor(input.pairs)),
-        usual_violation_(usualViolation(input.pairs)), late_(input.scans.size(), 0)
+      : input_(input), known_(known), judge_(input.scans), least_color_(leastColor(input.pairs)),
+        usual_violation_(usualViolation(input.pairs)),
+        most_violation_(mostViolation(input.pairs, input.options.max_violation)), late_(input.scans.size(), 0)
   {
     begin();
   }
@@ -38,16 +40,11 @@ private:
   bool doubtful(const PairAlignment& pair, const PairCheck& check) const
   {
     if (!sawAround(input_.scans[pair.a]) || !sawAround(input_.scans[pair.b]))
-      return check.violation > mostViolation();
+      return check.violation > most_violation_;
     return check.violation > noiseViolation() || contradictsOneRoom(check, usual_violation_);
   }
   double noiseViolation() const { return std::max(noise_violation, usual_violation_); }
-  // Of any two scans of clusters of one state of a place: what moves or is misread, panes for one.
-  double mostViolation() const
-  {
-    constexpr double plain_violation = 0.01;
-    return std::min<double>(input_.options.max_violation, std::max(plain_violation, usual_violation_));
-  }
+  std::optional<Eigen::Isometry3d> fittingPose(Index a, Index b, const Eigen::Isometry3d& T_a_b) const;
   bool unconvincing(const Candidate& candidate) const;
   bool joinUnambiguous();
   bool joinAmbiguous();
@@ -60,7 +57,8 @@ private:
 
   const GraphInput& input_;
   const ScanCluster& known_;
-  double least_color_, usual_violation_;
+  const FreeSpaceJudge judge_;
+  double least_color_, usual_violation_, most_violation_;
   std::vector<const PairAlignment*> aliased_;
   std::vector<char> late_; // per scan
   ScanGraph graph_;
@@ -143,12 +141,27 @@ void GraphBuilder::join(Index a, Index b, const Eigen::Isometry3d& T_a_b)
   places_ = placesOf(graph_.clusters, input_.scans.size());
 }
 
+// T_a_b if no two scans of the clusters contradict each other. Of several scans true pairs do so where they looked through
+// panes or something moved; then where the smaller cluster settles, if free space of all does not contradict it there.
+std::optional<Eigen::Isometry3d> GraphBuilder::fittingPose(Index a, Index b, const Eigen::Isometry3d& T_a_b) const
+{
+  const ScanCluster &first = graph_.clusters[a], &second = graph_.clusters[b];
+  if (worstViolation(input_, first, second, T_a_b) <= most_violation_)
+    return T_a_b;
+  if (first.scans.size() + second.scans.size() == 2)
+    return std::nullopt;
+  const bool first_moves = first.scans.size() < second.scans.size();
+  const Eigen::Isometry3d T = first_moves ? settledPose(input_, second, first, T_a_b.inverse()).inverse()
+                                          : settledPose(input_, first, second, T_a_b);
+  return isContradicted(judge_.judge(first, second, T)) ? std::nullopt : std::optional(T);
+}
+
 bool GraphBuilder::tryJoin(const Candidate& candidate)
 {
   const Index a = places_[candidate.pair->a].cluster, b = places_[candidate.pair->b].cluster;
   if (a == b)
     return false;
-  const Eigen::Isometry3d T = clusterPose(candidate);
+  Eigen::Isometry3d T = clusterPose(candidate);
   const bool unsure = unconvincing(candidate);
   const bool weak = candidate.hypothesis->support < input_.options.strong_overlap ||
                     doubtful(*candidate.pair, candidate.hypothesis->check) || unsure;
@@ -157,9 +170,11 @@ bool GraphBuilder::tryJoin(const Candidate& candidate)
       aliased_.push_back(candidate.pair);
     return false;
   }
-  const ScanCluster &first = graph_.clusters[a], &second = graph_.clusters[b];
-  if (worstViolation(input_, first, second, T) > mostViolation())
+  const std::optional<Eigen::Isometry3d> fitting = fittingPose(a, b, T);
+  if (!fitting)
     return false;
+  T = *fitting;
+  const ScanCluster &first = graph_.clusters[a], &second = graph_.clusters[b];
   const ClusterJoin proposed{a, b, T, candidate.hypothesis->check.overlap};
   const bool single = first.scans.size() == 1 || second.scans.size() == 1; // of which contestedScans() will tell
   if (hasAliasByChain(input_, graph_.clusters, proposed) || hasAliasByScan(input_, graph_.clusters, proposed) ||
@@ -324,43 +339,6 @@ std::vector<ScanCluster> startingClusters(const GraphInput& input, const ScanClu
     if (input.scans[i].problem.empty() && !contains(known, i))
       clusters.push_back({{i}, {Eigen::Isometry3d::Identity()}});
   return clusters;
-}
-
-bool isSound(const PairAlignment& pair, const VerifiedHypothesis& hypothesis, double least_overlap)
-{
-  return &hypothesis == &pair.hypotheses.front() && hypothesis.check.overlap >= least_overlap &&
-         hypothesis.check.violation <= noise_violation;
-}
-
-double leastColor(const std::vector<PairAlignment>& pairs)
-{
-  constexpr double telling_color = 0.6; // correlation that a quarter of the pairs reaches: the scans' colours are good
-  constexpr double color_share = 0.5;   // of it, at least: lights and exposure change less between scans
-  std::vector<double> colors;
-  for (const PairAlignment& pair : pairs)
-    if (!pair.hypotheses.empty() && pair.hypotheses[0].check.color)
-      colors.push_back(*pair.hypotheses[0].check.color);
-  if (colors.empty())
-    return -1.0;
-  const double upper = rankedValue(colors, 3 * colors.size() / 4);
-  return upper > telling_color ? color_share * upper : -1.0;
-}
-
-double usualViolation(const std::vector<PairAlignment>& pairs)
-{
-  constexpr double violation_factor = 10.0; // of what the best quarter of the pairs has: another order of magnitude
-  std::vector<double> violations;
-  for (const PairAlignment& pair : pairs)
-    if (!pair.hypotheses.empty() && !pair.ambiguous)
-      violations.push_back(pair.hypotheses[0].check.violation);
-  return violations.empty() ? 0.0 : violation_factor * rankedValue(violations, (violations.size() - 1) / 4);
-}
-
-bool contradictsOneRoom(const PairCheck& check, double usual_violation)
-{
-  constexpr double one_room = 0.5;         // overlap
-  constexpr double room_violation = 0.001; // a handful of points
-  return check.overlap > one_room && check.violation > std::max(room_violation, usual_violation);
 }
 
 std::vector<ClusterPlace> placesOf(const std::vector<ScanCluster>& clusters, Index scan_count)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include "pair/pair_alignment.h"
+#include "graph/pair_evidence.h"
 #include "refinement/rigid_motion.h"
 namespace fresco::registration {
 /// Scans in one common frame.
@@ -48,22 +48,8 @@ struct GraphInput {
 /// Every scan without a problem alone, but the known ones, which come first.
 std::vector<ScanCluster> startingClusters(const GraphInput& input, const ScanCluster& known);
 
-constexpr double noise_violation = 0.002; ///< of a pair: mixed pixels do not cause more
-
-/// Whether a pose is the best of its pair, and nothing that the two see contradicts it.
-bool isSound(const PairAlignment& pair, const VerifiedHypothesis& hypothesis, double least_overlap);
-
-/// Where most pairs agree well in colour, one below this correlation is a look-alike; else -1.
-double leastColor(const std::vector<PairAlignment>& pairs);
-
-/// Where most pairs contradict free space hardly at all, a pair above this is a look-alike or has seen a change.
-double usualViolation(const std::vector<PairAlignment>& pairs);
-
-/// Two scans that see one room see all of it through the same air: the little that contradicts tells it from its twin.
-bool contradictsOneRoom(const PairCheck& check, double usual_violation);
-
 /// Joins scans to clusters by the relative poses of pairs, the best first. Two clusters are joined only if no scan of
-/// one lies in space that a scan of the other saw through. Of an ambiguous pair a hypothesis is used only if it is the
+/// one lies in space that a scan of the other saw through, but for the little that all of several together allow. Of an ambiguous pair a hypothesis is used only if it is the
 /// one that the clusters' other scans do not contradict. Scans without a problem take part.
 /// @param known scans that already share a frame; may be empty
 ScanGraph buildScanGraph(const GraphInput& input, const ScanCluster& known);

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include "pair/pair_alignment.h"
+namespace fresco::registration {
+constexpr double noise_violation = 0.002; ///< of a pair: mixed pixels do not cause more
+
+/// Whether a pose is the best of its pair, and nothing that the two see contradicts it.
+bool isSound(const PairAlignment& pair, const VerifiedHypothesis& hypothesis, double least_overlap);
+
+/// Where most pairs agree well in colour, one below this correlation is a look-alike; else -1.
+double leastColor(const std::vector<PairAlignment>& pairs);
+
+/// Where most pairs contradict free space hardly at all, a pair above this is a look-alike or has seen a change.
+double usualViolation(const std::vector<PairAlignment>& pairs);
+
+/// Of two scans of one state of a place, 0..1: what moves or is misread, panes for one.
+/// @param limit it is no larger
+double mostViolation(const std::vector<PairAlignment>& pairs, double limit);
+
+/// Two scans that see one room see all of it through the same air: the little that contradicts tells it from its twin.
+bool contradictsOneRoom(const PairCheck& check, double usual_violation);
+} // namespace fresco::registration

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "graph/alias_check.h"
+#include "registration/look_alike_scenes.h"
+#include <fresco/registration/core/point_to_plane_registration.h>
+#include <gtest/gtest.h>
+namespace fresco::registration {
+namespace {
+// Scans at their true poses, and pairs of them.
+struct Scene {
+  test::ScannedScene scanned;
+  std::vector<PreparedScan> scans;
+  std::vector<PairAlignment> pairs;
+  GraphOptions options;
+
+  explicit Scene(test::ScannedScene scene) : scanned(std::move(scene))
+  {
+    const PointSet& first = scanned.scans.front();
+    const Thinning thinning(registrationVoxel(first), scanSize(first), narrowness(first));
+    for (const PointSet& scan : scanned.scans)
+      scans.push_back(prepareScan(scan, thinning, 0));
+    options.tolerance = 4.f * thinning.voxels[0];
+  }
+  Eigen::Isometry3d pose(Index a, Index b) const { return scanned.truth[a].inverse() * scanned.truth[b]; }
+  GraphInput input() const { return {scans, pairs, options}; }
+
+  // As if nothing contradicted it.
+  void addPair(Index a, Index b, const Eigen::Isometry3d& T_a_b, double overlap)
+  {
+    VerifiedHypothesis hypothesis;
+    hypothesis.T_a_b = T_a_b;
+    hypothesis.check.overlap = hypothesis.support = hypothesis.score = overlap;
+    pairs.push_back({a, b, {hypothesis}, false, {}});
+  }
+};
+
+// Two equal rooms in a row: what a third scan says of them counts only if it could be joined itself.
+TEST(ClusterJoins, LinksThatCannotBeJoinedSayNothing)
+{
+  constexpr Index room_a = 0, room_b = 2, door_b = 3;
+  Scene scene(test::roomsInARow(false).scene);
+  const Eigen::Isometry3d in_a = Eigen::Translation3d(0, -test::row_pitch, 0) * scene.scanned.truth[room_b];
+  scene.addPair(room_b, door_b, scene.pose(room_b, door_b), 0.3);
+  scene.addPair(room_a, door_b, scene.pose(room_a, door_b), 0.3);
+  scene.addPair(room_a, room_b, scene.scanned.truth[room_a].inverse() * in_a, 0.9);
+  const std::vector<ScanCluster> clusters = startingClusters(scene.input(), {});
+  const ClusterJoin join{room_b, door_b, scene.pose(room_b, door_b), 0.3};
+  EXPECT_TRUE(hasAliasByChain(scene.input(), clusters, join));
+  for (PairAlignment& pair : scene.pairs)
+    if (pair.a == room_a)
+      pair.hypotheses[0].check.violation = 0.03;
+  EXPECT_FALSE(hasAliasByChain(scene.input(), clusters, join));
+}
+
+constexpr Index seer = 0, last = 9;
+
+// Ten scans of a room. Before the last one, a thing came into the view of the first one, which alone tells free space.
+Scene changedRoom(double size)
+{
+  test::ScannedScene scanned;
+  for (Index i = 0; i <= last; ++i) {
+    test::Boxes boxes = test::twoRooms();
+    if (i == last && size > 0.0)
+      test::addBox(boxes, {2.2, 1.6, 0.0}, {2.2 + size, 1.6 + size, 1.2});
+    scanned.truth.push_back(test::stationPose({1.0 + 0.3 * i, i % 2 ? 3.0 : 1.0, 1.5}, 0.4 * i, 0.0));
+    scanned.scans.push_back(test::scanBoxes(boxes, scanned.truth.back(), 20000, 0.004, i + 1));
+  }
+  Scene scene(std::move(scanned));
+  for (Index i = 1; i < last; ++i)
+    scene.scans[i].free_space = {};
+  for (Index i = 0; i < last; ++i)
+    scene.addPair(i, i + 1, scene.pose(i, i + 1),
+                  i == 7 ? 0.5 : 0.9); // so that two clusters are there before they join
+  return scene;
+}
+
+TEST(ClusterJoins, OnePairThatContradictsALittleDoesNotKeepClustersApart)
+{
+  for (const double size : {0.0, 0.4, 1.0}) {
+    const Scene scene = changedRoom(size);
+    const double violation = pairViolation(scene.scans[seer], scene.scans[last], scene.pose(seer, last), check_level);
+    EXPECT_EQ(violation > mostViolation(scene.pairs, scene.options.max_violation), size > 0.0) << violation;
+    const std::size_t placed = buildScanGraph(scene.input(), {}).clusters.front().scans.size();
+    EXPECT_EQ(placed, size < 0.5 ? 10u : 8u) << violation;
+  }
+}
+} // namespace
+} // namespace fresco::registration
