@@ -47,7 +47,7 @@ private:
   template <typename Align>
   void alignEach(const std::vector<RankedPair>& pairs, const Align& align);
   void describe(const Progress& progress);
-  void describeAliases(const std::vector<RankedPair>& round);
+  void prepareForPairs(const std::vector<RankedPair>& round);
   ScanAliases aliasesOf(Index scan) const;
   bool manyPlaces() const;
   bool hasMany(std::size_t pairs) const;
@@ -132,6 +132,8 @@ void GlobalAligner::assembleByPlans(const Progress& progress)
   options.min_overlap = options_.min_overlap;
   options.max_violation = options_.max_violation;
   const std::vector<RankedPair> pairs = pairsByPlans();
+  parallelFor(
+      scans_.size(), options_.threads, [&](Index k) { prepareManySearches(scans_[k]); }, 1);
   report(progress, "align pairs", 0.3);
   alignEach(pairs, [&](Index a, Index b) {
     return alignByPlans({scans_[a], plans_[a]}, {scans_[b], plans_[b]}, options);
@@ -161,8 +163,8 @@ void GlobalAligner::describe(const Progress& progress)
   has_aliases_.assign(scans_.size(), 0);
 }
 
-// Aliases of the scans of a round that have not been in one before.
-void GlobalAligner::describeAliases(const std::vector<RankedPair>& round)
+// Prepares the scans of a round that have not been in one before, and finds their aliases.
+void GlobalAligner::prepareForPairs(const std::vector<RankedPair>& round)
 {
   std::vector<Index> fresh;
   for (const RankedPair& pair : round)
@@ -173,6 +175,8 @@ void GlobalAligner::describeAliases(const std::vector<RankedPair>& round)
       }
   if (fresh.empty())
     return;
+  parallelFor(
+      fresh.size(), options_.threads, [&](Index k) { prepareManySearches(scans_[fresh[k]]); }, 1);
   std::vector<ScanAliases> aliases(fresh.size());
   forOwn(fresh.size(), [&](Index k) { aliases[k] = aliasesOf(fresh[k]); });
   shareItems(ranks_, aliases);
@@ -193,7 +197,7 @@ void GlobalAligner::alignPairs(const std::vector<RankedPair>& round)
   options.verification.min_overlap = options_.min_overlap;
   options.verification.max_violation = options_.max_violation;
   options.upright = options_.upright;
-  describeAliases(round);
+  prepareForPairs(round);
   alignEach(round, [&](Index a, Index b) {
     return alignPair({scans_[a], features_[a], &plans_[a]}, {scans_[b], features_[b], &plans_[b]}, options);
   });
@@ -291,7 +295,6 @@ void GlobalAligner::alignInRounds(const Progress& progress)
 
 GlobalAlignment GlobalAligner::run(const Progress& progress)
 {
-  prepareManySearches(scans_, options_.threads);
   const bool drawn = drawPlans();
   plans_.resize(scans_.size());
   if (drawn && manyPlaces())

@@ -3,7 +3,6 @@
 #include "scan/surface_normals.h"
 #include "scan/viewpoint_search.h"
 #include <algorithm>
-#include <fresco/core/parallel.h>
 #include <fresco/core/require.h>
 namespace fresco::registration {
 namespace {
@@ -43,21 +42,17 @@ Neighbor ScanLevel::nearest(const Eigen::Vector3f& query, float max_distance) co
   return near ? found[0] : Neighbor{-1, 0.f};
 }
 
-void prepareManySearches(std::vector<PreparedScan>& scans, int threads)
+void prepareManySearches(PreparedScan& scan)
 {
-  constexpr float reach = 2.f;          // voxels, for correspondences
-  const Index levels = check_level + 1; // in the finest one few are searched
-  parallelFor(
-      static_cast<Index>(scans.size()) * levels, threads,
-      [&](Index k) {
-        if (!scans[k / levels].problem.empty())
-          return;
-        ScanLevel& level = scans[k / levels].levels[k % levels];
-        const bool fits = level.points.cwiseAbs().maxCoeff() < NearestGrid::most_cells * level.voxel;
-        if (fits && !level.search)
-          level.grid = std::make_shared<NearestGrid>(*level.tree, reach * level.voxel, level.voxel);
-      },
-      1);
+  constexpr float reach = 2.f; // voxels, for correspondences
+  if (!scan.problem.empty())
+    return;
+  for (int k = 0; k <= check_level; ++k) { // in the finest one few are searched
+    ScanLevel& level = scan.levels[k];
+    const bool fits = level.points.cwiseAbs().maxCoeff() < NearestGrid::most_cells * level.voxel;
+    if (fits && !level.search)
+      level.grid = std::make_shared<NearestGrid>(*level.tree, reach * level.voxel, level.voxel);
+  }
 }
 
 void distrustViewpoint(PreparedScan& scan, const std::string& reason)

@@ -72,8 +72,8 @@ inline bool sawAround(const PreparedScan& scan)
 /// For a scan whose viewpoint turned out wrong: no free space, normals towards the middle of the scan.
 void distrustViewpoint(PreparedScan& scan, const std::string& reason);
 
-/// Makes searches faster in scans of which many pairs are compared: some 0.1 s and 2 MB a scan.
-void prepareManySearches(std::vector<PreparedScan>& scans, int threads);
+/// Makes searches faster in a scan that is compared with others: some 0.1 s and 2 MB.
+void prepareManySearches(PreparedScan& scan);
 
 /// @param search the caller's own search for neighbours; null = PointTree
 PreparedScan prepareScan(const PointSet& scan, const Thinning& thinning, int threads,
