@@ -2,6 +2,7 @@
 #include "refinement/free_motion.h"
 #include "refinement/placement.h"
 #include "refinement/registration_result.h"
+#include "registration/look_alike_scenes.h"
 #include "registration/registration_scene.h"
 #include <fresco/registration/core/point_to_plane_registration.h>
 #include <fresco/registration/core/scan_registration.h>
@@ -23,6 +24,19 @@ ScanRegistrationOptions withThreads(int threads)
   ScanRegistrationOptions options;
   options.threads = threads;
   return options;
+}
+
+// Little holds a scan of a room and one in front of its door along the corridor. Coarse points, which stand for whole
+// neighbourhoods, are not to move them.
+TEST(ScanRefinement, TruePosesDoNotSlide)
+{
+  for (const bool telling : {false, true})
+    for (const Index rays : {6000, 15000, 30000}) {
+      const ScannedScene row = test::roomsInARow(telling, rays).scene;
+      const ScannedScene near{{row.scans[0], row.scans[1]}, {row.truth[0], row.truth[1]}};
+      EXPECT_LT(relativeError(registerScans(near.scans, disturbed(near, 0.0, 0.0)).poses, near).translation, 0.01)
+          << rays;
+    }
 }
 
 // Noise of 4 mm over thousands of matches leaves well below a millimetre; half a noise level is the bound.

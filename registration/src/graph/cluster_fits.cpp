@@ -4,6 +4,28 @@
 #include <algorithm>
 #include <map>
 namespace fresco::registration {
+namespace {
+// Whether pairs say enough of a place to join two clusters by it. Two that both have a better one elsewhere do not: from
+// one of two equal rooms, all see the other alike.
+bool isConvincing(const ClusterFit& fit)
+{
+  constexpr double least_overlap = 0.2; // of the best pair
+  return (fit.certain || (fit.sound && fit.pairs > 1)) && fit.overlap >= least_overlap;
+}
+} // namespace
+
+bool isJoinable(const ClusterFit& fit)
+{
+  constexpr double least_agreement = 0.5; // of a scan's points: a quarter of two
+  return isConvincing(fit) && fit.evidence.agree >= least_agreement;
+}
+
+bool isSeenAsWell(const ClusterFit& other, const ClusterFit& fit)
+{
+  constexpr double overlap_share = 0.4; // less, and chance explains it
+  return other.certain || other.overlap >= overlap_share * fit.overlap;
+}
+
 ClusterFitter::ClusterFitter(const GraphInput& input, const FreeSpaceJudge& judge)
     : input_(input), judge_(judge), least_color_(leastColor(input.pairs)),
       usual_violation_(usualViolation(input.pairs)), pairs_of_(input.scans.size())
@@ -64,23 +86,42 @@ ClusterFits ClusterFitter::rough(const ScanCluster& first, const ScanCluster& se
         add(second, fit, fits);
       }
     }
-  for (ClusterFit& fit : fits)
+  return fits;
+}
+
+ClusterFits ClusterFitter::uncontradicted(const ScanCluster& first, const ScanCluster& second,
+                                          const ClusterFits& rough) const
+{
+  ClusterFits fits;
+  for (ClusterFit fit : rough) {
     fit.evidence = judge_.judge(first, second, fit.T);
+    if (!isContradicted(fit.evidence))
+      fits.push_back(fit);
+  }
   return fits;
 }
 
 ClusterFits ClusterFitter::find(const ScanCluster& first, const ScanCluster& second) const
 {
   ClusterFits fits = rough(first, second);
-  fits.erase(std::remove_if(fits.begin(), fits.end(), [](const auto& fit) { return isContradicted(fit.evidence); }),
-             fits.end());
-  return fits;
+  const auto others = std::stable_partition(fits.begin(), fits.end(),
+                                            [](const ClusterFit& fit) { return fit.certain || isConvincing(fit); });
+  ClusterFits found = uncontradicted(first, second, ClusterFits(fits.begin(), others));
+  ClusterFits rivals;
+  std::copy_if(others, fits.end(), std::back_inserter(rivals), [&](const ClusterFit& other) {
+    return std::any_of(found.begin(), found.end(),
+                       [&](const ClusterFit& fit) { return isJoinable(fit) && isSeenAsWell(other, fit); });
+  });
+  for (const ClusterFit& fit : uncontradicted(first, second, rivals))
+    found.push_back(fit);
+  return found;
 }
 
 ClusterFit ClusterFitter::settled(const ScanCluster& first, const ScanCluster& second, ClusterFit fit) const
 {
   constexpr double hopeless = 0.1; // of one scan's points: no small motion mends it
   constexpr double least_overlap = 0.1;
+  fit.evidence = judge_.judge(first, second, fit.T);
   if (!isContradicted(fit.evidence) || fit.evidence.clustered > hopeless || fit.overlap < least_overlap)
     return fit;
   const Eigen::Isometry3d T = settledPose(input_, first, second, fit.T);

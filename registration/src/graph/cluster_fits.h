@@ -13,19 +13,31 @@ struct ClusterFit {
 };
 using ClusterFits = std::vector<ClusterFit, Eigen::aligned_allocator<ClusterFit>>;
 
+/// Whether two clusters may be joined by it.
+bool isJoinable(const ClusterFit& fit);
+
+/// Whether another place is seen well enough to make one doubtful. Overlap hardly counts: of equal rooms, the wrong one
+/// may be seen best.
+bool isSeenAsWell(const ClusterFit& other, const ClusterFit& fit);
+
 /// Finds places of clusters in each other by the hypotheses of pairs of their scans.
 class ClusterFitter {
 public:
   /// Both have to outlive it.
   ClusterFitter(const GraphInput& input, const FreeSpaceJudge& judge);
 
-  /// All that pairs lead to, distinct.
+  /// All that pairs lead to, distinct. Their evidence is not judged.
   ClusterFits rough(const ScanCluster& first, const ScanCluster& second) const;
 
   /// Those that free space does not contradict.
+  ClusterFits uncontradicted(const ScanCluster& first, const ScanCluster& second, const ClusterFits& rough) const;
+
+  /// Of all that pairs lead to, those that free space does not contradict and that count: by which the two could be
+  /// joined, their rivals, and those that a pair is certain of.
   ClusterFits find(const ScanCluster& first, const ScanCluster& second) const;
 
-  /// A pair may slide along a corridor; all scans together hold it. As it is where a small motion mends nothing.
+  /// Judges a rough fit. A pair may slide along a corridor; all scans together hold it. As it is where a small motion
+  /// mends nothing.
   ClusterFit settled(const ScanCluster& first, const ScanCluster& second, ClusterFit fit) const;
 
   /// Whether a cluster is at the same place with either of two motions. @param tolerances see GraphOptions

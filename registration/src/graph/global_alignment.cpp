@@ -49,6 +49,10 @@ private:
   void describe(const Progress& progress);
   void prepareForPairs(const std::vector<RankedPair>& round);
   ScanAliases aliasesOf(Index scan) const;
+  Index usable() const
+  {
+    return std::count_if(scans_.begin(), scans_.end(), [](const auto& scan) { return scan.problem.empty(); });
+  }
   bool manyPlaces() const;
   bool hasMany(std::size_t pairs) const;
   std::vector<RankedPair> orderedPairs() const;
@@ -240,8 +244,7 @@ GraphOptions GlobalAligner::graphOptions() const
 bool GlobalAligner::manyPlaces() const
 {
   constexpr Index most_ranked_by_features = 30;
-  const Index usable = std::count_if(scans_.begin(), scans_.end(), [](const auto& s) { return s.problem.empty(); });
-  return usable > most_ranked_by_features || !known_.scans.empty();
+  return usable() > most_ranked_by_features || !known_.scans.empty();
 }
 
 bool GlobalAligner::hasMany(std::size_t pairs) const
@@ -295,9 +298,10 @@ void GlobalAligner::alignInRounds(const Progress& progress)
 
 GlobalAlignment GlobalAligner::run(const Progress& progress)
 {
+  constexpr Index most_in_rounds = 16; // of more, rounds place as many at most, some wrongly, in ten times the time
   const bool drawn = drawPlans();
   plans_.resize(scans_.size());
-  if (drawn && manyPlaces())
+  if (drawn && usable() > most_in_rounds)
     assembleByPlans(progress);
   else
     alignInRounds(progress);

@@ -15,7 +15,7 @@ JointOptions settlingOptions(const GraphInput& input)
   options.max_distance = input.options.tolerance;
   options.min_overlap = 0.1f;
   options.samples = 1500; // of thousands: centimetres suffice
-  options.first_level = 1;
+  options.first_level = check_level;
   options.last_level = check_level;
   options.max_iterations = 20;
   options.threads = input.options.threads;

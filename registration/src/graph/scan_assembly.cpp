@@ -41,6 +41,10 @@ private:
                 bool by_chains) const;
   bool fitsInstead(std::size_t stays, std::size_t moves, std::size_t third, const ClusterFit& moved,
                    const ClusterFit& other) const;
+  struct Claim {
+    std::size_t stays, moves, third; // groups
+  };
+  bool yields(const ClusterFit& claim, const ClusterFit& fit, const Claim& groups) const;
   Joins likelyJoins() const;
   bool joinBest();
   void join(const Join& join);
@@ -93,14 +97,12 @@ ClusterFits Assembler::fitsOf(std::size_t first, std::size_t second) const
   return fits;
 }
 
-// Whether one place makes another doubtful. Overlap hardly counts: of equal rooms, the wrong one may be seen best.
+// Whether one place makes another doubtful.
 bool Assembler::rivals(const ClusterFit& other, const ClusterFit& fit) const
 {
-  constexpr double least_share = 0.25;  // of the surfaces that agree at this place: less, and chance explains them
-  constexpr double overlap_share = 0.4; // likewise
+  constexpr double least_share = 0.25; // of the surfaces that agree at this place: less, and chance explains them
   return other.evidence.agree >= least_share * fit.evidence.agree &&
-         !contradictsMore(other.evidence, fit.evidence, judge_.unit()) &&
-         (other.certain || other.overlap >= overlap_share * fit.overlap);
+         !contradictsMore(other.evidence, fit.evidence, judge_.unit()) && isSeenAsWell(other, fit);
 }
 
 // Whether a scan of either group saw two places that look alike, and the other group fits at both.
@@ -126,7 +128,7 @@ bool Assembler::fitsThird(std::size_t stays, std::size_t moves, const ClusterFit
       continue;
     for (const ClusterFit& other : fitsOf(third, moves))
       if (other.certain && rivals(other, fit) && areApart(stays, third, fit, other, by_chains) &&
-          !fitsInstead(stays, moves, third, fit, other))
+          !fitsInstead(stays, moves, third, fit, other) && !yields(other, fit, {stays, moves, third}))
         return true;
   }
   return false;
@@ -166,16 +168,31 @@ bool Assembler::fitsInstead(std::size_t stays, std::size_t moves, std::size_t th
   return explains;
 }
 
+// Whether a claim to what moves, by a third group, yields to a certain fit where more surfaces agree: if the third group
+// fits as well in a fourth one that cannot be there, it is explained without the claim.
+bool Assembler::yields(const ClusterFit& claim, const ClusterFit& fit, const Claim& groups) const
+{
+  if (!fit.certain || fit.evidence.agree <= claim.evidence.agree)
+    return false;
+  for (std::size_t home = 0; home < groups_.size(); ++home) {
+    if (home == groups.stays || home == groups.moves || home == groups.third)
+      continue;
+    const ScanCluster &fourth = groups_[home].cluster, &moves = groups_[groups.moves].cluster;
+    for (const ClusterFit& own : fitsOf(home, groups.third))
+      if (own.certain && rivals(own, claim) && isContradicted(judge_.judge(fourth, moves, own.T * claim.T)))
+        return true;
+  }
+  return false;
+}
+
 // Most agreement first.
 Assembler::Joins Assembler::likelyJoins() const
 {
-  constexpr double least_overlap = 0.2;   // of the best pair
-  constexpr double least_agreement = 0.5; // of a scan's points: a quarter of two
   Joins joins;
   for (std::size_t i = 0; i < groups_.size(); ++i)
     for (std::size_t k = i + 1; k < groups_.size(); ++k)
       for (const ClusterFit& fit : fitsOf(i, k))
-        if ((fit.sound || fit.pairs > 1) && fit.overlap >= least_overlap && fit.evidence.agree >= least_agreement)
+        if (isJoinable(fit))
           joins.push_back({i, k, fit});
   std::stable_sort(joins.begin(), joins.end(),
                    [](const Join& x, const Join& y) { return x.fit.evidence.agree > y.fit.evidence.agree; });
@@ -262,12 +279,20 @@ bool Assembler::splitContested(std::size_t group)
 // Whether two parts of one cluster fit at two places of another one alike: they may be at one each.
 bool Assembler::haveTwinPlaces(const ScanCluster& whole, const ScanCluster& part, const ScanCluster& rest) const
 {
-  ClusterFits shared;
-  const ClusterFits of_rest = fitter_.find(whole, rest);
-  for (const ClusterFit& fit : fitter_.find(whole, part))
-    if (std::any_of(of_rest.begin(), of_rest.end(),
-                    [&](const ClusterFit& other) { return fitter_.isSame(part, fit.T, other.T, 3.0); }))
-      shared.push_back(fit);
+  const auto common = [&](const ClusterFits& fits, const ClusterFits& others) {
+    ClusterFits found;
+    for (const ClusterFit& fit : fits)
+      if (std::any_of(others.begin(), others.end(),
+                      [&](const ClusterFit& other) { return fitter_.isSame(part, fit.T, other.T, 3.0); }))
+        found.push_back(fit);
+    return found;
+  };
+  const ClusterFits of_rest = fitter_.rough(whole, rest);
+  ClusterFits shared = common(fitter_.rough(whole, part), of_rest);
+  if (shared.size() < 2) // to judge them costs much
+    return false;
+  shared = fitter_.uncontradicted(whole, part, shared);
+  shared = common(shared, fitter_.uncontradicted(whole, rest, common(of_rest, shared)));
   return std::any_of(shared.begin(), shared.end(), [&](const ClusterFit& fit) {
     return std::any_of(shared.begin(), shared.end(),
                        [&](const ClusterFit& other) { return &fit != &other && rivals(other, fit); });
