@@ -5,12 +5,11 @@
 #include <map>
 namespace fresco::registration {
 namespace {
-// Whether pairs say enough of a place to join two clusters by it. Two that both have a better one elsewhere do not: from
-// one of two equal rooms, all see the other alike.
+// Whether pairs say enough of a place to join two clusters by it.
 bool isConvincing(const ClusterFit& fit)
 {
   constexpr double least_overlap = 0.2; // of the best pair
-  return (fit.certain || (fit.sound && fit.pairs > 1)) && fit.overlap >= least_overlap;
+  return (fit.sound || fit.pairs > 1) && fit.overlap >= least_overlap;
 }
 } // namespace
 

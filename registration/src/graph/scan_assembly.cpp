@@ -53,6 +53,9 @@ private:
     return std::any_of(cluster.scans.begin(), cluster.scans.end(), [&](Index i) { return contains(known_, i); });
   }
   bool fitsElsewhere(const ScanCluster& rest, const ScanCluster& part) const;
+  bool isUndecided(const ScanCluster& rest, const ScanCluster& part, const FreeSpaceEvidence& there) const;
+  IsometryVector twinMotions(std::size_t group) const;
+  bool mayBeMoved(const ScanCluster& rest, const ScanCluster& part, const IsometryVector& motions) const;
   bool splitContested(std::size_t group);
   bool haveTwinPlaces(const ScanCluster& whole, const ScanCluster& part, const ScanCluster& rest) const;
   bool splitTwins(std::size_t group);
@@ -235,28 +238,57 @@ void Assembler::join(const Join& join)
     group.cluster.look_alike = false; // joinBest() tells anew
 }
 
+// Whether the evidence of another place of a part leaves open which is right.
+bool Assembler::isUndecided(const ScanCluster& rest, const ScanCluster& part, const FreeSpaceEvidence& there) const
+{
+  constexpr double least_agreement = 0.3; // of a scan's points: less, and chance explains it
+  return there.agree >= least_agreement && !isContradicted(there) && there.violating <= noise_violation * there.agree &&
+         !contradictsMore(there, judge_.judge(rest, part, Eigen::Isometry3d::Identity()), judge_.unit());
+}
+
 // Whether what two pairs or a certain one say of a part of a group leads to another place in it, which free space
 // contradicts no more. Agreement hardly counts: of equal rooms, the wrong one may be seen best.
 bool Assembler::fitsElsewhere(const ScanCluster& rest, const ScanCluster& part) const
 {
-  constexpr double least_overlap = 0.15, least_agreement = 0.3; // of a scan's points: less, and chance explains it
-  const FreeSpaceEvidence here = judge_.judge(rest, part, Eigen::Isometry3d::Identity());
+  constexpr double least_overlap = 0.15; // less, and chance explains it
   for (const ClusterFit& rough : fitter_.rough(rest, part)) {
     if (!rough.certain && (rough.pairs < 2 || rough.overlap < least_overlap))
       continue;
     const ClusterFit fit = fitter_.settled(rest, part, rough);
-    if (fit.evidence.agree >= least_agreement && !isContradicted(fit.evidence) &&
-        fit.evidence.violating <= noise_violation * fit.evidence.agree &&
-        !fitter_.isSame(part, fit.T, Eigen::Isometry3d::Identity(), 3.0) &&
-        !contradictsMore(fit.evidence, here, judge_.unit()))
+    if (!fitter_.isSame(part, fit.T, Eigen::Isometry3d::Identity(), 3.0) && isUndecided(rest, part, fit.evidence))
       return true;
   }
   return false;
 }
 
+// Motions from one place of another group to a second one where it fits as well: from a room to an equal one.
+IsometryVector Assembler::twinMotions(std::size_t group) const
+{
+  IsometryVector motions;
+  for (std::size_t other = 0; other < groups_.size(); ++other) {
+    if (other == group)
+      continue;
+    const ClusterFits fits = fitsOf(group, other);
+    for (const ClusterFit& from : fits)
+      for (const ClusterFit& to : fits)
+        if (rivals(to, from) && !fitter_.isSame(groups_[other].cluster, from.T, to.T, 3.0))
+          motions.push_back(to.T * from.T.inverse());
+  }
+  return motions;
+}
+
+// Whether a part of a group may as well be where one of the motions leads it.
+bool Assembler::mayBeMoved(const ScanCluster& rest, const ScanCluster& part, const IsometryVector& motions) const
+{
+  return std::any_of(motions.begin(), motions.end(),
+                     [&](const Eigen::Isometry3d& T) { return isUndecided(rest, part, judge_.judge(rest, part, T)); });
+}
+
 // What was joined first may be contested by what joined later. @return whether a part was split off
 bool Assembler::splitContested(std::size_t group)
 {
+  findAllFits();
+  const IsometryVector motions = twinMotions(group);
   const ScanCluster& cluster = groups_[group].cluster;
   std::vector<std::vector<Index>>& parts = groups_[group].parts;
   std::stable_sort(parts.begin(), parts.end(), [](const auto& x, const auto& y) { return x.size() < y.size(); });
@@ -266,7 +298,7 @@ bool Assembler::splitContested(std::size_t group)
       [&](Index k) {
         const auto [part, rest] = divide(cluster, parts[k]);
         contested[k] = !part.scans.empty() && part.scans.size() <= rest.scans.size() && !hasKnown(part) &&
-                       fitsElsewhere(rest, part);
+                       (fitsElsewhere(rest, part) || mayBeMoved(rest, part, motions));
       },
       1);
   const auto first = std::find(contested.begin(), contested.end(), 1);

@@ -176,8 +176,7 @@ void refinePlacement(const std::vector<PreparedScan>& scans, const ScanRegistrat
 {
   constexpr float near_reach = 4.f; // voxels: poses are mostly nearer, and other walls and rooms are further off
   Placement near = placement;
-  const int first_level = placement.anchors.empty() ? check_level : 1; // coarse points may move right places
-  refineWithin({std::min(options.max_distance, near_reach * options.voxel), first_level}, scans, options, near,
+  refineWithin({std::min(options.max_distance, near_reach * options.voxel), check_level}, scans, options, near,
                progress);
   if (!suffices(near)) {
     refineWithin({options.max_distance, 0}, scans, options, placement, progress);
