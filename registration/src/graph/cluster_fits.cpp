@@ -5,12 +5,13 @@
 #include <map>
 namespace fresco::registration {
 namespace {
-// Whether pairs say enough of a place to join two clusters by it. Those that all have a better one elsewhere do not: from one
-// of two equal rooms, several scans see the other alike.
+// Whether pairs say enough of a place to join two clusters by it. A few that all have a better one elsewhere do not: from
+// one of two equal rooms, several scans see the other alike.
 bool isConvincing(const ClusterFit& fit)
 {
   constexpr double least_overlap = 0.2; // of the best pair
-  return fit.sound && fit.overlap >= least_overlap;
+  constexpr Index few = 2;
+  return (fit.sound || fit.pairs > few) && fit.overlap >= least_overlap;
 }
 } // namespace
 
