@@ -298,7 +298,7 @@ void GlobalAligner::alignInRounds(const Progress& progress)
 
 GlobalAlignment GlobalAligner::run(const Progress& progress)
 {
-  constexpr Index most_in_rounds = 16; // of more, rounds place as many at most, some wrongly, in ten times the time
+  constexpr Index most_in_rounds = 16; // of more, rounds place hardly more, some wrongly, in six times the time
   const bool drawn = drawPlans();
   plans_.resize(scans_.size());
   if (drawn && usable() > most_in_rounds)
