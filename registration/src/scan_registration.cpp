@@ -81,8 +81,7 @@ ScanCluster startCluster(const std::vector<PreparedScan>& scans, const std::vect
 GlobalAlignment findClusters(const AlignmentInput& input, const ScanRegistrationOptions& options,
                              const Progress& progress)
 {
-  const Index usable = std::count_if(input.scans.begin(), input.scans.end(),
-                                     [](const PreparedScan& scan) { return scan.problem.empty(); });
+  const Index usable = countUsable(input.scans);
   const Index started = input.known.scans.size();
   if (started < usable)
     return alignGlobally(input, options, progress);

@@ -49,10 +49,6 @@ private:
   void describe(const Progress& progress);
   void prepareForPairs(const std::vector<RankedPair>& round);
   ScanAliases aliasesOf(Index scan) const;
-  Index usable() const
-  {
-    return std::count_if(scans_.begin(), scans_.end(), [](const auto& scan) { return scan.problem.empty(); });
-  }
   bool manyPlaces() const;
   bool hasMany(std::size_t pairs) const;
   std::vector<RankedPair> orderedPairs() const;
@@ -244,7 +240,7 @@ GraphOptions GlobalAligner::graphOptions() const
 bool GlobalAligner::manyPlaces() const
 {
   constexpr Index most_ranked_by_features = 30;
-  return usable() > most_ranked_by_features || !known_.scans.empty();
+  return countUsable(scans_) > most_ranked_by_features || !known_.scans.empty();
 }
 
 bool GlobalAligner::hasMany(std::size_t pairs) const
@@ -301,7 +297,7 @@ GlobalAlignment GlobalAligner::run(const Progress& progress)
   constexpr Index most_in_rounds = 16; // of more, rounds place hardly more, some wrongly, in six times the time
   const bool drawn = drawPlans();
   plans_.resize(scans_.size());
-  if (drawn && usable() > most_in_rounds)
+  if (drawn && countUsable(scans_) > most_in_rounds)
     assembleByPlans(progress);
   else
     alignInRounds(progress);

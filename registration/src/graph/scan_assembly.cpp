@@ -41,10 +41,8 @@ private:
                 bool by_chains) const;
   bool fitsInstead(std::size_t stays, std::size_t moves, std::size_t third, const ClusterFit& moved,
                    const ClusterFit& other) const;
-  struct Claim {
-    std::size_t stays, moves, third; // groups
-  };
-  bool yields(const ClusterFit& claim, const ClusterFit& fit, const Claim& groups) const;
+  bool yields(std::size_t stays, std::size_t moves, std::size_t third, const ClusterFit& moved,
+              const ClusterFit& other) const;
   Joins likelyJoins() const;
   bool joinBest();
   void join(const Join& join);
@@ -131,7 +129,7 @@ bool Assembler::fitsThird(std::size_t stays, std::size_t moves, const ClusterFit
       continue;
     for (const ClusterFit& other : fitsOf(third, moves))
       if (other.certain && rivals(other, fit) && areApart(stays, third, fit, other, by_chains) &&
-          !fitsInstead(stays, moves, third, fit, other) && !yields(other, fit, {stays, moves, third}))
+          !fitsInstead(stays, moves, third, fit, other) && !yields(stays, moves, third, fit, other))
         return true;
   }
   return false;
@@ -171,18 +169,19 @@ bool Assembler::fitsInstead(std::size_t stays, std::size_t moves, std::size_t th
   return explains;
 }
 
-// Whether a claim to what moves, by a third group, yields to a certain fit where more surfaces agree: if the third group
+// Whether the third group's claim to what moves yields to a certain fit where more surfaces agree: if the third group
 // fits as well in a fourth one that cannot be there, it is explained without the claim.
-bool Assembler::yields(const ClusterFit& claim, const ClusterFit& fit, const Claim& groups) const
+bool Assembler::yields(std::size_t stays, std::size_t moves, std::size_t third, const ClusterFit& moved,
+                       const ClusterFit& other) const
 {
-  if (!fit.certain || fit.evidence.agree <= claim.evidence.agree)
+  if (!moved.certain || moved.evidence.agree <= other.evidence.agree)
     return false;
   for (std::size_t home = 0; home < groups_.size(); ++home) {
-    if (home == groups.stays || home == groups.moves || home == groups.third)
+    if (home == stays || home == moves || home == third)
       continue;
-    const ScanCluster &fourth = groups_[home].cluster, &moves = groups_[groups.moves].cluster;
-    for (const ClusterFit& own : fitsOf(home, groups.third))
-      if (own.certain && rivals(own, claim) && isContradicted(judge_.judge(fourth, moves, own.T * claim.T)))
+    for (const ClusterFit& own : fitsOf(home, third))
+      if (own.certain && rivals(own, other) &&
+          isContradicted(judge_.judge(groups_[home].cluster, groups_[moves].cluster, own.T * other.T)))
         return true;
   }
   return false;
@@ -287,6 +286,8 @@ bool Assembler::mayBeMoved(const ScanCluster& rest, const ScanCluster& part, con
 // What was joined first may be contested by what joined later. @return whether a part was split off
 bool Assembler::splitContested(std::size_t group)
 {
+  if (groups_[group].parts.empty())
+    return false;
   findAllFits();
   const IsometryVector motions = twinMotions(group);
   const ScanCluster& cluster = groups_[group].cluster;

@@ -49,8 +49,9 @@ struct GraphInput {
 std::vector<ScanCluster> startingClusters(const GraphInput& input, const ScanCluster& known);
 
 /// Joins scans to clusters by the relative poses of pairs, the best first. Two clusters are joined only if no scan of
-/// one lies in space that a scan of the other saw through, but for the little that all of several together allow. Of an ambiguous pair a hypothesis is used only if it is the
-/// one that the clusters' other scans do not contradict. Scans without a problem take part.
+/// one lies in space that a scan of the other saw through, but for the little that all of several together allow. Of an
+/// ambiguous pair a hypothesis is used only if it is the one that the clusters' other scans do not contradict. Scans
+/// without a problem take part.
 /// @param known scans that already share a frame; may be empty
 ScanGraph buildScanGraph(const GraphInput& input, const ScanCluster& known);
 

@@ -42,6 +42,11 @@ Neighbor ScanLevel::nearest(const Eigen::Vector3f& query, float max_distance) co
   return near ? found[0] : Neighbor{-1, 0.f};
 }
 
+Index countUsable(const std::vector<PreparedScan>& scans)
+{
+  return std::count_if(scans.begin(), scans.end(), [](const PreparedScan& scan) { return scan.problem.empty(); });
+}
+
 void prepareManySearches(PreparedScan& scan)
 {
   constexpr float reach = 2.f; // voxels, for correspondences

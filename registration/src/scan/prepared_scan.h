@@ -69,6 +69,9 @@ inline bool sawAround(const PreparedScan& scan)
   return scan.free_space.coverage() >= least_coverage;
 }
 
+/// Number of scans that can be registered.
+Index countUsable(const std::vector<PreparedScan>& scans);
+
 /// For a scan whose viewpoint turned out wrong: no free space, normals towards the middle of the scan.
 void distrustViewpoint(PreparedScan& scan, const std::string& reason);
 
