@@ -3,6 +3,7 @@
 #include "pair/partial_alias.h"
 #include "pair/plan_alignment.h"
 #include "registration/look_alike_scenes.h"
+#include "scan/up_direction.h"
 #include <fresco/registration/core/point_to_plane_registration.h>
 #include <fresco/registration/core/scan_registration.h>
 #include <gtest/gtest.h>
@@ -72,6 +73,34 @@ TEST(FloorPlans, ScannersThatDidNotStandUprightHaveNone)
   const std::vector<Planned> planned = drawPlans({transformPoints(scene.scans[0], T), scene.scans[1]});
   EXPECT_TRUE(planned[0].plan.empty());
   EXPECT_TRUE(matchPlans(planned[0].plan, planned[1].plan, 4).empty());
+}
+
+// Scans of furnished rooms, each turned in its own way.
+TEST(FloorPlans, ScansShowWhichWayWasUp)
+{
+  const ScannedScene scene = test::scanTwoRooms(60000);
+  std::vector<PreparedScan> scans;
+  std::vector<ScanPlanes> planes;
+  std::vector<Eigen::Vector3f> truth;
+  for (std::size_t k = 0; k < scene.scans.size(); ++k) {
+    const Eigen::AngleAxisd turn(0.7 * static_cast<double>(k + 1), Eigen::Vector3d(1.0, k, -1.0).normalized());
+    Eigen::Matrix4d T = Eigen::Matrix4d::Identity();
+    T.topLeftCorner<3, 3>() = turn.toRotationMatrix();
+    scans.push_back(prepareScan(transformPoints(scene.scans[k], T), Thinning(0.04), 0));
+    planes.push_back(findPlanes(scans.back()));
+    truth.emplace_back((turn * scene.truth[k].linear().transpose().col(2)).cast<float>());
+  }
+  const UpDirections ups = findUpDirections(scans, planes);
+  int found = 0;
+  for (std::size_t k = 0; k < ups.size(); ++k)
+    if (ups[k]) {
+      ++found;
+      EXPECT_GT(ups[k]->dot(truth[k]), 0.99f) << k;
+    }
+  EXPECT_GE(found, 3); // one that sees few tops stays open
+  const PlanFrames frames = findPlanFrames(scans, 1);
+  for (std::size_t k = 0; k < ups.size(); ++k)
+    EXPECT_EQ(frames[k].has_value(), ups[k].has_value()) << k;
 }
 
 // An equal room behind two doors is a partial alias, however dense the scan is.

@@ -54,7 +54,7 @@ FreeSpaceEvidence FreeSpaceJudge::judgeSeen(const PreparedScan& seer, const Prep
   const std::vector<Verdict> verdicts = seer.free_space.judge(level.points, T, slackOf(level));
   Index agree = 0, violating = 0, clustered = 0;
   for (Index i = 0; i < level.points.cols(); ++i) {
-    if (verdicts[i] == Verdict::unknown || (T * level.points.col(i)).squaredNorm() > reach_ * reach_)
+    if (verdicts[i] == Verdict::unknown || !isNear(T * level.points.col(i)))
       continue;
     agree += verdicts[i] == Verdict::agrees ? 1 : 0;
     if (verdicts[i] != Verdict::violates)
@@ -68,7 +68,7 @@ FreeSpaceEvidence FreeSpaceJudge::judgeSeen(const PreparedScan& seer, const Prep
 FreeSpaceEvidence FreeSpaceJudge::judge(Index a, Index b, const Eigen::Isometry3d& T_a_b) const
 {
   FreeSpaceEvidence evidence;
-  if (T_a_b.translation().norm() > 2.5 * reach_)
+  if (isOutOfReach(T_a_b))
     return evidence;
   evidence += judgeSeen(scans_[a], scans_[b], T_a_b);
   evidence += judgeSeen(scans_[b], scans_[a], T_a_b.inverse());
@@ -87,5 +87,34 @@ FreeSpaceEvidence FreeSpaceJudge::judge(const ScanCluster& first, const ScanClus
         return evidence;
     }
   return evidence;
+}
+
+double FreeSpaceJudge::confirmedBy(const ScanCluster& seers, const PreparedScan& seen,
+                                   const Eigen::Isometry3d& T_seers_seen) const
+{
+  const ScanLevel& level = seen.levels[check_level];
+  std::vector<char> found(level.points.cols(), 0);
+  for (std::size_t k = 0; k < seers.scans.size(); ++k) {
+    const Eigen::Isometry3d T_seer_seen = seers.poses[k].inverse() * T_seers_seen;
+    if (isOutOfReach(T_seer_seen))
+      continue;
+    const Eigen::Isometry3f T = T_seer_seen.cast<float>();
+    const auto verdicts = scans_[seers.scans[k]].free_space.judge(level.points, T, slackOf(level));
+    for (Index i = 0; i < level.points.cols(); ++i)
+      if (verdicts[i] == ScanFreeSpace::Verdict::agrees && isNear(T * level.points.col(i)))
+        found[i] = 1;
+  }
+  return std::count(found.begin(), found.end(), 1) / unit_;
+}
+
+double FreeSpaceJudge::confirmed(const ScanCluster& first, const ScanCluster& second,
+                                 const Eigen::Isometry3d& T_first_second) const
+{
+  double sum = 0.0;
+  for (std::size_t i = 0; i < first.scans.size(); ++i)
+    sum += confirmedBy(second, scans_[first.scans[i]], T_first_second.inverse() * first.poses[i]);
+  for (std::size_t k = 0; k < second.scans.size(); ++k)
+    sum += confirmedBy(first, scans_[second.scans[k]], T_first_second * second.poses[k]);
+  return sum;
 }
 } // namespace fresco::registration

@@ -30,9 +30,17 @@ public:
   FreeSpaceEvidence judge(const ScanCluster& first, const ScanCluster& second,
                           const Eigen::Isometry3d& T_first_second) const;
 
+  /// Points of either that are as deep as a scan of the other measured, each counted once, over the mean number of
+  /// points of a scan. FreeSpaceEvidence::agree counts them for each scan that sees them: of equal rooms, the one that
+  /// more scans saw seems the likelier one.
+  double confirmed(const ScanCluster& first, const ScanCluster& second, const Eigen::Isometry3d& T_first_second) const;
+
 private:
+  double confirmedBy(const ScanCluster& seers, const PreparedScan& seen, const Eigen::Isometry3d& T_seers_seen) const;
   FreeSpaceEvidence judgeSeen(const PreparedScan& seer, const PreparedScan& seen,
                               const Eigen::Isometry3d& T_seer_seen) const;
+  bool isNear(const Eigen::Vector3f& point) const { return point.squaredNorm() <= reach_ * reach_; }
+  bool isOutOfReach(const Eigen::Isometry3d& T) const { return T.translation().norm() > 2.5 * reach_; }
   const std::vector<PreparedScan>& scans_;
   double unit_ = 1.0;
   double reach_ = 0.0; ///< length

@@ -4,6 +4,7 @@
 #include "graph/pair_ranking.h"
 #include "graph/scan_assembly.h"
 #include "graph/scan_exchange.h"
+#include "graph/submap_joining.h"
 #include "graph/viewpoint_check.h"
 #include "pair/partial_alias.h"
 #include "pair/plan_alignment.h"
@@ -40,7 +41,8 @@ private:
     const Index step = ranks_.size(), first = ranks_.rank();
     parallelFor((n - first + step - 1) / step, options_.threads, [&](Index k) { body(first + k * step); }, 1);
   }
-  bool drawPlans();
+  void drawPlans();
+  bool hasAllPlans() const;
   std::vector<RankedPair> pairsByPlans() const;
   void assembleByPlans(const Progress& progress);
   void alignInRounds(const Progress& progress);
@@ -61,6 +63,7 @@ private:
   const ScanCluster& known_;
   Exchange& ranks_;
   const ScanRegistrationOptions& options_;
+  PlanFrames frames_;               // of all scans; empty where no plan can be drawn
   std::vector<PlanSpectrum> plans_; // of all scans, empty where there is none
   std::vector<ScanFeatures> features_;
   std::vector<char> has_aliases_; // per scan, whether they were looked for
@@ -83,32 +86,32 @@ void GlobalAligner::alignEach(const std::vector<RankedPair>& pairs, const Align&
             [](const PairAlignment& x, const PairAlignment& y) { return std::pair(x.a, x.b) < std::pair(y.a, y.b); });
 }
 
-// Where all scanners stood upright and saw around.
-bool GlobalAligner::drawPlans()
+// Where all scanners saw around, and their files tell from where.
+void GlobalAligner::drawPlans()
 {
-  if (!known_.scans.empty())
-    return false;
-  std::vector<std::optional<PlanFrame>> frames(scans_.size());
-  for (std::size_t k = 0; k < scans_.size(); ++k) {
-    if (!scans_[k].problem.empty())
-      continue;
-    if (sawAround(scans_[k]) && scans_[k].viewpoint_given)
-      frames[k] = findPlanFrame(scans_[k], findPlanes(scans_[k]));
-    if (!frames[k])
-      return false;
-  }
-  const PlanGrid grid = choosePlanGrid(frames, scans_);
+  const auto known_view = [](const PreparedScan& scan) {
+    return !scan.problem.empty() || (sawAround(scan) && scan.viewpoint_given);
+  };
+  if (!known_.scans.empty() || !std::all_of(scans_.begin(), scans_.end(), known_view))
+    return;
+  frames_ = findPlanFrames(scans_, options_.threads);
+  const PlanGrid grid = choosePlanGrid(frames_, scans_);
   if (grid.side == 0)
-    return false;
-  plans_.resize(scans_.size());
+    frames_.clear();
   parallelFor(
-      scans_.size(), options_.threads,
+      frames_.size(), options_.threads,
       [&](Index k) {
-        if (frames[k])
-          plans_[k] = PlanSpectrum(drawFloorPlan(scans_[k], *frames[k], grid), *frames[k], grid);
+        if (frames_[k])
+          plans_[k] = PlanSpectrum(drawFloorPlan(scans_[k], *frames_[k], grid), *frames_[k], grid);
       },
       1);
-  return true;
+}
+
+bool GlobalAligner::hasAllPlans() const
+{
+  const Index drawn =
+      std::count_if(frames_.begin(), frames_.end(), [](const auto& frame) { return frame.has_value(); });
+  return drawn > 0 && drawn == countUsable(scans_);
 }
 
 // The likeliest partners of each scan.
@@ -295,14 +298,17 @@ void GlobalAligner::alignInRounds(const Progress& progress)
 GlobalAlignment GlobalAligner::run(const Progress& progress)
 {
   constexpr Index most_in_rounds = 16; // of more, rounds place hardly more, some wrongly, in six times the time
-  const bool drawn = drawPlans();
   plans_.resize(scans_.size());
-  if (drawn && countUsable(scans_) > most_in_rounds)
+  drawPlans();
+  if (hasAllPlans() && countUsable(scans_) > most_in_rounds)
     assembleByPlans(progress);
   else
     alignInRounds(progress);
+  const GraphInput input{scans_, result_.pairs, graphOptions()};
   for (ScanCluster& cluster : result_.graph.clusters)
-    closeLoops({scans_, result_.pairs, graphOptions()}, known_, cluster);
+    closeLoops(input, known_, cluster);
+  if (!frames_.empty())
+    joinSubmaps(input, frames_, result_.graph, progress);
   return std::move(result_);
 }
 } // namespace

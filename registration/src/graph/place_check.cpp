@@ -213,6 +213,11 @@ void settle(const GraphInput& input, const ScanCluster& known, ScanCluster& clus
   if (cluster.scans.size() < 2)
     return;
   closeLoops(input, known, cluster);
+  refineCluster(input, known, cluster);
+}
+
+void refineCluster(const GraphInput& input, const ScanCluster& known, ScanCluster& cluster)
+{
   ScanPointers scans;
   JointOptions options = settlingOptions(input);
   for (const Index scan : cluster.scans) {

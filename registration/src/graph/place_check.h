@@ -15,8 +15,11 @@ struct ClusterPose {
 };
 using ClusterPoses = std::vector<ClusterPose, Eigen::aligned_allocator<ClusterPose>>;
 
-/// Refines the poses of a cluster by all its pairs.
+/// Moves all scans of a cluster so that their surfaces agree.
 /// @param known scans that do not move; may be empty
+void refineCluster(const GraphInput& input, const ScanCluster& known, ScanCluster& cluster);
+
+/// The same after its loops are closed by what its pairs say.
 void settle(const GraphInput& input, const ScanCluster& known, ScanCluster& cluster);
 
 /// The place of a cluster near T in another one, by all its pairs with scans of that one, which does not move. One

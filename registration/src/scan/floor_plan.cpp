@@ -1,21 +1,31 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scan/floor_plan.h"
+#include "scan/up_direction.h"
 #include <algorithm>
 #include <cmath>
+#include <fresco/core/parallel.h>
 #include <map>
 namespace fresco::registration {
 namespace {
-// Up, and the two horizontal ones, as rows of a rotation.
-std::optional<Eigen::Matrix3f> uprightAxes(const ScanPlanes& planes)
+// Of the axes, the one that was vertical while the scanner stood upright.
+std::optional<Eigen::Vector3f> uprightAxis(const ScanPlanes& planes)
 {
   constexpr float upright_cosine = 0.966f; // 15 degrees
   Index up = 0;
   planes.axes.row(2).cwiseAbs().maxCoeff(&up);
   if (std::abs(planes.axes(2, up)) < upright_cosine)
     return std::nullopt;
+  return std::copysign(1.f, planes.axes(2, up)) * planes.axes.col(up);
+}
+
+// Two horizontal axes and up, as rows of a rotation.
+Eigen::Matrix3f planAxes(const ScanPlanes& planes, const Eigen::Vector3f& up)
+{
+  Index vertical = 0;
+  (planes.axes.transpose() * up).cwiseAbs().maxCoeff(&vertical);
   Eigen::Matrix3f rows;
-  rows.row(2) = std::copysign(1.f, planes.axes(2, up)) * planes.axes.col(up).transpose();
-  rows.row(0) = planes.axes.col((up + 1) % 3).transpose();
+  rows.row(2) = up.transpose();
+  rows.row(0) = planes.axes.col((vertical + 1) % 3).transpose();
   rows.row(1) = rows.row(2).cross(rows.row(0));
   return rows;
 }
@@ -37,11 +47,10 @@ std::optional<float> floorHeight(const ScanLevel& level, const Eigen::Vector3f& 
 
 class PlanDrawing {
 public:
-  PlanDrawing(const PreparedScan& scan, const PlanFrame& frame, const PlanGrid& grid)
-      : level_(scan.levels[check_level]), frame_(frame), grid_(grid)
-  {}
+  explicit PlanDrawing(const PlanGrid& grid);
 
-  FloorPlan draw();
+  void add(const PlanScan& placed);
+  FloorPlan finish();
 
 private:
   // Layer of a height over the floor, -1 = none.
@@ -64,20 +73,27 @@ private:
     if (layer >= 0 && within(x) && within(y))
       layers[layer][cellOf(x, y)] = 1;
   }
-  void markRay(FloorPlan& plan, const Eigen::Vector3f& from, const Eigen::Vector3f& to) const;
+  void markRay(const Eigen::Vector3f& from, const Eigen::Vector3f& to);
   void clearNear(const FloorPlan::Layer& occupied, FloorPlan::Layer& free) const;
 
-  const ScanLevel& level_;
-  const PlanFrame& frame_;
   const PlanGrid& grid_;
+  FloorPlan plan_;
 };
 
-void PlanDrawing::markRay(FloorPlan& plan, const Eigen::Vector3f& from, const Eigen::Vector3f& to) const
+PlanDrawing::PlanDrawing(const PlanGrid& grid) : grid_(grid)
+{
+  for (int layer = 0; layer < plan_layers; ++layer) {
+    plan_.occupied[layer].assign(static_cast<std::size_t>(grid_.side) * grid_.side, 0);
+    plan_.free[layer] = plan_.occupied[layer];
+  }
+}
+
+void PlanDrawing::markRay(const Eigen::Vector3f& from, const Eigen::Vector3f& to)
 {
   const float length = (to - from).norm(), step = 0.5f * grid_.cell;
   const Eigen::Vector3f direction = (to - from) / length;
   for (float r = step; r < length - grid_.cell; r += step)
-    mark(plan.free, from + r * direction);
+    mark(plan_.free, from + r * direction);
 }
 
 void PlanDrawing::clearNear(const FloorPlan::Layer& occupied, FloorPlan::Layer& free) const
@@ -91,45 +107,80 @@ void PlanDrawing::clearNear(const FloorPlan::Layer& occupied, FloorPlan::Layer& 
             free[((y + dy) & mask) * n + ((x + dx) & mask)] = 0;
 }
 
-FloorPlan PlanDrawing::draw()
+void PlanDrawing::add(const PlanScan& placed)
 {
-  FloorPlan plan;
-  for (int layer = 0; layer < plan_layers; ++layer) {
-    plan.occupied[layer].assign(static_cast<std::size_t>(grid_.side) * grid_.side, 0);
-    plan.free[layer] = plan.occupied[layer];
+  const ScanLevel& level = placed.scan.levels[check_level];
+  for (Index i = 0; i < level.points.cols(); ++i) {
+    const Eigen::Vector3f to = placed.T_plan_scan * level.points.col(i);
+    mark(plan_.occupied, to);
+    markRay(placed.T_plan_scan * level.viewpoints.col(i), to);
   }
-  for (Index i = 0; i < level_.points.cols(); ++i) {
-    const Eigen::Vector3f to = frame_.T_plan_scan * level_.points.col(i);
-    mark(plan.occupied, to);
-    markRay(plan, frame_.T_plan_scan * level_.viewpoints.col(i), to);
-  }
+}
+
+FloorPlan PlanDrawing::finish()
+{
   for (int layer = 0; layer < plan_layers; ++layer)
-    clearNear(plan.occupied[layer], plan.free[layer]);
-  return plan;
+    clearNear(plan_.occupied[layer], plan_.free[layer]);
+  return std::move(plan_);
 }
 } // namespace
 
 std::optional<PlanFrame> findPlanFrame(const PreparedScan& scan, const ScanPlanes& planes)
 {
-  if (planes.axes.isZero() || scan.free_space.empty())
+  const std::optional<Eigen::Vector3f> up = planes.axes.isZero() ? std::nullopt : uprightAxis(planes);
+  return up ? findPlanFrame(scan, planes, *up) : std::nullopt;
+}
+
+std::optional<PlanFrame> findPlanFrame(const PreparedScan& scan, const ScanPlanes& planes, const Eigen::Vector3f& up)
+{
+  if (scan.free_space.empty())
     return std::nullopt;
-  const std::optional<Eigen::Matrix3f> axes = uprightAxes(planes);
-  if (!axes)
-    return std::nullopt;
+  const Eigen::Matrix3f axes = planAxes(planes, up);
   const ScanLevel& level = scan.levels[check_level];
-  const Eigen::Vector3f scanner = *axes * level.viewpoints.rowwise().mean();
-  const std::optional<float> floor = floorHeight(level, axes->row(2).transpose(), scanner.z());
+  const Eigen::Vector3f scanner = axes * level.viewpoints.rowwise().mean();
+  const std::optional<float> floor = floorHeight(level, up, scanner.z());
   if (!floor)
     return std::nullopt;
   PlanFrame frame;
-  frame.T_plan_scan.linear() = *axes;
+  frame.T_plan_scan.linear() = axes;
   frame.T_plan_scan.translation() << -scanner.x(), -scanner.y(), -*floor;
   frame.height = scanner.z() - *floor;
   return frame;
 }
 
+PlanFrames findPlanFrames(const std::vector<PreparedScan>& scans, int threads)
+{
+  std::vector<ScanPlanes> planes(scans.size());
+  PlanFrames frames(scans.size());
+  parallelFor(
+      scans.size(), threads,
+      [&](Index k) {
+        if (!scans[k].problem.empty())
+          return;
+        planes[k] = findPlanes(scans[k]);
+        frames[k] = findPlanFrame(scans[k], planes[k]);
+      },
+      1);
+  const Index upright =
+      std::count_if(frames.begin(), frames.end(), [](const auto& frame) { return frame.has_value(); });
+  if (upright == countUsable(scans))
+    return frames;
+  const UpDirections ups = findUpDirections(scans, planes);
+  for (std::size_t k = 0; k < scans.size(); ++k)
+    frames[k] = ups[k] ? findPlanFrame(scans[k], planes[k], *ups[k]) : std::nullopt;
+  return frames;
+}
+
 FloorPlan drawFloorPlan(const PreparedScan& scan, const PlanFrame& frame, const PlanGrid& grid)
 {
-  return PlanDrawing(scan, frame, grid).draw();
+  return drawFloorPlan({{scan, frame.T_plan_scan}}, grid);
+}
+
+FloorPlan drawFloorPlan(const std::vector<PlanScan>& scans, const PlanGrid& grid)
+{
+  PlanDrawing drawing(grid);
+  for (const PlanScan& placed : scans)
+    drawing.add(placed);
+  return drawing.finish();
 }
 } // namespace fresco::registration

@@ -13,6 +13,16 @@ struct PlanFrame {
 /// @return nothing unless the scanner stood upright (15 degrees), saw a floor, and knows what it saw through
 std::optional<PlanFrame> findPlanFrame(const PreparedScan& scan, const ScanPlanes& planes);
 
+/// The same of a scanner that may have stood anyhow.
+/// @param up one of the axes of the planes or its opposite, unit, in the scan's working frame
+std::optional<PlanFrame> findPlanFrame(const PreparedScan& scan, const ScanPlanes& planes, const Eigen::Vector3f& up);
+
+/// The frame of each scan's floor plan, where it has one.
+using PlanFrames = std::vector<std::optional<PlanFrame>>;
+
+/// Of all usable scans: if not all of them stood upright, of those that show which way was up (findUpDirections()).
+PlanFrames findPlanFrames(const std::vector<PreparedScan>& scans, int threads);
+
 /// Cells that the plans of all scans share.
 struct PlanGrid {
   float cell = 0.f;   ///< edge, length
@@ -32,4 +42,13 @@ struct FloorPlan {
 
 /// Moravec and Elfes 1985, "High Resolution Maps from Wide Angle Sonar", with rays of a laser and without probabilities.
 FloorPlan drawFloorPlan(const PreparedScan& scan, const PlanFrame& frame, const PlanGrid& grid);
+
+/// A scan and its place in a plan.
+struct PlanScan {
+  const PreparedScan& scan;
+  Eigen::Isometry3f T_plan_scan; ///< from the scan's working frame
+};
+
+/// The same of several scans together.
+FloorPlan drawFloorPlan(const std::vector<PlanScan>& scans, const PlanGrid& grid);
 } // namespace fresco::registration

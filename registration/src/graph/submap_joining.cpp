@@ -1,0 +1,247 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "graph/submap_joining.h"
+#include "graph/alias_check.h"
+#include "graph/cluster_fits.h"
+#include "graph/place_check.h"
+#include <algorithm>
+#include <fresco/core/parallel.h>
+#include <map>
+#include <memory>
+namespace fresco::registration {
+namespace {
+// Of the points that the best place confirms, those of a second one that make it doubtful. Of two equal rooms, the wrong
+// one may be seen twice as well as the right one.
+constexpr double rival_share = 0.4;
+constexpr double least_confirmed = 1.5; // of one scan's points; at less, wrong places are found without a rival, too
+
+// Where a cluster may be in another one; free space does not contradict it.
+struct SubmapPlace {
+  Eigen::Isometry3d T = Eigen::Isometry3d::Identity(); // frame of the first from that of the second
+  double confirmed = 0.0;                              // see FreeSpaceJudge
+};
+using SubmapPlaces = std::vector<SubmapPlace, Eigen::aligned_allocator<SubmapPlace>>;
+
+class SubmapJoiner {
+public:
+  SubmapJoiner(const GraphInput& input, const PlanFrames& frames)
+      : input_(input), frames_(frames), judge_(input.scans), fitter_(input, judge_)
+  {}
+
+  void run(ScanGraph& graph, const Progress& progress);
+
+private:
+  struct Group {
+    Index id;
+    ScanCluster cluster;
+    std::shared_ptr<const std::optional<Submap>> submap;
+  };
+  struct Join {
+    std::size_t first, second; // groups, the larger one first
+    SubmapPlace place;
+  };
+  using Joins = std::vector<Join, Eigen::aligned_allocator<Join>>;
+
+  void add(const ScanCluster& cluster);
+  void findAllPlaces();
+  SubmapPlaces findPlaces(const Group& first, const Group& second) const;
+  SubmapPlaces placesOf(std::size_t first, std::size_t second) const;
+  Joins likelyJoins() const;
+  bool fitsThird(std::size_t stays, std::size_t moves, const SubmapPlace& place) const;
+  bool isContested(const Join& join) const;
+  bool contradictsOther(const Join& join, const Joins& accepted) const;
+  Joins soundJoins();
+  void join(const Joins& joins);
+
+  const GraphInput& input_;
+  const PlanFrames& frames_;
+  FreeSpaceJudge judge_;
+  ClusterFitter fitter_;
+  std::vector<Group> groups_;
+  Index next_id_ = 0;
+  std::map<std::pair<Index, Index>, SubmapPlaces> places_; // by the ids of two groups, the lower first; best first
+};
+
+void SubmapJoiner::add(const ScanCluster& cluster)
+{
+  groups_.push_back(
+      {next_id_++, cluster, std::make_shared<std::optional<Submap>>(makeSubmap(input_.scans, frames_, cluster))});
+}
+
+// By floor plans, and by what pairs of scans tell.
+SubmapPlaces SubmapJoiner::findPlaces(const Group& first, const Group& second) const
+{
+  constexpr std::size_t most_by_plans = 32; // of 30 true places 22 are among the first 24, of 28 23 among 64
+  constexpr double distinct = 3.0;          // tolerances
+  constexpr double hopeless = 0.1;          // of one scan's points in free space: no small motion mends it
+  ClusterFits fits = fitter_.find(first.cluster, second.cluster), by_plans;
+  const std::optional<Submap>&a = *first.submap, &b = *second.submap;
+  if (a && b && first.cluster.scans.size() + second.cluster.scans.size() > 2) // of two scans the pair has told all
+    for (const Eigen::Isometry3d& T : matchSubmaps(*a, *b, most_by_plans))
+      if (judge_.judge(first.cluster, second.cluster, T).clustered <= hopeless)
+        by_plans.emplace_back().T = refineSubmap(*a, *b, T);
+  for (const ClusterFit& fit : fitter_.uncontradicted(first.cluster, second.cluster, by_plans))
+    if (std::none_of(fits.begin(), fits.end(),
+                     [&](const ClusterFit& known) { return fitter_.isSame(second.cluster, known.T, fit.T, distinct); }))
+      fits.push_back(fit);
+  SubmapPlaces places;
+  for (const ClusterFit& fit : fits)
+    if (fit.evidence.agree >= rival_share * least_confirmed) // no fewer than are confirmed
+      places.push_back({fit.T, judge_.confirmed(first.cluster, second.cluster, fit.T)});
+  std::stable_sort(places.begin(), places.end(),
+                   [](const SubmapPlace& x, const SubmapPlace& y) { return x.confirmed > y.confirmed; });
+  return places;
+}
+
+// Of all groups in each other, those that are new.
+void SubmapJoiner::findAllPlaces()
+{
+  std::vector<std::pair<const Group*, const Group*>> fresh; // groups are in the order of their ids
+  for (std::size_t i = 0; i < groups_.size(); ++i)
+    for (std::size_t k = i + 1; k < groups_.size(); ++k)
+      if (places_.find({groups_[i].id, groups_[k].id}) == places_.end())
+        fresh.push_back({&groups_[i], &groups_[k]});
+  std::vector<SubmapPlaces> found(fresh.size());
+  parallelFor(
+      fresh.size(), input_.options.threads, [&](Index k) { found[k] = findPlaces(*fresh[k].first, *fresh[k].second); },
+      1);
+  for (std::size_t k = 0; k < fresh.size(); ++k)
+    places_[{fresh[k].first->id, fresh[k].second->id}] = std::move(found[k]);
+}
+
+// Of the second group in the first.
+SubmapPlaces SubmapJoiner::placesOf(std::size_t first, std::size_t second) const
+{
+  if (first < second)
+    return places_.at({groups_[first].id, groups_[second].id});
+  SubmapPlaces places = places_.at({groups_[second].id, groups_[first].id});
+  for (SubmapPlace& place : places)
+    place.T = place.T.inverse();
+  return places;
+}
+
+// Places without a rival between the same groups, most points first. Two single scans stay as their pair has left them.
+SubmapJoiner::Joins SubmapJoiner::likelyJoins() const
+{
+  Joins joins;
+  for (std::size_t i = 0; i < groups_.size(); ++i)
+    for (std::size_t k = i + 1; k < groups_.size(); ++k) {
+      const SubmapPlaces places = placesOf(i, k);
+      if (groups_[i].cluster.scans.size() + groups_[k].cluster.scans.size() > 2 && !places.empty() &&
+          places[0].confirmed >= least_confirmed &&
+          (places.size() == 1 || places[1].confirmed < rival_share * places[0].confirmed))
+        joins.push_back(groups_[i].cluster.scans.size() >= groups_[k].cluster.scans.size()
+                            ? Join{i, k, places[0]}
+                            : Join{k, i, {places[0].T.inverse(), places[0].confirmed}});
+    }
+  std::stable_sort(joins.begin(), joins.end(),
+                   [](const Join& x, const Join& y) { return x.place.confirmed > y.place.confirmed; });
+  return joins;
+}
+
+// Whether a group that moves has a place in a third one, and free space contradicts the first and the third where that
+// leads to. What the third confirms less than at a place that agrees with the join is explained by that one.
+bool SubmapJoiner::fitsThird(std::size_t stays, std::size_t moves, const SubmapPlace& place) const
+{
+  const auto agrees = [&](std::size_t third, const SubmapPlace& other) {
+    return !isContradicted(judge_.judge(groups_[stays].cluster, groups_[third].cluster, place.T * other.T.inverse()));
+  };
+  for (std::size_t third = 0; third < groups_.size(); ++third) {
+    if (third == stays || third == moves)
+      continue;
+    const SubmapPlaces others = placesOf(third, moves);
+    if (!others.empty() && others[0].confirmed >= rival_share * place.confirmed && !agrees(third, others[0]))
+      return true;
+  }
+  return false;
+}
+
+bool SubmapJoiner::isContested(const Join& join) const
+{
+  const ScanCluster &first = groups_[join.first].cluster, &second = groups_[join.second].cluster;
+  return hasAliasByScan(input_, {first, second}, {0, 1, join.place.T, 0.0}) ||
+         fitsThird(join.first, join.second, join.place) ||
+         fitsThird(join.second, join.first, {join.place.T.inverse(), join.place.confirmed});
+}
+
+// Whether a join brings its smaller group where free space contradicts one that is to join the same larger group.
+bool SubmapJoiner::contradictsOther(const Join& join, const Joins& accepted) const
+{
+  return std::any_of(accepted.begin(), accepted.end(), [&](const Join& other) {
+    return other.first == join.first &&
+           isContradicted(judge_.judge(groups_[other.second].cluster, groups_[join.second].cluster,
+                                       other.place.T.inverse() * join.place.T));
+  });
+}
+
+// Of all likely joins those that stand together: a group that moves takes part in one only.
+SubmapJoiner::Joins SubmapJoiner::soundJoins()
+{
+  std::vector<char> stays(groups_.size(), 0), moves(groups_.size(), 0);
+  Joins accepted;
+  for (const Join& candidate : likelyJoins()) {
+    if (moves[candidate.first] || moves[candidate.second] || stays[candidate.second] ||
+        contradictsOther(candidate, accepted))
+      continue;
+    if (isContested(candidate)) {
+      groups_[candidate.first].cluster.look_alike = groups_[candidate.second].cluster.look_alike = true;
+      continue;
+    }
+    stays[candidate.first] = moves[candidate.second] = 1;
+    accepted.push_back(candidate);
+  }
+  return accepted;
+}
+
+// The larger groups stay.
+void SubmapJoiner::join(const Joins& joins)
+{
+  std::vector<ScanCluster> grown(groups_.size());
+  std::vector<char> moved(groups_.size(), 0);
+  for (const Join& join : joins) {
+    ScanCluster& cluster = grown[join.first];
+    if (cluster.scans.empty())
+      cluster = groups_[join.first].cluster;
+    const ScanCluster& second = groups_[join.second].cluster;
+    for (std::size_t k = 0; k < second.scans.size(); ++k) {
+      cluster.scans.push_back(second.scans[k]);
+      cluster.poses.push_back(join.place.T * second.poses[k]);
+    }
+    moved[join.second] = 1;
+  }
+  std::vector<Group> before = std::move(groups_);
+  groups_.clear();
+  for (std::size_t g = 0; g < before.size(); ++g)
+    if (!moved[g] && grown[g].scans.empty())
+      groups_.push_back(std::move(before[g]));
+  for (std::size_t g = 0; g < before.size(); ++g)
+    if (!grown[g].scans.empty()) {
+      grown[g].look_alike = false;
+      refineCluster(input_, before[g].cluster, grown[g]);
+      add(grown[g]);
+    }
+}
+
+void SubmapJoiner::run(ScanGraph& graph, const Progress& progress)
+{
+  for (const ScanCluster& cluster : graph.clusters)
+    add(cluster);
+  for (;;) {
+    report(progress, "join groups", 0.9);
+    findAllPlaces();
+    const Joins joins = soundJoins();
+    if (joins.empty())
+      break;
+    join(joins);
+  }
+  graph.clusters.clear();
+  for (const Group& group : groups_)
+    graph.clusters.push_back(group.cluster);
+  sortBySize(graph.clusters, 0);
+}
+} // namespace
+
+void joinSubmaps(const GraphInput& input, const PlanFrames& frames, ScanGraph& graph, const Progress& progress)
+{
+  SubmapJoiner(input, frames).run(graph, progress);
+}
+} // namespace fresco::registration
