@@ -242,6 +242,7 @@ void SubmapJoiner::run(ScanGraph& graph, const Progress& progress)
 
 void joinSubmaps(const GraphInput& input, const PlanFrames& frames, ScanGraph& graph, const Progress& progress)
 {
-  SubmapJoiner(input, frames).run(graph, progress);
+  if (graph.clusters.size() > 1)
+    SubmapJoiner(input, frames).run(graph, progress);
 }
 } // namespace fresco::registration
