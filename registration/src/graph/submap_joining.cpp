@@ -63,8 +63,11 @@ private:
 
 void SubmapJoiner::add(const ScanCluster& cluster)
 {
-  groups_.push_back(
-      {next_id_++, cluster, std::make_shared<std::optional<Submap>>(makeSubmap(input_.scans, frames_, cluster))});
+  constexpr std::size_t most_scans = 40; // above, a group costs as much as all pairs of its scans did
+  auto submap = std::make_shared<std::optional<Submap>>();
+  if (cluster.scans.size() <= most_scans)
+    *submap = makeSubmap(input_.scans, frames_, cluster);
+  groups_.push_back({next_id_++, cluster, submap});
 }
 
 // By floor plans, and by what pairs of scans tell.
