@@ -226,10 +226,7 @@ void Assembler::join(const Join& join)
   first.parts.push_back(first.cluster.scans);
   first.parts.push_back(second.cluster.scans);
   first.parts.insert(first.parts.end(), second.parts.begin(), second.parts.end());
-  for (std::size_t k = 0; k < second.cluster.scans.size(); ++k) {
-    first.cluster.scans.push_back(second.cluster.scans[k]);
-    first.cluster.poses.push_back(join.fit.T * second.cluster.poses[k]);
-  }
+  append(first.cluster, second.cluster, join.fit.T);
   first.id = next_id_++;
   groups_.erase(groups_.begin() + join.second);
   settle(input_, known_, first.cluster);

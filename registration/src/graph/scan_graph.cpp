@@ -132,11 +132,7 @@ bool GraphBuilder::supported(const Candidate& candidate, const Eigen::Isometry3d
 void GraphBuilder::join(Index a, Index b, const Eigen::Isometry3d& T_a_b)
 {
   ScanCluster &first = graph_.clusters[std::min(a, b)], &second = graph_.clusters[std::max(a, b)];
-  const Eigen::Isometry3d T_first_second = a < b ? T_a_b : T_a_b.inverse();
-  for (std::size_t k = 0; k < second.scans.size(); ++k) {
-    first.scans.push_back(second.scans[k]);
-    first.poses.push_back(T_first_second * second.poses[k]);
-  }
+  append(first, second, a < b ? T_a_b : T_a_b.inverse());
   graph_.clusters.erase(graph_.clusters.begin() + std::max(a, b));
   places_ = placesOf(graph_.clusters, input_.scans.size());
 }
@@ -309,6 +305,14 @@ ScanGraph GraphBuilder::build()
 bool contains(const ScanCluster& cluster, Index scan)
 {
   return std::find(cluster.scans.begin(), cluster.scans.end(), scan) != cluster.scans.end();
+}
+
+void append(ScanCluster& first, const ScanCluster& second, const Eigen::Isometry3d& T_first_second)
+{
+  for (std::size_t k = 0; k < second.scans.size(); ++k) {
+    first.scans.push_back(second.scans[k]);
+    first.poses.push_back(T_first_second * second.poses[k]);
+  }
 }
 
 std::pair<ScanCluster, ScanCluster> divide(const ScanCluster& cluster, const std::vector<Index>& listed)

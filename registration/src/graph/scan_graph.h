@@ -12,6 +12,9 @@ struct ScanCluster {
 
 bool contains(const ScanCluster& cluster, Index scan);
 
+/// Adds the scans of the second cluster.
+void append(ScanCluster& first, const ScanCluster& second, const Eigen::Isometry3d& T_first_second);
+
 /// The part of a cluster whose scans are listed, and the rest; the frame stays.
 std::pair<ScanCluster, ScanCluster> divide(const ScanCluster& cluster, const std::vector<Index>& listed);
 

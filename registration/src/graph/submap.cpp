@@ -32,8 +32,7 @@ ScanLevel mergedLevel(const std::vector<PreparedScan>& scans, const ScanCluster&
     begin += n;
   }
   merged.tree = std::make_shared<PointTree>(merged.points, 1);
-  if (merged.points.cwiseAbs().maxCoeff() < NearestGrid::most_cells * merged.voxel)
-    merged.grid = std::make_shared<NearestGrid>(*merged.tree, reach * merged.voxel, merged.voxel);
+  prepareManySearches(merged);
   merged.samples = normalSpaceOrder(merged);
   return merged;
 }

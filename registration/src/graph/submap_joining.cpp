@@ -204,11 +204,7 @@ void SubmapJoiner::join(const Joins& joins)
     ScanCluster& cluster = grown[join.first];
     if (cluster.scans.empty())
       cluster = groups_[join.first].cluster;
-    const ScanCluster& second = groups_[join.second].cluster;
-    for (std::size_t k = 0; k < second.scans.size(); ++k) {
-      cluster.scans.push_back(second.scans[k]);
-      cluster.poses.push_back(join.place.T * second.poses[k]);
-    }
+    append(cluster, groups_[join.second].cluster, join.place.T);
     moved[join.second] = 1;
   }
   std::vector<Group> before = std::move(groups_);

@@ -47,17 +47,20 @@ Index countUsable(const std::vector<PreparedScan>& scans)
   return std::count_if(scans.begin(), scans.end(), [](const PreparedScan& scan) { return scan.problem.empty(); });
 }
 
-void prepareManySearches(PreparedScan& scan)
+void prepareManySearches(ScanLevel& level)
 {
   constexpr float reach = 2.f; // voxels, for correspondences
+  const bool fits = level.points.cwiseAbs().maxCoeff() < NearestGrid::most_cells * level.voxel;
+  if (fits && !level.search)
+    level.grid = std::make_shared<NearestGrid>(*level.tree, reach * level.voxel, level.voxel);
+}
+
+void prepareManySearches(PreparedScan& scan)
+{
   if (!scan.problem.empty())
     return;
-  for (int k = 0; k <= check_level; ++k) { // in the finest one few are searched
-    ScanLevel& level = scan.levels[k];
-    const bool fits = level.points.cwiseAbs().maxCoeff() < NearestGrid::most_cells * level.voxel;
-    if (fits && !level.search)
-      level.grid = std::make_shared<NearestGrid>(*level.tree, reach * level.voxel, level.voxel);
-  }
+  for (int k = 0; k <= check_level; ++k) // in the finest one few are searched
+    prepareManySearches(scan.levels[k]);
 }
 
 void distrustViewpoint(PreparedScan& scan, const std::string& reason)

@@ -75,6 +75,9 @@ Index countUsable(const std::vector<PreparedScan>& scans);
 /// For a scan whose viewpoint turned out wrong: no free space, normals towards the middle of the scan.
 void distrustViewpoint(PreparedScan& scan, const std::string& reason);
 
+/// Makes searches within two voxels faster in a level that has a tree.
+void prepareManySearches(ScanLevel& level);
+
 /// Makes searches faster in a scan that is compared with others: some 0.1 s and 2 MB.
 void prepareManySearches(PreparedScan& scan);
 
