@@ -90,6 +90,21 @@ TEST(Submaps, OfEqualRoomsJoinOnlyWhatTellsItsPlace)
   }
 }
 
+// A scan of one of two equal rooms fits in the other one. It is not placed there once another group has a place for it,
+// too, and both cannot be right.
+TEST(Submaps, ThirdGroupsKeepApartWhatFitsInThem)
+{
+  constexpr Index room_a = 0, door_a = 1, room_b = 2, door_b = 3, door_c = 5;
+  const Scene scene(test::roomsInARow(false).scene);
+  for (const bool third : {false, true}) {
+    std::vector<std::vector<Index>> groups{{room_a, door_a}, {room_b}};
+    if (third)
+      groups.push_back({door_b, door_c});
+    const std::vector<ClusterPlace> places = placesOf(scene.joined(groups), scene.scans.size());
+    EXPECT_EQ(places[room_a].cluster == places[room_b].cluster, !third);
+  }
+}
+
 TEST(FreeSpaceEvidence, EachPointIsConfirmedOnce)
 {
   const Scene scene(test::scanTwoRooms());

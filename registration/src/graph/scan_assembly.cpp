@@ -2,10 +2,10 @@
 #include "graph/scan_assembly.h"
 #include "graph/alias_check.h"
 #include "graph/cluster_fits.h"
+#include "graph/group_fits.h"
 #include "graph/place_check.h"
 #include <algorithm>
 #include <fresco/core/parallel.h>
-#include <map>
 namespace fresco::registration {
 namespace {
 class Assembler {
@@ -32,7 +32,11 @@ private:
   using Joins = std::vector<Join, Eigen::aligned_allocator<Join>>;
 
   void findAllFits();
-  ClusterFits fitsOf(std::size_t first, std::size_t second) const;
+  // Of the second group in the first.
+  ClusterFits fitsOf(std::size_t first, std::size_t second) const
+  {
+    return fits_.of(groups_[first].id, groups_[second].id);
+  }
   bool rivals(const ClusterFit& other, const ClusterFit& fit) const;
   bool hasAlias(const Join& join) const;
   bool hasSecondPlace(const Join& join) const;
@@ -65,37 +69,13 @@ private:
   ClusterFitter fitter_;
   std::vector<Group> groups_;
   Index next_id_ = 0;
-  std::map<std::pair<Index, Index>, ClusterFits> fits_; // by the ids of two groups, the lower first
+  GroupFits<ClusterFits> fits_;
 };
 
-// Of all groups in each other, those that are new.
 void Assembler::findAllFits()
 {
-  std::vector<std::pair<const Group*, const Group*>> fresh;
-  for (std::size_t i = 0; i < groups_.size(); ++i)
-    for (std::size_t k = i + 1; k < groups_.size(); ++k) {
-      const Group& first = groups_[i].id < groups_[k].id ? groups_[i] : groups_[k];
-      const Group& second = &first == &groups_[i] ? groups_[k] : groups_[i];
-      if (fits_.find({first.id, second.id}) == fits_.end())
-        fresh.push_back({&first, &second});
-    }
-  std::vector<ClusterFits> found(fresh.size());
-  parallelFor(
-      fresh.size(), input_.options.threads,
-      [&](Index k) { found[k] = fitter_.find(fresh[k].first->cluster, fresh[k].second->cluster); }, 1);
-  for (std::size_t k = 0; k < fresh.size(); ++k)
-    fits_[{fresh[k].first->id, fresh[k].second->id}] = std::move(found[k]);
-}
-
-// Of the second group in the first.
-ClusterFits Assembler::fitsOf(std::size_t first, std::size_t second) const
-{
-  const Index a = groups_[first].id, b = groups_[second].id;
-  ClusterFits fits = fits_.at({std::min(a, b), std::max(a, b)});
-  if (a > b)
-    for (ClusterFit& fit : fits)
-      fit.T = fit.T.inverse();
-  return fits;
+  fits_.findNew(groups_, input_.options.threads,
+                [&](const Group& first, const Group& second) { return fitter_.find(first.cluster, second.cluster); });
 }
 
 // Whether one place makes another doubtful.

@@ -2,10 +2,9 @@
 #include "graph/submap_joining.h"
 #include "graph/alias_check.h"
 #include "graph/cluster_fits.h"
+#include "graph/group_fits.h"
 #include "graph/place_check.h"
 #include <algorithm>
-#include <fresco/core/parallel.h>
-#include <map>
 #include <memory>
 namespace fresco::registration {
 namespace {
@@ -42,9 +41,12 @@ private:
   using Joins = std::vector<Join, Eigen::aligned_allocator<Join>>;
 
   void add(const ScanCluster& cluster);
-  void findAllPlaces();
   SubmapPlaces findPlaces(const Group& first, const Group& second) const;
-  SubmapPlaces placesOf(std::size_t first, std::size_t second) const;
+  // Of the second group in the first; best first.
+  SubmapPlaces placesOf(std::size_t first, std::size_t second) const
+  {
+    return places_.of(groups_[first].id, groups_[second].id);
+  }
   Joins likelyJoins() const;
   bool fitsThird(std::size_t stays, std::size_t moves, const SubmapPlace& place) const;
   bool isContested(const Join& join) const;
@@ -58,7 +60,7 @@ private:
   ClusterFitter fitter_;
   std::vector<Group> groups_;
   Index next_id_ = 0;
-  std::map<std::pair<Index, Index>, SubmapPlaces> places_; // by the ids of two groups, the lower first; best first
+  GroupFits<SubmapPlaces> places_;
 };
 
 void SubmapJoiner::add(const ScanCluster& cluster)
@@ -92,33 +94,6 @@ SubmapPlaces SubmapJoiner::findPlaces(const Group& first, const Group& second) c
       places.push_back({fit.T, judge_.confirmed(first.cluster, second.cluster, fit.T)});
   std::stable_sort(places.begin(), places.end(),
                    [](const SubmapPlace& x, const SubmapPlace& y) { return x.confirmed > y.confirmed; });
-  return places;
-}
-
-// Of all groups in each other, those that are new.
-void SubmapJoiner::findAllPlaces()
-{
-  std::vector<std::pair<const Group*, const Group*>> fresh; // groups are in the order of their ids
-  for (std::size_t i = 0; i < groups_.size(); ++i)
-    for (std::size_t k = i + 1; k < groups_.size(); ++k)
-      if (places_.find({groups_[i].id, groups_[k].id}) == places_.end())
-        fresh.push_back({&groups_[i], &groups_[k]});
-  std::vector<SubmapPlaces> found(fresh.size());
-  parallelFor(
-      fresh.size(), input_.options.threads, [&](Index k) { found[k] = findPlaces(*fresh[k].first, *fresh[k].second); },
-      1);
-  for (std::size_t k = 0; k < fresh.size(); ++k)
-    places_[{fresh[k].first->id, fresh[k].second->id}] = std::move(found[k]);
-}
-
-// Of the second group in the first.
-SubmapPlaces SubmapJoiner::placesOf(std::size_t first, std::size_t second) const
-{
-  if (first < second)
-    return places_.at({groups_[first].id, groups_[second].id});
-  SubmapPlaces places = places_.at({groups_[second].id, groups_[first].id});
-  for (SubmapPlace& place : places)
-    place.T = place.T.inverse();
   return places;
 }
 
@@ -226,7 +201,8 @@ void SubmapJoiner::run(ScanGraph& graph, const Progress& progress)
     add(cluster);
   for (;;) {
     report(progress, "join groups", 0.9);
-    findAllPlaces();
+    places_.findNew(groups_, input_.options.threads,
+                    [&](const Group& first, const Group& second) { return findPlaces(first, second); });
     const Joins joins = soundJoins();
     if (joins.empty())
       break;
