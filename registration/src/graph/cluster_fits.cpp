@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "graph/cluster_fits.h"
 #include "graph/place_check.h"
-#include <algorithm>
-#include <map>
 namespace fresco::registration {
 namespace {
 // Whether pairs say enough of a place to join two clusters by it. A few that all have a better one elsewhere do not: from

@@ -2,7 +2,6 @@
 #include "graph/scan_assembly.h"
 #include "graph/alias_check.h"
 #include "graph/cluster_fits.h"
-#include "graph/group_fits.h"
 #include "graph/place_check.h"
 #include <algorithm>
 #include <fresco/core/parallel.h>
