@@ -2,8 +2,8 @@
 // Registration against known poses: of pairs from features (pairs), of all scans (map), of pairs from disturbed poses
 // (converge); which pairs would be tried (candidates).
 #include "experiments/registration_input.h"
-#include "graph/pair_ranking.h"
 #include "pair/pair_alignment.h"
+#include "pair/pair_ranking.h"
 #include "pair/self_alignment.h"
 #include "support/tool.h"
 #include <fresco/io/file.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "graph/pair_ranking.h"
+#include "pair/pair_ranking.h"
 #include "registration/registration_scene.h"
 #include <gtest/gtest.h>
 namespace fresco::registration {

@@ -51,7 +51,7 @@ FreeSpaceEvidence FreeSpaceJudge::judgeSeen(const PreparedScan& seer, const Prep
   const ScanLevel& level = seen.levels[check_level];
   const Eigen::Isometry3f T = T_seer_seen.cast<float>();
   using Verdict = ScanFreeSpace::Verdict;
-  const std::vector<Verdict> verdicts = seer.free_space.judge(level.points, T, slackOf(level));
+  const std::vector<Verdict> verdicts = judgeLevel(seer, level, T);
   Index agree = 0, violating = 0, clustered = 0;
   for (Index i = 0; i < level.points.cols(); ++i) {
     if (verdicts[i] == Verdict::unknown || !isNear(T * level.points.col(i)))
@@ -99,7 +99,7 @@ double FreeSpaceJudge::confirmedBy(const ScanCluster& seers, const PreparedScan&
     if (isOutOfReach(T_seer_seen))
       continue;
     const Eigen::Isometry3f T = T_seer_seen.cast<float>();
-    const auto verdicts = scans_[seers.scans[k]].free_space.judge(level.points, T, slackOf(level));
+    const auto verdicts = judgeLevel(scans_[seers.scans[k]], level, T);
     for (Index i = 0; i < level.points.cols(); ++i)
       if (verdicts[i] == ScanFreeSpace::Verdict::agrees && isNear(T * level.points.col(i)))
         found[i] = 1;

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "graph/global_alignment.h"
 #include "graph/loop_closing.h"
-#include "graph/pair_ranking.h"
+#include "graph/moved_people.h"
 #include "graph/scan_assembly.h"
 #include "graph/scan_exchange.h"
 #include "graph/submap_joining.h"
 #include "graph/viewpoint_check.h"
+#include "pair/pair_ranking.h"
 #include "pair/partial_alias.h"
 #include "pair/plan_alignment.h"
 #include "pair/self_alignment.h"
@@ -41,10 +42,14 @@ private:
     const Index step = ranks_.size(), first = ranks_.rank();
     parallelFor((n - first + step - 1) / step, options_.threads, [&](Index k) { body(first + k * step); }, 1);
   }
+  void findFrames();
   void drawPlans();
   bool hasAllPlans() const;
+  VerificationOptions verification() const;
+  void alignByPlans(const std::vector<RankedPair>& pairs);
+  bool sparePeople(std::vector<RankedPair> pairs);
   std::vector<RankedPair> pairsByPlans() const;
-  void assembleByPlans(const Progress& progress);
+  void assembleByPlans(const std::vector<RankedPair>& pairs, const Progress& progress);
   void alignInRounds(const Progress& progress);
   template <typename Align>
   void alignEach(const std::vector<RankedPair>& pairs, const Align& align);
@@ -87,7 +92,7 @@ void GlobalAligner::alignEach(const std::vector<RankedPair>& pairs, const Align&
 }
 
 // Where all scanners saw around, and their files tell from where.
-void GlobalAligner::drawPlans()
+void GlobalAligner::findFrames()
 {
   const auto known_view = [](const PreparedScan& scan) {
     return !scan.problem.empty() || (sawAround(scan) && scan.viewpoint_given);
@@ -95,6 +100,10 @@ void GlobalAligner::drawPlans()
   if (!known_.scans.empty() || !std::all_of(scans_.begin(), scans_.end(), known_view))
     return;
   frames_ = findPlanFrames(scans_, options_.threads);
+}
+
+void GlobalAligner::drawPlans()
+{
   const PlanGrid grid = choosePlanGrid(frames_, scans_);
   if (grid.side == 0)
     frames_.clear();
@@ -114,6 +123,26 @@ bool GlobalAligner::hasAllPlans() const
   return drawn > 0 && drawn == countUsable(scans_);
 }
 
+// Whether people moved between the scans. If so, they are spared from now on.
+bool GlobalAligner::sparePeople(std::vector<RankedPair> pairs)
+{
+  if (pairs.empty())
+    return false;
+  constexpr std::size_t most_tried = 64; // tells enough, and costs a tenth of what the rounds do
+  pairs.resize(std::min(most_tried, pairs.size()));
+  spareDoubtful(scans_, frames_, options_.threads);
+  alignByPlans(pairs);
+  std::vector<PairAlignment> tried;
+  tried.swap(result_.pairs);
+  const bool moved = peopleMoved(scans_, tried, options_.threads);
+  if (!moved)
+    spareNothing(scans_);
+  for (PreparedScan& scan : scans_)
+    for (ScanLevel& level : scan.levels)
+      level.grid.reset();
+  return moved;
+}
+
 // The likeliest partners of each scan.
 std::vector<RankedPair> GlobalAligner::pairsByPlans() const
 {
@@ -129,18 +158,28 @@ std::vector<RankedPair> GlobalAligner::pairsByPlans() const
   return firstPartners(std::move(pairs), scans_.size(), partners);
 }
 
-void GlobalAligner::assembleByPlans(const Progress& progress)
+VerificationOptions GlobalAligner::verification() const
 {
   VerificationOptions options;
   options.min_overlap = options_.min_overlap;
   options.max_violation = options_.max_violation;
-  const std::vector<RankedPair> pairs = pairsByPlans();
+  return options;
+}
+
+void GlobalAligner::alignByPlans(const std::vector<RankedPair>& pairs)
+{
   parallelFor(
       scans_.size(), options_.threads, [&](Index k) { prepareManySearches(scans_[k]); }, 1);
-  report(progress, "align pairs", 0.3);
+  const VerificationOptions options = verification();
   alignEach(pairs, [&](Index a, Index b) {
-    return alignByPlans({scans_[a], plans_[a]}, {scans_[b], plans_[b]}, options);
+    return registration::alignByPlans({scans_[a], plans_[a]}, {scans_[b], plans_[b]}, options);
   });
+}
+
+void GlobalAligner::assembleByPlans(const std::vector<RankedPair>& pairs, const Progress& progress)
+{
+  report(progress, "align pairs", 0.3);
+  alignByPlans(pairs);
   std::vector<ScanAliases> aliases(scans_.size());
   forOwn(scans_.size(), [&](Index k) { aliases[k] = findAliasesByPlan({scans_[k], plans_[k]}); });
   shareItems(ranks_, aliases);
@@ -197,8 +236,7 @@ ScanAliases GlobalAligner::aliasesOf(Index scan) const
 void GlobalAligner::alignPairs(const std::vector<RankedPair>& round)
 {
   PairAlignmentOptions options;
-  options.verification.min_overlap = options_.min_overlap;
-  options.verification.max_violation = options_.max_violation;
+  options.verification = verification();
   options.upright = options_.upright;
   prepareForPairs(round);
   alignEach(round, [&](Index a, Index b) {
@@ -299,9 +337,16 @@ GlobalAlignment GlobalAligner::run(const Progress& progress)
 {
   constexpr Index most_in_rounds = 16; // of more, rounds place hardly more, some wrongly, in six times the time
   plans_.resize(scans_.size());
+  findFrames();
   drawPlans();
-  if (hasAllPlans() && countUsable(scans_) > most_in_rounds)
-    assembleByPlans(progress);
+  std::vector<RankedPair> pairs = hasAllPlans() ? pairsByPlans() : std::vector<RankedPair>();
+  const bool people_moved = sparePeople(pairs);
+  if (people_moved) { // plans are drawn with more care then
+    drawPlans();
+    pairs = pairsByPlans();
+  }
+  if (people_moved || (hasAllPlans() && countUsable(scans_) > most_in_rounds)) // rounds place some of these wrongly
+    assembleByPlans(pairs, progress);
   else
     alignInRounds(progress);
   const GraphInput input{scans_, result_.pairs, graphOptions()};

@@ -22,6 +22,19 @@ double overlapShare(const ScanLevel& source, const ScanLevel& target, const Eige
 
 ScanFreeSpace::Slack slackOf(const ScanLevel& level) { return {1.5f * level.voxel, 0.02f}; }
 
+std::vector<ScanFreeSpace::Verdict> judgeLevel(const PreparedScan& seer, const ScanLevel& level,
+                                               const Eigen::Isometry3f& T_seer_level)
+{
+  using Verdict = ScanFreeSpace::Verdict;
+  ScanFreeSpace::Slack slack = slackOf(level);
+  slack.own_rays = seer.spares_doubtful;
+  std::vector<Verdict> verdicts = seer.free_space.judge(level.points, T_seer_level, slack);
+  for (std::size_t i = 0; seer.spares_doubtful && i < level.maybe_person.size(); ++i)
+    if (level.maybe_person[i] != 0 && verdicts[i] == Verdict::violates)
+      verdicts[i] = Verdict::unknown;
+  return verdicts;
+}
+
 bool violatesWithNeighbours(const ScanLevel& level, const std::vector<ScanFreeSpace::Verdict>& verdicts, Index point)
 {
   constexpr int fewest_violating = 6; // of the point and its 7 neighbours
@@ -43,7 +56,7 @@ Violation findViolation(const PreparedScan& seer, const ScanLevel& level, const 
 {
   if (seer.free_space.empty())
     return {};
-  const auto verdicts = seer.free_space.judge(level.points, T_seer_level, slackOf(level));
+  const auto verdicts = judgeLevel(seer, level, T_seer_level);
   Index comparable = 0, violating = 0, points = 0;
   for (Index i = 0; i < level.points.cols(); ++i) {
     comparable += verdicts[i] != ScanFreeSpace::Verdict::unknown ? 1 : 0;

@@ -19,6 +19,11 @@ double overlapShare(const ScanLevel& source, const ScanLevel& target, const Eige
 /// How far in front of measured ranges points of a level still agree with them.
 ScanFreeSpace::Slack slackOf(const ScanLevel& level);
 
+/// What a scan says of all points of a level. If it spares what is doubtful, people do not violate, nor what lies in
+/// directions without a ray of their own.
+std::vector<ScanFreeSpace::Verdict> judgeLevel(const PreparedScan& seer, const ScanLevel& level,
+                                               const Eigen::Isometry3f& T_seer_level);
+
 /// Whether most neighbours of a point that violates do so, too: mixed pixels at edges violate alone, misplaced surfaces
 /// all over.
 /// @param verdicts on all points of the level

@@ -137,6 +137,7 @@ PlanGrid choosePlanGrid(const std::vector<std::optional<PlanFrame>>& frames, con
       sizes.push_back(scans[k].size);
     }
   PlanGrid grid;
+  grid.inner_free = std::any_of(scans.begin(), scans.end(), [](const auto& scan) { return scan.spares_doubtful; });
   if (heights.empty())
     return grid;
   grid.height = median(heights);

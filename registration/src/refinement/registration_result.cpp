@@ -222,6 +222,7 @@ ScanRegistrationResult Description::run()
       look_alike_[i] = placement.look_alike;
   }
   result_.rms = pooledRms(result_.pairs, -1);
+  result_.people_moved = std::any_of(scans_.begin(), scans_.end(), [](const auto& s) { return s.spares_doubtful; });
   std::vector<Index> main;
   for (const Placement& placement : placements)
     for (const std::vector<Index>& group : acceptedGroups(placement, scans_.size())) {
@@ -268,6 +269,8 @@ std::vector<std::string> registrationWarnings(const ScanRegistrationResult& resu
     if (scan.group > 0)
       groups[scan.group].push_back(i);
   }
+  if (result.people_moved)
+    warnings.push_back("people moved between the scans: what may be one speaks against no pose");
   for (const std::vector<Index>& group : groups)
     if (group.size() > 1)
       warnings.push_back(concat("another group: ", group.size(),

@@ -74,6 +74,7 @@ private:
       layers[layer][cellOf(x, y)] = 1;
   }
   void markRay(const Eigen::Vector3f& from, const Eigen::Vector3f& to);
+  void keepInner(FloorPlan::Layer& free) const;
   void clearNear(const FloorPlan::Layer& occupied, FloorPlan::Layer& free) const;
 
   const PlanGrid& grid_;
@@ -94,6 +95,17 @@ void PlanDrawing::markRay(const Eigen::Vector3f& from, const Eigen::Vector3f& to
   const Eigen::Vector3f direction = (to - from) / length;
   for (float r = step; r < length - grid_.cell; r += step)
     mark(plan_.free, from + r * direction);
+}
+
+void PlanDrawing::keepInner(FloorPlan::Layer& free) const
+{
+  const int n = grid_.side, mask = n - 1;
+  const FloorPlan::Layer seen = free;
+  const auto is_seen = [&](int x, int y) { return seen[(y & mask) * n + (x & mask)] != 0; };
+  for (int y = 0; y < n; ++y)
+    for (int x = 0; x < n; ++x)
+      free[y * n + x] =
+          is_seen(x, y) && is_seen(x - 1, y) && is_seen(x + 1, y) && is_seen(x, y - 1) && is_seen(x, y + 1);
 }
 
 void PlanDrawing::clearNear(const FloorPlan::Layer& occupied, FloorPlan::Layer& free) const
@@ -119,8 +131,11 @@ void PlanDrawing::add(const PlanScan& placed)
 
 FloorPlan PlanDrawing::finish()
 {
-  for (int layer = 0; layer < plan_layers; ++layer)
+  for (int layer = 0; layer < plan_layers; ++layer) {
+    if (grid_.inner_free)
+      keepInner(plan_.free[layer]);
     clearNear(plan_.occupied[layer], plan_.free[layer]);
+  }
   return std::move(plan_);
 }
 } // namespace

@@ -28,6 +28,9 @@ struct PlanGrid {
   float cell = 0.f;   ///< edge, length
   int side = 0;       ///< cells per edge, a power of two
   float height = 0.f; ///< of the scanners over the floor, about; length
+  /// Whether only cells with free neighbours count as free: rays pass through the cells of surfaces that they graze, which
+  /// may send nothing back.
+  bool inner_free = false;
 };
 
 constexpr int plan_layers = 3; ///< by height: legs and seats, tables and cupboards, above them

@@ -22,6 +22,7 @@ struct ScanLevel {
       around;                        ///< 8xN, nearest points, itself first, -1 = fewer; not of the finest
   Eigen::VectorXf surface_variation; ///< N, smallest eigenvalue / sum of eigenvalues of the neighbourhood, 0..1/3
   std::vector<Index> samples;        ///< see normalSpaceOrder()
+  std::vector<char> maybe_person;    ///< N, see findPeople(); empty = not looked for
 
   /// To be called before searches: a caller's own search holds the points of one level at a time.
   void prepareSearch() const;
@@ -52,6 +53,7 @@ struct PreparedScan {
   bool oriented = false;                            ///< normals point to the free side; else their sign means nothing
   std::vector<ScanLevel> levels;                    ///< coarse to fine
   ScanFreeSpace free_space;                         ///< empty unless oriented
+  bool spares_doubtful = false;                     ///< people and what was seen through only nearby contradict nothing
   ScanAliases aliases;                              ///< found by findAliases()
 };
 

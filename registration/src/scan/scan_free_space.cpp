@@ -75,7 +75,8 @@ ScanFreeSpace::Map ScanFreeSpace::buildMap(const Points& points, const std::vect
 {
   constexpr double coherent_share = 0.05; // of the range: a surface seen at a slant varies by so much within a cell
   const Index cells = 6 * side_ * side_;
-  Map map{center, std::vector<float>(cells, infinity), std::vector<float>(cells, 0.f), 0.f};
+  Map map{center, std::vector<float>(cells, infinity), std::vector<float>(cells, 0.f), std::vector<char>(cells, 0),
+          0.f};
   std::vector<std::vector<float>> ranges(cells);
   const float spread = float_pi / 2.f / side_;
   std::array<Eigen::Vector2f, 8> ring;
@@ -102,6 +103,7 @@ ScanFreeSpace::Map ScanFreeSpace::buildMap(const Points& points, const std::vect
   for (std::vector<float>& cell : ranges) {
     if (cell.empty())
       continue;
+    map.has_ray[&cell - ranges.data()] = 1;
     coverage_ += 1.0 / cells;
     const double middle = median(cell);
     coherence_ += std::count_if(cell.begin(), cell.end(), [&](float range) {
@@ -131,7 +133,8 @@ std::vector<ScanFreeSpace::Verdict> ScanFreeSpace::judge(const Points& points, c
         verdict = Verdict::agrees;
         break;
       }
-      verdict = Verdict::violates;
+      if (!slack.own_rays || map.has_ray[cell] != 0)
+        verdict = Verdict::violates;
     }
   }
   return verdicts;

@@ -22,10 +22,12 @@ public:
     violates ///< in space that was seen through
   };
 
-  /// How far in front of the measured ranges a point still agrees with them: absolute + relative * range.
+  /// How far in front of the measured ranges a point still agrees with them: absolute + relative * range. Surfaces that
+  /// rays graze may send nothing back; only rays of neighbouring cells then pass by them.
   struct Slack {
     float absolute = 0.f; ///< length
     float relative = 0.f;
+    bool own_rays = false; ///< a point violates only in a cell of directions that a ray of its own saw through
   };
 
   /// @param T_scan_points rigid, brings `points` into the frame of the scan
@@ -51,12 +53,13 @@ private:
   struct Map {
     Eigen::Vector3f center;
     std::vector<float> nearest, farthest; ///< per cell; nearest = +inf in cells without a measurement
+    std::vector<char> has_ray;            ///< per cell, whether a ray of its own measured something
     float reach = 0.f;                    ///< the largest of `farthest`, length
   };
   template <typename Archive>
   friend void fields(Archive& archive, Map& map)
   {
-    archive(map.center, map.nearest, map.farthest, map.reach);
+    archive(map.center, map.nearest, map.farthest, map.has_ray, map.reach);
   }
   Map buildMap(const Points& points, const std::vector<Index>& members, const Eigen::Vector3f& center, double reach);
   std::vector<Map> maps_;

@@ -99,10 +99,11 @@ struct ScanRegistrationResult {
   float voxel = 0.f;  ///< that was used
   int iterations = 0; ///< of the last refinement, over all resolutions
   bool converged = false;
+  bool people_moved = false; ///< between the scans: nothing that may be a person contradicted a pose
 };
 
 /// What a user should know of the result, a line each: scans that could not be read or placed or are doubtful, viewpoints
-/// that are not used, further groups.
+/// that are not used, people who moved, further groups.
 FRESCO_EXPORT std::vector<std::string> registrationWarnings(const ScanRegistrationResult& result,
                                                             const ScanRegistrationOptions& options);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "graph/pair_ranking.h"
+#include "pair/pair_ranking.h"
 #include "pair/place_likeness.h"
 #include <algorithm>
 #include <fresco/core/parallel.h>

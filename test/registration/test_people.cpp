@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "graph/free_space_evidence.h"
+#include "registration/look_alike_scenes.h"
+#include "scan/people.h"
+#include <fresco/registration/core/scan_registration.h>
+#include <gtest/gtest.h>
+namespace fresco::registration {
+namespace {
+const test::Box standing{{3.2, 2.2, 0.85}, {0.2, 0.15, 0.85}, 0.4}, at_wall{{5.7, 2.5, 0.85}, {0.15, 0.15, 0.85}, 0.8};
+
+// With what a person must not be taken for, each seen from the places below.
+test::Boxes furnishedRoom(const test::Boxes& people)
+{
+  test::Boxes boxes;
+  test::addRoom(boxes, {0, 0, 0}, {6, 5, 2.6}, std::numeric_limits<double>::quiet_NaN());
+  test::addBox(boxes, {2, 4.6, 0}, {2.9, 5, 1.8});     // a cupboard
+  test::addBox(boxes, {4, 1, 0}, {5.4, 1.8, 0.75});    // a table
+  test::addBox(boxes, {4.6, 3.6, 0}, {5, 4, 0.5});     // low
+  test::addBox(boxes, {0.8, 3.2, 0}, {1.1, 3.5, 2.6}); // a column
+  boxes.insert(boxes.end(), people.begin(), people.end());
+  return boxes;
+}
+
+PreparedScan scanOf(const test::Boxes& people, const Eigen::Isometry3d& T, unsigned seed)
+{
+  return prepareScan(test::scanBoxes(furnishedRoom(people), T, 30000, 0.004, seed), Thinning(0.04), 0);
+}
+
+std::vector<char> peopleIn(const PreparedScan& scan)
+{
+  const auto frame = findPlanFrame(scan, findPlanes(scan));
+  return frame ? findPeople(scan, *frame) : std::vector<char>();
+}
+
+TEST(People, AreFoundAndNothingElse)
+{
+  const Eigen::Isometry3d T = test::stationPose({1, 1, 1.6}, 0.3, 0.01);
+  for (const test::Boxes& people : {test::Boxes{}, {standing}, {at_wall}, {standing, at_wall}}) {
+    const PreparedScan scan = scanOf(people, T, 1);
+    const Points& points = scan.levels[check_level].points;
+    const std::vector<char> found = peopleIn(scan);
+    ASSERT_EQ(static_cast<Index>(found.size()), points.cols());
+    Index of_people = 0, right = 0, wrong = 0;
+    for (Index i = 0; i < points.cols(); ++i) {
+      const Eigen::Vector3d p = T * (points.col(i).cast<double>() + scan.center);
+      double distance = std::numeric_limits<double>::infinity();
+      for (const test::Box& person : people)
+        distance = std::min(distance, test::surfaceDistance(person, p));
+      const bool is_person = distance < 0.05 && p.z() > 0.3;
+      of_people += is_person ? 1 : 0;
+      right += is_person && found[i] != 0 ? 1 : 0;
+      wrong += distance > 0.5 && found[i] != 0 ? 1 : 0;
+    }
+    EXPECT_EQ(wrong, 0);
+    EXPECT_EQ(of_people > 20, !people.empty());
+    EXPECT_GE(right, 0.9 * of_people);
+  }
+}
+
+// Who was there when one of two scans was made speaks against no pose, if people are left out; walls still do.
+TEST(People, ContradictNothingWhereTheyAreLeftOut)
+{
+  const Eigen::Isometry3d T_a = test::stationPose({1, 1, 1.6}, 0.3, 0.01),
+                          T_b = test::stationPose({5, 4.3, 1.6}, 2, 0.01);
+  std::vector<PreparedScan> scans = {scanOf({}, T_a, 1), scanOf({standing}, T_b, 2)};
+  const Eigen::Isometry3d T =
+      (T_a * Eigen::Translation3d(scans[0].center)).inverse() * T_b * Eigen::Translation3d(scans[1].center);
+  EXPECT_TRUE(isContradicted(FreeSpaceJudge(scans).judge(0, 1, T)));
+  for (PreparedScan& scan : scans) {
+    scan.levels[check_level].maybe_person = peopleIn(scan);
+    scan.spares_doubtful = true;
+  }
+  const FreeSpaceJudge judge(scans);
+  EXPECT_FALSE(isContradicted(judge.judge(0, 1, T)));
+  EXPECT_TRUE(isContradicted(judge.judge(0, 1, Eigen::Translation3d(0.5, 0, 0) * T)));
+}
+
+// A cell of directions may be bounded by its neighbours' rays alone: then nobody looked there.
+TEST(ScanFreeSpace, OnlyOwnRaysContradictWhereAskedFor)
+{
+  using Verdict = ScanFreeSpace::Verdict;
+  constexpr Index n = 6000;
+  Points sphere(3, n);
+  std::vector<Index> kept;
+  for (Index i = 0; i < n; ++i) { // Fibonacci's lattice
+    const double z = 1.0 - (2.0 * i + 1.0) / n, angle = i * M_PI * (3.0 - std::sqrt(5.0)), r = std::sqrt(1.0 - z * z);
+    sphere.col(i) = (5.0 * Eigen::Vector3d(r * std::cos(angle), r * std::sin(angle), z)).cast<float>();
+    if (!(std::abs(sphere(1, i)) < 0.3f && sphere(0, i) > 0.f)) // nothing came back from a band a cell wide
+      kept.push_back(i);
+  }
+  const ScanFreeSpace space(sphere(Eigen::all, kept), Points::Zero(3, 1), 0.1f);
+  Points points(3, 2);
+  points << 2.f, -2.f, 0.f, 0.f, 0.1f, 0.1f;
+  const auto judge = [&](bool own_rays) {
+    return space.judge(points, Eigen::Isometry3f::Identity(), {0.2f, 0.02f, own_rays});
+  };
+  EXPECT_EQ(judge(false), (std::vector<Verdict>{Verdict::violates, Verdict::violates}));
+  EXPECT_EQ(judge(true), (std::vector<Verdict>{Verdict::unknown, Verdict::violates}));
+}
+} // namespace
+} // namespace fresco::registration
