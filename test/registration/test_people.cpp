@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "graph/free_space_evidence.h"
+#include "graph/moved_people.h"
 #include "registration/look_alike_scenes.h"
 #include "scan/people.h"
 #include <fresco/registration/core/scan_registration.h>
@@ -73,6 +74,54 @@ TEST(People, ContradictNothingWhereTheyAreLeftOut)
   const FreeSpaceJudge judge(scans);
   EXPECT_FALSE(isContradicted(judge.judge(0, 1, T)));
   EXPECT_TRUE(isContradicted(judge.judge(0, 1, Eigen::Translation3d(0.5, 0, 0) * T)));
+}
+
+std::vector<PreparedScan> scansFrom(const IsometryVector& stations, const std::vector<test::Boxes>& people)
+{
+  std::vector<PreparedScan> scans;
+  for (std::size_t k = 0; k < stations.size(); ++k)
+    scans.push_back(scanOf(people[k], stations[k], static_cast<unsigned>(k) + 1));
+  return scans;
+}
+
+// All pairs at their true poses.
+std::vector<PairAlignment> truePairs(const std::vector<PreparedScan>& scans, const IsometryVector& stations)
+{
+  const auto placed = [&](Index k) { return stations[k] * Eigen::Translation3d(scans[k].center); };
+  std::vector<PairAlignment> pairs;
+  for (Index a = 0; a < static_cast<Index>(scans.size()); ++a)
+    for (Index b = a + 1; b < static_cast<Index>(scans.size()); ++b) {
+      PairAlignment pair;
+      pair.a = a;
+      pair.b = b;
+      pair.hypotheses.resize(1);
+      pair.hypotheses[0].T_a_b = placed(a).inverse() * placed(b);
+      pair.hypotheses[0].check = checkPair(scans[a], scans[b], pair.hypotheses[0].T_a_b, check_level);
+      pairs.push_back(pair);
+    }
+  return pairs;
+}
+
+// Who stays where they are is furniture.
+TEST(People, AreSeenToMoveOnlyIfTheyDo)
+{
+  const IsometryVector stations = {test::stationPose({1, 1, 1.6}, 0.3, 0.01), test::stationPose({5, 4.3, 1.6}, 2, 0.01),
+                                   test::stationPose({1.6, 4, 1.6}, 1, 0.01)};
+  const test::Box other{{3.4, 3.2, 0.85}, {0.2, 0.15, 0.85}, 0.4};
+  const auto moved = [&](const std::vector<test::Boxes>& people) {
+    std::vector<PreparedScan> scans = scansFrom(stations, people);
+    PlanFrames frames = findPlanFrames(scans, 0);
+    spareDoubtful(scans, frames, 0);
+    const bool found = peopleMoved(scans, truePairs(scans, stations), 0);
+    EXPECT_FALSE(scans[0].levels[check_level].maybe_person.empty());
+    spareNothing(scans);
+    EXPECT_TRUE(scans[0].levels[check_level].maybe_person.empty());
+    EXPECT_FALSE(scans[0].spares_doubtful);
+    return found;
+  };
+  EXPECT_FALSE(moved({{}, {}, {}}));
+  EXPECT_FALSE(moved({{standing}, {standing}, {standing}}));
+  EXPECT_TRUE(moved({{standing}, {other}, {}}));
 }
 
 // A cell of directions may be bounded by its neighbours' rays alone: then nobody looked there.
