@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scan/people.h"
+#include <algorithm>
 #include <fresco/core/union_find.h>
 namespace fresco::registration {
 namespace {
 // Of the scanner's height over the floor, about 1.6 m on a tripod: chests begin at 1.1 m, heads end at 1.3 to 2 m.
 constexpr float chest = 0.7f, least_top = 0.8f, most_top = 1.25f, least_height = 0.2f, most_width = 0.45f;
 constexpr float floor_layer = 0.08f, radius = 0.3f; // of what is below: feet and elbows
-constexpr float gap = 2.f;                          // between points that hang together, voxels
 
 // Whether most neighbours of a point lie in its plane.
 bool isFlat(const ScanLevel& level, Index point)
@@ -25,13 +25,18 @@ bool isFlat(const ScanLevel& level, Index point)
   return in_plane >= least;
 }
 
-// Whether one of the given points is near.
-bool isNear(const ScanLevel& level, const std::vector<char>& given, Index point)
+// Whether a neighbour of a point (-1 = none) is one of the given points and hangs together with it.
+bool isLinked(const ScanLevel& level, const std::vector<char>& given, Index point, std::int32_t neighbour)
 {
-  for (const std::int32_t k : level.around.col(point))
-    if (k >= 0 && given[k] != 0 && (level.points.col(point) - level.points.col(k)).norm() < gap * level.voxel)
-      return true;
-  return false;
+  constexpr float gap = 2.f; // voxels
+  return neighbour >= 0 && given[neighbour] != 0 &&
+         (level.points.col(point) - level.points.col(neighbour)).norm() < gap * level.voxel;
+}
+
+bool hasLinked(const ScanLevel& level, const std::vector<char>& given, Index point)
+{
+  const auto around = level.around.col(point);
+  return std::any_of(around.begin(), around.end(), [&](std::int32_t k) { return isLinked(level, given, point, k); });
 }
 
 // The given points in sets that hang together.
@@ -39,11 +44,9 @@ UnionFind connect(const ScanLevel& level, const std::vector<char>& given)
 {
   UnionFind sets(level.points.cols());
   for (Index i = 0; i < level.points.cols(); ++i)
-    for (int n = 1; given[i] != 0 && n < level.around.rows(); ++n) {
-      const std::int32_t k = level.around(n, i);
-      if (k >= 0 && given[k] != 0 && (level.points.col(i) - level.points.col(k)).norm() < gap * level.voxel)
-        sets.join(i, k);
-    }
+    for (int n = 1; given[i] != 0 && n < level.around.rows(); ++n)
+      if (isLinked(level, given, i, level.around(n, i)))
+        sets.join(i, level.around(n, i));
   return sets;
 }
 
@@ -96,7 +99,7 @@ std::vector<Eigen::AlignedBox3f> personBoxes(const ScanLevel& level, const Point
   for (Index i = 0; i < n; ++i)
     if (given[i] != 0) {
       ++counts[sets.root(i)];
-      at_wall[sets.root(i)] += isNear(level, walls, i) ? 1 : 0;
+      at_wall[sets.root(i)] += hasLinked(level, walls, i) ? 1 : 0;
     }
   std::vector<Eigen::AlignedBox3f> people;
   for (Index i = 0; i < n; ++i)

@@ -87,7 +87,9 @@ ScanFreeSpace::Map ScanFreeSpace::buildMap(const Points& points, const std::vect
     const float range = ray.norm();
     if (!(range > 0.f))
       continue;
-    ranges[cellOf(ray, side_)].push_back(range);
+    const Index own_cell = cellOf(ray, side_);
+    ranges[own_cell].push_back(range);
+    map.has_ray[own_cell] = 1;
     // The measurement is spread over its neighbourhood: a cell then bounds what was seen around it too.
     const Eigen::Vector3f direction = ray / range;
     const Eigen::Vector3f u = direction.unitOrthogonal() * spread, v = direction.cross(u);
@@ -103,7 +105,6 @@ ScanFreeSpace::Map ScanFreeSpace::buildMap(const Points& points, const std::vect
   for (std::vector<float>& cell : ranges) {
     if (cell.empty())
       continue;
-    map.has_ray[&cell - ranges.data()] = 1;
     coverage_ += 1.0 / cells;
     const double middle = median(cell);
     coherence_ += std::count_if(cell.begin(), cell.end(), [&](float range) {
