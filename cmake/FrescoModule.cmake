@@ -57,20 +57,31 @@ function(fresco_add_tool name)
   add_dependencies(fresco_tools ${target})
 endfunction()
 
-# fresco_add_test(NAME SOURCES file... [DEPENDS target...]): GoogleTest program test_NAME, one ctest entry.
+# fresco_add_test(NAME SOURCES file... [DEPENDS target...] [SHARDS n]): GoogleTest program test_NAME, one ctest entry; with
+# SHARDS its tests are dealt out to n entries NAME_0, NAME_1, ..., which may run at once.
 # The environment variable FRESCO_DATA names the folder of real data; its tests are skipped where it is absent.
 function(fresco_add_test name)
-  cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS" ${ARGN})
+  cmake_parse_arguments(ARG "" "SHARDS" "SOURCES;DEPENDS" ${ARGN})
   add_executable(test_${name} ${ARG_SOURCES})
   target_link_libraries(test_${name} PRIVATE ${ARG_DEPENDS} GTest::gtest_main fresco_warnings)
   target_include_directories(test_${name} PRIVATE ${PROJECT_SOURCE_DIR}/test ${PROJECT_SOURCE_DIR}/tools)
   target_compile_definitions(test_${name} PRIVATE FRESCO_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
                              FRESCO_BINARY_DIR="${PROJECT_BINARY_DIR}")
   target_link_options(test_${name} PRIVATE -Wl,--as-needed)
-  add_test(NAME ${name} COMMAND test_${name})
   set(timeout 600)
   if(FRESCO_SANITIZE)
     set(timeout 7200)
   endif()
-  set_tests_properties(${name} PROPERTIES TIMEOUT ${timeout})
+  if(NOT ARG_SHARDS)
+    add_test(NAME ${name} COMMAND test_${name})
+    set_tests_properties(${name} PROPERTIES TIMEOUT ${timeout})
+    return()
+  endif()
+  math(EXPR last "${ARG_SHARDS} - 1")
+  foreach(shard RANGE ${last})
+    add_test(NAME ${name}_${shard} COMMAND test_${name})
+    set_tests_properties(
+      ${name}_${shard} PROPERTIES TIMEOUT ${timeout} ENVIRONMENT
+                                  "GTEST_TOTAL_SHARDS=${ARG_SHARDS};GTEST_SHARD_INDEX=${shard}")
+  endforeach()
 endfunction()

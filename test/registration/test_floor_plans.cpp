@@ -75,6 +75,71 @@ TEST(FloorPlans, ScannersThatDidNotStandUprightHaveNone)
   EXPECT_TRUE(matchPlans(planned[0].plan, planned[1].plan, 4).empty());
 }
 
+TEST(FloorPlans, HeightsOfScannersDoNotDependOnTheVoxel)
+{
+  const ScannedScene scene = test::scanTwoRooms(60000);
+  for (const double voxel : {0.03, 0.05, 0.08})
+    for (std::size_t k = 0; k < scene.scans.size(); ++k) {
+      const PreparedScan scan = prepareScan(scene.scans[k], Thinning(voxel), 0);
+      const std::optional<PlanFrame> frame = findPlanFrame(scan, findPlanes(scan));
+      ASSERT_TRUE(frame.has_value());
+      EXPECT_NEAR(frame->height, scene.truth[k].translation().z(), 0.02) << voxel;
+    }
+}
+
+// A scanner in a corridor, and its floor plan, drawn in the frame of the world.
+struct CorridorScan {
+  CorridorScan(const test::Boxes& boxes, double x)
+      : pose(test::stationPose({x, 1.0, 1.6}, 0.0, 0.0)),
+        scan(prepareScan(test::scanBoxes(boxes, pose, 20000, 0.004, static_cast<unsigned>(x) + 1), Thinning(0.06), 0)),
+        T_world_scan(pose * Eigen::Translation3d(scan.center))
+  {}
+  FloorPlan draw(const PlanGrid& grid) const { return drawFloorPlan({{scan, T_world_scan.cast<float>()}}, grid); }
+
+  Eigen::Isometry3d pose;
+  PreparedScan scan;
+  Eigen::Isometry3d T_world_scan; // from the working frame
+};
+
+// 24 m long, 2 m wide, as low as the highest layer of plans reaches.
+test::Boxes corridor()
+{
+  test::Boxes boxes;
+  test::addRoom(boxes, {-12, 0, 0}, {12, 2, 2.3}, std::numeric_limits<double>::quiet_NaN());
+  return boxes;
+}
+
+// From six metres away, rays graze the walls that the other scanner sees best. Of the free cells at them most are left
+// out, more with `inner_free`; and a ceiling is no wall.
+TEST(FloorPlans, TwoScansOfACorridorHardlyContradictEachOther)
+{
+  const test::Boxes boxes = corridor();
+  const CorridorScan a(boxes, -3.0), b(boxes, 3.0);
+  PlanGrid grid;
+  grid.cell = 0.2f;
+  grid.side = 128;
+  grid.height = 1.6f;
+  const auto conflicts = [](const FloorPlan::Layer& occupied, const FloorPlan::Layer& free) {
+    Index all = 0, both = 0;
+    for (std::size_t i = 0; i < occupied.size(); ++i) {
+      all += occupied[i];
+      both += occupied[i] * free[i];
+    }
+    EXPECT_GT(all, 100);
+    return 1.0 * both / all;
+  };
+  for (const bool inner_free : {false, true}) {
+    grid.inner_free = inner_free;
+    const FloorPlan first = a.draw(grid), second = b.draw(grid);
+    const std::size_t middle = 5 * grid.side + (grid.side - 30); // of the corridor, at (-6 m, 1 m)
+    for (int layer = 0; layer < plan_layers; ++layer) {
+      EXPECT_EQ(first.occupied[layer][middle], 0) << layer;
+      EXPECT_LT(conflicts(first.occupied[layer], second.free[layer]), inner_free ? 0.06 : 0.085) << layer;
+      EXPECT_LT(conflicts(second.occupied[layer], first.free[layer]), inner_free ? 0.06 : 0.085) << layer;
+    }
+  }
+}
+
 // Scans of furnished rooms, each turned in its own way.
 TEST(FloorPlans, ScansShowWhichWayWasUp)
 {

@@ -55,6 +55,7 @@ private:
   }
   bool fitsElsewhere(const ScanCluster& rest, const ScanCluster& part) const;
   bool isUndecided(const ScanCluster& rest, const ScanCluster& part, const FreeSpaceEvidence& there) const;
+  bool isClaimed(std::size_t group, const ScanCluster& rest, const ScanCluster& part) const;
   IsometryVector twinMotions(std::size_t group) const;
   bool mayBeMoved(const ScanCluster& rest, const ScanCluster& part, const IsometryVector& motions) const;
   bool splitContested(std::size_t group);
@@ -221,17 +222,39 @@ bool Assembler::isUndecided(const ScanCluster& rest, const ScanCluster& part, co
          !contradictsMore(there, judge_.judge(rest, part, Eigen::Isometry3d::Identity()), judge_.unit());
 }
 
-// Whether what two pairs or a certain one say of a part of a group leads to another place in it, which free space
+// Whether what two pairs, a certain or a good one say of a part of a group leads to another place in it, which free space
 // contradicts no more. Agreement hardly counts: of equal rooms, the wrong one may be seen best.
 bool Assembler::fitsElsewhere(const ScanCluster& rest, const ScanCluster& part) const
 {
-  constexpr double least_overlap = 0.15; // less, and chance explains it
+  constexpr double least_overlap = 0.15, least_of_one = 0.3; // of two pairs, of one: less, and chance explains it
   for (const ClusterFit& rough : fitter_.rough(rest, part)) {
-    if (!rough.certain && (rough.pairs < 2 || rough.overlap < least_overlap))
+    if (!rough.certain && rough.overlap < (rough.pairs < 2 ? least_of_one : least_overlap))
       continue;
     const ClusterFit fit = fitter_.settled(rest, part, rough);
     if (!fitter_.isSame(part, fit.T, Eigen::Isometry3d::Identity(), 3.0) && isUndecided(rest, part, fit.evidence))
       return true;
+  }
+  return false;
+}
+
+// Whether another group has a certain place for a part of a group, and free space contradicts that group and the rest
+// where this place leads to. Whatever was said against its claim while the groups grew: it has found no other place.
+bool Assembler::isClaimed(std::size_t group, const ScanCluster& rest, const ScanCluster& part) const
+{
+  constexpr double least_share = 0.25; // of the surfaces that agree here
+  const double least = least_share * judge_.judge(rest, part, Eigen::Isometry3d::Identity()).agree;
+  for (std::size_t other = 0; other < groups_.size(); ++other) {
+    const ScanCluster& claimer = groups_[other].cluster;
+    if (other == group)
+      continue;
+    for (const ClusterFit& rough : fitter_.rough(claimer, part)) {
+      if (!rough.certain)
+        continue;
+      const ClusterFit fit = fitter_.settled(claimer, part, rough);
+      if (fit.evidence.agree >= least && isUndecided(rest, part, fit.evidence) &&
+          isContradicted(judge_.judge(rest, claimer, fit.T.inverse())))
+        return true;
+    }
   }
   return false;
 }
@@ -275,7 +298,7 @@ bool Assembler::splitContested(std::size_t group)
       [&](Index k) {
         const auto [part, rest] = divide(cluster, parts[k]);
         contested[k] = !part.scans.empty() && part.scans.size() <= rest.scans.size() && !hasKnown(part) &&
-                       (fitsElsewhere(rest, part) || mayBeMoved(rest, part, motions));
+                       (fitsElsewhere(rest, part) || mayBeMoved(rest, part, motions) || isClaimed(group, rest, part));
       },
       1);
   const auto first = std::find(contested.begin(), contested.end(), 1);

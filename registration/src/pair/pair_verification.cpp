@@ -48,24 +48,29 @@ void rankHypotheses(const PairGeometry& pair, std::size_t most, FoundHypotheses&
   rankByCheck(pair, 1, most, found.planes);
 }
 
-// Adds up to `most` distinct refined hypotheses, checked at the finest level.
-void refineHypotheses(const PairGeometry& pair, const PoseHypotheses& hypotheses, std::size_t most,
+// Adds up to `most` distinct refined hypotheses, checked at the finest level. Of two that end at one place the better one
+// stays.
+// @param reach of a refined one: what starts within it is not tried, length
+void refineHypotheses(const PairGeometry& pair, const PoseHypotheses& hypotheses, std::size_t most, double reach,
                       VerifiedHypotheses& verified)
 {
   most += verified.size();
   for (const PoseHypothesis& hypothesis : hypotheses) {
-    const auto known = [&](const Eigen::Isometry3d& T, double factor) {
-      return std::any_of(verified.begin(), verified.end(), [&](const VerifiedHypothesis& other) {
-        return poseDistance(other.T_a_b, T, pair.size) < factor * pair.grain;
+    const auto find = [&](const Eigen::Isometry3d& T, double distance) {
+      return std::find_if(verified.begin(), verified.end(), [&](const VerifiedHypothesis& other) {
+        return poseDistance(other.T_a_b, T, pair.size) < distance;
       });
     };
     if (verified.size() >= most)
       break;
-    if (known(hypothesis.T_a_b, 3.0))
+    if (find(hypothesis.T_a_b, reach) != verified.end())
       continue;
     const VerifiedHypothesis next = verifyHypothesis(pair, hypothesis);
-    if (!known(next.T_a_b, 1.0))
+    const auto same = find(next.T_a_b, pair.tolerance);
+    if (same == verified.end())
       verified.push_back(next);
+    else if (next.score > same->score)
+      *same = next;
   }
 }
 
@@ -93,7 +98,8 @@ bool comparable(const VerifiedHypothesis& best, const VerifiedHypothesis& other)
 } // namespace
 
 PairGeometry::PairGeometry(const PreparedScan& scan_a, const PreparedScan& scan_b)
-    : a(scan_a), b(scan_b), size(std::sqrt(a.size * b.size)), grain(4.0 * a.levels[1].voxel)
+    : a(scan_a), b(scan_b), size(std::sqrt(a.size * b.size)), grain(4.0 * a.levels[1].voxel),
+      tolerance(4.0 * a.levels.back().voxel)
 {}
 
 double alignmentScore(const PairCheck& check)
@@ -141,8 +147,10 @@ VerifiedHypotheses verifyHypotheses(const PairGeometry& pair, FoundHypotheses fo
 {
   rankHypotheses(pair, options.checked, found);
   VerifiedHypotheses refined_all, accepted;
-  for (const PoseHypotheses* poses : {&found.features, &found.planes, &found.plans})
-    refineHypotheses(pair, *poses, options.refined, refined_all);
+  // Features say where something is in all directions. What walls say may slide along a corridor, and stay there.
+  refineHypotheses(pair, found.features, options.refined, 3.0 * pair.grain, refined_all);
+  for (const PoseHypotheses* poses : {&found.planes, &found.plans})
+    refineHypotheses(pair, *poses, options.refined, pair.tolerance, refined_all);
   for (const VerifiedHypothesis& verified : refined_all)
     if (verified.check.overlap >= options.min_overlap && verified.check.violation <= options.max_violation)
       accepted.push_back(verified);

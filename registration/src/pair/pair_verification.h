@@ -21,8 +21,9 @@ constexpr Index many_votes = 40; ///< agreeing features: hardly by chance
 struct PairGeometry {
   PairGeometry(const PreparedScan& a, const PreparedScan& b);
   const PreparedScan &a, &b;
-  double size;  ///< of the scans, length
-  double grain; ///< poses nearer to each other are the same, length
+  double size;      ///< of the scans, length
+  double grain;     ///< poses nearer to each other than this are the same before they are refined, length
+  double tolerance; ///< likewise afterwards
 };
 
 struct VerificationOptions {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <fresco/core/parallel.h>
 #include <map>
+#include <numeric>
 namespace fresco::registration {
 namespace {
 // Of the axes, the one that was vertical while the scanner stood upright.
@@ -30,19 +31,26 @@ Eigen::Matrix3f planAxes(const ScanPlanes& planes, const Eigen::Vector3f& up)
   return rows;
 }
 
-// Height of the plane below the scanner that most points lie on.
+// Height of the plane below the scanner that most points lie on: the mean of those within a voxel of it, since plans of
+// scans are compared by layers of height.
 std::optional<float> floorHeight(const ScanLevel& level, const Eigen::Vector3f& up, float scanner)
 {
   constexpr float facing = 0.95f; // cosine of 18 degrees
   std::map<Index, Index> counts;
+  std::vector<float> heights;
   for (Index i = 0; i < level.points.cols(); ++i)
-    if (level.normals.col(i).dot(up) > facing && level.points.col(i).dot(up) < scanner)
-      ++counts[std::lround(level.points.col(i).dot(up) / level.voxel)];
+    if (level.normals.col(i).dot(up) > facing && level.points.col(i).dot(up) < scanner) {
+      heights.push_back(level.points.col(i).dot(up));
+      ++counts[std::lround(heights.back() / level.voxel)];
+    }
   if (counts.empty())
     return std::nullopt;
   const auto most =
       std::max_element(counts.begin(), counts.end(), [](const auto& x, const auto& y) { return x.second < y.second; });
-  return most->first * level.voxel;
+  const float middle = most->first * level.voxel;
+  const auto floor = std::partition(heights.begin(), heights.end(),
+                                    [&](float height) { return std::abs(height - middle) < level.voxel; });
+  return std::accumulate(heights.begin(), floor, 0.f) / static_cast<float>(floor - heights.begin());
 }
 
 class PlanDrawing {
@@ -73,7 +81,7 @@ private:
     if (layer >= 0 && within(x) && within(y))
       layers[layer][cellOf(x, y)] = 1;
   }
-  void markRay(const Eigen::Vector3f& from, const Eigen::Vector3f& to);
+  void markRay(const Eigen::Vector3f& from, const Eigen::Vector3f& to, const Eigen::Vector3f& normal);
   void keepInner(FloorPlan::Layer& free) const;
   void clearNear(const FloorPlan::Layer& occupied, FloorPlan::Layer& free) const;
 
@@ -89,11 +97,13 @@ PlanDrawing::PlanDrawing(const PlanGrid& grid) : grid_(grid)
   }
 }
 
-void PlanDrawing::markRay(const Eigen::Vector3f& from, const Eigen::Vector3f& to)
+// Up to a cell in front of the surface where it ends: a ray passes through the cells of a wall that it grazes.
+void PlanDrawing::markRay(const Eigen::Vector3f& from, const Eigen::Vector3f& to, const Eigen::Vector3f& normal)
 {
   const float length = (to - from).norm(), step = 0.5f * grid_.cell;
   const Eigen::Vector3f direction = (to - from) / length;
-  for (float r = step; r < length - grid_.cell; r += step)
+  const float cosine = std::abs(direction.dot(normal));
+  for (float r = step; (length - r) * cosine > grid_.cell; r += step)
     mark(plan_.free, from + r * direction);
 }
 
@@ -121,11 +131,16 @@ void PlanDrawing::clearNear(const FloorPlan::Layer& occupied, FloorPlan::Layer& 
 
 void PlanDrawing::add(const PlanScan& placed)
 {
+  constexpr float level_cosine = 0.9f; // 26 degrees
   const ScanLevel& level = placed.scan.levels[check_level];
   for (Index i = 0; i < level.points.cols(); ++i) {
+    const Eigen::Vector3f from = placed.T_plan_scan * level.viewpoints.col(i);
     const Eigen::Vector3f to = placed.T_plan_scan * level.points.col(i);
-    mark(plan_.occupied, to);
-    markRay(placed.T_plan_scan * level.viewpoints.col(i), to);
+    const Eigen::Vector3f normal = placed.T_plan_scan.linear() * level.normals.col(i);
+    const bool is_ceiling = to.z() > from.z() && std::abs(normal.z()) > level_cosine;
+    if (!is_ceiling)
+      mark(plan_.occupied, to);
+    markRay(from, to, normal);
   }
 }
 

@@ -39,7 +39,7 @@ constexpr int plan_layers = 3; ///< by height: legs and seats, tables and cupboa
 /// in cell (0, 0), what lies at negative coordinates follows cyclically.
 struct FloorPlan {
   using Layer = std::vector<std::uint8_t>;
-  std::array<Layer, plan_layers> occupied; ///< holds a point
+  std::array<Layer, plan_layers> occupied; ///< holds a point that is not of a ceiling
   std::array<Layer, plan_layers> free;     ///< was seen through, and neither the cell nor its neighbours hold a point
 };
 
