@@ -29,6 +29,10 @@ private:
     ClusterFit fit;
   };
   using Joins = std::vector<Join, Eigen::aligned_allocator<Join>>;
+  struct PlacedPart { // of a group
+    const ScanCluster &part, &rest;
+    FreeSpaceEvidence here; // of the part in the rest
+  };
 
   void findAllFits();
   // Of the second group in the first.
@@ -53,11 +57,11 @@ private:
   {
     return std::any_of(cluster.scans.begin(), cluster.scans.end(), [&](Index i) { return contains(known_, i); });
   }
-  bool fitsElsewhere(const ScanCluster& rest, const ScanCluster& part) const;
-  bool isUndecided(const ScanCluster& rest, const ScanCluster& part, const FreeSpaceEvidence& there) const;
-  bool isClaimed(std::size_t group, const ScanCluster& rest, const ScanCluster& part) const;
+  bool isUndecided(const FreeSpaceEvidence& here, const FreeSpaceEvidence& there) const;
+  bool fitsElsewhere(const PlacedPart& placed) const;
+  bool isClaimed(std::size_t group, const PlacedPart& placed) const;
   IsometryVector twinMotions(std::size_t group) const;
-  bool mayBeMoved(const ScanCluster& rest, const ScanCluster& part, const IsometryVector& motions) const;
+  bool mayBeMoved(const PlacedPart& placed, const IsometryVector& motions) const;
   bool splitContested(std::size_t group);
   bool haveTwinPlaces(const ScanCluster& whole, const ScanCluster& part, const ScanCluster& rest) const;
   bool splitTwins(std::size_t group);
@@ -215,23 +219,24 @@ void Assembler::join(const Join& join)
 }
 
 // Whether the evidence of another place of a part leaves open which is right.
-bool Assembler::isUndecided(const ScanCluster& rest, const ScanCluster& part, const FreeSpaceEvidence& there) const
+bool Assembler::isUndecided(const FreeSpaceEvidence& here, const FreeSpaceEvidence& there) const
 {
   constexpr double least_agreement = 0.3; // of a scan's points: less, and chance explains it
   return there.agree >= least_agreement && !isContradicted(there) && there.violating <= noise_violation * there.agree &&
-         !contradictsMore(there, judge_.judge(rest, part, Eigen::Isometry3d::Identity()), judge_.unit());
+         !contradictsMore(there, here, judge_.unit());
 }
 
 // Whether what two pairs, a certain or a good one say of a part of a group leads to another place in it, which free space
 // contradicts no more. Agreement hardly counts: of equal rooms, the wrong one may be seen best.
-bool Assembler::fitsElsewhere(const ScanCluster& rest, const ScanCluster& part) const
+bool Assembler::fitsElsewhere(const PlacedPart& placed) const
 {
   constexpr double least_overlap = 0.15, least_of_one = 0.3; // of two pairs, of one: less, and chance explains it
-  for (const ClusterFit& rough : fitter_.rough(rest, part)) {
+  for (const ClusterFit& rough : fitter_.rough(placed.rest, placed.part)) {
     if (!rough.certain && rough.overlap < (rough.pairs < 2 ? least_of_one : least_overlap))
       continue;
-    const ClusterFit fit = fitter_.settled(rest, part, rough);
-    if (!fitter_.isSame(part, fit.T, Eigen::Isometry3d::Identity(), 3.0) && isUndecided(rest, part, fit.evidence))
+    const ClusterFit fit = fitter_.settled(placed.rest, placed.part, rough);
+    if (!fitter_.isSame(placed.part, fit.T, Eigen::Isometry3d::Identity(), 3.0) &&
+        isUndecided(placed.here, fit.evidence))
       return true;
   }
   return false;
@@ -239,20 +244,18 @@ bool Assembler::fitsElsewhere(const ScanCluster& rest, const ScanCluster& part) 
 
 // Whether another group has a certain place for a part of a group, and free space contradicts that group and the rest
 // where this place leads to. Whatever was said against its claim while the groups grew: it has found no other place.
-bool Assembler::isClaimed(std::size_t group, const ScanCluster& rest, const ScanCluster& part) const
+bool Assembler::isClaimed(std::size_t group, const PlacedPart& placed) const
 {
   constexpr double least_share = 0.25; // of the surfaces that agree here
-  const double least = least_share * judge_.judge(rest, part, Eigen::Isometry3d::Identity()).agree;
-  for (std::size_t other = 0; other < groups_.size(); ++other) {
-    const ScanCluster& claimer = groups_[other].cluster;
-    if (other == group)
+  for (const Group& claimer : groups_) {
+    if (claimer.id == groups_[group].id)
       continue;
-    for (const ClusterFit& rough : fitter_.rough(claimer, part)) {
+    for (const ClusterFit& rough : fitter_.rough(claimer.cluster, placed.part)) {
       if (!rough.certain)
         continue;
-      const ClusterFit fit = fitter_.settled(claimer, part, rough);
-      if (fit.evidence.agree >= least && isUndecided(rest, part, fit.evidence) &&
-          isContradicted(judge_.judge(rest, claimer, fit.T.inverse())))
+      const ClusterFit fit = fitter_.settled(claimer.cluster, placed.part, rough);
+      if (fit.evidence.agree >= least_share * placed.here.agree && isUndecided(placed.here, fit.evidence) &&
+          isContradicted(judge_.judge(placed.rest, claimer.cluster, fit.T.inverse())))
         return true;
     }
   }
@@ -276,10 +279,11 @@ IsometryVector Assembler::twinMotions(std::size_t group) const
 }
 
 // Whether a part of a group may as well be where one of the motions leads it.
-bool Assembler::mayBeMoved(const ScanCluster& rest, const ScanCluster& part, const IsometryVector& motions) const
+bool Assembler::mayBeMoved(const PlacedPart& placed, const IsometryVector& motions) const
 {
-  return std::any_of(motions.begin(), motions.end(),
-                     [&](const Eigen::Isometry3d& T) { return isUndecided(rest, part, judge_.judge(rest, part, T)); });
+  return std::any_of(motions.begin(), motions.end(), [&](const Eigen::Isometry3d& T) {
+    return isUndecided(placed.here, judge_.judge(placed.rest, placed.part, T));
+  });
 }
 
 // What was joined first may be contested by what joined later. @return whether a part was split off
@@ -297,8 +301,10 @@ bool Assembler::splitContested(std::size_t group)
       parts.size(), input_.options.threads,
       [&](Index k) {
         const auto [part, rest] = divide(cluster, parts[k]);
-        contested[k] = !part.scans.empty() && part.scans.size() <= rest.scans.size() && !hasKnown(part) &&
-                       (fitsElsewhere(rest, part) || mayBeMoved(rest, part, motions) || isClaimed(group, rest, part));
+        if (part.scans.empty() || part.scans.size() > rest.scans.size() || hasKnown(part))
+          return;
+        const PlacedPart placed{part, rest, judge_.judge(rest, part, Eigen::Isometry3d::Identity())};
+        contested[k] = fitsElsewhere(placed) || mayBeMoved(placed, motions) || isClaimed(group, placed);
       },
       1);
   const auto first = std::find(contested.begin(), contested.end(), 1);

@@ -34,24 +34,17 @@ public:
 private:
   void consider(VerifiedHypotheses& hypotheses, std::size_t origin, const ScanAlias& candidate) const
   {
-    auto known = find(hypotheses, candidate.T, 3.0);
+    auto known = findNear(pair_, hypotheses, candidate.T, 3.0 * pair_.grain);
     if (known == hypotheses.end()) {
       PoseHypothesis start;
       start.T_a_b = candidate.T;
       const VerifiedHypothesis verified = verifyHypothesis(pair_, start);
-      known = find(hypotheses, verified.T_a_b, 1.0);
+      known = findNear(pair_, hypotheses, verified.T_a_b, pair_.grain);
       if (known == hypotheses.end() && acceptable(verified, candidate.certain))
         known = hypotheses.insert(hypotheses.end(), verified);
     }
     if (known != hypotheses.end() && candidate.certain && known != hypotheses.begin() + origin)
       known->has_alias = hypotheses[origin].has_alias = true;
-  }
-
-  VerifiedHypotheses::iterator find(VerifiedHypotheses& hypotheses, const Eigen::Isometry3d& T, double grains) const
-  {
-    return std::find_if(hypotheses.begin(), hypotheses.end(), [&](const VerifiedHypothesis& other) {
-      return poseDistance(other.T_a_b, T, pair_.size) < grains * pair_.grain;
-    });
   }
 
   bool acceptable(const VerifiedHypothesis& verified, bool certain) const

@@ -56,17 +56,12 @@ void refineHypotheses(const PairGeometry& pair, const PoseHypotheses& hypotheses
 {
   most += verified.size();
   for (const PoseHypothesis& hypothesis : hypotheses) {
-    const auto find = [&](const Eigen::Isometry3d& T, double distance) {
-      return std::find_if(verified.begin(), verified.end(), [&](const VerifiedHypothesis& other) {
-        return poseDistance(other.T_a_b, T, pair.size) < distance;
-      });
-    };
     if (verified.size() >= most)
       break;
-    if (find(hypothesis.T_a_b, reach) != verified.end())
+    if (findNear(pair, verified, hypothesis.T_a_b, reach) != verified.end())
       continue;
     const VerifiedHypothesis next = verifyHypothesis(pair, hypothesis);
-    const auto same = find(next.T_a_b, pair.tolerance);
+    const auto same = findNear(pair, verified, next.T_a_b, pair.tolerance);
     if (same == verified.end())
       verified.push_back(next);
     else if (next.score > same->score)
@@ -101,6 +96,14 @@ PairGeometry::PairGeometry(const PreparedScan& scan_a, const PreparedScan& scan_
     : a(scan_a), b(scan_b), size(std::sqrt(a.size * b.size)), grain(4.0 * a.levels[1].voxel),
       tolerance(4.0 * a.levels.back().voxel)
 {}
+
+VerifiedHypotheses::iterator findNear(const PairGeometry& pair, VerifiedHypotheses& hypotheses,
+                                      const Eigen::Isometry3d& T_a_b, double distance)
+{
+  return std::find_if(hypotheses.begin(), hypotheses.end(), [&](const VerifiedHypothesis& other) {
+    return poseDistance(other.T_a_b, T_a_b, pair.size) < distance;
+  });
+}
 
 double alignmentScore(const PairCheck& check)
 {

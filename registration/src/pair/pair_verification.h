@@ -22,9 +22,13 @@ struct PairGeometry {
   PairGeometry(const PreparedScan& a, const PreparedScan& b);
   const PreparedScan &a, &b;
   double size;      ///< of the scans, length
-  double grain;     ///< poses nearer to each other than this are the same before they are refined, length
-  double tolerance; ///< likewise afterwards
+  double grain;     ///< poses that features or aliases lead to are the same if nearer to each other, length
+  double tolerance; ///< refined poses are the same if nearer to each other, length
 };
+
+/// @return the first that is nearer to a pose than a distance (see poseDistance()), the end if there is none
+VerifiedHypotheses::iterator findNear(const PairGeometry& pair, VerifiedHypotheses& hypotheses,
+                                      const Eigen::Isometry3d& T_a_b, double distance);
 
 struct VerificationOptions {
   float min_overlap = 0.1f;
