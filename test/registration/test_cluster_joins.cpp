@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "assembly/cluster_union.h"
+#include "assembly/part_check.h"
+#include "assembly/scan_assembly.h"
 #include "graph/alias_check.h"
-#include "graph/scan_assembly.h"
 #include "registration/look_alike_scenes.h"
 #include <fresco/registration/core/point_to_plane_registration.h>
 #include <gtest/gtest.h>
@@ -73,6 +75,125 @@ TEST(ClusterJoins, WhatFitsInTwoEqualRoomsPartsThem)
     const std::vector<ClusterPlace> places = placesOf(graph.clusters, scene.scans.size());
     EXPECT_EQ(places[room_a].cluster == places[room_b].cluster, !witness);
   }
+}
+
+// In the frame of the first of them.
+ScanCluster clusterOf(const Scene& scene, const std::vector<Index>& scans)
+{
+  ScanCluster cluster{scans, {}};
+  for (const Index scan : scans)
+    cluster.poses.push_back(scene.pose(scans[0], scan));
+  return cluster;
+}
+
+struct UnionCase {
+  ScanGraph first, second;
+  std::vector<std::vector<Index>> united; // all clusters that are expected, sorted
+};
+
+class ClusterUnion : public testing::Test {
+protected:
+  ClusterUnion() : scene_(test::roomsInARow(false).scene), judge_(scene_.scans) {}
+
+  void expectUnion(const UnionCase& given) const
+  {
+    std::vector<std::vector<Index>> found;
+    for (const auto& [cluster, parts] : uniteClusters(scene_.input(), judge_, given.first, given.second)) {
+      for (std::size_t k = 0; k < cluster.scans.size(); ++k) {
+        const Eigen::Isometry3d T_first = cluster.poses[0].inverse() * cluster.poses[k];
+        EXPECT_LT((T_first.matrix() - scene_.pose(cluster.scans[0], cluster.scans[k]).matrix()).norm(), 1e-9);
+      }
+      found.push_back(cluster.scans);
+      std::sort(found.back().begin(), found.back().end());
+    }
+    std::sort(found.begin(), found.end());
+    EXPECT_EQ(found, given.united);
+  }
+  ScanCluster of(const std::vector<Index>& scans) const { return clusterOf(scene_, scans); }
+  // The last scan is so far from its place.
+  ScanCluster slid(const std::vector<Index>& scans, double along) const
+  {
+    ScanCluster cluster = of(scans);
+    cluster.poses.back() = scene_.scanned.truth[scans[0]].inverse() * Eigen::Translation3d(0, along, 0) *
+                           scene_.scanned.truth[scans.back()];
+    return cluster;
+  }
+
+  const Scene scene_;
+  const FreeSpaceJudge judge_;
+};
+
+TEST_F(ClusterUnion, GraphsThatShareScansAreUnitedWhateverTheirFrames)
+{
+  expectUnion({{{of({0, 1}), of({3, 2}), of({4}), of({5})}},
+               {{of({1, 3}), of({5, 4}), of({0}), of({2})}},
+               {{0, 1, 2, 3}, {4}, {5}}});
+}
+
+TEST_F(ClusterUnion, WhatOnlyTheSecondGraphHoldsTogetherStaysAlone)
+{
+  expectUnion({{{of({0}), of({1}), of({2})}}, {{of({0, 1})}}, {{0}, {1}, {2}}});
+  expectUnion({{{of({0}), of({1}), of({2})}}, {{of({0, 1, 2})}}, {{0}, {1}, {2}}});
+}
+
+TEST_F(ClusterUnion, WhatPlacesASharedScanElsewhereIsLeftOut)
+{
+  expectUnion({{{of({0, 1}), of({2}), of({3})}}, {{slid({0, 2, 1}, test::row_pitch)}}, {{0, 1}, {2}, {3}}});
+}
+
+TEST_F(ClusterUnion, WhatFreeSpaceContradictsIsLeftOut)
+{
+  expectUnion({{{of({0, 1}), of({2})}}, {{slid({1, 2}, -0.5 * test::row_pitch)}}, {{0, 1}, {2}}});
+}
+
+// The second of three rooms whose doors open on different things, taken for the first one, and where it is.
+class PartChecks : public testing::Test {
+protected:
+  static constexpr Index door_a = 1, room_b = 2, door_b = 3;
+
+  PartChecks() : scene_(test::roomsInARow(true).scene), judge_(scene_.scans)
+  {
+    scene_.addPair(room_b, door_b, scene_.pose(room_b, door_b), 0.3);
+  }
+
+  template <typename Check>
+  bool ask(const std::vector<Index>& others, bool in_place, const Check& check) const
+  {
+    const ScanCluster rest = clusterOf(scene_, others);
+    ScanCluster part{{room_b}, {scene_.pose(others[0], room_b)}};
+    if (!in_place)
+      part.poses[0] = scene_.scanned.truth[others[0]].inverse() * Eigen::Translation3d(0, -test::row_pitch, 0) *
+                      scene_.scanned.truth[room_b];
+    const GraphInput input = scene_.input();
+    const ClusterFitter fitter(input, judge_);
+    return check(PartCheck(judge_, fitter),
+                 ClusterPart{part, rest, judge_.judge(rest, part, Eigen::Isometry3d::Identity())});
+  }
+
+  Scene scene_;
+  const FreeSpaceJudge judge_;
+};
+
+TEST_F(PartChecks, WhatACertainPairPlacesElsewhereInItsClusterIsContested)
+{
+  for (const bool in_place : {true, false}) {
+    const bool contested = ask({door_a, door_b}, in_place, [](const PartCheck& check, const ClusterPart& placed) {
+      return check.fitsElsewhere(placed);
+    });
+    EXPECT_EQ(contested, !in_place);
+  }
+}
+
+TEST_F(PartChecks, WhatIsCertainOfAnotherClusterIsClaimedByItUnlessThatMayBeThereToo)
+{
+  for (const bool certain : {true, false})
+    for (const bool in_place : {true, false}) {
+      scene_.pairs[0].ambiguous = !certain;
+      const bool claimed = ask({door_a}, in_place, [&](const PartCheck& check, const ClusterPart& placed) {
+        return check.isClaimed(clusterOf(scene_, {door_b}), placed);
+      });
+      EXPECT_EQ(claimed, certain && !in_place);
+    }
 }
 
 constexpr Index seer = 0, last = 9;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "graph/scan_assembly.h"
+#include "assembly/scan_assembly.h"
 #include "pair/partial_alias.h"
 #include "pair/plan_alignment.h"
 #include "registration/look_alike_scenes.h"

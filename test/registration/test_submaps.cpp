@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "assembly/submap_joining.h"
 #include "graph/free_space_evidence.h"
-#include "graph/submap_joining.h"
 #include "registration/look_alike_scenes.h"
 #include <fresco/registration/core/point_to_plane_registration.h>
 #include <gtest/gtest.h>

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "graph/global_alignment.h"
+#include "assembly/scan_assembly.h"
+#include "assembly/submap_joining.h"
 #include "graph/loop_closing.h"
 #include "graph/moved_people.h"
-#include "graph/scan_assembly.h"
 #include "graph/scan_exchange.h"
-#include "graph/submap_joining.h"
 #include "graph/viewpoint_check.h"
 #include "pair/pair_ranking.h"
 #include "pair/partial_alias.h"
@@ -57,12 +57,15 @@ private:
   void prepareForPairs(const std::vector<RankedPair>& round);
   ScanAliases aliasesOf(Index scan) const;
   bool manyPlaces() const;
+  bool hasFew() const;
   bool hasMany(std::size_t pairs) const;
   std::vector<RankedPair> orderedPairs() const;
   void leaveOutJoined(std::vector<RankedPair>& pairs) const;
   void alignPairs(const std::vector<RankedPair>& round);
   void correctViewpoints();
-  GraphOptions graphOptions() const;
+  GraphInput graphInput() const;
+  ScanGraph decidedGraph() const;
+  bool hangsTogether() const { return result_.graph.clusters.size() <= 1; }
 
   std::vector<PreparedScan>& scans_;
   const ScanCluster& known_;
@@ -187,7 +190,9 @@ void GlobalAligner::assembleByPlans(const std::vector<RankedPair>& pairs, const 
     scans_[k].aliases = std::move(aliases[k]);
   sharePartialAliases(scans_, result_.pairs);
   report(progress, "assemble", 0.7);
-  result_.graph = assembleScans({scans_, result_.pairs, graphOptions()}, known_);
+  result_.graph = assembleScans(graphInput(), known_);
+  if (hasFew() && !hangsTogether())
+    result_.graph = assembleUnited(graphInput(), result_.graph, decidedGraph());
 }
 
 void GlobalAligner::describe(const Progress& progress)
@@ -268,13 +273,28 @@ void GlobalAligner::correctViewpoints()
   }
 }
 
-GraphOptions GlobalAligner::graphOptions() const
+GraphInput GlobalAligner::graphInput() const
 {
   GraphOptions options;
   options.max_violation = options_.max_violation;
   options.tolerance = 4.f * options_.voxel;
   options.threads = options_.threads;
-  return options;
+  return {scans_, result_.pairs, options};
+}
+
+// Without those scans between whose places nothing decides.
+ScanGraph GlobalAligner::decidedGraph() const
+{
+  ScanGraph graph = buildScanGraph(graphInput(), known_);
+  splitUndecided(graphInput(), graph);
+  return graph;
+}
+
+// Up to so many scans are aligned in rounds: of more, these place hardly more, some wrongly, in six times the time.
+bool GlobalAligner::hasFew() const
+{
+  constexpr Index most_in_rounds = 16;
+  return countUsable(scans_) <= most_in_rounds;
 }
 
 // Whether features alone rank pairs too badly.
@@ -325,17 +345,18 @@ void GlobalAligner::alignInRounds(const Progress& progress)
     alignPairs(in_rounds ? takeRound(pairs, has_place) : pairs);
     correctViewpoints();
     sharePartialAliases(scans_, result_.pairs);
-    result_.graph = buildScanGraph({scans_, result_.pairs, graphOptions()}, known_);
-    if (!in_rounds || pairs.empty() || result_.graph.clusters.size() <= 1)
+    result_.graph = buildScanGraph(graphInput(), known_);
+    if (!in_rounds || pairs.empty() || hangsTogether())
       break;
   }
   if (!manyPlaces())
-    splitUndecided({scans_, result_.pairs, graphOptions()}, result_.graph);
+    splitUndecided(graphInput(), result_.graph);
+  if (hasAllPlans() && !hangsTogether())
+    result_.graph = assembleUnited(graphInput(), result_.graph, assembleScans(graphInput(), known_));
 }
 
 GlobalAlignment GlobalAligner::run(const Progress& progress)
 {
-  constexpr Index most_in_rounds = 16; // of more, rounds place hardly more, some wrongly, in six times the time
   plans_.resize(scans_.size());
   findFrames();
   drawPlans();
@@ -345,11 +366,11 @@ GlobalAlignment GlobalAligner::run(const Progress& progress)
     drawPlans();
     pairs = pairsByPlans();
   }
-  if (people_moved || (hasAllPlans() && countUsable(scans_) > most_in_rounds)) // rounds place some of these wrongly
+  if (people_moved || (hasAllPlans() && !hasFew())) // rounds place some of these wrongly
     assembleByPlans(pairs, progress);
   else
     alignInRounds(progress);
-  const GraphInput input{scans_, result_.pairs, graphOptions()};
+  const GraphInput input = graphInput();
   for (ScanCluster& cluster : result_.graph.clusters)
     closeLoops(input, known_, cluster);
   if (!frames_.empty())

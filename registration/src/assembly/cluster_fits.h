@@ -11,6 +11,7 @@ struct ClusterFit {
   Eigen::Isometry3d T = Eigen::Isometry3d::Identity(); ///< frame of the first from that of the second
   Index pairs = 0;                                     ///< that lead to it
   double overlap = 0.0;                                ///< the largest of theirs, 0..1
+  double score = 0.0;                                  ///< likewise, see VerifiedHypothesis; T is by that pair
   bool sound = false;   ///< it is the best of one of them, and nothing contradicts it there
   bool certain = false; ///< likewise, and that pair has no other
   FreeSpaceEvidence evidence;
@@ -23,6 +24,9 @@ bool isJoinable(const ClusterFit& fit);
 /// Whether another place is seen well enough to make one doubtful. Overlap hardly counts: of equal rooms, the wrong one
 /// may be seen best.
 bool isSeenAsWell(const ClusterFit& other, const ClusterFit& fit);
+
+/// Whether one place makes another doubtful. @param unit see FreeSpaceJudge
+bool rivals(const ClusterFit& other, const ClusterFit& fit, double unit);
 
 /// Finds places of clusters in each other by the hypotheses of pairs of their scans.
 class ClusterFitter {

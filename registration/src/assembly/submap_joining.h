@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include "graph/submap.h"
+#include "assembly/submap.h"
 #include <fresco/core/progress.h>
 namespace fresco::registration {
 /// Joins clusters as wholes where no pair of their scans tells: all places of one in another that their floor plans

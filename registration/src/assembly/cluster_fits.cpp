@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "graph/cluster_fits.h"
+#include "assembly/cluster_fits.h"
 #include "graph/place_check.h"
 namespace fresco::registration {
 namespace {
@@ -23,6 +23,13 @@ bool isSeenAsWell(const ClusterFit& other, const ClusterFit& fit)
 {
   constexpr double overlap_share = 0.4; // less, and chance explains it
   return other.certain || other.overlap >= overlap_share * fit.overlap;
+}
+
+bool rivals(const ClusterFit& other, const ClusterFit& fit, double unit)
+{
+  constexpr double least_share = 0.25; // of the surfaces that agree at this place: less, and chance explains them
+  return other.evidence.agree >= least_share * fit.evidence.agree &&
+         !contradictsMore(other.evidence, fit.evidence, unit) && isSeenAsWell(other, fit);
 }
 
 ClusterFitter::ClusterFitter(const GraphInput& input, const FreeSpaceJudge& judge)
@@ -49,8 +56,9 @@ void ClusterFitter::add(const ScanCluster& second, const ClusterFit& fit, Cluste
       ++known.pairs;
       known.sound = known.sound || fit.sound;
       known.certain = known.certain || fit.certain;
-      if (fit.overlap > known.overlap) {
-        known.overlap = fit.overlap;
+      known.overlap = std::max(known.overlap, fit.overlap);
+      if (fit.score > known.score) {
+        known.score = fit.score;
         known.T = fit.T;
       }
       return;
@@ -80,6 +88,7 @@ ClusterFits ClusterFitter::rough(const ScanCluster& first, const ScanCluster& se
                 second.poses[other->second].inverse();
         fit.pairs = 1;
         fit.overlap = hypothesis.check.overlap;
+        fit.score = hypothesis.score;
         fit.sound = isSound(*pair, hypothesis, input_.options.strong_overlap);
         fit.certain = fit.sound && !pair->ambiguous;
         add(second, fit, fits);

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "graph/scan_assembly.h"
+#include "assembly/scan_assembly.h"
+#include "assembly/cluster_union.h"
+#include "assembly/part_check.h"
 #include "graph/alias_check.h"
-#include "graph/cluster_fits.h"
 #include "graph/place_check.h"
 #include <algorithm>
 #include <fresco/core/parallel.h>
@@ -10,13 +11,22 @@ namespace {
 class Assembler {
 public:
   Assembler(const GraphInput& input, const ScanCluster& known)
-      : input_(input), known_(known), judge_(input.scans), fitter_(input, judge_)
+      : input_(input), known_(known), judge_(input.scans), fitter_(input, judge_), parts_(judge_, fitter_)
+  {}
+
+  void startAlone()
   {
-    for (const ScanCluster& cluster : startingClusters(input, known))
+    for (const ScanCluster& cluster : startingClusters(input_, known_))
       groups_.push_back({next_id_++, cluster});
   }
+  void startUnited(const ScanGraph& first, const ScanGraph& second);
 
-  ScanGraph run();
+  void joinAll()
+  {
+    while (joinBest())
+      ;
+  }
+  ScanGraph checked();
 
 private:
   struct Group {
@@ -29,10 +39,6 @@ private:
     ClusterFit fit;
   };
   using Joins = std::vector<Join, Eigen::aligned_allocator<Join>>;
-  struct PlacedPart { // of a group
-    const ScanCluster &part, &rest;
-    FreeSpaceEvidence here; // of the part in the rest
-  };
 
   void findAllFits();
   // Of the second group in the first.
@@ -40,7 +46,10 @@ private:
   {
     return fits_.of(groups_[first].id, groups_[second].id);
   }
-  bool rivals(const ClusterFit& other, const ClusterFit& fit) const;
+  bool rivals(const ClusterFit& other, const ClusterFit& fit) const
+  {
+    return registration::rivals(other, fit, judge_.unit());
+  }
   bool hasAlias(const Join& join) const;
   bool hasSecondPlace(const Join& join) const;
   bool fitsThird(std::size_t stays, std::size_t moves, const ClusterFit& fit, bool by_chains) const;
@@ -57,13 +66,9 @@ private:
   {
     return std::any_of(cluster.scans.begin(), cluster.scans.end(), [&](Index i) { return contains(known_, i); });
   }
-  bool isUndecided(const FreeSpaceEvidence& here, const FreeSpaceEvidence& there) const;
-  bool fitsElsewhere(const PlacedPart& placed) const;
-  bool isClaimed(std::size_t group, const PlacedPart& placed) const;
+  bool isClaimed(std::size_t group, const ClusterPart& placed) const;
   IsometryVector twinMotions(std::size_t group) const;
-  bool mayBeMoved(const PlacedPart& placed, const IsometryVector& motions) const;
   bool splitContested(std::size_t group);
-  bool haveTwinPlaces(const ScanCluster& whole, const ScanCluster& part, const ScanCluster& rest) const;
   bool splitTwins(std::size_t group);
   void split(std::size_t group, const std::vector<Index>& listed);
 
@@ -71,23 +76,25 @@ private:
   const ScanCluster& known_;
   FreeSpaceJudge judge_;
   ClusterFitter fitter_;
+  PartCheck parts_;
   std::vector<Group> groups_;
   Index next_id_ = 0;
   GroupFits<ClusterFits> fits_;
 };
 
+void Assembler::startUnited(const ScanGraph& first, const ScanGraph& second)
+{
+  for (JoinedCluster& united : uniteClusters(input_, judge_, first, second)) {
+    if (united.parts.size() > 1)
+      settle(input_, known_, united.cluster);
+    groups_.push_back({next_id_++, united.cluster, united.parts});
+  }
+}
+
 void Assembler::findAllFits()
 {
   fits_.findNew(groups_, input_.options.threads,
                 [&](const Group& first, const Group& second) { return fitter_.find(first.cluster, second.cluster); });
-}
-
-// Whether one place makes another doubtful.
-bool Assembler::rivals(const ClusterFit& other, const ClusterFit& fit) const
-{
-  constexpr double least_share = 0.25; // of the surfaces that agree at this place: less, and chance explains them
-  return other.evidence.agree >= least_share * fit.evidence.agree &&
-         !contradictsMore(other.evidence, fit.evidence, judge_.unit()) && isSeenAsWell(other, fit);
 }
 
 // Whether a scan of either group saw two places that look alike, and the other group fits at both.
@@ -218,48 +225,13 @@ void Assembler::join(const Join& join)
     group.cluster.look_alike = false; // joinBest() tells anew
 }
 
-// Whether the evidence of another place of a part leaves open which is right.
-bool Assembler::isUndecided(const FreeSpaceEvidence& here, const FreeSpaceEvidence& there) const
+// Whether another group has a certain place for a part of a group. Whatever was said against its claim while the groups
+// grew: it has found no other place.
+bool Assembler::isClaimed(std::size_t group, const ClusterPart& placed) const
 {
-  constexpr double least_agreement = 0.3; // of a scan's points: less, and chance explains it
-  return there.agree >= least_agreement && !isContradicted(there) && there.violating <= noise_violation * there.agree &&
-         !contradictsMore(there, here, judge_.unit());
-}
-
-// Whether what two pairs, a certain or a good one say of a part of a group leads to another place in it, which free space
-// contradicts no more. Agreement hardly counts: of equal rooms, the wrong one may be seen best.
-bool Assembler::fitsElsewhere(const PlacedPart& placed) const
-{
-  constexpr double least_overlap = 0.15, least_of_one = 0.3; // of two pairs, of one: less, and chance explains it
-  for (const ClusterFit& rough : fitter_.rough(placed.rest, placed.part)) {
-    if (!rough.certain && rough.overlap < (rough.pairs < 2 ? least_of_one : least_overlap))
-      continue;
-    const ClusterFit fit = fitter_.settled(placed.rest, placed.part, rough);
-    if (!fitter_.isSame(placed.part, fit.T, Eigen::Isometry3d::Identity(), 3.0) &&
-        isUndecided(placed.here, fit.evidence))
-      return true;
-  }
-  return false;
-}
-
-// Whether another group has a certain place for a part of a group, and free space contradicts that group and the rest
-// where this place leads to. Whatever was said against its claim while the groups grew: it has found no other place.
-bool Assembler::isClaimed(std::size_t group, const PlacedPart& placed) const
-{
-  constexpr double least_share = 0.25; // of the surfaces that agree here
-  for (const Group& claimer : groups_) {
-    if (claimer.id == groups_[group].id)
-      continue;
-    for (const ClusterFit& rough : fitter_.rough(claimer.cluster, placed.part)) {
-      if (!rough.certain)
-        continue;
-      const ClusterFit fit = fitter_.settled(claimer.cluster, placed.part, rough);
-      if (fit.evidence.agree >= least_share * placed.here.agree && isUndecided(placed.here, fit.evidence) &&
-          isContradicted(judge_.judge(placed.rest, claimer.cluster, fit.T.inverse())))
-        return true;
-    }
-  }
-  return false;
+  return std::any_of(groups_.begin(), groups_.end(), [&](const Group& claimer) {
+    return claimer.id != groups_[group].id && parts_.isClaimed(claimer.cluster, placed);
+  });
 }
 
 // Motions from one place of another group to a second one where it fits as well: from a room to an equal one.
@@ -276,14 +248,6 @@ IsometryVector Assembler::twinMotions(std::size_t group) const
           motions.push_back(to.T * from.T.inverse());
   }
   return motions;
-}
-
-// Whether a part of a group may as well be where one of the motions leads it.
-bool Assembler::mayBeMoved(const PlacedPart& placed, const IsometryVector& motions) const
-{
-  return std::any_of(motions.begin(), motions.end(), [&](const Eigen::Isometry3d& T) {
-    return isUndecided(placed.here, judge_.judge(placed.rest, placed.part, T));
-  });
 }
 
 // What was joined first may be contested by what joined later. @return whether a part was split off
@@ -303,8 +267,8 @@ bool Assembler::splitContested(std::size_t group)
         const auto [part, rest] = divide(cluster, parts[k]);
         if (part.scans.empty() || part.scans.size() > rest.scans.size() || hasKnown(part))
           return;
-        const PlacedPart placed{part, rest, judge_.judge(rest, part, Eigen::Isometry3d::Identity())};
-        contested[k] = fitsElsewhere(placed) || mayBeMoved(placed, motions) || isClaimed(group, placed);
+        const ClusterPart placed{part, rest, judge_.judge(rest, part, Eigen::Isometry3d::Identity())};
+        contested[k] = parts_.fitsElsewhere(placed) || parts_.mayBeMoved(placed, motions) || isClaimed(group, placed);
       },
       1);
   const auto first = std::find(contested.begin(), contested.end(), 1);
@@ -312,29 +276,6 @@ bool Assembler::splitContested(std::size_t group)
     return false;
   split(group, parts[first - contested.begin()]);
   return true;
-}
-
-// Whether two parts of one cluster fit at two places of another one alike: they may be at one each.
-bool Assembler::haveTwinPlaces(const ScanCluster& whole, const ScanCluster& part, const ScanCluster& rest) const
-{
-  const auto common = [&](const ClusterFits& fits, const ClusterFits& others) {
-    ClusterFits found;
-    for (const ClusterFit& fit : fits)
-      if (std::any_of(others.begin(), others.end(),
-                      [&](const ClusterFit& other) { return fitter_.isSame(part, fit.T, other.T, 3.0); }))
-        found.push_back(fit);
-    return found;
-  };
-  const ClusterFits of_rest = fitter_.rough(whole, rest);
-  ClusterFits shared = common(fitter_.rough(whole, part), of_rest);
-  if (shared.size() < 2) // to judge them costs much
-    return false;
-  shared = fitter_.uncontradicted(whole, part, shared);
-  shared = common(shared, fitter_.uncontradicted(whole, rest, common(of_rest, shared)));
-  return std::any_of(shared.begin(), shared.end(), [&](const ClusterFit& fit) {
-    return std::any_of(shared.begin(), shared.end(),
-                       [&](const ClusterFit& other) { return &fit != &other && rivals(other, fit); });
-  });
 }
 
 // What was joined by the sight of equal rooms falls apart once another group shows that there are two of them.
@@ -347,7 +288,7 @@ bool Assembler::splitTwins(std::size_t group)
       continue;
     for (std::size_t other = 0; other < groups_.size(); ++other)
       if (other != group && groups_[other].cluster.scans.size() > 1 &&
-          haveTwinPlaces(groups_[other].cluster, part, rest)) {
+          parts_.haveTwinPlaces(groups_[other].cluster, part, rest)) {
         const std::vector<Index> scans = listed;
         split(group, scans);
         return true;
@@ -380,10 +321,8 @@ void Assembler::split(std::size_t group, const std::vector<Index>& listed)
     groups_.push_back({next_id_++, {{scan}, {Eigen::Isometry3d::Identity()}, true}});
 }
 
-ScanGraph Assembler::run()
+ScanGraph Assembler::checked()
 {
-  while (joinBest())
-    ;
   for (std::size_t g = 0; g < groups_.size();)
     g += splitContested(g) ? 0 : 1;
   for (std::size_t g = 0; g < groups_.size();)
@@ -396,5 +335,19 @@ ScanGraph Assembler::run()
 }
 } // namespace
 
-ScanGraph assembleScans(const GraphInput& input, const ScanCluster& known) { return Assembler(input, known).run(); }
+ScanGraph assembleScans(const GraphInput& input, const ScanCluster& known)
+{
+  Assembler assembler(input, known);
+  assembler.startAlone();
+  assembler.joinAll();
+  return assembler.checked();
+}
+
+ScanGraph assembleUnited(const GraphInput& input, const ScanGraph& first, const ScanGraph& second)
+{
+  const ScanCluster none;
+  Assembler assembler(input, none);
+  assembler.startUnited(first, second);
+  return assembler.checked();
+}
 } // namespace fresco::registration

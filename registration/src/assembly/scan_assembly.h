@@ -9,4 +9,8 @@ namespace fresco::registration {
 /// usable scan has free space and saw around.
 /// @param known scans that already share a frame, which stays; may be empty
 ScanGraph assembleScans(const GraphInput& input, const ScanCluster& known);
+
+/// Unites two graphs of the same scans, see uniteClusters(), and splits off what also fits elsewhere: of two ways to join
+/// scans, either finds what the other one does not.
+ScanGraph assembleUnited(const GraphInput& input, const ScanGraph& first, const ScanGraph& second);
 } // namespace fresco::registration

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "graph/submap_joining.h"
+#include "assembly/submap_joining.h"
+#include "assembly/cluster_fits.h"
 #include "graph/alias_check.h"
-#include "graph/cluster_fits.h"
 #include "graph/place_check.h"
 #include <algorithm>
 #include <memory>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "graph/submap.h"
+#include "assembly/submap.h"
 #include "refinement/joint_refinement.h"
 #include "scan/surface_normals.h"
 #include <algorithm>
