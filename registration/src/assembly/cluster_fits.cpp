@@ -56,9 +56,8 @@ void ClusterFitter::add(const ScanCluster& second, const ClusterFit& fit, Cluste
       ++known.pairs;
       known.sound = known.sound || fit.sound;
       known.certain = known.certain || fit.certain;
-      known.overlap = std::max(known.overlap, fit.overlap);
-      if (fit.score > known.score) {
-        known.score = fit.score;
+      if (fit.overlap > known.overlap) {
+        known.overlap = fit.overlap;
         known.T = fit.T;
       }
       return;
@@ -88,7 +87,6 @@ ClusterFits ClusterFitter::rough(const ScanCluster& first, const ScanCluster& se
                 second.poses[other->second].inverse();
         fit.pairs = 1;
         fit.overlap = hypothesis.check.overlap;
-        fit.score = hypothesis.score;
         fit.sound = isSound(*pair, hypothesis, input_.options.strong_overlap);
         fit.certain = fit.sound && !pair->ambiguous;
         add(second, fit, fits);

@@ -11,7 +11,6 @@ struct ClusterFit {
   Eigen::Isometry3d T = Eigen::Isometry3d::Identity(); ///< frame of the first from that of the second
   Index pairs = 0;                                     ///< that lead to it
   double overlap = 0.0;                                ///< the largest of theirs, 0..1
-  double score = 0.0;                                  ///< likewise, see VerifiedHypothesis; T is by that pair
   bool sound = false;   ///< it is the best of one of them, and nothing contradicts it there
   bool certain = false; ///< likewise, and that pair has no other
   FreeSpaceEvidence evidence;
