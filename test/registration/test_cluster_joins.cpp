@@ -136,6 +136,17 @@ TEST_F(ClusterUnion, WhatOnlyTheSecondGraphHoldsTogetherStaysAlone)
   expectUnion({{{of({0}), of({1}), of({2})}}, {{of({0, 1, 2})}}, {{0}, {1}, {2}}});
 }
 
+TEST_F(ClusterUnion, WhoStaysAloneKeepsTheReason)
+{
+  for (const bool look_alike : {false, true}) {
+    ScanCluster alone = of({2});
+    alone.look_alike = look_alike;
+    const std::vector<JoinedCluster> united = uniteClusters(scene_.input(), judge_, {{of({0, 1}), alone}}, {});
+    ASSERT_EQ(united.size(), 2u);
+    EXPECT_EQ(united.back().cluster.look_alike, look_alike);
+  }
+}
+
 TEST_F(ClusterUnion, WhatPlacesASharedScanElsewhereIsLeftOut)
 {
   expectUnion({{{of({0, 1}), of({2}), of({3})}}, {{slid({0, 2, 1}, test::row_pitch)}}, {{0, 1}, {2}, {3}}});

@@ -20,11 +20,15 @@ class ClusterUnion {
 public:
   ClusterUnion(const GraphInput& input, const FreeSpaceJudge& judge) : input_(input), judge_(judge) {}
 
-  void add(const ScanCluster& cluster, bool may_be_beside);
-  void addAlone(Index scan);
-  std::vector<JoinedCluster> take() { return std::move(clusters_); }
+  std::vector<JoinedCluster> run(const ScanGraph& first, const ScanGraph& second);
 
 private:
+  void add(const ScanCluster& cluster);
+  bool has(Index scan) const
+  {
+    return std::any_of(clusters_.begin(), clusters_.end(),
+                       [scan](const JoinedCluster& joined) { return contains(joined.cluster, scan); });
+  }
   Link linkTo(std::size_t cluster, const ScanCluster& added) const;
   bool agrees(const Link& link, const ScanCluster& added) const;
   bool isPossible(const Link& link, const Links& others, const ScanCluster& added) const;
@@ -54,12 +58,13 @@ Link ClusterUnion::linkTo(std::size_t cluster, const ScanCluster& added) const
 // Whether all scans that they share are where the link says.
 bool ClusterUnion::agrees(const Link& link, const ScanCluster& added) const
 {
-  const ScanCluster ours = divide(clusters_[link.cluster].cluster, link.shared).first;
+  const auto poseIn = [](const ScanCluster& cluster, Index scan) {
+    return cluster.poses[std::find(cluster.scans.begin(), cluster.scans.end(), scan) - cluster.scans.begin()];
+  };
+  const ScanCluster& known = clusters_[link.cluster].cluster;
   return std::all_of(link.shared.begin(), link.shared.end(), [&](Index scan) {
-    const auto poseIn = [scan](const ScanCluster& cluster) {
-      return cluster.poses[std::find(cluster.scans.begin(), cluster.scans.end(), scan) - cluster.scans.begin()];
-    };
-    return poseDistance(link.T * poseIn(added), poseIn(ours), input_.scans[scan].size) < 3.0 * input_.options.tolerance;
+    return poseDistance(link.T * poseIn(added, scan), poseIn(known, scan), input_.scans[scan].size) <
+           3.0 * input_.options.tolerance;
   });
 }
 
@@ -91,7 +96,7 @@ void ClusterUnion::unite(const Links& links, const ScanCluster& added)
     clusters_.erase(clusters_.begin() + links[k].cluster);
 }
 
-void ClusterUnion::add(const ScanCluster& cluster, bool may_be_beside)
+void ClusterUnion::add(const ScanCluster& cluster)
 {
   Links links;
   for (std::size_t c = 0; c < clusters_.size(); ++c) {
@@ -104,15 +109,6 @@ void ClusterUnion::add(const ScanCluster& cluster, bool may_be_beside)
   }
   if (!links.empty())
     unite(links, cluster);
-  else if (may_be_beside)
-    clusters_.push_back({cluster, {cluster.scans}});
-}
-
-void ClusterUnion::addAlone(Index scan)
-{
-  if (std::none_of(clusters_.begin(), clusters_.end(),
-                   [&](const auto& joined) { return contains(joined.cluster, scan); }))
-    clusters_.push_back({{{scan}, {Eigen::Isometry3d::Identity()}, true}, {}});
 }
 
 // What only one of both graphs brings may be wrong alone.
@@ -124,27 +120,30 @@ void addSingleParts(const ScanGraph& first, const ScanGraph& second, JoinedClust
     });
   };
   for (const Index scan : joined.cluster.scans)
-    if (joined.cluster.scans.size() > 1 && !(brings(first, scan) && brings(second, scan)))
+    if (!(brings(first, scan) && brings(second, scan)))
       joined.parts.push_back({scan});
+}
+
+std::vector<JoinedCluster> ClusterUnion::run(const ScanGraph& first, const ScanGraph& second)
+{
+  for (const ScanCluster& cluster : first.clusters)
+    if (cluster.scans.size() > 1)
+      clusters_.push_back({cluster, {cluster.scans}});
+  for (const ScanCluster& cluster : second.clusters)
+    if (cluster.scans.size() > 1)
+      add(cluster);
+  for (JoinedCluster& joined : clusters_)
+    addSingleParts(first, second, joined);
+  for (const ScanCluster& cluster : first.clusters)
+    if (cluster.scans.size() == 1 && !has(cluster.scans[0]))
+      clusters_.push_back({cluster, {}});
+  return std::move(clusters_);
 }
 } // namespace
 
 std::vector<JoinedCluster> uniteClusters(const GraphInput& input, const FreeSpaceJudge& judge, const ScanGraph& first,
                                          const ScanGraph& second)
 {
-  ClusterUnion united(input, judge);
-  for (const ScanCluster& cluster : first.clusters)
-    if (cluster.scans.size() > 1)
-      united.add(cluster, true);
-  for (const ScanCluster& cluster : second.clusters)
-    if (cluster.scans.size() > 1)
-      united.add(cluster, false);
-  for (const ScanCluster& cluster : first.clusters)
-    for (const Index scan : cluster.scans)
-      united.addAlone(scan);
-  std::vector<JoinedCluster> clusters = united.take();
-  for (JoinedCluster& joined : clusters)
-    addSingleParts(first, second, joined);
-  return clusters;
+  return ClusterUnion(input, judge).run(first, second);
 }
 } // namespace fresco::registration

@@ -46,10 +46,6 @@ private:
   {
     return fits_.of(groups_[first].id, groups_[second].id);
   }
-  bool rivals(const ClusterFit& other, const ClusterFit& fit) const
-  {
-    return registration::rivals(other, fit, judge_.unit());
-  }
   bool hasAlias(const Join& join) const;
   bool hasSecondPlace(const Join& join) const;
   bool fitsThird(std::size_t stays, std::size_t moves, const ClusterFit& fit, bool by_chains) const;
@@ -108,7 +104,8 @@ bool Assembler::hasSecondPlace(const Join& join) const
 {
   const ClusterFits fits = fitsOf(join.first, join.second);
   return std::any_of(fits.begin(), fits.end(), [&](const ClusterFit& other) {
-    return !fitter_.isSame(groups_[join.second].cluster, other.T, join.fit.T, 3.0) && rivals(other, join.fit);
+    return !fitter_.isSame(groups_[join.second].cluster, other.T, join.fit.T, 3.0) &&
+           rivals(other, join.fit, judge_.unit());
   });
 }
 
@@ -119,7 +116,7 @@ bool Assembler::fitsThird(std::size_t stays, std::size_t moves, const ClusterFit
     if (third == stays || third == moves)
       continue;
     for (const ClusterFit& other : fitsOf(third, moves))
-      if (other.certain && rivals(other, fit) && areApart(stays, third, fit, other, by_chains) &&
+      if (other.certain && rivals(other, fit, judge_.unit()) && areApart(stays, third, fit, other, by_chains) &&
           !fitsInstead(stays, moves, third, fit, other) && !yields(stays, moves, third, fit, other))
         return true;
   }
@@ -171,7 +168,7 @@ bool Assembler::yields(std::size_t stays, std::size_t moves, std::size_t third, 
     if (home == stays || home == moves || home == third)
       continue;
     for (const ClusterFit& own : fitsOf(home, third))
-      if (own.certain && rivals(own, other) &&
+      if (own.certain && rivals(own, other, judge_.unit()) &&
           isContradicted(judge_.judge(groups_[home].cluster, groups_[moves].cluster, own.T * other.T)))
         return true;
   }
@@ -244,7 +241,7 @@ IsometryVector Assembler::twinMotions(std::size_t group) const
     const ClusterFits fits = fitsOf(group, other);
     for (const ClusterFit& from : fits)
       for (const ClusterFit& to : fits)
-        if (rivals(to, from) && !fitter_.isSame(groups_[other].cluster, from.T, to.T, 3.0))
+        if (rivals(to, from, judge_.unit()) && !fitter_.isSame(groups_[other].cluster, from.T, to.T, 3.0))
           motions.push_back(to.T * from.T.inverse());
   }
   return motions;
