@@ -207,6 +207,33 @@ TEST_F(PartChecks, WhatIsCertainOfAnotherClusterIsClaimedByItUnlessThatMayBeTher
     }
 }
 
+TEST_F(PartChecks, WhatStandsInSpaceThatWasSeenThroughIsMisplaced)
+{
+  const auto misplaced = [&](const Eigen::Translation3d& shift) {
+    const ScanCluster rest = clusterOf(scene_, {door_a, door_b});
+    const ScanCluster part{{room_b}, {scene_.pose(door_a, room_b) * shift}};
+    return PartCheck::isMisplaced({part, rest, judge_.judge(rest, part, Eigen::Isometry3d::Identity())});
+  };
+  EXPECT_FALSE(misplaced({0, 0, 0}));
+  EXPECT_TRUE(misplaced({0.6, 0.6, 0}));
+}
+
+// The scans in the first and the third room see nothing of each other; those at their doors do.
+TEST_F(PartChecks, WithoutTheScansBetweenWhatTheyHeldFallsApart)
+{
+  constexpr Index room_a = 0, room_c = 4, door_c = 5;
+  const GraphInput input = scene_.input();
+  const ClusterFitter fitter(input, judge_);
+  const PartCheck check(judge_, fitter);
+  const std::vector<ScanCluster> whole = check.heldTogether(clusterOf(scene_, {room_a, door_a, door_c, room_c}));
+  ASSERT_EQ(whole.size(), 1u);
+  EXPECT_EQ(whole[0].scans, (std::vector<Index>{room_a, door_a, door_c, room_c}));
+  const std::vector<ScanCluster> parts = check.heldTogether(clusterOf(scene_, {room_a, room_c}));
+  ASSERT_EQ(parts.size(), 2u);
+  EXPECT_EQ(parts[0].scans, (std::vector<Index>{room_a}));
+  EXPECT_EQ(parts[1].scans, (std::vector<Index>{room_c}));
+}
+
 constexpr Index seer = 0, last = 9;
 
 // Ten scans of a room. Before the last one, a thing came into the view of the first one, which alone tells free space.

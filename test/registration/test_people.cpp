@@ -123,28 +123,5 @@ TEST(People, AreSeenToMoveOnlyIfTheyDo)
   EXPECT_FALSE(moved({{standing}, {standing}, {standing}}));
   EXPECT_TRUE(moved({{standing}, {other}, {}}));
 }
-
-// A cell of directions may be bounded by its neighbours' rays alone: then nobody looked there.
-TEST(ScanFreeSpace, OnlyOwnRaysContradictWhereAskedFor)
-{
-  using Verdict = ScanFreeSpace::Verdict;
-  constexpr Index n = 6000;
-  Points sphere(3, n);
-  std::vector<Index> kept;
-  for (Index i = 0; i < n; ++i) { // Fibonacci's lattice
-    const double z = 1.0 - (2.0 * i + 1.0) / n, angle = i * M_PI * (3.0 - std::sqrt(5.0)), r = std::sqrt(1.0 - z * z);
-    sphere.col(i) = (5.0 * Eigen::Vector3d(r * std::cos(angle), r * std::sin(angle), z)).cast<float>();
-    if (!(std::abs(sphere(1, i)) < 0.3f && sphere(0, i) > 0.f)) // nothing came back from a band a cell wide
-      kept.push_back(i);
-  }
-  const ScanFreeSpace space(sphere(Eigen::all, kept), Points::Zero(3, 1), 0.1f);
-  Points points(3, 2);
-  points << 2.f, -2.f, 0.f, 0.f, 0.1f, 0.1f;
-  const auto judge = [&](bool own_rays) {
-    return space.judge(points, Eigen::Isometry3f::Identity(), {0.2f, 0.02f, own_rays});
-  };
-  EXPECT_EQ(judge(false), (std::vector<Verdict>{Verdict::violates, Verdict::violates}));
-  EXPECT_EQ(judge(true), (std::vector<Verdict>{Verdict::unknown, Verdict::violates}));
-}
 } // namespace
 } // namespace fresco::registration

@@ -63,6 +63,27 @@ TEST(Submaps, JoinWhereNoPairTells)
   EXPECT_LT(scene.worstError(clusters[0]), 0.03);
 }
 
+// A pair alone would not join them: it overlaps little, and something contradicts it.
+TEST(Submaps, JoinWhereAPairIsUnsure)
+{
+  Scene scene(test::scanTwoRooms());
+  std::fill(scene.frames.begin(), scene.frames.end(), std::nullopt);
+  const std::vector<std::vector<Index>> groups{{0, 1, 2}, {3, 4}};
+  EXPECT_EQ(scene.joined(groups).size(), 2u);
+  VerifiedHypothesis unsure;
+  unsure.T_a_b = scene.truth[2].inverse() * scene.truth[3];
+  unsure.check.overlap = 0.1;
+  unsure.check.violation = 0.005;
+  PairAlignment pair;
+  pair.a = 2;
+  pair.b = 3;
+  pair.hypotheses = {unsure};
+  scene.pairs = {pair};
+  const std::vector<ScanCluster> clusters = scene.joined(groups);
+  ASSERT_EQ(clusters.size(), 1u);
+  EXPECT_LT(scene.worstError(clusters[0]), 0.03);
+}
+
 TEST(Submaps, DoNotDependOnThreads)
 {
   Scene scene(test::scanTwoRooms());

@@ -21,6 +21,42 @@ bool PartCheck::isUndecided(const FreeSpaceEvidence& here, const FreeSpaceEviden
   return !isContradicted(half) && !contradictsMore(there, as_much, judge_.unit());
 }
 
+bool PartCheck::isMisplaced(const ClusterPart& placed)
+{
+  constexpr double clearly = 0.5; // errors of poses add up in large clusters
+  FreeSpaceEvidence half = placed.here;
+  half.clustered *= clearly;
+  return isContradicted(half);
+}
+
+std::vector<ScanCluster> PartCheck::heldTogether(const ScanCluster& cluster) const
+{
+  constexpr double least_agreement = 0.1; // of a scan's points: less, and a wrong place has it
+  std::vector<ScanCluster> parts;
+  std::vector<char> reached(cluster.scans.size(), 0);
+  for (std::size_t start = 0; start < reached.size(); ++start) {
+    if (reached[start])
+      continue;
+    std::vector<std::size_t> members{start};
+    reached[start] = 1;
+    for (std::size_t k = 0; k < members.size(); ++k)
+      for (std::size_t other = 0; other < reached.size(); ++other)
+        if (!reached[other] && judge_.judge(cluster.scans[members[k]], cluster.scans[other],
+                                            cluster.poses[members[k]].inverse() * cluster.poses[other])
+                                       .agree >= least_agreement) {
+          reached[other] = 1;
+          members.push_back(other);
+        }
+    std::sort(members.begin(), members.end());
+    ScanCluster& part = parts.emplace_back();
+    for (const std::size_t k : members) {
+      part.scans.push_back(cluster.scans[k]);
+      part.poses.push_back(cluster.poses[k]);
+    }
+  }
+  return parts;
+}
+
 bool PartCheck::fitsElsewhere(const ClusterPart& placed) const
 {
   constexpr double least_overlap = 0.15, least_of_one = 0.3; // of two pairs, of one: less, and chance explains it

@@ -15,6 +15,12 @@ public:
   /// Both have to outlive it.
   PartCheck(const FreeSpaceJudge& judge, const ClusterFitter& fitter) : judge_(judge), fitter_(fitter) {}
 
+  /// Whether free space contradicts where it is more than errors of poses explain.
+  static bool isMisplaced(const ClusterPart& placed);
+
+  /// What of a cluster still hangs together by surfaces that two scans see alike.
+  std::vector<ScanCluster> heldTogether(const ScanCluster& cluster) const;
+
   /// Whether what two pairs, a certain or a good one say of a part leads to another place in its cluster, which free
   /// space contradicts no more.
   bool fitsElsewhere(const ClusterPart& placed) const;

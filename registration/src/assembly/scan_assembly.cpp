@@ -265,7 +265,8 @@ bool Assembler::splitContested(std::size_t group)
         if (part.scans.empty() || part.scans.size() > rest.scans.size() || hasKnown(part))
           return;
         const ClusterPart placed{part, rest, judge_.judge(rest, part, Eigen::Isometry3d::Identity())};
-        contested[k] = parts_.fitsElsewhere(placed) || parts_.mayBeMoved(placed, motions) || isClaimed(group, placed);
+        contested[k] = PartCheck::isMisplaced(placed) || parts_.fitsElsewhere(placed) ||
+                       parts_.mayBeMoved(placed, motions) || isClaimed(group, placed);
       },
       1);
   const auto first = std::find(contested.begin(), contested.end(), 1);
@@ -294,7 +295,8 @@ bool Assembler::splitTwins(std::size_t group)
   return false;
 }
 
-// Scans that see the same room as the part may be the wrong ones as well, and become alone.
+// Scans that see the same room as the part may be the wrong ones as well, and become alone. What only the part held
+// together falls apart.
 void Assembler::split(std::size_t group, const std::vector<Index>& listed)
 {
   constexpr double one_room = 0.8; // overlap
@@ -308,10 +310,11 @@ void Assembler::split(std::size_t group, const std::vector<Index>& listed)
         alone.push_back(rest.scans[i]);
         break;
       }
-  std::vector<std::vector<Index>> parts = std::move(groups_[group].parts);
-  groups_[group] = {next_id_++, divide(rest, alone).second, parts};
-  if (groups_[group].cluster.scans.empty())
-    groups_.erase(groups_.begin() + group);
+  const std::vector<std::vector<Index>> parts = std::move(groups_[group].parts);
+  groups_.erase(groups_.begin() + group);
+  const ScanCluster left = divide(rest, alone).second;
+  for (const ScanCluster& held : hasKnown(left) ? std::vector<ScanCluster>{left} : parts_.heldTogether(left))
+    groups_.insert(groups_.begin() + group, {next_id_++, held, parts});
   groups_.push_back({next_id_++, part, parts});
   groups_.back().cluster.look_alike = true;
   for (const Index scan : alone)

@@ -77,13 +77,16 @@ SubmapPlaces SubmapJoiner::findPlaces(const Group& first, const Group& second) c
   constexpr std::size_t most_by_plans = 32; // of 30 true places 22 are among the first 24, of 28 23 among 64
   constexpr double distinct = 3.0;          // tolerances
   constexpr double hopeless = 0.1;          // of one scan's points in free space: no small motion mends it
-  ClusterFits fits = fitter_.find(first.cluster, second.cluster), by_plans;
+  const auto uncontradicted = [&](const ClusterFits& rough) {
+    return fitter_.uncontradicted(first.cluster, second.cluster, rough);
+  };
+  ClusterFits fits = uncontradicted(fitter_.rough(first.cluster, second.cluster)), by_plans;
   const std::optional<Submap>&a = *first.submap, &b = *second.submap;
   if (a && b && first.cluster.scans.size() + second.cluster.scans.size() > 2) // of two scans the pair has told all
     for (const Eigen::Isometry3d& T : matchSubmaps(*a, *b, most_by_plans))
       if (judge_.judge(first.cluster, second.cluster, T).clustered <= hopeless)
         by_plans.emplace_back().T = refineSubmap(*a, *b, T);
-  for (const ClusterFit& fit : fitter_.uncontradicted(first.cluster, second.cluster, by_plans))
+  for (const ClusterFit& fit : uncontradicted(by_plans))
     if (std::none_of(fits.begin(), fits.end(),
                      [&](const ClusterFit& known) { return fitter_.isSame(second.cluster, known.T, fit.T, distinct); }))
       fits.push_back(fit);

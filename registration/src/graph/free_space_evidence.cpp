@@ -4,19 +4,34 @@
 #include <cmath>
 #include <fresco/core/statistics.h>
 namespace fresco::registration {
+namespace {
+// What right places have at most, but for what moved.
+double usualContradiction(const FreeSpaceEvidence& evidence)
+{
+  constexpr double stray = 0.0013; // of one scan's points: panes
+  constexpr double usual = 0.0008; // of the points that agree: twice what right places have
+  return stray + usual * evidence.agree;
+}
+} // namespace
+
 FreeSpaceEvidence& FreeSpaceEvidence::operator+=(const FreeSpaceEvidence& other)
 {
   agree += other.agree;
   violating += other.violating;
   clustered += other.clustered;
+  crowded = crowded || other.crowded;
   return *this;
 }
 
 bool isContradicted(const FreeSpaceEvidence& evidence)
 {
-  constexpr double stray = 0.002;  // of one scan's points: what moved, panes
-  constexpr double usual = 0.0012; // of the points that agree: twice what right places have
-  return evidence.clustered > stray + usual * evidence.agree;
+  return evidence.crowded ? isClearlyContradicted(evidence) : evidence.clustered > usualContradiction(evidence);
+}
+
+bool isClearlyContradicted(const FreeSpaceEvidence& evidence)
+{
+  constexpr double clearly = 1.5;
+  return evidence.clustered > clearly * usualContradiction(evidence);
 }
 
 bool contradictsMore(const FreeSpaceEvidence& other, const FreeSpaceEvidence& here, double unit)
@@ -51,7 +66,7 @@ FreeSpaceEvidence FreeSpaceJudge::judgeSeen(const PreparedScan& seer, const Prep
   const ScanLevel& level = seen.levels[check_level];
   const Eigen::Isometry3f T = T_seer_seen.cast<float>();
   using Verdict = ScanFreeSpace::Verdict;
-  const std::vector<Verdict> verdicts = judgeLevel(seer, level, T);
+  const std::vector<Verdict> verdicts = judgeWithoutGrazed(seer, level, T);
   Index agree = 0, violating = 0, clustered = 0;
   for (Index i = 0; i < level.points.cols(); ++i) {
     if (verdicts[i] == Verdict::unknown || !isNear(T * level.points.col(i)))
@@ -62,7 +77,7 @@ FreeSpaceEvidence FreeSpaceJudge::judgeSeen(const PreparedScan& seer, const Prep
     ++violating;
     clustered += violatesWithNeighbours(level, verdicts, i) ? 1 : 0;
   }
-  return {agree / unit_, violating / unit_, clustered / unit_};
+  return {agree / unit_, violating / unit_, clustered / unit_, seer.spares_doubtful};
 }
 
 FreeSpaceEvidence FreeSpaceJudge::judge(Index a, Index b, const Eigen::Isometry3d& T_a_b) const
@@ -99,7 +114,7 @@ double FreeSpaceJudge::confirmedBy(const ScanCluster& seers, const PreparedScan&
     if (isOutOfReach(T_seer_seen))
       continue;
     const Eigen::Isometry3f T = T_seer_seen.cast<float>();
-    const auto verdicts = judgeLevel(scans_[seers.scans[k]], level, T);
+    const auto verdicts = judgeWithoutGrazed(scans_[seers.scans[k]], level, T);
     for (Index i = 0; i < level.points.cols(); ++i)
       if (verdicts[i] == ScanFreeSpace::Verdict::agrees && isNear(T * level.points.col(i)))
         found[i] = 1;

@@ -8,11 +8,15 @@ struct FreeSpaceEvidence {
   double agree = 0.0;     ///< as deep as the other scan measured
   double violating = 0.0; ///< in space that the other saw through
   double clustered = 0.0; ///< of these, that lie there together with their neighbours: no mixed pixels
+  bool crowded = false;   ///< whether people moved between the scans, see PreparedScan::spares_doubtful
   FreeSpaceEvidence& operator+=(const FreeSpaceEvidence& other);
 };
 
 /// Whether more points contradict a pose than mixed pixels and small errors of poses explain.
 bool isContradicted(const FreeSpaceEvidence& evidence);
+
+/// Whether half as many more do: something may have moved.
+bool isClearlyContradicted(const FreeSpaceEvidence& evidence);
 
 /// Whether `other` contradicts a place clearly more than `here` does its own: by three standard deviations of counts.
 /// @param unit the mean number of points of a scan

@@ -148,8 +148,9 @@ ClusterPose PlaceSearch::evidence(const Eigen::Isometry3d& T) const
   Index against = 0, agree = 0;
   for (const auto& [distance, pair] : near_first) {
     const auto& [i, j] = pair;
-    const PairCheck check = checkRoughly(input_.scans[cluster_.scans[i]], input_.scans[moving_.scans[j]],
-                                         cluster_.poses[i].inverse() * T * moving_.poses[j], check_level);
+    const PairCheck check =
+        checkRoughly(input_.scans[cluster_.scans[i]], input_.scans[moving_.scans[j]],
+                     cluster_.poses[i].inverse() * T * moving_.poses[j], check_level, Grazed::spared);
     place.violation = std::max(place.violation, check.violation);
     place.overlap = std::max(place.overlap, check.overlap);
     place.violating_points += check.violating_points;

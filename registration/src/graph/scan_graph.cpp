@@ -149,7 +149,7 @@ std::optional<Eigen::Isometry3d> GraphBuilder::fittingPose(Index a, Index b, con
   const bool first_moves = first.scans.size() < second.scans.size();
   const Eigen::Isometry3d T = first_moves ? settledPose(input_, second, first, T_a_b.inverse()).inverse()
                                           : settledPose(input_, first, second, T_a_b);
-  return isContradicted(judge_.judge(first, second, T)) ? std::nullopt : std::optional(T);
+  return isClearlyContradicted(judge_.judge(first, second, T)) ? std::nullopt : std::optional(T);
 }
 
 bool GraphBuilder::tryJoin(const Candidate& candidate)

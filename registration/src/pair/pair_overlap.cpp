@@ -22,15 +22,40 @@ double overlapShare(const ScanLevel& source, const ScanLevel& target, const Eige
 
 ScanFreeSpace::Slack slackOf(const ScanLevel& level) { return {1.5f * level.voxel, 0.02f}; }
 
-std::vector<ScanFreeSpace::Verdict> judgeLevel(const PreparedScan& seer, const ScanLevel& level,
-                                               const Eigen::Isometry3f& T_seer_level)
+namespace {
+using Verdict = ScanFreeSpace::Verdict;
+using Verdicts = std::vector<Verdict>;
+
+ScanFreeSpace::Slack slackOf(const PreparedScan& seer, const ScanLevel& level)
 {
-  using Verdict = ScanFreeSpace::Verdict;
   ScanFreeSpace::Slack slack = slackOf(level);
   slack.own_rays = seer.spares_doubtful;
-  std::vector<Verdict> verdicts = seer.free_space.judge(level.points, T_seer_level, slack);
+  return slack;
+}
+} // namespace
+
+Verdicts judgeLevel(const PreparedScan& seer, const ScanLevel& level, const Eigen::Isometry3f& T_seer_level)
+{
+  const ScanFreeSpace::Slack slack = slackOf(seer, level);
+  Verdicts verdicts = seer.free_space.judge(level.points, T_seer_level, slack);
   for (std::size_t i = 0; seer.spares_doubtful && i < level.maybe_person.size(); ++i)
     if (level.maybe_person[i] != 0 && verdicts[i] == Verdict::violates)
+      verdicts[i] = Verdict::unknown;
+  return verdicts;
+}
+
+// Where people are spared, directions without a ray of their own are so already: of surfaces that are grazed little is
+// left that is misread.
+Verdicts judgeWithoutGrazed(const PreparedScan& seer, const ScanLevel& level, const Eigen::Isometry3f& T_seer_level)
+{
+  Verdicts verdicts = judgeLevel(seer, level, T_seer_level);
+  const ScanFreeSpace::Slack slack = slackOf(seer, level);
+  if (seer.spares_doubtful)
+    return verdicts;
+  for (Index i = 0; i < level.points.cols(); ++i)
+    if (verdicts[i] == Verdict::violates &&
+        seer.free_space.isGrazed(T_seer_level * level.points.col(i), T_seer_level.linear() * level.normals.col(i),
+                                 slack))
       verdicts[i] = Verdict::unknown;
   return verdicts;
 }
@@ -52,15 +77,12 @@ struct Violation {
 
 // Points of a level that lie, together with their neighbours, in space that was seen through; how many lie there with or
 // without them.
-Violation findViolation(const PreparedScan& seer, const ScanLevel& level, const Eigen::Isometry3f& T_seer_level)
+Violation countViolation(const PreparedScan& seer, const ScanLevel& level, const Verdicts& verdicts)
 {
-  if (seer.free_space.empty())
-    return {};
-  const auto verdicts = judgeLevel(seer, level, T_seer_level);
   Index comparable = 0, violating = 0, points = 0;
   for (Index i = 0; i < level.points.cols(); ++i) {
-    comparable += verdicts[i] != ScanFreeSpace::Verdict::unknown ? 1 : 0;
-    if (verdicts[i] != ScanFreeSpace::Verdict::violates)
+    comparable += verdicts[i] != Verdict::unknown ? 1 : 0;
+    if (verdicts[i] != Verdict::violates)
       continue;
     ++points;
     violating += violatesWithNeighbours(level, verdicts, i) ? 1 : 0;
@@ -69,6 +91,16 @@ Violation findViolation(const PreparedScan& seer, const ScanLevel& level, const 
   const double least_comparable = sawAround(seer) ? 0.5 * level.points.cols() : 1.0;
   return {1.0 * violating / std::max<Index>(1, comparable), violating / std::max(least_comparable, 1.0 * comparable),
           points};
+}
+
+Violation findViolation(const PreparedScan& seer, const ScanLevel& level, const Eigen::Isometry3f& T_seer_level,
+                        Grazed grazed)
+{
+  if (seer.free_space.empty())
+    return {};
+  return countViolation(seer, level,
+                        grazed == Grazed::spared ? judgeWithoutGrazed(seer, level, T_seer_level)
+                                                 : judgeLevel(seer, level, T_seer_level));
 }
 
 // Pearson's correlation, pooled over the three channels: blind to gain and offset of each scan.
@@ -125,14 +157,15 @@ double sampledViolation(const PreparedScan& a, const PreparedScan& b, const Eige
 
 double pairViolation(const PreparedScan& a, const PreparedScan& b, const Eigen::Isometry3d& T_a_b, int level)
 {
-  return std::max(findViolation(a, b.levels[level], T_a_b.cast<float>()).share,
-                  findViolation(b, a.levels[level], T_a_b.inverse().cast<float>()).share);
+  return std::max(findViolation(a, b.levels[level], T_a_b.cast<float>(), Grazed::spared).share,
+                  findViolation(b, a.levels[level], T_a_b.inverse().cast<float>(), Grazed::spared).share);
 }
 
 namespace {
 struct CheckDetail {
   int level;
   Index samples; // that look for a counterpart
+  Grazed grazed = Grazed::counts;
 };
 
 // All but the colours.
@@ -151,7 +184,8 @@ PairCheck checkSurfaces(const PreparedScan& a, const PreparedScan& b, const Eige
   test.oriented = a.oriented && b.oriented;
   PairCheck check;
   check.overlap = std::max(overlapShare(level_b, level_a, T_ab, test), overlapShare(level_a, level_b, T_ba, test));
-  const Violation by_a = findViolation(a, level_b, T_ab), by_b = findViolation(b, level_a, T_ba);
+  const Violation by_a = findViolation(a, level_b, T_ab, detail.grazed),
+                  by_b = findViolation(b, level_a, T_ba, detail.grazed);
   check.violation_a = by_a.of_comparable;
   check.violation_b = by_b.of_comparable;
   check.violating_points = by_a.points + by_b.points;
@@ -162,15 +196,16 @@ PairCheck checkSurfaces(const PreparedScan& a, const PreparedScan& b, const Eige
 
 PairCheck checkPair(const PreparedScan& a, const PreparedScan& b, const Eigen::Isometry3d& T_a_b, int level)
 {
-  PairCheck check = checkSurfaces(a, b, T_a_b, {level, OverlapTest().most});
+  PairCheck check = checkSurfaces(a, b, T_a_b, {level, OverlapTest().most, Grazed::counts});
   const ScanLevel &level_a = a.levels[level], &level_b = b.levels[level];
   check.color = colorCorrelation(level_b, level_a, T_a_b.cast<float>(), std::max(level_a.voxel, level_b.voxel));
   return check;
 }
 
-PairCheck checkRoughly(const PreparedScan& a, const PreparedScan& b, const Eigen::Isometry3d& T_a_b, int level)
+PairCheck checkRoughly(const PreparedScan& a, const PreparedScan& b, const Eigen::Isometry3d& T_a_b, int level,
+                       Grazed grazed)
 {
   constexpr Index few = 500; // samples: the share is known to 2 %
-  return checkSurfaces(a, b, T_a_b, {level, few});
+  return checkSurfaces(a, b, T_a_b, {level, few, grazed});
 }
 } // namespace fresco::registration

@@ -24,6 +24,11 @@ ScanFreeSpace::Slack slackOf(const ScanLevel& level);
 std::vector<ScanFreeSpace::Verdict> judgeLevel(const PreparedScan& seer, const ScanLevel& level,
                                                const Eigen::Isometry3f& T_seer_level);
 
+/// The same, but what the scan grazed does not violate, see ScanFreeSpace::isGrazed(). For places that many pairs of
+/// scans judge together, whose errors add up. Between a scan's own hypotheses the little that it grazed may decide.
+std::vector<ScanFreeSpace::Verdict> judgeWithoutGrazed(const PreparedScan& seer, const ScanLevel& level,
+                                                       const Eigen::Isometry3f& T_seer_level);
+
 /// Whether most neighbours of a point that violates do so, too: mixed pixels at edges violate alone, misplaced surfaces
 /// all over.
 /// @param verdicts on all points of the level
@@ -45,13 +50,17 @@ struct PairCheck {
 /// surfaces that count as violations
 PairCheck checkPair(const PreparedScan& a, const PreparedScan& b, const Eigen::Isometry3d& T_a_b, int level);
 
+/// Whether what a scan grazed violates, see judgeWithoutGrazed().
+enum class Grazed { counts, spared };
+
 /// The same from fewer samples and without colours: to sort out hypotheses.
-PairCheck checkRoughly(const PreparedScan& a, const PreparedScan& b, const Eigen::Isometry3d& T_a_b, int level);
+PairCheck checkRoughly(const PreparedScan& a, const PreparedScan& b, const Eigen::Isometry3d& T_a_b, int level,
+                       Grazed grazed = Grazed::counts);
 
 /// The larger share of few points of check_level in space that the other scan saw through. Points that lie there alone
 /// count, so mixed pixels do.
 double sampledViolation(const PreparedScan& a, const PreparedScan& b, const Eigen::Isometry3d& T_a_b);
 
-/// PairCheck::violation alone.
+/// PairCheck::violation alone, without what is grazed, see judgeWithoutGrazed().
 double pairViolation(const PreparedScan& a, const PreparedScan& b, const Eigen::Isometry3d& T_a_b, int level);
 } // namespace fresco::registration

@@ -140,4 +140,25 @@ std::vector<ScanFreeSpace::Verdict> ScanFreeSpace::judge(const Points& points, c
   }
   return verdicts;
 }
+
+bool ScanFreeSpace::isGrazed(const Eigen::Vector3f& point, const Eigen::Vector3f& normal, const Slack& slack) const
+{
+  constexpr float least_cosine = 0.3f;
+  const float half_cell = float_pi / 4.f / side_; // angle
+  if (normal.isZero())
+    return false;
+  for (const Map& map : maps_) {
+    const Eigen::Vector3f ray = point - map.center;
+    const float range = ray.norm(), margin = slack.absolute + slack.relative * range;
+    const Index cell = cellOf(ray, side_);
+    if (!(range > slack.absolute) || range >= map.nearest[cell] - margin || map.nearest[cell] == infinity)
+      continue;
+    const float cosine = std::abs(normal.dot(ray)) / range;
+    // A ray beside that of the point meets the surface so much farther.
+    const bool passed_through = (map.nearest[cell] - range - margin) * cosine > half_cell * range;
+    if (cosine >= least_cosine || (map.has_ray[cell] != 0 && passed_through))
+      return false;
+  }
+  return true;
+}
 } // namespace fresco::registration

@@ -33,6 +33,12 @@ public:
   /// @param T_scan_points rigid, brings `points` into the frame of the scan
   std::vector<Verdict> judge(const Points& points, const Eigen::Isometry3f& T_scan_points, const Slack& slack) const;
 
+  /// Whether a point that violates lies on a surface that the rays graze, at 17 degrees or less, and none of them
+  /// passed through it: of those in its cell of directions, all may have met the surface, or gone by in front of it.
+  /// Such surfaces send little back; what their directions hold was then seen beside them.
+  /// @param point, normal of unit length or zero, in the frame of the scan
+  bool isGrazed(const Eigen::Vector3f& point, const Eigen::Vector3f& normal, const Slack& slack) const;
+
   bool empty() const { return maps_.empty(); }
 
   /// Share of all directions in which something was measured, 0..1.
