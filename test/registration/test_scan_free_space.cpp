@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scan/scan_free_space.h"
+#include <algorithm>
 #include <gtest/gtest.h>
 namespace fresco::registration {
 namespace {
@@ -34,6 +35,7 @@ TEST(ScanFreeSpace, OnlyOwnRaysContradictWhereAskedFor)
   EXPECT_EQ(judge(false), (std::vector<Verdict>{Verdict::violates, Verdict::violates}));
   EXPECT_EQ(judge(true), (std::vector<Verdict>{Verdict::unknown, Verdict::violates}));
 }
+
 // What a scanner at the origin sees of a corridor of 30 x 3 m. From its floor, 1.6 m below, nothing comes back beyond 6 m.
 Points scanOfCorridor()
 {
@@ -66,11 +68,12 @@ TEST(ScanFreeSpace, GrazedSurfacesContradictOnlyWhereRaysPassedThroughThem)
   const ScanFreeSpace space(scanOfCorridor(), Points::Zero(3, 1), 0.1f);
   const ScanFreeSpace::Slack slack{0.2f, 0.02f, false};
   const auto violating = [&](const Points& points, const Eigen::Vector3f& normal, bool grazed) {
-    const std::vector<Verdict> verdicts = space.judge(points, Eigen::Isometry3f::Identity(), slack);
-    Index count = 0;
-    for (Index i = 0; i < points.cols(); ++i)
-      count += verdicts[i] == Verdict::violates && space.isGrazed(points.col(i), normal, slack) == grazed ? 1 : 0;
-    return count;
+    const Points normals = normal.replicate(1, points.cols());
+    const auto count = [&](const Points* given) {
+      const std::vector<Verdict> verdicts = space.judge(points, Eigen::Isometry3f::Identity(), slack, given);
+      return static_cast<Index>(std::count(verdicts.begin(), verdicts.end(), Verdict::violates));
+    };
+    return grazed ? count(nullptr) - count(&normals) : count(&normals);
   };
   const Eigen::Vector3f up(0, 0, 1), along(1, 0, 0), unknown(0, 0, 0);
   const Points floor = strip(9.f, 4.f, -1.6f); // the end of the corridor fills its directions

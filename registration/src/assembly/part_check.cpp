@@ -1,7 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "assembly/part_check.h"
 #include <algorithm>
+#include <fresco/core/union_find.h>
 namespace fresco::registration {
+namespace {
+// Whether twice as many points contradict a place as may.
+bool isContradictedTwice(FreeSpaceEvidence evidence)
+{
+  evidence.clustered *= 0.5;
+  return isContradicted(evidence);
+}
+} // namespace
+
 // Whether the evidence of another place of a part leaves open which is right. Where clearly more surfaces agree, more of
 // what moved is seen as well.
 bool PartCheck::isUndecided(const FreeSpaceEvidence& here, const FreeSpaceEvidence& there) const
@@ -14,46 +24,32 @@ bool PartCheck::isUndecided(const FreeSpaceEvidence& here, const FreeSpaceEviden
     return !isContradicted(there) && there.violating <= noise_violation * there.agree &&
            !contradictsMore(there, here, judge_.unit());
   const double more = there.agree / std::max(here.agree, 1.0 / judge_.unit());
-  FreeSpaceEvidence as_much = here, half = there;
+  FreeSpaceEvidence as_much = here;
   as_much.violating *= more;
   as_much.clustered *= more;
-  half.clustered *= 0.5;
-  return !isContradicted(half) && !contradictsMore(there, as_much, judge_.unit());
+  return !isContradictedTwice(there) && !contradictsMore(there, as_much, judge_.unit());
 }
 
-bool PartCheck::isMisplaced(const ClusterPart& placed)
-{
-  constexpr double clearly = 0.5; // errors of poses add up in large clusters
-  FreeSpaceEvidence half = placed.here;
-  half.clustered *= clearly;
-  return isContradicted(half);
-}
+// Errors of poses add up in large clusters.
+bool PartCheck::isMisplaced(const ClusterPart& placed) { return isContradictedTwice(placed.here); }
 
 std::vector<ScanCluster> PartCheck::heldTogether(const ScanCluster& cluster) const
 {
   constexpr double least_agreement = 0.1; // of a scan's points: less, and a wrong place has it
+  const Index n = cluster.scans.size();
+  UnionFind held(n);
+  for (Index a = 0; a < n; ++a)
+    for (Index b = a + 1; b < n; ++b)
+      if (held.root(a) != held.root(b) &&
+          judge_.judge(cluster.scans[a], cluster.scans[b], cluster.poses[a].inverse() * cluster.poses[b]).agree >=
+              least_agreement)
+        held.join(a, b);
+  std::map<Index, std::vector<Index>> members; // by the root, the first of them
+  for (Index k = 0; k < n; ++k)
+    members[held.root(k)].push_back(cluster.scans[k]);
   std::vector<ScanCluster> parts;
-  std::vector<char> reached(cluster.scans.size(), 0);
-  for (std::size_t start = 0; start < reached.size(); ++start) {
-    if (reached[start])
-      continue;
-    std::vector<std::size_t> members{start};
-    reached[start] = 1;
-    for (std::size_t k = 0; k < members.size(); ++k)
-      for (std::size_t other = 0; other < reached.size(); ++other)
-        if (!reached[other] && judge_.judge(cluster.scans[members[k]], cluster.scans[other],
-                                            cluster.poses[members[k]].inverse() * cluster.poses[other])
-                                       .agree >= least_agreement) {
-          reached[other] = 1;
-          members.push_back(other);
-        }
-    std::sort(members.begin(), members.end());
-    ScanCluster& part = parts.emplace_back();
-    for (const std::size_t k : members) {
-      part.scans.push_back(cluster.scans[k]);
-      part.poses.push_back(cluster.poses[k]);
-    }
-  }
+  for (const auto& [root, scans] : members)
+    parts.push_back(divide(cluster, scans).first);
   return parts;
 }
 

@@ -287,8 +287,7 @@ bool Assembler::splitTwins(std::size_t group)
     for (std::size_t other = 0; other < groups_.size(); ++other)
       if (other != group && groups_[other].cluster.scans.size() > 1 &&
           parts_.haveTwinPlaces(groups_[other].cluster, part, rest)) {
-        const std::vector<Index> scans = listed;
-        split(group, scans);
+        split(group, listed);
         return true;
       }
   }

@@ -66,7 +66,7 @@ FreeSpaceEvidence FreeSpaceJudge::judgeSeen(const PreparedScan& seer, const Prep
   const ScanLevel& level = seen.levels[check_level];
   const Eigen::Isometry3f T = T_seer_seen.cast<float>();
   using Verdict = ScanFreeSpace::Verdict;
-  const std::vector<Verdict> verdicts = judgeWithoutGrazed(seer, level, T);
+  const std::vector<Verdict> verdicts = judgeLevel(seer, level, T, Grazed::spared);
   Index agree = 0, violating = 0, clustered = 0;
   for (Index i = 0; i < level.points.cols(); ++i) {
     if (verdicts[i] == Verdict::unknown || !isNear(T * level.points.col(i)))
@@ -114,7 +114,7 @@ double FreeSpaceJudge::confirmedBy(const ScanCluster& seers, const PreparedScan&
     if (isOutOfReach(T_seer_seen))
       continue;
     const Eigen::Isometry3f T = T_seer_seen.cast<float>();
-    const auto verdicts = judgeWithoutGrazed(scans_[seers.scans[k]], level, T);
+    const auto verdicts = judgeLevel(scans_[seers.scans[k]], level, T, Grazed::spared);
     for (Index i = 0; i < level.points.cols(); ++i)
       if (verdicts[i] == ScanFreeSpace::Verdict::agrees && isNear(T * level.points.col(i)))
         found[i] = 1;

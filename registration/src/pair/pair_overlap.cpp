@@ -20,42 +20,23 @@ double overlapShare(const ScanLevel& source, const ScanLevel& target, const Eige
   return count > 0 ? 1.0 * found / count : 0.0;
 }
 
-ScanFreeSpace::Slack slackOf(const ScanLevel& level) { return {1.5f * level.voxel, 0.02f}; }
-
 namespace {
 using Verdict = ScanFreeSpace::Verdict;
-using Verdicts = std::vector<Verdict>;
 
-ScanFreeSpace::Slack slackOf(const PreparedScan& seer, const ScanLevel& level)
+// How far in front of measured ranges points of a level still agree with them.
+ScanFreeSpace::Slack slackOf(const ScanLevel& level) { return {1.5f * level.voxel, 0.02f}; }
+} // namespace
+
+std::vector<Verdict> judgeLevel(const PreparedScan& seer, const ScanLevel& level, const Eigen::Isometry3f& T_seer_level,
+                                Grazed grazed)
 {
   ScanFreeSpace::Slack slack = slackOf(level);
   slack.own_rays = seer.spares_doubtful;
-  return slack;
-}
-} // namespace
-
-Verdicts judgeLevel(const PreparedScan& seer, const ScanLevel& level, const Eigen::Isometry3f& T_seer_level)
-{
-  const ScanFreeSpace::Slack slack = slackOf(seer, level);
-  Verdicts verdicts = seer.free_space.judge(level.points, T_seer_level, slack);
+  const bool spare_grazed = grazed == Grazed::spared && !seer.spares_doubtful;
+  std::vector<Verdict> verdicts =
+      seer.free_space.judge(level.points, T_seer_level, slack, spare_grazed ? &level.normals : nullptr);
   for (std::size_t i = 0; seer.spares_doubtful && i < level.maybe_person.size(); ++i)
     if (level.maybe_person[i] != 0 && verdicts[i] == Verdict::violates)
-      verdicts[i] = Verdict::unknown;
-  return verdicts;
-}
-
-// Where people are spared, directions without a ray of their own are so already: of surfaces that are grazed little is
-// left that is misread.
-Verdicts judgeWithoutGrazed(const PreparedScan& seer, const ScanLevel& level, const Eigen::Isometry3f& T_seer_level)
-{
-  Verdicts verdicts = judgeLevel(seer, level, T_seer_level);
-  const ScanFreeSpace::Slack slack = slackOf(seer, level);
-  if (seer.spares_doubtful)
-    return verdicts;
-  for (Index i = 0; i < level.points.cols(); ++i)
-    if (verdicts[i] == Verdict::violates &&
-        seer.free_space.isGrazed(T_seer_level * level.points.col(i), T_seer_level.linear() * level.normals.col(i),
-                                 slack))
       verdicts[i] = Verdict::unknown;
   return verdicts;
 }
@@ -77,8 +58,12 @@ struct Violation {
 
 // Points of a level that lie, together with their neighbours, in space that was seen through; how many lie there with or
 // without them.
-Violation countViolation(const PreparedScan& seer, const ScanLevel& level, const Verdicts& verdicts)
+Violation findViolation(const PreparedScan& seer, const ScanLevel& level, const Eigen::Isometry3f& T_seer_level,
+                        Grazed grazed)
 {
+  if (seer.free_space.empty())
+    return {};
+  const std::vector<Verdict> verdicts = judgeLevel(seer, level, T_seer_level, grazed);
   Index comparable = 0, violating = 0, points = 0;
   for (Index i = 0; i < level.points.cols(); ++i) {
     comparable += verdicts[i] != Verdict::unknown ? 1 : 0;
@@ -91,16 +76,6 @@ Violation countViolation(const PreparedScan& seer, const ScanLevel& level, const
   const double least_comparable = sawAround(seer) ? 0.5 * level.points.cols() : 1.0;
   return {1.0 * violating / std::max<Index>(1, comparable), violating / std::max(least_comparable, 1.0 * comparable),
           points};
-}
-
-Violation findViolation(const PreparedScan& seer, const ScanLevel& level, const Eigen::Isometry3f& T_seer_level,
-                        Grazed grazed)
-{
-  if (seer.free_space.empty())
-    return {};
-  return countViolation(seer, level,
-                        grazed == Grazed::spared ? judgeWithoutGrazed(seer, level, T_seer_level)
-                                                 : judgeLevel(seer, level, T_seer_level));
 }
 
 // Pearson's correlation, pooled over the three channels: blind to gain and offset of each scan.
@@ -165,7 +140,7 @@ namespace {
 struct CheckDetail {
   int level;
   Index samples; // that look for a counterpart
-  Grazed grazed = Grazed::counts;
+  Grazed grazed;
 };
 
 // All but the colours.

@@ -16,18 +16,15 @@ struct OverlapTest {
 double overlapShare(const ScanLevel& source, const ScanLevel& target, const Eigen::Isometry3f& T_target_source,
                     const OverlapTest& test);
 
-/// How far in front of measured ranges points of a level still agree with them.
-ScanFreeSpace::Slack slackOf(const ScanLevel& level);
+/// Whether surfaces that the seer's rays grazed violate, see ScanFreeSpace::judge(). They are spared at places that many
+/// pairs of scans judge together, whose errors add up. Between hypotheses of one pair the little that is grazed may
+/// decide.
+enum class Grazed { counts, spared };
 
 /// What a scan says of all points of a level. If it spares what is doubtful, people do not violate, nor what lies in
-/// directions without a ray of their own.
+/// directions without a ray of their own; of what is grazed, little is left then that is misread, and all counts.
 std::vector<ScanFreeSpace::Verdict> judgeLevel(const PreparedScan& seer, const ScanLevel& level,
-                                               const Eigen::Isometry3f& T_seer_level);
-
-/// The same, but what the scan grazed does not violate, see ScanFreeSpace::isGrazed(). For places that many pairs of
-/// scans judge together, whose errors add up. Between a scan's own hypotheses the little that it grazed may decide.
-std::vector<ScanFreeSpace::Verdict> judgeWithoutGrazed(const PreparedScan& seer, const ScanLevel& level,
-                                                       const Eigen::Isometry3f& T_seer_level);
+                                               const Eigen::Isometry3f& T_seer_level, Grazed grazed);
 
 /// Whether most neighbours of a point that violates do so, too: mixed pixels at edges violate alone, misplaced surfaces
 /// all over.
@@ -50,9 +47,6 @@ struct PairCheck {
 /// surfaces that count as violations
 PairCheck checkPair(const PreparedScan& a, const PreparedScan& b, const Eigen::Isometry3d& T_a_b, int level);
 
-/// Whether what a scan grazed violates, see judgeWithoutGrazed().
-enum class Grazed { counts, spared };
-
 /// The same from fewer samples and without colours: to sort out hypotheses.
 PairCheck checkRoughly(const PreparedScan& a, const PreparedScan& b, const Eigen::Isometry3d& T_a_b, int level,
                        Grazed grazed = Grazed::counts);
@@ -61,6 +55,6 @@ PairCheck checkRoughly(const PreparedScan& a, const PreparedScan& b, const Eigen
 /// count, so mixed pixels do.
 double sampledViolation(const PreparedScan& a, const PreparedScan& b, const Eigen::Isometry3d& T_a_b);
 
-/// PairCheck::violation alone, without what is grazed, see judgeWithoutGrazed().
+/// PairCheck::violation alone, without what is grazed.
 double pairViolation(const PreparedScan& a, const PreparedScan& b, const Eigen::Isometry3d& T_a_b, int level);
 } // namespace fresco::registration

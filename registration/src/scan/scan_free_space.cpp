@@ -114,8 +114,18 @@ ScanFreeSpace::Map ScanFreeSpace::buildMap(const Points& points, const std::vect
   return map;
 }
 
+// Whether the rays near that of a point graze its surface, and none of its cell passed through: all may have met the
+// surface, or gone by in front of it. A ray half a cell beside that of the point meets the surface so much farther.
+bool ScanFreeSpace::isGrazed(const CellRay& ray, const Eigen::Vector3f& normal, bool has_ray) const
+{
+  constexpr float least_cosine = 0.3f;
+  const float half_cell = float_pi / 4.f / side_; // angle
+  const float cosine = std::abs(normal.dot(ray.from_center)) / ray.range;
+  return !normal.isZero() && cosine < least_cosine && (!has_ray || ray.gap * cosine <= half_cell * ray.range);
+}
+
 std::vector<ScanFreeSpace::Verdict> ScanFreeSpace::judge(const Points& points, const Eigen::Isometry3f& T_scan_points,
-                                                         const Slack& slack) const
+                                                         const Slack& slack, const Points* normals) const
 {
   std::vector<Verdict> verdicts(points.cols(), Verdict::unknown);
   for (Index i = 0; i < points.cols(); ++i) {
@@ -134,31 +144,12 @@ std::vector<ScanFreeSpace::Verdict> ScanFreeSpace::judge(const Points& points, c
         verdict = Verdict::agrees;
         break;
       }
-      if (!slack.own_rays || map.has_ray[cell] != 0)
+      const bool has_ray = map.has_ray[cell] != 0;
+      if ((has_ray || !slack.own_rays) && !(normals && isGrazed({ray, range, map.nearest[cell] - range - margin},
+                                                                T_scan_points.linear() * normals->col(i), has_ray)))
         verdict = Verdict::violates;
     }
   }
   return verdicts;
-}
-
-bool ScanFreeSpace::isGrazed(const Eigen::Vector3f& point, const Eigen::Vector3f& normal, const Slack& slack) const
-{
-  constexpr float least_cosine = 0.3f;
-  const float half_cell = float_pi / 4.f / side_; // angle
-  if (normal.isZero())
-    return false;
-  for (const Map& map : maps_) {
-    const Eigen::Vector3f ray = point - map.center;
-    const float range = ray.norm(), margin = slack.absolute + slack.relative * range;
-    const Index cell = cellOf(ray, side_);
-    if (!(range > slack.absolute) || range >= map.nearest[cell] - margin || map.nearest[cell] == infinity)
-      continue;
-    const float cosine = std::abs(normal.dot(ray)) / range;
-    // A ray beside that of the point meets the surface so much farther.
-    const bool passed_through = (map.nearest[cell] - range - margin) * cosine > half_cell * range;
-    if (cosine >= least_cosine || (map.has_ray[cell] != 0 && passed_through))
-      return false;
-  }
-  return true;
 }
 } // namespace fresco::registration

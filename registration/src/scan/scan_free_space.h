@@ -31,13 +31,11 @@ public:
   };
 
   /// @param T_scan_points rigid, brings `points` into the frame of the scan
-  std::vector<Verdict> judge(const Points& points, const Eigen::Isometry3f& T_scan_points, const Slack& slack) const;
-
-  /// Whether a point that violates lies on a surface that the rays graze, at 17 degrees or less, and none of them
-  /// passed through it: of those in its cell of directions, all may have met the surface, or gone by in front of it.
-  /// Such surfaces send little back; what their directions hold was then seen beside them.
-  /// @param point, normal of unit length or zero, in the frame of the scan
-  bool isGrazed(const Eigen::Vector3f& point, const Eigen::Vector3f& normal, const Slack& slack) const;
+  /// @param normals       3xN as `points`, unit length or zero. Where given, surfaces that the rays graze, at 17 degrees
+  ///                      or less, violate only if one of the same cell of directions passed through them. Such
+  ///                      surfaces send little back; what their directions hold was then seen beside them.
+  std::vector<Verdict> judge(const Points& points, const Eigen::Isometry3f& T_scan_points, const Slack& slack,
+                             const Points* normals = nullptr) const;
 
   bool empty() const { return maps_.empty(); }
 
@@ -67,6 +65,13 @@ private:
   {
     archive(map.center, map.nearest, map.farthest, map.has_ray, map.reach);
   }
+  /// What a map says of the direction of a point that violates.
+  struct CellRay {
+    Eigen::Vector3f from_center;
+    float range; ///< of the point
+    float gap;   ///< from there to the nearest range of its cell, without the slack; length
+  };
+  bool isGrazed(const CellRay& ray, const Eigen::Vector3f& normal, bool has_ray) const;
   Map buildMap(const Points& points, const std::vector<Index>& members, const Eigen::Vector3f& center, double reach);
   std::vector<Map> maps_;
   int side_ = 0; ///< cells per edge of a cube face
