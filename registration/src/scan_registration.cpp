@@ -5,6 +5,7 @@
 #include "scan/scan_survey.h"
 #include <algorithm>
 #include <cmath>
+#include <fresco/core/machine_memory.h>
 #include <fresco/core/parallel.h>
 #include <fresco/core/require.h>
 #include <fresco/registration/core/scan_registration.h>
@@ -114,24 +115,11 @@ Placement toPlacement(const ScanCluster& cluster, const RegistrationState& state
   }
   return placement;
 }
-} // namespace
 
-std::string scanName(const ScanRegistrationOptions& options, Index scan)
-{
-  return options.names.empty() ? concat("scan ", scan) : options.names[scan];
-}
-
-ScanRegistrationResult registerScans(const std::vector<PointSet>& scans, const std::vector<Pose>& start,
-                                     const ScanRegistrationOptions& options, const Progress& progress)
-{
-  return registerScans(ScanSource(scans.size(), [&](Index i) { return scans[i]; }), start, options, progress);
-}
-
-ScanRegistrationResult registerScans(const ScanSource& scans, const std::vector<Pose>& start,
-                                     const ScanRegistrationOptions& given, const Progress& progress)
+ScanRegistrationResult findPoses(const ScanSource& scans, const std::vector<Pose>& start,
+                                 const ScanRegistrationOptions& given, const Progress& progress)
 {
   constexpr float distance_voxels = 20.f; // the reach of refinement, a fifth of the scans' range
-  validate(scans, start, given);
   Exchange alone;
   Exchange& ranks = scans.ranks ? *scans.ranks : alone;
   ScanSurvey survey = surveyScans(scans, ranks, given);
@@ -157,5 +145,26 @@ ScanRegistrationResult registerScans(const ScanSource& scans, const std::vector<
                     subProgress(progress, 0.6 + 0.4 * done, 0.6 + 0.4 * (done + step)));
   }
   return describeRegistration(state);
+}
+} // namespace
+
+std::string scanName(const ScanRegistrationOptions& options, Index scan)
+{
+  return options.names.empty() ? concat("scan ", scan) : options.names[scan];
+}
+
+ScanRegistrationResult registerScans(const std::vector<PointSet>& scans, const std::vector<Pose>& start,
+                                     const ScanRegistrationOptions& options, const Progress& progress)
+{
+  return registerScans(ScanSource(scans.size(), [&](Index i) { return scans[i]; }), start, options, progress);
+}
+
+ScanRegistrationResult registerScans(const ScanSource& scans, const std::vector<Pose>& start,
+                                     const ScanRegistrationOptions& options, const Progress& progress)
+{
+  validate(scans, start, options);
+  ScanRegistrationResult result = findPoses(scans, start, options, progress);
+  returnFreedMemory(); // of many prepared scans, before callers merge them all
+  return result;
 }
 } // namespace fresco

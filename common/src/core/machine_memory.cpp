@@ -4,6 +4,9 @@
 #include <fresco/core/machine_memory.h>
 #include <fstream>
 #include <limits>
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
 #include <string>
 #include <sys/resource.h>
 #include <unistd.h>
@@ -47,5 +50,12 @@ std::size_t machineMemory()
 {
   const auto pages = static_cast<std::size_t>(sysconf(_SC_PHYS_PAGES));
   return std::min({pages * static_cast<std::size_t>(sysconf(_SC_PAGESIZE)), groupMemory(), leftOfAddressSpace()});
+}
+
+void returnFreedMemory()
+{
+#ifdef __GLIBC__
+  malloc_trim(0);
+#endif
 }
 } // namespace fresco

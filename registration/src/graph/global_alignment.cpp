@@ -42,6 +42,7 @@ private:
     const Index step = ranks_.size(), first = ranks_.rank();
     parallelFor((n - first + step - 1) / step, options_.threads, [&](Index k) { body(first + k * step); }, 1);
   }
+  void confirmViewpoints();
   void findFrames();
   void drawPlans();
   bool hasAllPlans() const;
@@ -94,11 +95,19 @@ void GlobalAligner::alignEach(const std::vector<RankedPair>& pairs, const Align&
             [](const PairAlignment& x, const PairAlignment& y) { return std::pair(x.a, x.b) < std::pair(y.a, y.b); });
 }
 
-// Where all scanners saw around, and their files tell from where.
+void GlobalAligner::confirmViewpoints()
+{
+  std::vector<ViewpointSign> signs(scans_.size());
+  forOwn(scans_.size(), [&](Index k) { signs[k] = findViewpointSign(scans_[k], 1); });
+  shareItems(ranks_, signs);
+  registration::confirmViewpoints(scans_, signs);
+}
+
+// Where all scanners saw around, and their files or points tell from where.
 void GlobalAligner::findFrames()
 {
   const auto known_view = [](const PreparedScan& scan) {
-    return !scan.problem.empty() || (sawAround(scan) && scan.viewpoint_given);
+    return !scan.problem.empty() || (sawAround(scan) && (scan.viewpoint_given || scan.viewpoint_found));
   };
   if (!known_.scans.empty() || !std::all_of(scans_.begin(), scans_.end(), known_view))
     return;
@@ -357,6 +366,7 @@ void GlobalAligner::alignInRounds(const Progress& progress)
 
 GlobalAlignment GlobalAligner::run(const Progress& progress)
 {
+  confirmViewpoints();
   plans_.resize(scans_.size());
   findFrames();
   drawPlans();

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "graph/viewpoint_check.h"
+#include "scan/viewpoint_search.h"
 #include <algorithm>
 namespace fresco::registration {
 namespace {
@@ -36,7 +37,34 @@ bool isNarrow(const PreparedScan& scan)
   constexpr double narrow_view = 0.4;
   return !scan.free_space.empty() && scan.free_space.coverage() < narrow_view;
 }
+
+// Whether it saw a place all around, and its frame's origin is taken for the scanner since nothing says so.
+bool isAssumed(const PreparedScan& scan)
+{
+  return scan.problem.empty() && !scan.viewpoint_given && !scan.viewpoint_found && sawAround(scan);
+}
 } // namespace
+
+ViewpointSign findViewpointSign(const PreparedScan& scan, int threads)
+{
+  constexpr double near = 0.25; // of the scan's size: right places are found to centimetres
+  if (!isAssumed(scan))
+    return ViewpointSign::none;
+  const std::optional<Eigen::Vector3f> place = findViewpoint(scan.levels.back().points, scan.size, threads);
+  if (!place)
+    return ViewpointSign::none;
+  return place->norm() < near * scan.size ? ViewpointSign::center : ViewpointSign::elsewhere;
+}
+
+void confirmViewpoints(std::vector<PreparedScan>& scans, const std::vector<ViewpointSign>& signs)
+{
+  const Index assumed = std::count_if(scans.begin(), scans.end(), isAssumed);
+  const bool mostly = 2 * std::count(signs.begin(), signs.end(), ViewpointSign::center) > assumed;
+  const Index n = scans.size();
+  for (Index i = 0; i < n; ++i)
+    if (isAssumed(scans[i]))
+      scans[i].viewpoint_found = signs[i] == ViewpointSign::center || (mostly && signs[i] == ViewpointSign::none);
+}
 
 std::vector<char> wrongViewpoints(const std::vector<PreparedScan>& scans, const std::vector<PairAlignment>& pairs,
                                   double max_violation)

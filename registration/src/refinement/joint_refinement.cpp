@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fresco/core/parallel.h>
+#include <fresco/core/statistics.h>
 #include <fresco/core/union_find.h>
 #include <map>
 #include <numeric>
@@ -28,7 +29,8 @@ public:
   JointResult run(const Progress& progress);
 
 private:
-  const ScanLevel& level(Index scan) const { return scans_[scan]->levels[level_]; }
+  const ScanLevel& level(Index scan) const { return level(scan, level_); }
+  const ScanLevel& level(Index scan, int k) const { return scans_[scan]->levels[k]; }
   Index scanCount() const { return scans_.size(); }
   Eigen::Isometry3d relative(const DirectedPair& pair) const
   {
@@ -40,11 +42,14 @@ private:
   }
   LevelPair levelPair(const DirectedPair& pair) const
   {
-    return {level(pair.source), level(pair.target), relative(pair).cast<float>(), oriented(pair)};
+    return {level(pair.source, pair.level), level(pair.target, pair.level), relative(pair).cast<float>(),
+            oriented(pair)};
   }
   void refineLevel();
-  std::vector<char> overlaps(float distance) const;
+  bool overlap(const DirectedPair& pair, float distance) const;
+  std::vector<int> commonLevels(float distance) const;
   void findPairs(float distance);
+  void weigh();
   void match(float distance);
   std::vector<PairSystem> accumulateAll() const;
   Eigen::VectorXd solve(const std::vector<PairSystem>& systems) const;
@@ -65,65 +70,96 @@ private:
   bool converged_ = false;
 };
 
-// For each pair of scans, n x n, whether enough of the first is on the second.
-std::vector<char> Refinement::overlaps(float distance) const
+// Whether enough of the source is on the target, at the pair's level.
+bool Refinement::overlap(const DirectedPair& pair, float distance) const
+{
+  OverlapTest test;
+  test.distance = distance;
+  test.most = 400; // in each of many rounds: the share is known to 2.5 %
+  test.max_angle = match_angle;
+  test.oriented = oriented(pair);
+  const LevelPair level = levelPair(pair);
+  return overlapShare(level.source, level.target, level.T_target_source, test) >= options_.min_overlap;
+}
+
+// For each pair of scans, n x n, the level on which enough of the first is on the second, or -1. Far from a scanner points
+// may lie so far apart that only coarser levels have surfaces there.
+std::vector<int> Refinement::commonLevels(float distance) const
 {
   const Index n = scanCount();
-  std::vector<char> overlaps(n * n, 0);
+  std::vector<int> levels(n * n, -1);
   parallelFor(
       n * n, options_.threads,
       [&](Index k) {
-        const DirectedPair pair{k / n, k % n, {}, 0.0};
+        DirectedPair pair;
+        pair.source = k / n;
+        pair.target = k % n;
         if (pair.source == pair.target || (fixed(pair.source) && fixed(pair.target)))
           return;
-        if (options_.min_overlap <= 0.f) {
-          overlaps[k] = 1;
+        pair.level = level_;
+        if (options_.min_overlap <= 0.f || overlap(pair, distance)) {
+          levels[k] = level_;
           return;
         }
-        OverlapTest test;
-        test.distance = distance;
-        test.most = 400; // in each of many rounds: the share is known to 2.5 %
-        test.max_angle = match_angle;
-        test.oriented = oriented(pair);
-        overlaps[k] = overlapShare(level(pair.source), level(pair.target), relative(pair).cast<float>(), test) >=
-                      options_.min_overlap;
+        pair.level = check_level;
+        if (options_.coarse_pairs && level_ > check_level && !level(pair.target).search &&
+            overlap(pair, distance * level(0, check_level).voxel / level(0).voxel))
+          levels[k] = check_level;
       },
       1);
   for (const auto& [a, b] : options_.excluded)
-    overlaps[a * n + b] = overlaps[b * n + a] = 0;
-  return overlaps;
+    levels[a * n + b] = levels[b * n + a] = -1;
+  return levels;
 }
 
 void Refinement::findPairs(float distance)
 {
   constexpr Index block_size = 500; // matches that one task handles: long against the cost of a task
   const Index n = scanCount();
-  const std::vector<char> overlap = overlaps(distance);
+  const std::vector<int> levels = commonLevels(distance);
   pairs_.clear();
-  for (Index a = 0; a < n; ++a)
-    for (Index b = 0; b < n; ++b)
-      if (a != b && (overlap[a * n + b] || overlap[b * n + a]))
-        pairs_.push_back({a, b, {}, 0.0});
   blocks_.clear();
-  for (std::size_t p = 0; p < pairs_.size(); ++p) {
-    const Index count = std::min<Index>(options_.samples, level(pairs_[p].source).samples.size());
-    pairs_[p].matches.resize(count);
-    for (Index begin = 0; begin < count; begin += block_size)
-      blocks_.push_back({p, {begin, std::min(count, begin + block_size)}});
-  }
+  for (Index a = 0; a < n; ++a)
+    for (Index b = 0; b < n; ++b) {
+      const int common = std::max(levels[a * n + b], levels[b * n + a]);
+      if (a == b || common < 0)
+        continue;
+      const Index count = std::min<Index>(options_.samples, level(a, common).samples.size());
+      for (Index begin = 0; begin < count; begin += block_size)
+        blocks_.push_back({pairs_.size(), {begin, std::min(count, begin + block_size)}});
+      pairs_.push_back({a, b, common, std::vector<Match>(count)});
+    }
+}
+
+// What pairs on a coarser level weigh: as the noise of their residuals says, and that of most pairs.
+void Refinement::weigh()
+{
+  std::vector<double> cutoffs;
+  for (const DirectedPair& pair : pairs_)
+    if (pair.level == level_ && pair.cutoff > 0.0)
+      cutoffs.push_back(pair.cutoff);
+  if (cutoffs.empty())
+    return;
+  const double usual = median(cutoffs);
+  for (DirectedPair& pair : pairs_)
+    if (pair.level < level_ && pair.cutoff > 0.0)
+      pair.weight = std::min(1.0, usual * usual / (pair.cutoff * pair.cutoff));
 }
 
 void Refinement::match(float distance)
 {
+  const float voxels = distance / level(0).voxel;
   parallelFor(
       blocks_.size(), options_.threads,
       [&](Index b) {
         DirectedPair& pair = pairs_[blocks_[b].pair];
-        findMatches(levelPair(pair), blocks_[b].range, distance, pair);
+        findMatches(levelPair(pair), blocks_[b].range, voxels * level(0, pair.level).voxel, pair);
       },
       1);
   parallelFor(
-      pairs_.size(), options_.threads, [&](Index p) { findCutoff(level(pairs_[p].target).voxel, pairs_[p]); }, 1);
+      pairs_.size(), options_.threads,
+      [&](Index p) { findCutoff(level(pairs_[p].target, pairs_[p].level).voxel, pairs_[p]); }, 1);
+  weigh();
 }
 
 std::vector<PairSystem> Refinement::accumulateAll() const
@@ -310,7 +346,7 @@ void Refinement::finish(JointResult& result) const
     const DirectedPair& pair = pairs_[p];
     const PairSystem& system = systems[p];
     const double rms = system.count > 0 ? std::sqrt(system.squares / system.count) : 0.0;
-    result.pairs.push_back({pair.source, pair.target, system.count, rms});
+    result.pairs.push_back({pair.source, pair.target, system.count, rms, pair.level < level_});
     const PairJacobian M(poses_[pair.target], relative(pair));
     result.information[pair.source] += M.M_source * system.H * M.M_source.transpose();
     result.information[pair.target] += M.M_target * system.H * M.M_target.transpose();

@@ -20,14 +20,16 @@ struct JointOptions {
   std::vector<Index> anchors; ///< rising; the first in a connected group keeps its pose, else the group's first scan
   std::vector<char> fixed;    ///< per scan, whether it does not move; pairs of two such are not used; empty = none
   bool covariances = false;   ///< whether covariances and informations are found
+  bool coarse_pairs = false;  ///< whether pairs that overlap only on `check_level` are used to the end
   int threads = 0;
 };
 
 /// Point-to-plane agreement of one pair at the end.
 struct JointPair {
   Index source = 0, target = 0;
-  Index matches = 0; ///< correspondences that the robust weight kept
-  double rms = 0.0;  ///< of their point-to-plane distances, length
+  Index matches = 0;   ///< correspondences that the robust weight kept
+  double rms = 0.0;    ///< of their point-to-plane distances, length
+  bool coarse = false; ///< whether only a coarser level than the last has surfaces in common
 };
 
 struct JointResult {
@@ -44,7 +46,8 @@ struct JointResult {
 
 /// Moves all scans at once so that points of each lie on the surfaces of the others: point-to-plane distances of all
 /// overlapping pairs in both directions (Chen & Medioni 1992, see PairSystem), Tukey weights, Levenberg-damped Gauss-Newton, coarse to
-/// fine. Each connected group of scans keeps the pose of one of them.
+/// fine. With `coarse_pairs`, pairs that overlap only where points are sparse stay on `check_level`, and weigh as their
+/// residuals say. Each connected group of scans keeps the pose of one of them.
 JointResult refineJointly(const ScanPointers& scans, IsometryVector poses, const JointOptions& options,
                           const Progress& progress);
 } // namespace fresco::registration

@@ -14,6 +14,7 @@ JointOptions jointOptions(const ScanRegistrationOptions& options)
   joint.min_overlap = 0.5 * options.min_overlap;
   joint.max_iterations = options.max_iterations;
   joint.covariances = true;
+  joint.coarse_pairs = true;
   joint.threads = options.threads;
   return joint;
 }
@@ -39,6 +40,7 @@ Eigen::Isometry3d filePose(const std::vector<PreparedScan>& scans, const Placeme
 struct MemberCheck {
   PairResult pair;
   Index violating_points = 0;
+  bool coarse = false; // see JointPair
 };
 
 // Of two members, at the refined poses.
@@ -58,6 +60,32 @@ MemberCheck checkMembers(const std::vector<PreparedScan>& scans, const Placement
   return result;
 }
 
+Index memberOf(const Placement& placement, Index scan)
+{
+  return std::find(placement.members.begin(), placement.members.end(), scan) - placement.members.begin();
+}
+
+// Takes back pairs that only coarse surfaces hold where these do not hold well: parts that all other pairs hold together, one
+// scan of which may be off by more than `most_deviation` of its size.
+void refuseLooseParts(const std::vector<PreparedScan>& scans, const std::vector<char>& coarse, Placement& placement)
+{
+  constexpr double most_deviation = 1.0 / voxels_per_size; // what joint refinement resolves at best
+  UnionFind parts(placement.members.size());
+  const auto forAccepted = [&](bool wanted, const auto& body) {
+    for (std::size_t k = 0; k < placement.pairs.size(); ++k)
+      if (PairResult& pair = placement.pairs[k]; pair.accepted && (coarse[k] != 0) == wanted)
+        body(pair, memberOf(placement, pair.a), memberOf(placement, pair.b));
+  };
+  forAccepted(false, [&](PairResult&, Index a, Index b) { parts.join(a, b); });
+  std::vector<char> loose(placement.members.size(), 0);
+  for (std::size_t m = 0; m < loose.size(); ++m)
+    if (positionDeviation(placement.joint, m) > most_deviation * scans[placement.members[m]].size)
+      loose[parts.root(m)] = 1;
+  forAccepted(true, [&](PairResult& pair, Index a, Index b) {
+    pair.accepted = parts.root(a) == parts.root(b) || (!loose[parts.root(a)] && !loose[parts.root(b)]);
+  });
+}
+
 // Finds every pair of members that overlaps.
 void checkPairs(const std::vector<PreparedScan>& scans, const ScanRegistrationOptions& options, Placement& placement)
 {
@@ -66,36 +94,36 @@ void checkPairs(const std::vector<PreparedScan>& scans, const ScanRegistrationOp
   parallelFor(
       pairs.size(), options.threads,
       [&](Index k) { all[k] = checkMembers(scans, placement, pairs[k].first, pairs[k].second); }, 1);
-  const auto find = [&](Index a, Index b) -> PairResult& {
+  const auto find = [&](Index a, Index b) -> MemberCheck& {
     const std::pair<Index, Index> wanted = std::minmax(a, b); // pairs are in order
-    return all[std::lower_bound(pairs.begin(), pairs.end(), wanted) - pairs.begin()].pair;
+    return all[std::lower_bound(pairs.begin(), pairs.end(), wanted) - pairs.begin()];
   };
   for (const JointPair& joint : placement.joint.pairs) {
-    PairResult& pair = find(joint.source, joint.target);
-    pair.rms += joint.matches * joint.rms * joint.rms;
-    pair.matches += joint.matches;
+    MemberCheck& member = find(joint.source, joint.target);
+    member.pair.rms += joint.matches * joint.rms * joint.rms;
+    member.pair.matches += joint.matches;
+    member.coarse = joint.coarse;
   }
   for (const PairInformation& joint : placement.joint.informations) {
     Matrix6d R = Matrix6d::Zero(); // world from axes of a
     R.topLeftCorner<3, 3>() = R.bottomRightCorner<3, 3>() = placement.poses[joint.a].linear();
-    find(joint.a, joint.b).information = R.transpose() * joint.information * R;
+    find(joint.a, joint.b).pair.information = R.transpose() * joint.information * R;
   }
   placement.pairs.clear();
   placement.violating_points = 0;
-  for (auto& [pair, violating_points] : all) {
+  std::vector<char> coarse; // of the pairs that are kept
+  for (auto& [pair, violating_points, is_coarse] : all) {
     placement.violating_points += violating_points;
     if (pair.overlap < 0.5 * options.min_overlap && pair.violation <= options.max_violation)
       continue;
     pair.rms = std::sqrt(pair.rms / std::max<Index>(1, pair.matches));
     pair.accepted = pair.overlap >= options.min_overlap && pair.violation <= options.max_violation && pair.matches > 0;
     placement.pairs.push_back(pair);
+    coarse.push_back(is_coarse);
   }
+  refuseLooseParts(scans, coarse, placement);
 }
 
-Index memberOf(const Placement& placement, Index scan)
-{
-  return std::find(placement.members.begin(), placement.members.end(), scan) - placement.members.begin();
-}
 // Members of the largest set that accepted pairs hold together.
 Index heldTogether(const Placement& placement)
 {
@@ -157,10 +185,10 @@ void refineWithin(const Reach& reach, const std::vector<PreparedScan>& scans, co
     if (joint.excluded.size() == before)
       break;
   }
-  // What hangs together by surfaces that leave a motion free: the larger part stays.
+  // What hangs together by surfaces that hold it loosely: the larger part stays.
   std::vector<Index> loose;
   for (std::size_t m = 0; m < placement.members.size(); ++m)
-    if (findFreeMotion(placement.joint.information[m]))
+    if (isLoose(*members[m], placement.joint, m))
       loose.push_back(m);
   if (joint.anchors.empty() && 2 * loose.size() > placement.members.size()) {
     joint.anchors = {loose.front()};
@@ -170,6 +198,18 @@ void refineWithin(const Reach& reach, const std::vector<PreparedScan>& scans, co
   }
 }
 } // namespace
+
+double positionDeviation(const JointResult& joint, Index member)
+{
+  return std::sqrt(joint.covariances[member].bottomRightCorner<3, 3>().trace());
+}
+
+bool isLoose(const PreparedScan& scan, const JointResult& joint, Index member)
+{
+  constexpr double most_deviation = 0.02; // of the scan's size: what is next to it would no longer fit
+  return findFreeMotion(joint.information[member]) ||
+         (sawAround(scan) && positionDeviation(joint, member) > most_deviation * scan.size);
+}
 
 void refinePlacement(const std::vector<PreparedScan>& scans, const ScanRegistrationOptions& options,
                      Placement& placement, const Progress& progress)

@@ -15,8 +15,16 @@ struct Placement {
   bool look_alike = false;       ///< see ScanCluster
 };
 
+/// Standard deviation of the position of a member, length.
+double positionDeviation(const JointResult& joint, Index member);
+
+/// Whether the others hold a member's place too loosely to rely on: a motion is free, or, of a scan that saw around, the
+/// position may be off by a fiftieth of the scan's size.
+bool isLoose(const PreparedScan& scan, const JointResult& joint, Index member);
+
 /// Refines all members at once, then leaves out the pairs that contradict each other's free space and refines again,
-/// until every pair in use is consistent.
+/// until every pair in use is consistent. Pairs that share only what is sparse hold parts together where these are then held
+/// well.
 void refinePlacement(const std::vector<PreparedScan>& scans, const ScanRegistrationOptions& options,
                      Placement& placement, const Progress& progress);
 } // namespace fresco::registration

@@ -68,7 +68,8 @@ void addMatch(const LevelPair& level, const DirectedPair& pair, Index k, PairSys
   const Eigen::Vector3d x = (level.T_target_source * source.points.col(i)).cast<double>();
   const Eigen::Vector3d n = target.normals.col(match.target).cast<double>();
   const double variation = source.surface_variation[i] + target.surface_variation[match.target];
-  const double weight = (1.0 - u * u) * (1.0 - u * u) * plain_variation / (plain_variation + variation);
+  const double tukey = (1.0 - u * u) * (1.0 - u * u);
+  const double weight = pair.weight * tukey * plain_variation / (plain_variation + variation);
   const double r = match.residual;
   Vector6d J;
   J << x.cross(n), n;

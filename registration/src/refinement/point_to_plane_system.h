@@ -14,8 +14,10 @@ struct Match {
 /// The samples of one scan matched to another.
 struct DirectedPair {
   Index source = 0, target = 0; ///< scans
+  int level = 0;                ///< of both
   std::vector<Match> matches;   ///< one per sample of the source
   double cutoff = 0.0;          ///< residual from which the weight is zero, length
+  double weight = 1.0;          ///< of all matches, 0..1
 };
 
 /// A directed pair at one resolution and at its present poses.
@@ -57,7 +59,7 @@ void findMatches(const LevelPair& level, const SampleRange& range, float distanc
 void findCutoff(float voxel, DirectedPair& pair);
 
 /// Adds match k of the pair to the system, unless its weight is zero. Weight w: Tukey's biweight (1 - (r / cutoff)^2)^2, times what rough surfaces are
-/// worth.
+/// worth and the pair's weight.
 void addMatch(const LevelPair& level, const DirectedPair& pair, Index k, PairSystem& system);
 
 /// Sum over the matches of a range.

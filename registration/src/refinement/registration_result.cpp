@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fresco/core/listed.h>
+#include <fresco/core/require.h>
 #include <fresco/core/union_find.h>
 #include <map>
 namespace fresco::registration {
@@ -61,7 +62,8 @@ Index contradictingScan(const std::vector<PairResult>& pairs, Index scan, const 
 class Description {
 public:
   explicit Description(const RegistrationState& state)
-      : state_(state), scans_(state.scans), start_(state.start), options_(state.options), look_alike_(scans_.size(), 0)
+      : state_(state), scans_(state.scans), start_(state.start), options_(state.options), look_alike_(scans_.size(), 0),
+        loose_(scans_.size(), 0)
   {
     result_.voxel = options_.voxel;
     result_.poses.resize(scans_.size());
@@ -91,7 +93,7 @@ private:
   const std::vector<Pose>& start_;
   const ScanRegistrationOptions& options_;
   ScanRegistrationResult result_;
-  std::vector<char> look_alike_; // per scan
+  std::vector<char> look_alike_, loose_; // per scan
 };
 
 void Description::describeScans(const Placement& placement)
@@ -106,6 +108,7 @@ void Description::describeScans(const Placement& placement)
       continue;
     }
     scan(i).free_motion = findFreeMotion(placement.joint.information[m]);
+    loose_[i] = isLoose(prepared, placement.joint, m);
     const Matrix6d& covariance = placement.joint.covariances[m];
     const FreeMotion free = scan(i).free_motion.value_or(FreeMotion());
     const auto deviation = [](double variance, const Eigen::Vector3d& free_direction, double reach) {
@@ -121,8 +124,11 @@ void Description::describeScans(const Placement& placement)
 void Description::placeMain(const std::vector<Index>& group)
 {
   for (const Index i : group) {
-    if (scan(i).free_motion && !started(i)) {
-      scan(i).problem = "its surfaces leave a motion free, and nothing tells where along it the scan belongs";
+    if (loose_[i] && !started(i)) {
+      scan(i).problem =
+          scan(i).free_motion
+              ? "its surfaces leave a motion free, and nothing tells where along it the scan belongs"
+              : concat("what it shares with other scans holds it only to ", scan(i).translation_deviation);
       continue;
     }
     scan(i).placed = true;
