@@ -22,6 +22,13 @@ bool isTraceable(const Ray& ray)
   return (ray.origin.array().abs() <= most).all() && (ray.direction.array().abs() <= most).all() && ray.near <= ray.far;
 }
 
+/// In the lanes of rays that are not to be traced: where packets are split for narrower processors, Embree traces them all.
+const Ray& harmlessRay()
+{
+  static const Ray ray{{0.f, 0.f, 0.f}, {0.f, 0.f, 1.f}};
+  return ray;
+}
+
 /// Lane i of Embree's rays, which keep each number of all rays together.
 template <typename Lanes>
 void setRay(Lanes& lanes, std::size_t i, const Ray& ray)
@@ -81,14 +88,14 @@ HitPacket<n> RayScene::intersect(const RayPacket<n>& rays, RayOrder order) const
   typename Embrees<n>::RayHits query;
   for (std::size_t i = 0; i < n; ++i) {
     valid[i] = isTraceable(rays[i]) ? -1 : 0;
-    setRay(query.ray, i, rays[i]);
+    setRay(query.ray, i, valid[i] != 0 ? rays[i] : harmlessRay());
     query.hit.geomID[i] = query.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
   }
   Embrees<n>::intersect(valid, embree_->scene(), &context, &query);
   const auto& hit = query.hit;
   HitPacket<n> hits;
   for (std::size_t i = 0; i < n; ++i)
-    if (hit.geomID[i] != RTC_INVALID_GEOMETRY_ID)
+    if (valid[i] != 0 && hit.geomID[i] != RTC_INVALID_GEOMETRY_ID)
       hits[i] = {static_cast<int>(hit.primID[i]),
                  query.ray.tfar[i],
                  hit.u[i],
@@ -107,7 +114,7 @@ unsigned RayScene::occluded(const RayPacket<16>& rays, int count) const
   RTCRay16 query;
   for (int i = 0; i < 16; ++i) {
     valid[i] = i < count && isTraceable(rays[i]) ? -1 : 0;
-    setRay(query, i, rays[i < count ? i : 0]);
+    setRay(query, i, valid[i] != 0 ? rays[i] : harmlessRay());
   }
   rtcOccluded16(valid, embree_->scene(), &context, &query);
   unsigned blocked = 0;
