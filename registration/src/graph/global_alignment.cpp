@@ -107,7 +107,7 @@ void GlobalAligner::confirmViewpoints()
 void GlobalAligner::findFrames()
 {
   const auto known_view = [](const PreparedScan& scan) {
-    return !scan.problem.empty() || (sawAround(scan) && (scan.viewpoint_given || scan.viewpoint_found));
+    return !scan.problem.empty() || (sawAround(scan) && knowsViewpoint(scan));
   };
   if (!known_.scans.empty() || !std::all_of(scans_.begin(), scans_.end(), known_view))
     return;

@@ -33,16 +33,11 @@ std::vector<ViewpointEvidence> collectEvidence(Index scan_count, const std::vect
 
 bool isNarrow(const PreparedScan& scan)
 {
-  // Share of the sphere: a scanner that saw more stood where it is said to have stood.
-  constexpr double narrow_view = 0.4;
-  return !scan.free_space.empty() && scan.free_space.coverage() < narrow_view;
+  return !scan.free_space.empty() && !sawAround(scan); // who saw more stood where it is said to have stood
 }
 
 // Whether it saw a place all around, and its frame's origin is taken for the scanner since nothing says so.
-bool isAssumed(const PreparedScan& scan)
-{
-  return scan.problem.empty() && !scan.viewpoint_given && !scan.viewpoint_found && sawAround(scan);
-}
+bool isAssumed(const PreparedScan& scan) { return scan.problem.empty() && !knowsViewpoint(scan) && sawAround(scan); }
 } // namespace
 
 ViewpointSign findViewpointSign(const PreparedScan& scan, int threads)
@@ -78,7 +73,7 @@ std::vector<char> wrongViewpoints(const std::vector<PreparedScan>& scans, const 
   for (Index i = 0; i < n; ++i) {
     const bool without = scans[i].free_space.empty();
     const double share = isNarrow(scans[i]) ? narrow_share : wide_share;
-    const bool sure = (scans[i].viewpoint_given || scans[i].viewpoint_found) && !isNarrow(scans[i]);
+    const bool sure = knowsViewpoint(scans[i]) && !isNarrow(scans[i]);
     wrong[i] = !without && !sure && evidence[i].contradicts(share * max_violation);
     known_wrong += wrong[i] || (scans[i].problem.empty() && without) ? 1 : 0;
   }

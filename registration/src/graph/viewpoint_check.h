@@ -2,6 +2,9 @@
 #pragma once
 #include "pair/pair_alignment.h"
 namespace fresco::registration {
+/// Whether its file tells where it was seen from, or its points do.
+inline bool knowsViewpoint(const PreparedScan& scan) { return scan.viewpoint_given || scan.viewpoint_found; }
+
 /// What the points of a scan show of a viewpoint that no file tells.
 enum class ViewpointSign : char {
   none,     ///< nothing, or it is known

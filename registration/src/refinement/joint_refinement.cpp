@@ -31,6 +31,8 @@ public:
 private:
   const ScanLevel& level(Index scan) const { return level(scan, level_); }
   const ScanLevel& level(Index scan, int k) const { return scans_[scan]->levels[k]; }
+  // A distance of the present level in as many voxels of another one.
+  float onLevel(float distance, int k) const { return distance / level(0).voxel * level(0, k).voxel; }
   Index scanCount() const { return scans_.size(); }
   Eigen::Isometry3d relative(const DirectedPair& pair) const
   {
@@ -103,7 +105,7 @@ std::vector<int> Refinement::commonLevels(float distance) const
         }
         pair.level = check_level;
         if (options_.coarse_pairs && level_ > check_level && !level(pair.target).search &&
-            overlap(pair, distance * level(0, check_level).voxel / level(0).voxel))
+            overlap(pair, onLevel(distance, check_level)))
           levels[k] = check_level;
       },
       1);
@@ -148,12 +150,11 @@ void Refinement::weigh()
 
 void Refinement::match(float distance)
 {
-  const float voxels = distance / level(0).voxel;
   parallelFor(
       blocks_.size(), options_.threads,
       [&](Index b) {
         DirectedPair& pair = pairs_[blocks_[b].pair];
-        findMatches(levelPair(pair), blocks_[b].range, voxels * level(0, pair.level).voxel, pair);
+        findMatches(levelPair(pair), blocks_[b].range, onLevel(distance, pair.level), pair);
       },
       1);
   parallelFor(

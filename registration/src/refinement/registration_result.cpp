@@ -111,13 +111,13 @@ void Description::describeScans(const Placement& placement)
     loose_[i] = isLoose(prepared, placement.joint, m);
     const Matrix6d& covariance = placement.joint.covariances[m];
     const FreeMotion free = scan(i).free_motion.value_or(FreeMotion());
-    const auto deviation = [](double variance, const Eigen::Vector3d& free_direction, double reach) {
-      return !free_direction.isZero() || !(std::sqrt(variance) < reach) ? reach : std::sqrt(variance);
+    const auto deviation = [](double held, const Eigen::Vector3d& free_direction, double reach) {
+      return !free_direction.isZero() || !(held < reach) ? reach : held;
     };
     scan(i).translation_deviation =
-        deviation(covariance.bottomRightCorner<3, 3>().trace(), free.translation, options_.max_distance);
-    scan(i).rotation_deviation =
-        deviation(covariance.topLeftCorner<3, 3>().trace(), free.rotation, options_.max_distance / prepared.size);
+        deviation(positionDeviation(placement.joint, m), free.translation, options_.max_distance);
+    scan(i).rotation_deviation = deviation(std::sqrt(covariance.topLeftCorner<3, 3>().trace()), free.rotation,
+                                           options_.max_distance / prepared.size);
   }
 }
 
