@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "graph/viewpoint_check.h"
 #include "registration/registration_scene.h"
+#include "scan/viewpoint_search.h"
 #include <fresco/registration/core/scan_registration.h>
 #include <gtest/gtest.h>
 /// Files that do not tell where a scan was seen from.
@@ -32,6 +33,20 @@ TEST(ViewpointSigns, PointsShowWhetherTheScannerStoodAtTheOrigin)
   EXPECT_EQ(signOf(withoutViewpoint(0)), ViewpointSign::center);
   EXPECT_EQ(signOf(withoutViewpoint(0, {0.6f, 0.5f, 0.f})), ViewpointSign::elsewhere);
   EXPECT_EQ(signOf(scene().scans[0]), ViewpointSign::none); // its file tells
+}
+
+// To look at one place alone finds it less often than a search does, but nothing else.
+TEST(ViewpointSigns, OnlyTheScannersPlaceIsItsViewpoint)
+{
+  int shown = 0;
+  for (std::size_t i = 0; i < scene().scans.size(); ++i) {
+    const PointSet scan = withoutViewpoint(i);
+    const auto size = static_cast<float>(scanSize(scan));
+    shown += isViewpoint(scan.points, Eigen::Vector3f::Zero(), size, 1) ? 1 : 0;
+    for (const Eigen::Vector3f& wrong : {Eigen::Vector3f(0.5f, 0.3f, 0.f), Eigen::Vector3f(-0.4f, 0.6f, 0.1f)})
+      EXPECT_FALSE(isViewpoint(scan.points, wrong, size, 1)) << i;
+  }
+  EXPECT_GE(shown, 1);
 }
 
 TEST(ViewpointSigns, ScansThatShowNothingFollowMostOthers)

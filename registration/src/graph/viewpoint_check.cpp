@@ -45,7 +45,10 @@ ViewpointSign findViewpointSign(const PreparedScan& scan, int threads)
   constexpr double near = 0.25; // of the scan's size: right places are found to centimetres
   if (!isAssumed(scan))
     return ViewpointSign::none;
-  const std::optional<Eigen::Vector3f> place = findViewpoint(scan.levels.back().points, scan.size, threads);
+  const Points& points = scan.levels.back().points;
+  if (isViewpoint(points, Eigen::Vector3f::Zero(), scan.size, threads))
+    return ViewpointSign::center;
+  const std::optional<Eigen::Vector3f> place = findViewpoint(points, scan.size, threads);
   if (!place)
     return ViewpointSign::none;
   return place->norm() < near * scan.size ? ViewpointSign::center : ViewpointSign::elsewhere;

@@ -10,6 +10,7 @@
 namespace fresco::registration {
 namespace {
 constexpr Index most_points = 20000; // enough edges of furniture in a room; bounds the time
+constexpr int fine_turns = 4;        // of HiddenPoints
 
 Points everyNth(const Points& points, Index most)
 {
@@ -146,25 +147,40 @@ Candidate descend(const HiddenPoints& hidden, Candidate best, float size, int th
     }
   return best;
 }
-} // namespace
 
-std::optional<Eigen::Vector3f> findViewpoint(const Points& points, float size, int threads)
+// Whether hardly anything lies behind other things as seen from a place, and more does as seen from anywhere around.
+bool isSeenFrom(const Points& points, const HiddenPoints& hidden, const Candidate& candidate, float size, int threads)
 {
   constexpr double most_hidden = 0.05;   // from the true place: mixed pixels and surfaces at a slant are half of it
   constexpr double least_coverage = 0.5; // of all directions: scanners of a narrow view stand outside of their points
   constexpr float apart = 0.3f;          // of the size: half a metre in a room, from where more lie behind others
   constexpr double deviations = 3.0;     // of that number: by more than chance,
   constexpr double least_rise = 10.0;    // and by more than the outliers of one beam or edge
+  if (candidate.hidden > most_hidden)
+    return false;
+  const std::vector<Candidate> near = rated(hidden, around(candidate.place, apart * size), threads);
+  const double there = std::min_element(near.begin(), near.end())->hidden * points.cols();
+  return there - candidate.hidden * points.cols() >= least_rise + deviations * std::sqrt(there) &&
+         ScanFreeSpace(points, candidate.place, size).coverage() > least_coverage;
+}
+} // namespace
+
+bool isViewpoint(const Points& points, const Eigen::Vector3f& place, float size, int threads)
+{
   const Points few = everyNth(points, most_points);
-  const HiddenPoints hidden(few, 4);
+  const HiddenPoints hidden(few, fine_turns);
+  return isSeenFrom(few, hidden, {place, hidden.share(place)}, size, threads);
+}
+
+std::optional<Eigen::Vector3f> findViewpoint(const Points& points, float size, int threads)
+{
+  const Points few = everyNth(points, most_points);
+  const HiddenPoints hidden(few, fine_turns);
   std::vector<Candidate> found;
   for (const Candidate& start : coarseSearch(points, threads))
     found.push_back(descend(hidden, {start.place, hidden.share(start.place)}, size, threads));
   const Candidate best = *std::min_element(found.begin(), found.end());
-  const std::vector<Candidate> near = rated(hidden, around(best.place, apart * size), threads);
-  const double there = std::min_element(near.begin(), near.end())->hidden * few.cols(), here = best.hidden * few.cols();
-  if (best.hidden > most_hidden || there - here < least_rise + deviations * std::sqrt(there) ||
-      !(ScanFreeSpace(few, best.place, size).coverage() > least_coverage))
+  if (!isSeenFrom(few, hidden, best, size, threads))
     return {};
   return best.place;
 }
