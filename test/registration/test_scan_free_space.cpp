@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "registration/registration_scene.h"
 #include "scan/scan_free_space.h"
 #include <algorithm>
 #include <gtest/gtest.h>
@@ -30,7 +31,7 @@ TEST(ScanFreeSpace, OnlyOwnRaysContradictWhereAskedFor)
   Points points(3, 2);
   points << 2.f, -2.f, 0.f, 0.f, 0.1f, 0.1f;
   const auto judge = [&](bool own_rays) {
-    return space.judge(points, Eigen::Isometry3f::Identity(), {0.2f, 0.02f, own_rays});
+    return space.judge({points}, Eigen::Isometry3f::Identity(), {0.2f, 0.02f, own_rays});
   };
   EXPECT_EQ(judge(false), (std::vector<Verdict>{Verdict::violates, Verdict::violates}));
   EXPECT_EQ(judge(true), (std::vector<Verdict>{Verdict::unknown, Verdict::violates}));
@@ -70,7 +71,7 @@ TEST(ScanFreeSpace, GrazedSurfacesContradictOnlyWhereRaysPassedThroughThem)
   const auto violating = [&](const Points& points, const Eigen::Vector3f& normal, bool grazed) {
     const Points normals = normal.replicate(1, points.cols());
     const auto count = [&](const Points* given) {
-      const std::vector<Verdict> verdicts = space.judge(points, Eigen::Isometry3f::Identity(), slack, given);
+      const std::vector<Verdict> verdicts = space.judge({points, given}, Eigen::Isometry3f::Identity(), slack);
       return static_cast<Index>(std::count(verdicts.begin(), verdicts.end(), Verdict::violates));
     };
     return grazed ? count(nullptr) - count(&normals) : count(&normals);
@@ -85,6 +86,78 @@ TEST(ScanFreeSpace, GrazedSurfacesContradictOnlyWhereRaysPassedThroughThem)
   const Points table = strip(4.f, 2.f, -0.3f);
   EXPECT_EQ(violating(table, up, true), 0);
   EXPECT_EQ(violating(table, up, false), table.cols());
+}
+
+// What is said of many points does not depend on looking at blocks of them first.
+TEST(ScanFreeSpace, BlocksChangeNoVerdict)
+{
+  const test::ScannedScene scene = test::scanTwoRooms(20000);
+  std::mt19937 random(7);
+  const auto uniform = [&](double most) { return most * (2.0 * (random() / 4294967296.0) - 1.0); };
+  for (const PointSet& seer : scene.scans) {
+    const ScanFreeSpace space(seer.points, Points::Zero(3, 1), 0.1f);
+    const Points& points = scene.scans.back().points;
+    const PointBlocks blocks(points);
+    for (int k = 0; k < 40; ++k) {
+      const Eigen::Vector3d shift(uniform(8.0), uniform(8.0), uniform(1.0));
+      const Eigen::Isometry3d T =
+          Eigen::Translation3d(shift) * Eigen::AngleAxisd(uniform(3.0), Eigen::Vector3d::UnitZ());
+      const ScanFreeSpace::Slack slack{0.2f, 0.02f};
+      EXPECT_EQ(space.judge({points, nullptr, &blocks}, T.cast<float>(), slack),
+                space.judge({points}, T.cast<float>(), slack))
+          << k;
+    }
+  }
+}
+
+TEST(PointBlocks, EachPointIsInOneAndWithinItsSphere)
+{
+  const Points points = test::scanTwoRooms(5000).scans.front().points;
+  std::vector<int> visits(points.cols(), 0);
+  Eigen::Vector3f center;
+  float radius = 0.f;
+  int spheres = 0;
+  const auto keep = [&](const Eigen::Vector3f& middle, float reach) {
+    center = middle;
+    radius = reach;
+    ++spheres;
+    return spheres % 2 == 0; // every second one is left out
+  };
+  Index seen = 0;
+  PointBlocks(points).visit(keep, [&](Index i) {
+    ++visits[i];
+    ++seen;
+    EXPECT_LE((points.col(i) - center).norm(), radius);
+  });
+  EXPECT_LE(*std::max_element(visits.begin(), visits.end()), 1);
+  EXPECT_NEAR(1.0 * seen / points.cols(), 0.5, 0.01);
+  EXPECT_TRUE(PointBlocks().empty());
+  EXPECT_TRUE(PointBlocks(Points(3, 0)).empty());
+}
+
+// No direction of a cone is seen farther than told, at corners of the cube as well; behind a wall that is all around little
+// is told.
+TEST(FarthestTiles, BoundWhatAConeHolds)
+{
+  for (const int side : {8, 21, 75}) {
+    std::mt19937 random(side);
+    std::vector<float> farthest(6 * side * side, 3.f);
+    for (int k = 0; k < 20; ++k)
+      farthest[random() % farthest.size()] = 4.f + k; // doors
+    const FarthestTiles tiles(farthest, side);
+    const Points axes = directions(2000), others = directions(12000);
+    const float least_cosine = std::cos(FarthestTiles::widest);
+    int near_walls = 0;
+    for (Index i = 0; i < axes.cols(); ++i) {
+      float most = 0.f;
+      for (Index k = 0; k < others.cols(); ++k)
+        if (axes.col(i).dot(others.col(k)) >= least_cosine)
+          most = std::max(most, farthest[cubeCell(others.col(k), side)]);
+      EXPECT_GE(tiles.around(axes.col(i)), most);
+      near_walls += tiles.around(axes.col(i)) == 3.f ? 1 : 0;
+    }
+    EXPECT_GT(near_walls, axes.cols() / 4);
+  }
 }
 } // namespace
 } // namespace fresco::registration

@@ -4,9 +4,11 @@ namespace fresco::registration {
 void shareScans(Exchange& ranks, std::vector<PreparedScan>& scans, int threads)
 {
   shareItems(ranks, scans);
-  for (PreparedScan& scan : scans)
+  for (PreparedScan& scan : scans) {
+    makeBlocks(scan);
     for (ScanLevel& level : scan.levels)
       if (!level.tree && !level.search)
         level.tree = std::make_shared<PointTree>(level.points, threads);
+  }
 }
 } // namespace fresco::registration

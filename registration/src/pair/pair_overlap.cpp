@@ -33,8 +33,8 @@ std::vector<Verdict> judgeLevel(const PreparedScan& seer, const ScanLevel& level
   ScanFreeSpace::Slack slack = slackOf(level);
   slack.own_rays = seer.spares_doubtful;
   const bool spare_grazed = grazed == Grazed::spared && !seer.spares_doubtful;
-  std::vector<Verdict> verdicts =
-      seer.free_space.judge(level.points, T_seer_level, slack, spare_grazed ? &level.normals : nullptr);
+  std::vector<Verdict> verdicts = seer.free_space.judge(
+      {level.points, spare_grazed ? &level.normals : nullptr, &level.blocks}, T_seer_level, slack);
   for (std::size_t i = 0; seer.spares_doubtful && i < level.maybe_person.size(); ++i)
     if (level.maybe_person[i] != 0 && verdicts[i] == Verdict::violates)
       verdicts[i] = Verdict::unknown;
@@ -115,8 +115,9 @@ double sampledShare(const ScanFreeSpace& space, const ScanLevel& level, const Ei
   if (space.empty())
     return 0.0;
   std::vector<Index> some(level.samples.begin(), level.samples.begin() + std::min(few, level.samples.size()));
+  const Points points = level.points(Eigen::all, some);
   Index comparable = 0, violating = 0;
-  for (const auto verdict : space.judge(level.points(Eigen::all, some), T_space_level, slackOf(level))) {
+  for (const auto verdict : space.judge({points}, T_space_level, slackOf(level))) {
     comparable += verdict != ScanFreeSpace::Verdict::unknown ? 1 : 0;
     violating += verdict == ScanFreeSpace::Verdict::violates ? 1 : 0;
   }

@@ -19,6 +19,7 @@ void fillLevel(const RawScan& raw, int threads, ScanLevel& level)
   estimateNormals(level, threads);
   level.samples = normalSpaceOrder(level);
 }
+
 } // namespace
 
 void ScanLevel::prepareSearch() const
@@ -61,6 +62,12 @@ void prepareManySearches(PreparedScan& scan)
     return;
   for (int k = 0; k <= check_level; ++k) // in the finest one few are searched
     prepareManySearches(scan.levels[k]);
+}
+
+void makeBlocks(PreparedScan& scan)
+{
+  for (std::size_t k = 0; k + 1 < scan.levels.size(); ++k)
+    scan.levels[k].blocks = PointBlocks(scan.levels[k].points);
 }
 
 void distrustViewpoint(PreparedScan& scan, const std::string& reason)
@@ -114,8 +121,9 @@ PreparedScan prepareScan(const PointSet& scan, const Thinning& thinning, int thr
     fillLevel(raw, threads, level);
     raw = {level.points, level.viewpoints, level.colors};
   }
-  prepared.levels.front().around.resize(Eigen::NoChange, 0); // only coarser levels are compared with free space
   std::reverse(prepared.levels.begin(), prepared.levels.end());
+  prepared.levels.back().around.resize(Eigen::NoChange, 0); // only coarser levels are compared with free space
+  makeBlocks(prepared);
   if (static_cast<Index>(prepared.levels.back().samples.size()) < fewest_points)
     prepared.problem = concat("only ", prepared.levels.back().samples.size(), " points lie on surfaces");
   if (!prepared.oriented)

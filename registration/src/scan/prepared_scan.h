@@ -13,6 +13,7 @@ struct ScanLevel {
   float voxel = 0.f;                       ///< edge of the thinning cells, length
   Points points;                           ///< 3xN, one per cell, the mean of its points
   std::shared_ptr<const PointTree> tree;   ///< over them, unless there is a search
+  PointBlocks blocks;                      ///< of the points; not of the finest
   std::shared_ptr<const NearestGrid> grid; ///< for many searches, see prepareManySearches(); may be null
   std::shared_ptr<NeighborSearch> search;  ///< the caller's own, in place of the tree; may be null
   Points viewpoints;                       ///< 3xN
@@ -73,6 +74,9 @@ inline bool sawAround(const PreparedScan& scan)
 
 /// Number of scans that can be registered.
 Index countUsable(const std::vector<PreparedScan>& scans);
+
+/// Fills in ScanLevel::blocks.
+void makeBlocks(PreparedScan& scan);
 
 /// For a scan whose viewpoint turned out wrong: no free space, normals towards the middle of the scan.
 void distrustViewpoint(PreparedScan& scan, const std::string& reason);

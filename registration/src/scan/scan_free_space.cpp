@@ -11,21 +11,6 @@ namespace {
 constexpr float infinity = std::numeric_limits<float>::infinity();
 constexpr float float_pi = pi;
 
-// Cell of a direction on a cube map with 6 * side * side cells.
-Index cellOf(const Eigen::Vector3f& direction, int side)
-{
-  Index axis = 0;
-  const float length = direction.cwiseAbs().maxCoeff(&axis);
-  const Index face = axis * 2 + (direction[axis] < 0.f ? 1 : 0);
-  const auto slot = [&](Index other) {
-    // 4 / pi of the arc tangent, to 0.002, makes the cells about equally wide in angle.
-    const float t = direction[other % 3] / length, size = std::abs(t);
-    const float across = t + t * (1.f - size) * (0.3116f + 0.0844f * size);
-    return std::clamp(static_cast<int>((across + 1.f) * 0.5f * side), 0, side - 1);
-  };
-  return (face * side + slot(axis + 1)) * side + slot(axis + 2);
-}
-
 struct ViewpointGroup {
   Eigen::Vector3f center;
   std::vector<Index> members;
@@ -75,7 +60,7 @@ ScanFreeSpace::Map ScanFreeSpace::buildMap(const Points& points, const std::vect
 {
   constexpr double coherent_share = 0.05; // of the range: a surface seen at a slant varies by so much within a cell
   const Index cells = 6 * side_ * side_;
-  Map map{center, std::vector<float>(cells, infinity), std::vector<float>(cells, 0.f), std::vector<char>(cells, 0),
+  Map map{center, std::vector<float>(cells, infinity), std::vector<float>(cells, 0.f), std::vector<char>(cells, 0), {},
           0.f};
   std::vector<std::vector<float>> ranges(cells);
   const float spread = float_pi / 2.f / side_;
@@ -87,7 +72,7 @@ ScanFreeSpace::Map ScanFreeSpace::buildMap(const Points& points, const std::vect
     const float range = ray.norm();
     if (!(range > 0.f))
       continue;
-    const Index own_cell = cellOf(ray, side_);
+    const Index own_cell = cubeCell(ray, side_);
     ranges[own_cell].push_back(range);
     map.has_ray[own_cell] = 1;
     // The measurement is spread over its neighbourhood: a cell then bounds what was seen around it too.
@@ -96,12 +81,13 @@ ScanFreeSpace::Map ScanFreeSpace::buildMap(const Points& points, const std::vect
     for (int step = 0; step < 9; ++step) {
       const Eigen::Vector3f shifted =
           step == 8 ? direction : Eigen::Vector3f(direction + ring[step][0] * u + ring[step][1] * v);
-      const Index cell = cellOf(shifted, side_);
+      const Index cell = cubeCell(shifted, side_);
       map.nearest[cell] = std::min(map.nearest[cell], range);
       map.farthest[cell] = std::max(map.farthest[cell], range);
     }
   }
   map.reach = *std::max_element(map.farthest.begin(), map.farthest.end());
+  map.tiles = FarthestTiles(map.farthest, side_);
   for (std::vector<float>& cell : ranges) {
     if (cell.empty())
       continue;
@@ -116,40 +102,68 @@ ScanFreeSpace::Map ScanFreeSpace::buildMap(const Points& points, const std::vect
 
 // Whether the rays near that of a point graze its surface, and none of its cell passed through: all may have met the
 // surface, or gone by in front of it. A ray half a cell beside that of the point meets the surface so much farther.
-bool ScanFreeSpace::isGrazed(const CellRay& ray, const Eigen::Vector3f& normal, bool has_ray) const
+bool ScanFreeSpace::isGrazed(const CellRay& ray, const Eigen::Vector3f& normal) const
 {
   constexpr float least_cosine = 0.3f;
   const float half_cell = float_pi / 4.f / side_; // angle
   const float cosine = std::abs(normal.dot(ray.from_center)) / ray.range;
-  return !normal.isZero() && cosine < least_cosine && (!has_ray || ray.gap * cosine <= half_cell * ray.range);
+  return !normal.isZero() && cosine < least_cosine && (!ray.is_own || ray.gap * cosine <= half_cell * ray.range);
 }
 
-std::vector<ScanFreeSpace::Verdict> ScanFreeSpace::judge(const Points& points, const Eigen::Isometry3f& T_scan_points,
-                                                         const Slack& slack, const Points* normals) const
+template <typename IsGrazed>
+ScanFreeSpace::Verdict ScanFreeSpace::judgePoint(const Eigen::Vector3f& point, const Slack& slack,
+                                                 const IsGrazed& isGrazed) const
 {
-  std::vector<Verdict> verdicts(points.cols(), Verdict::unknown);
-  for (Index i = 0; i < points.cols(); ++i) {
-    const Eigen::Vector3f point = T_scan_points * points.col(i);
-    Verdict& verdict = verdicts[i];
-    for (const Map& map : maps_) {
-      const Eigen::Vector3f ray = point - map.center;
-      const float range = ray.norm(), margin = slack.absolute + slack.relative * range;
-      if (!(range > slack.absolute) || range > map.reach + margin)
-        continue;
-      const Index cell = cellOf(ray, side_);
-      if (map.nearest[cell] == infinity || range > map.farthest[cell] + margin)
-        continue;
-      // With several viewpoints the point is on a surface if one of them measured it there.
-      if (range >= map.nearest[cell] - margin) {
-        verdict = Verdict::agrees;
-        break;
-      }
-      const bool has_ray = map.has_ray[cell] != 0;
-      if ((has_ray || !slack.own_rays) && !(normals && isGrazed({ray, range, map.nearest[cell] - range - margin},
-                                                                T_scan_points.linear() * normals->col(i), has_ray)))
-        verdict = Verdict::violates;
-    }
+  Verdict verdict = Verdict::unknown;
+  for (const Map& map : maps_) {
+    const Eigen::Vector3f ray = point - map.center;
+    const float range = ray.norm(), margin = slack.absolute + slack.relative * range;
+    if (!(range > slack.absolute) || range > map.reach + margin)
+      continue;
+    const Index cell = cubeCell(ray, side_);
+    if (map.nearest[cell] == infinity || range > map.farthest[cell] + margin)
+      continue;
+    // With several viewpoints the point is on a surface if one of them measured it there.
+    if (range >= map.nearest[cell] - margin)
+      return Verdict::agrees;
+    const bool has_ray = map.has_ray[cell] != 0;
+    if ((has_ray || !slack.own_rays) && !isGrazed(CellRay{ray, range, map.nearest[cell] - range - margin, has_ray}))
+      verdict = Verdict::violates;
   }
+  return verdict;
+}
+
+// Whether all points of a sphere are unknown: behind all that was seen in their directions.
+bool ScanFreeSpace::isOutOfSight(const Eigen::Vector3f& center, float radius, const Slack& slack) const
+{
+  constexpr float rounding = 1e-4f; // share of a range
+  return std::all_of(maps_.begin(), maps_.end(), [&](const Map& map) {
+    const Eigen::Vector3f ray = center - map.center;
+    const float range = ray.norm(), nearest = (1.f - rounding) * (range - radius);
+    const float seen = (1.f - slack.relative) * nearest - slack.absolute; // from there on, all points are farther
+    if (seen > map.reach)
+      return true;
+    return radius < std::sin(FarthestTiles::widest) * range && seen > map.tiles.around(ray);
+  });
+}
+
+std::vector<ScanFreeSpace::Verdict>
+ScanFreeSpace::judge(const JudgedPoints& judged, const Eigen::Isometry3f& T_scan_points, const Slack& slack) const
+{
+  const Points& points = judged.points;
+  std::vector<Verdict> verdicts(points.cols(), Verdict::unknown);
+  const auto judgeOne = [&](Index i) {
+    verdicts[i] = judgePoint(T_scan_points * points.col(i), slack, [&](const CellRay& ray) {
+      return judged.normals && isGrazed(ray, T_scan_points.linear() * judged.normals->col(i));
+    });
+  };
+  if (judged.blocks && !judged.blocks->empty())
+    judged.blocks->visit([&](const Eigen::Vector3f& center,
+                             float radius) { return isOutOfSight(T_scan_points * center, radius, slack); },
+                         judgeOne);
+  else
+    for (Index i = 0; i < points.cols(); ++i)
+      judgeOne(i);
   return verdicts;
 }
 } // namespace fresco::registration

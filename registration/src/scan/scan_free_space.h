@@ -1,9 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include <Eigen/Geometry>
-#include <fresco/core/types.h>
-#include <vector>
+#include "scan/farthest_tiles.h"
+#include "scan/point_blocks.h"
 namespace fresco::registration {
+/// Points that a scan is asked about.
+struct JudgedPoints {
+  const Points& points;                ///< 3xN
+  const Points* normals = nullptr;     ///< 3xN, unit length or zero; see ScanFreeSpace::judge()
+  const PointBlocks* blocks = nullptr; ///< of the points: makes it faster, the verdicts are the same
+};
+
 /// What a scan says of the space along its rays: a cube map of ranges around every place it was seen from.
 /// A point well in front of all ranges of its direction lies where the scanner saw through.
 class ScanFreeSpace {
@@ -30,12 +36,11 @@ public:
     bool own_rays = false; ///< a point violates only in a cell of directions that a ray of its own saw through
   };
 
-  /// @param T_scan_points rigid, brings `points` into the frame of the scan
-  /// @param normals       3xN as `points`, unit length or zero. Where given, surfaces that the rays graze, at 17 degrees
-  ///                      or less, violate only if one of the same cell of directions passed through them. Such
-  ///                      surfaces send little back; what their directions hold was then seen beside them.
-  std::vector<Verdict> judge(const Points& points, const Eigen::Isometry3f& T_scan_points, const Slack& slack,
-                             const Points* normals = nullptr) const;
+  /// Where normals are given, surfaces that the rays graze, at 17 degrees or less, violate only if one of the same cell of
+  /// directions passed through them. Such surfaces send little back; what their directions hold was then seen beside them.
+  /// @param T_scan_points rigid, brings the points into the frame of the scan
+  std::vector<Verdict> judge(const JudgedPoints& judged, const Eigen::Isometry3f& T_scan_points,
+                             const Slack& slack) const;
 
   bool empty() const { return maps_.empty(); }
 
@@ -58,20 +63,25 @@ private:
     Eigen::Vector3f center;
     std::vector<float> nearest, farthest; ///< per cell; nearest = +inf in cells without a measurement
     std::vector<char> has_ray;            ///< per cell, whether a ray of its own measured something
+    FarthestTiles tiles;                  ///< of `farthest`
     float reach = 0.f;                    ///< the largest of `farthest`, length
   };
   template <typename Archive>
   friend void fields(Archive& archive, Map& map)
   {
-    archive(map.center, map.nearest, map.farthest, map.has_ray, map.reach);
+    archive(map.center, map.nearest, map.farthest, map.has_ray, map.tiles, map.reach);
   }
   /// What a map says of the direction of a point that violates.
   struct CellRay {
     Eigen::Vector3f from_center;
     float range; ///< of the point
     float gap;   ///< from there to the nearest range of its cell, without the slack; length
+    bool is_own; ///< whether a ray of its own measured something in the cell
   };
-  bool isGrazed(const CellRay& ray, const Eigen::Vector3f& normal, bool has_ray) const;
+  template <typename IsGrazed>
+  Verdict judgePoint(const Eigen::Vector3f& point, const Slack& slack, const IsGrazed& isGrazed) const;
+  bool isOutOfSight(const Eigen::Vector3f& center, float radius, const Slack& slack) const;
+  bool isGrazed(const CellRay& ray, const Eigen::Vector3f& normal) const;
   Map buildMap(const Points& points, const std::vector<Index>& members, const Eigen::Vector3f& center, double reach);
   std::vector<Map> maps_;
   int side_ = 0; ///< cells per edge of a cube face
