@@ -16,6 +16,7 @@ void keepBest(PoseHypotheses& hypotheses, std::size_t most)
   hypotheses.resize(std::min(most, hypotheses.size()));
 }
 
+// Of the levels of a scan, coarse to fine.
 struct Levels {
   int first, last;
 };
@@ -78,7 +79,8 @@ bool isChance(const PairCheck& check)
   return check.overlap * std::exp(-check.violation / violation_scale) < comparable_overlap * chance_overlap;
 }
 
-// How well scans agree at a pose before its refinement: alignmentScore() of few samples, 0 where it is chance.
+// How well scans agree at a pose before its refinement: alignmentScore() of few samples without colours, 0 where it is
+// chance.
 double roughScore(const PairGeometry& pair, const Eigen::Isometry3d& T_a_b)
 {
   const PairCheck check = checkRoughly(pair.a, pair.b, T_a_b, check_level);
