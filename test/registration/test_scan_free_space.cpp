@@ -95,7 +95,8 @@ TEST(ScanFreeSpace, BlocksChangeNoVerdict)
   std::mt19937 random(7);
   const auto uniform = [&](double most) { return most * (2.0 * (random() / 4294967296.0) - 1.0); };
   for (const PointSet& seer : scene.scans) {
-    const ScanFreeSpace space(seer.points, Points::Zero(3, 1), 0.1f);
+    ScanFreeSpace space(seer.points, Points::Zero(3, 1), 0.1f);
+    space.prepareManyJudgements();
     const Points& points = scene.scans.back().points;
     const PointBlocks blocks(points);
     for (int k = 0; k < 40; ++k) {

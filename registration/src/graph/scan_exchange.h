@@ -5,7 +5,7 @@
 namespace fresco::registration {
 // What ranks tell each other of scans and pairs, see Packer.
 
-/// All but the caller's own search and the tree, which its receiver makes anew, and the blocks: shareScans().
+/// All but the caller's own search and the tree, which its receiver makes anew: shareScans().
 template <typename Archive>
 void fields(Archive& archive, ScanLevel& level)
 {

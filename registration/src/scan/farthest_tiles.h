@@ -14,15 +14,10 @@ public:
   /// @param farthest per cell of a cube map with 6 * side * side cells
   FarthestTiles(const std::vector<float>& farthest, int side);
 
+  bool empty() const { return farthest_.empty(); }
+
   /// At least the largest `farthest` of all cells that directions within the widest angle of `direction` fall into.
   float around(const Eigen::Vector3f& direction) const { return farthest_[cubeCell(direction, side_)]; }
-
-  /// See Packer.
-  template <typename Archive>
-  friend void fields(Archive& archive, FarthestTiles& tiles)
-  {
-    archive(tiles.farthest_, tiles.side_);
-  }
 
 private:
   int side_ = 0;

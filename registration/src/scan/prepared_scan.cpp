@@ -60,14 +60,13 @@ void prepareManySearches(PreparedScan& scan)
 {
   if (!scan.problem.empty())
     return;
-  for (int k = 0; k <= check_level; ++k) // in the finest one few are searched
-    prepareManySearches(scan.levels[k]);
-}
-
-void makeBlocks(PreparedScan& scan)
-{
-  for (std::size_t k = 0; k + 1 < scan.levels.size(); ++k)
-    scan.levels[k].blocks = PointBlocks(scan.levels[k].points);
+  for (int k = 0; k <= check_level; ++k) { // in the finest one few are searched
+    ScanLevel& level = scan.levels[k];
+    prepareManySearches(level);
+    if (level.blocks.empty())
+      level.blocks = PointBlocks(level.points);
+  }
+  scan.free_space.prepareManyJudgements();
 }
 
 void distrustViewpoint(PreparedScan& scan, const std::string& reason)
@@ -121,9 +120,8 @@ PreparedScan prepareScan(const PointSet& scan, const Thinning& thinning, int thr
     fillLevel(raw, threads, level);
     raw = {level.points, level.viewpoints, level.colors};
   }
+  prepared.levels.front().around.resize(Eigen::NoChange, 0); // only coarser levels are compared with free space
   std::reverse(prepared.levels.begin(), prepared.levels.end());
-  prepared.levels.back().around.resize(Eigen::NoChange, 0); // only coarser levels are compared with free space
-  makeBlocks(prepared);
   if (static_cast<Index>(prepared.levels.back().samples.size()) < fewest_points)
     prepared.problem = concat("only ", prepared.levels.back().samples.size(), " points lie on surfaces");
   if (!prepared.oriented)

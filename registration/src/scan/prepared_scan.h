@@ -13,8 +13,8 @@ struct ScanLevel {
   float voxel = 0.f;                       ///< edge of the thinning cells, length
   Points points;                           ///< 3xN, one per cell, the mean of its points
   std::shared_ptr<const PointTree> tree;   ///< over them, unless there is a search
-  PointBlocks blocks;                      ///< of the points; not of the finest
   std::shared_ptr<const NearestGrid> grid; ///< for many searches, see prepareManySearches(); may be null
+  PointBlocks blocks;                      ///< of the points, for many judgements; likewise, may be empty
   std::shared_ptr<NeighborSearch> search;  ///< the caller's own, in place of the tree; may be null
   Points viewpoints;                       ///< 3xN
   Points colors;                           ///< 3xN, means over the cells, or 3x0
@@ -75,16 +75,13 @@ inline bool sawAround(const PreparedScan& scan)
 /// Number of scans that can be registered.
 Index countUsable(const std::vector<PreparedScan>& scans);
 
-/// Fills in ScanLevel::blocks.
-void makeBlocks(PreparedScan& scan);
-
 /// For a scan whose viewpoint turned out wrong: no free space, normals towards the middle of the scan.
 void distrustViewpoint(PreparedScan& scan, const std::string& reason);
 
 /// Makes searches within two voxels faster in a level that has a tree.
 void prepareManySearches(ScanLevel& level);
 
-/// Makes searches faster in a scan that is compared with others: some 0.1 s and 2 MB.
+/// Makes searches and questions to free space faster in a scan that is compared with others: some 0.1 s and 2 MB.
 void prepareManySearches(PreparedScan& scan);
 
 /// @param search the caller's own search for neighbours; null = PointTree

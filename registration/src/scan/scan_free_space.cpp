@@ -87,7 +87,6 @@ ScanFreeSpace::Map ScanFreeSpace::buildMap(const Points& points, const std::vect
     }
   }
   map.reach = *std::max_element(map.farthest.begin(), map.farthest.end());
-  map.tiles = FarthestTiles(map.farthest, side_);
   for (std::vector<float>& cell : ranges) {
     if (cell.empty())
       continue;
@@ -98,6 +97,13 @@ ScanFreeSpace::Map ScanFreeSpace::buildMap(const Points& points, const std::vect
     });
   }
   return map;
+}
+
+void ScanFreeSpace::prepareManyJudgements()
+{
+  for (Map& map : maps_)
+    if (map.tiles.empty())
+      map.tiles = FarthestTiles(map.farthest, side_);
 }
 
 // Whether the rays near that of a point graze its surface, and none of its cell passed through: all may have met the
@@ -143,7 +149,7 @@ bool ScanFreeSpace::isOutOfSight(const Eigen::Vector3f& center, float radius, co
     const float seen = (1.f - slack.relative) * nearest - slack.absolute; // from there on, all points are farther
     if (seen > map.reach)
       return true;
-    return radius < std::sin(FarthestTiles::widest) * range && seen > map.tiles.around(ray);
+    return !map.tiles.empty() && radius < std::sin(FarthestTiles::widest) * range && seen > map.tiles.around(ray);
   });
 }
 

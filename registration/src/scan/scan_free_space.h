@@ -42,6 +42,9 @@ public:
   std::vector<Verdict> judge(const JudgedPoints& judged, const Eigen::Isometry3f& T_scan_points,
                              const Slack& slack) const;
 
+  /// Makes judgements of blocks of points faster: some 8 ms a map.
+  void prepareManyJudgements();
+
   bool empty() const { return maps_.empty(); }
 
   /// Share of all directions in which something was measured, 0..1.
@@ -63,13 +66,13 @@ private:
     Eigen::Vector3f center;
     std::vector<float> nearest, farthest; ///< per cell; nearest = +inf in cells without a measurement
     std::vector<char> has_ray;            ///< per cell, whether a ray of its own measured something
-    FarthestTiles tiles;                  ///< of `farthest`
+    FarthestTiles tiles;                  ///< of `farthest`; may be empty
     float reach = 0.f;                    ///< the largest of `farthest`, length
   };
   template <typename Archive>
   friend void fields(Archive& archive, Map& map)
   {
-    archive(map.center, map.nearest, map.farthest, map.has_ray, map.tiles, map.reach);
+    archive(map.center, map.nearest, map.farthest, map.has_ray, map.reach);
   }
   /// What a map says of the direction of a point that violates.
   struct CellRay {
