@@ -48,6 +48,19 @@ void forPairs(const PreparedScene& place, const Body& body)
     }
 }
 
+// Coarse surfaces draw scans that share little by half a metre.
+TEST(PairVerification, TruePosesAreKept)
+{
+  for (const test::ScannedScene& scene : {test::scanTwoRooms(), test::scanTwinRooms(true, 20000)}) {
+    const PreparedScene place(scene);
+    forPairs(place, [&](const PairGeometry& pair, const Eigen::Isometry3d& truth) {
+      const VerifiedHypothesis verified = verifyHypothesis(pair, hypothesisAt(truth));
+      EXPECT_LT(poseDistance(verified.T_a_b, truth, pair.size), 0.5 * place.voxel());
+      EXPECT_FALSE(clearlyWorse(verified.check.violation, 0.0));
+    });
+  }
+}
+
 // Also if a start nearby was tried before, and went astray.
 TEST(PairVerification, TrueStartsAreTriedWhateverCameBefore)
 {

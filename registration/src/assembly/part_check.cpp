@@ -56,12 +56,20 @@ std::vector<ScanCluster> PartCheck::heldTogether(const ScanCluster& cluster) con
 bool PartCheck::fitsElsewhere(const ClusterPart& placed) const
 {
   constexpr double least_overlap = 0.15, least_of_one = 0.3; // of two pairs, of one: less, and chance explains it
-  for (const ClusterFit& rough : fitter_.rough(placed.rest, placed.part)) {
-    if (!rough.certain && rough.overlap < (rough.pairs < 2 ? least_of_one : least_overlap))
+  constexpr double least_share = 0.25; // of the best overlap here: less, and many scans of one room see it by chance
+  const ClusterFits fits = fitter_.rough(placed.rest, placed.part);
+  const auto isHere = [&](const ClusterFit& fit) {
+    return fitter_.isSame(placed.part, fit.T, Eigen::Isometry3d::Identity(), 3.0);
+  };
+  double seen_here = 0.0;
+  for (const ClusterFit& fit : fits)
+    seen_here = isHere(fit) ? std::max(seen_here, fit.overlap) : seen_here;
+  for (const ClusterFit& rough : fits) {
+    const double least = std::max(rough.pairs < 2 ? least_of_one : least_overlap, least_share * seen_here);
+    if (!rough.certain && rough.overlap < least)
       continue;
     const ClusterFit fit = fitter_.settled(placed.rest, placed.part, rough);
-    if (!fitter_.isSame(placed.part, fit.T, Eigen::Isometry3d::Identity(), 3.0) &&
-        isUndecided(placed.here, fit.evidence))
+    if (!isHere(fit) && isUndecided(placed.here, fit.evidence))
       return true;
   }
   return false;

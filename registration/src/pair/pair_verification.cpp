@@ -16,16 +16,22 @@ void keepBest(PoseHypotheses& hypotheses, std::size_t most)
   hypotheses.resize(std::min(most, hypotheses.size()));
 }
 
-JointResult refine(const PreparedScan& a, const PreparedScan& b, const Eigen::Isometry3d& T_a_b)
+// Of the levels of a scan, coarse to fine.
+struct Levels {
+  int first, last;
+};
+
+JointResult refine(const PairGeometry& pair, const Eigen::Isometry3d& T_a_b, const Levels& levels)
 {
   JointOptions options;
-  options.max_distance = 2.f * a.levels.front().voxel;
+  options.first_level = levels.first;
+  options.last_level = levels.last;
+  options.max_distance = 2.f * pair.a.levels[levels.first].voxel;
   options.samples = 1000;
   options.max_iterations = 20;
-  options.last_level = 1;
   options.min_overlap = 0.f;
   options.threads = 1;
-  return refineJointly({&a, &b}, {Eigen::Isometry3d::Identity(), T_a_b}, options, {});
+  return refineJointly({&pair.a, &pair.b}, {Eigen::Isometry3d::Identity(), T_a_b}, options, {});
 }
 
 // Keeps those that are best by their check on a level.
@@ -48,6 +54,22 @@ void rankHypotheses(const PairGeometry& pair, std::size_t most, FoundHypotheses&
   rankByCheck(pair, 1, most, found.planes);
 }
 
+VerifiedHypothesis verifyOn(const PairGeometry& pair, const PoseHypothesis& hypothesis, const Levels& levels)
+{
+  VerifiedHypothesis verified;
+  const JointResult refined = refine(pair, hypothesis.T_a_b, levels);
+  verified.T_a_b = refined.poses[1];
+  verified.has_free_motion = findFreeMotion(refined.information[1]).has_value();
+  verified.votes = hypothesis.votes;
+  verified.check = checkPair(pair.a, pair.b, verified.T_a_b, check_level);
+  // Without free space on both sides, features are the only other witnesses.
+  const bool blind = pair.a.free_space.empty() || pair.b.free_space.empty();
+  const double trust = blind ? std::min(1.0, 1.0 * verified.votes / many_votes) : 1.0;
+  verified.support = trust * verified.check.overlap;
+  verified.score = trust * alignmentScore(verified.check);
+  return verified;
+}
+
 constexpr double comparable_overlap = 0.3; // share of the best support: less, and mere chance explains it
 
 // Whether scans that do not overlap would explain what was found about as well.
@@ -63,6 +85,15 @@ double roughScore(const PairGeometry& pair, const Eigen::Isometry3d& T_a_b)
 {
   const PairCheck check = checkRoughly(pair.a, pair.b, T_a_b, check_level);
   return isChance(check) ? 0.0 : alignmentScore(check);
+}
+
+// Whether refinement moved a pose that was about as good before. Scans that share only what a door shows are drawn away
+// by coarse surfaces: by half a metre in a room. A scan on itself shares more.
+bool isDrawnAway(const PairGeometry& pair, const Eigen::Isometry3d& start, const VerifiedHypothesis& refined)
+{
+  constexpr double as_good = 0.7; // of the score: a start is off by a part of a voxel
+  return &pair.a != &pair.b && poseDistance(start, refined.T_a_b, pair.size) > 0.5 * pair.a.levels[check_level].voxel &&
+         roughScore(pair, start) > as_good * roughScore(pair, refined.T_a_b);
 }
 
 // Whether a start need not be tried: what is near it already explains the scans better.
@@ -147,18 +178,11 @@ bool isAmbiguous(const PairGeometry& pair, const VerifiedHypotheses& hypotheses)
 
 VerifiedHypothesis verifyHypothesis(const PairGeometry& pair, const PoseHypothesis& hypothesis)
 {
-  VerifiedHypothesis verified;
-  const JointResult refined = refine(pair.a, pair.b, hypothesis.T_a_b);
-  verified.T_a_b = refined.poses[1];
-  verified.has_free_motion = findFreeMotion(refined.information[1]).has_value();
-  verified.votes = hypothesis.votes;
-  verified.check = checkPair(pair.a, pair.b, verified.T_a_b, check_level);
-  // Without free space on both sides, features are the only other witnesses.
-  const bool blind = pair.a.free_space.empty() || pair.b.free_space.empty();
-  const double trust = blind ? std::min(1.0, 1.0 * verified.votes / many_votes) : 1.0;
-  verified.support = trust * verified.check.overlap;
-  verified.score = trust * alignmentScore(verified.check);
-  return verified;
+  const VerifiedHypothesis verified = verifyOn(pair, hypothesis, {0, 1});
+  if (!isDrawnAway(pair, hypothesis.T_a_b, verified))
+    return verified;
+  const VerifiedHypothesis nearby = verifyOn(pair, hypothesis, {check_level, check_level});
+  return nearby.score > verified.score ? nearby : verified;
 }
 
 VerifiedHypotheses verifyHypotheses(const PairGeometry& pair, FoundHypotheses found, const VerificationOptions& options)
