@@ -10,14 +10,17 @@ namespace {
 // Of the points that the best place confirms, those of a second one that make it doubtful. Of two equal rooms, the wrong
 // one may be seen twice as well as the right one.
 constexpr double rival_share = 0.4;
+constexpr double clean_share = 0.25;    // likewise, of a second place that free space contradicts clearly less
 constexpr double least_confirmed = 1.5; // of one scan's points; at less, wrong places are found without a rival, too
 
-// Where a cluster may be in another one; free space does not contradict it.
-struct SubmapPlace {
-  Eigen::Isometry3d T = Eigen::Isometry3d::Identity(); // frame of the first from that of the second
-  double confirmed = 0.0;                              // see FreeSpaceJudge
-};
 using SubmapPlaces = std::vector<SubmapPlace, Eigen::aligned_allocator<SubmapPlace>>;
+
+// Of the first in the second.
+SubmapPlace inverse(SubmapPlace place)
+{
+  place.T = place.T.inverse();
+  return place;
+}
 
 class SubmapJoiner {
 public:
@@ -93,7 +96,7 @@ SubmapPlaces SubmapJoiner::findPlaces(const Group& first, const Group& second) c
   SubmapPlaces places;
   for (const ClusterFit& fit : fits)
     if (fit.evidence.agree >= rival_share * least_confirmed) // no fewer than are confirmed
-      places.push_back({fit.T, judge_.confirmed(first.cluster, second.cluster, fit.T)});
+      places.push_back({fit.T, judge_.confirmed(first.cluster, second.cluster, fit.T), fit.evidence});
   std::stable_sort(places.begin(), places.end(),
                    [](const SubmapPlace& x, const SubmapPlace& y) { return x.confirmed > y.confirmed; });
   return places;
@@ -111,7 +114,7 @@ SubmapJoiner::Joins SubmapJoiner::likelyJoins() const
           (places.size() == 1 || places[1].confirmed < rival_share * places[0].confirmed))
         joins.push_back(groups_[i].cluster.scans.size() >= groups_[k].cluster.scans.size()
                             ? Join{i, k, places[0]}
-                            : Join{k, i, {places[0].T.inverse(), places[0].confirmed}});
+                            : Join{k, i, inverse(places[0])});
     }
   std::stable_sort(joins.begin(), joins.end(),
                    [](const Join& x, const Join& y) { return x.place.confirmed > y.place.confirmed; });
@@ -129,7 +132,7 @@ bool SubmapJoiner::fitsThird(std::size_t stays, std::size_t moves, const SubmapP
     if (third == stays || third == moves)
       continue;
     const SubmapPlaces others = placesOf(third, moves);
-    if (!others.empty() && others[0].confirmed >= rival_share * place.confirmed && !agrees(third, others[0]))
+    if (!others.empty() && rivals(others[0], place, judge_.unit()) && !agrees(third, others[0]))
       return true;
   }
   return false;
@@ -139,8 +142,7 @@ bool SubmapJoiner::isContested(const Join& join) const
 {
   const ScanCluster &first = groups_[join.first].cluster, &second = groups_[join.second].cluster;
   return hasAliasByScan(input_, {first, second}, {0, 1, join.place.T, 0.0}) ||
-         fitsThird(join.first, join.second, join.place) ||
-         fitsThird(join.second, join.first, {join.place.T.inverse(), join.place.confirmed});
+         fitsThird(join.first, join.second, join.place) || fitsThird(join.second, join.first, inverse(join.place));
 }
 
 // Whether a join brings its smaller group where free space contradicts one that is to join the same larger group.
@@ -216,6 +218,12 @@ void SubmapJoiner::run(ScanGraph& graph, const Progress& progress)
   sortBySize(graph.clusters, 0);
 }
 } // namespace
+
+bool rivals(const SubmapPlace& other, const SubmapPlace& place, double unit)
+{
+  const bool cleaner = contradictsMore(place.evidence, other.evidence, unit);
+  return other.confirmed >= (cleaner ? clean_share : rival_share) * place.confirmed;
+}
 
 void joinSubmaps(const GraphInput& input, const PlanFrames& frames, ScanGraph& graph, const Progress& progress)
 {
