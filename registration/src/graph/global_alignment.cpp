@@ -358,7 +358,9 @@ void GlobalAligner::alignInRounds(const Progress& progress)
     if (!in_rounds || pairs.empty() || hangsTogether())
       break;
   }
-  if (!manyPlaces())
+  if (!frames_.empty() && !hasFew()) // whole clusters tell more than the pairs, which place some of these wrongly
+    result_.graph = assembleScans(graphInput(), known_);
+  else if (!manyPlaces())
     splitUndecided(graphInput(), result_.graph);
   if (hasAllPlans() && !hangsTogether())
     result_.graph = assembleUnited(graphInput(), result_.graph, assembleScans(graphInput(), known_));
