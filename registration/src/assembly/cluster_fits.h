@@ -17,6 +17,14 @@ struct ClusterFit {
 };
 using ClusterFits = std::vector<ClusterFit, Eigen::aligned_allocator<ClusterFit>>;
 
+/// The place of the first cluster in the second. @param fit a ClusterFit or what has its T
+template <typename Fit>
+Fit reversed(Fit fit)
+{
+  fit.T = fit.T.inverse();
+  return fit;
+}
+
 /// Whether two clusters may be joined by it.
 bool isJoinable(const ClusterFit& fit);
 

@@ -136,9 +136,7 @@ bool Assembler::areApart(std::size_t stays, std::size_t third, const ClusterFit&
     return isContradicted(composed.evidence);
   if (composed.evidence.agree <= one_room * std::max(moved.evidence.agree, other.evidence.agree))
     return false;
-  ClusterFit back = composed;
-  back.T = back.T.inverse();
-  return fitsThird(stays, third, composed, false) || fitsThird(third, stays, back, false);
+  return fitsThird(stays, third, composed, false) || fitsThird(third, stays, reversed(composed), false);
 }
 
 // Whether the third group fits in the first one, and the two fits there explain more than the one of the third with
@@ -193,11 +191,9 @@ bool Assembler::joinBest()
 {
   findAllFits();
   for (const Join& candidate : likelyJoins()) {
-    ClusterFit back = candidate.fit;
-    back.T = back.T.inverse();
     if (hasAlias(candidate) || hasSecondPlace(candidate) ||
         fitsThird(candidate.first, candidate.second, candidate.fit, true) ||
-        fitsThird(candidate.second, candidate.first, back, true)) {
+        fitsThird(candidate.second, candidate.first, reversed(candidate.fit), true)) {
       groups_[candidate.first].cluster.look_alike = groups_[candidate.second].cluster.look_alike = true;
       continue;
     }

@@ -15,13 +15,6 @@ constexpr double least_confirmed = 1.5; // of one scan's points; at less, wrong 
 
 using SubmapPlaces = std::vector<SubmapPlace, Eigen::aligned_allocator<SubmapPlace>>;
 
-// Of the first in the second.
-SubmapPlace inverse(SubmapPlace place)
-{
-  place.T = place.T.inverse();
-  return place;
-}
-
 class SubmapJoiner {
 public:
   SubmapJoiner(const GraphInput& input, const PlanFrames& frames)
@@ -114,7 +107,7 @@ SubmapJoiner::Joins SubmapJoiner::likelyJoins() const
           (places.size() == 1 || places[1].confirmed < rival_share * places[0].confirmed))
         joins.push_back(groups_[i].cluster.scans.size() >= groups_[k].cluster.scans.size()
                             ? Join{i, k, places[0]}
-                            : Join{k, i, inverse(places[0])});
+                            : Join{k, i, reversed(places[0])});
     }
   std::stable_sort(joins.begin(), joins.end(),
                    [](const Join& x, const Join& y) { return x.place.confirmed > y.place.confirmed; });
@@ -142,7 +135,7 @@ bool SubmapJoiner::isContested(const Join& join) const
 {
   const ScanCluster &first = groups_[join.first].cluster, &second = groups_[join.second].cluster;
   return hasAliasByScan(input_, {first, second}, {0, 1, join.place.T, 0.0}) ||
-         fitsThird(join.first, join.second, join.place) || fitsThird(join.second, join.first, inverse(join.place));
+         fitsThird(join.first, join.second, join.place) || fitsThird(join.second, join.first, reversed(join.place));
 }
 
 // Whether a join brings its smaller group where free space contradicts one that is to join the same larger group.
