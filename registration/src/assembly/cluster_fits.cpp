@@ -65,7 +65,7 @@ void ClusterFitter::add(const ScanCluster& second, const ClusterFit& fit, Cluste
   fits.push_back(fit);
 }
 
-ClusterFits ClusterFitter::rough(const ScanCluster& first, const ScanCluster& second) const
+ClusterFits ClusterFitter::rough(const ScanCluster& first, const ScanCluster& second, Use use) const
 {
   constexpr double loose_violation = 0.01; // of one pair: others may have seen a pane
   ClusterFits fits;
@@ -80,7 +80,7 @@ ClusterFits ClusterFitter::rough(const ScanCluster& first, const ScanCluster& se
         continue;
       for (const VerifiedHypothesis& hypothesis : pair->hypotheses) {
         if (hypothesis.check.violation > loose_violation || hypothesis.check.color.value_or(1.0) < least_color_ ||
-            contradictsOneRoom(hypothesis.check, usual_violation_))
+            (use == Use::join && contradictsOneRoom(hypothesis.check, usual_violation_)))
           continue;
         ClusterFit fit;
         fit.T = first.poses[i] * (turned ? hypothesis.T_a_b.inverse() : hypothesis.T_a_b) *

@@ -13,15 +13,15 @@ bool isContradictedTwice(FreeSpaceEvidence evidence)
 } // namespace
 
 // Whether the evidence of another place of a part leaves open which is right. Where clearly more surfaces agree, more of
-// what moved is seen as well.
-bool PartCheck::isUndecided(const FreeSpaceEvidence& here, const FreeSpaceEvidence& there) const
+// what moved is seen as well. Unless a pair is certain of that place, no more may violate there than mixed pixels do.
+bool PartCheck::isUndecided(const FreeSpaceEvidence& here, const FreeSpaceEvidence& there, bool certain) const
 {
   constexpr double least_agreement = 0.3; // of a scan's points: less, and chance explains it
   constexpr double clearly_more = 1.5;
   if (there.agree < least_agreement)
     return false;
   if (there.agree < clearly_more * here.agree)
-    return !isContradicted(there) && there.violating <= noise_violation * there.agree &&
+    return !isContradicted(there) && (certain || there.violating <= noise_violation * there.agree) &&
            !contradictsMore(there, here, judge_.unit());
   const double more = there.agree / std::max(here.agree, 1.0 / judge_.unit());
   FreeSpaceEvidence as_much = here;
@@ -69,7 +69,7 @@ bool PartCheck::fitsElsewhere(const ClusterPart& placed) const
     if (!rough.certain && rough.overlap < least)
       continue;
     const ClusterFit fit = fitter_.settled(placed.rest, placed.part, rough);
-    if (!isHere(fit) && isUndecided(placed.here, fit.evidence))
+    if (!isHere(fit) && isUndecided(placed.here, fit.evidence, fit.certain))
       return true;
   }
   return false;
@@ -78,12 +78,11 @@ bool PartCheck::fitsElsewhere(const ClusterPart& placed) const
 bool PartCheck::isClaimed(const ScanCluster& claimer, const ClusterPart& placed) const
 {
   constexpr double least_share = 0.25; // of the surfaces that agree here
-  const bool doubtful = isContradicted(placed.here);
-  for (const ClusterFit& rough : fitter_.rough(claimer, placed.part)) {
-    if (!rough.certain && !(doubtful && rough.sound))
+  for (const ClusterFit& rough : fitter_.rough(claimer, placed.part, ClusterFitter::Use::contest)) {
+    if (!rough.certain)
       continue;
     const ClusterFit fit = fitter_.settled(claimer, placed.part, rough);
-    if (fit.evidence.agree >= least_share * placed.here.agree && isUndecided(placed.here, fit.evidence) &&
+    if (fit.evidence.agree >= least_share * placed.here.agree && isUndecided(placed.here, fit.evidence, fit.certain) &&
         isContradicted(judge_.judge(placed.rest, claimer, fit.T.inverse())))
       return true;
   }
@@ -93,7 +92,7 @@ bool PartCheck::isClaimed(const ScanCluster& claimer, const ClusterPart& placed)
 bool PartCheck::mayBeMoved(const ClusterPart& placed, const IsometryVector& motions) const
 {
   return std::any_of(motions.begin(), motions.end(), [&](const Eigen::Isometry3d& T) {
-    return isUndecided(placed.here, judge_.judge(placed.rest, placed.part, T));
+    return isUndecided(placed.here, judge_.judge(placed.rest, placed.part, T), false);
   });
 }
 

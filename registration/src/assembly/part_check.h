@@ -28,15 +28,15 @@ public:
   /// Whether it may as well be where one of the motions leads it.
   bool mayBeMoved(const ClusterPart& placed, const IsometryVector& motions) const;
 
-  /// Whether another cluster has a certain place for a part, or a sound one where free space contradicts the part's own,
-  /// and free space contradicts that cluster and the rest where this place leads to.
+  /// Whether another cluster has a certain place for a part, and free space contradicts that cluster and the rest where
+  /// this place leads to.
   bool isClaimed(const ScanCluster& claimer, const ClusterPart& placed) const;
 
   /// Whether two parts of one cluster fit at two places of another one alike: they may be at one each.
   bool haveTwinPlaces(const ScanCluster& whole, const ScanCluster& part, const ScanCluster& rest) const;
 
 private:
-  bool isUndecided(const FreeSpaceEvidence& here, const FreeSpaceEvidence& there) const;
+  bool isUndecided(const FreeSpaceEvidence& here, const FreeSpaceEvidence& there, bool certain) const;
 
   const FreeSpaceJudge& judge_;
   const ClusterFitter& fitter_;

@@ -8,6 +8,12 @@
 #include <fresco/core/parallel.h>
 namespace fresco::registration {
 namespace {
+// Whether what pairs say of another place is as sure as what they say of a join.
+bool isAsSure(const ClusterFit& other, const ClusterFit& join)
+{
+  return other.certain || (other.sound && !join.certain);
+}
+
 class Assembler {
 public:
   Assembler(const GraphInput& input, const ScanCluster& known)
@@ -116,7 +122,7 @@ bool Assembler::fitsThird(std::size_t stays, std::size_t moves, const ClusterFit
     if (third == stays || third == moves)
       continue;
     for (const ClusterFit& other : fitsOf(third, moves))
-      if (other.certain && rivals(other, fit, judge_.unit()) && areApart(stays, third, fit, other, by_chains) &&
+      if (isAsSure(other, fit) && rivals(other, fit, judge_.unit()) && areApart(stays, third, fit, other, by_chains) &&
           !fitsInstead(stays, moves, third, fit, other) && !yields(stays, moves, third, fit, other))
         return true;
   }
