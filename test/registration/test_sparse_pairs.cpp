@@ -74,7 +74,7 @@ TEST(SparsePairs, PairsAreAcceptedWhereTheyHoldWell)
           pair.violation <= hall.options.max_violation) {
         EXPECT_EQ(pair.accepted, firm) << rays;
       }
-    EXPECT_TRUE(!isLoose(hall.scans[1], placement.joint, 1) || !firm) << rays;
+    EXPECT_TRUE(!isLoose(hall.scans[1], placement, 1) || !firm) << rays;
   }
 }
 } // namespace

@@ -32,10 +32,8 @@ Matrix6d movedInformation(const Matrix6d& information, const Eigen::Vector3d& of
 }
 } // namespace
 
-std::optional<FreeMotion> findFreeMotion(const Matrix6d& about_center)
+std::optional<WeakestMotion> findWeakestMotion(const Matrix6d& about_center)
 {
-  constexpr double free_limit = 4e-3; // information of a direction / that of all: below, errors in it are more than 15
-                                      // times as large as where every normal tells
   const double weight = about_center.bottomRightCorner<3, 3>().trace();
   if (!(weight > 0.0))
     return {};
@@ -47,14 +45,21 @@ std::optional<FreeMotion> findFreeMotion(const Matrix6d& about_center)
   scale << Eigen::Vector3d::Constant(1.0 / held.extent), Eigen::Vector3d::Ones();
   const Matrix6d scaled = scale.asDiagonal() * information * scale.asDiagonal();
   const Eigen::SelfAdjointEigenSolver<Matrix6d> solver(scaled / weight);
-  if (solver.eigenvalues()[0] >= free_limit)
-    return {};
   const Vector6d direction = solver.eigenvectors().col(0);
-  FreeMotion motion;
+  WeakestMotion weakest;
+  weakest.share = solver.eigenvalues()[0];
   if (direction.tail<3>().norm() >= direction.head<3>().norm())
-    motion.translation = direction.tail<3>().normalized();
+    weakest.motion.translation = direction.tail<3>().normalized();
   else
-    motion.rotation = direction.head<3>().normalized();
-  return motion;
+    weakest.motion.rotation = direction.head<3>().normalized();
+  return weakest;
+}
+
+std::optional<FreeMotion> findFreeMotion(const Matrix6d& about_center)
+{
+  constexpr double free_limit = 4e-3; // information of a direction / that of all: below, errors in it are more than 15
+                                      // times as large as where every normal tells
+  const std::optional<WeakestMotion> weakest = findWeakestMotion(about_center);
+  return weakest && weakest->share < free_limit ? std::optional(weakest->motion) : std::nullopt;
 }
 } // namespace fresco::registration

@@ -4,6 +4,15 @@
 #include <fresco/registration/core/scan_registration.h>
 #include <optional>
 namespace fresco::registration {
+/// The motion that surfaces tell least of.
+struct WeakestMotion {
+  FreeMotion motion;
+  double share = 0.0; ///< of the information of it in that of all directions, 0..1
+};
+
+/// Nothing if there is no information. @param information see JointResult
+std::optional<WeakestMotion> findWeakestMotion(const Matrix6d& information);
+
 /// The motion that the surfaces which hold a scan leave free, if any. Rotations are those about the place where these
 /// surfaces tell least of them, wherever the scan's frame lies.
 /// @param information see JointResult

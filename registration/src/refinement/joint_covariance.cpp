@@ -24,6 +24,7 @@ public:
 
   Covariances run() const;
   Covariances informations() const;
+  LooseCuts cuts() const;
 
 private:
   bool held(Index scan) const { return joint_.holders[scan] == scan; }
@@ -34,8 +35,10 @@ private:
   Matrix6d motionAlong(Index scan, Index with) const;
   Matrix6d groupMotion(Index scan) const { return motionAlong(scan, joint_.holders[scan]); }
   Block fitRows(Index holder) const;
-  std::vector<char> goingAlong(Index scan) const;
-  Matrix6d bodyInformation(Index scan, const std::vector<Matrix6d>& pairs) const;
+  Matrix6d part(Index scan, Index other) const;
+  std::vector<char> goingAlong(Index scan, Index against) const;
+  std::vector<Matrix6d> pairSums() const;
+  Matrix6d acrossInformation(Index scan, const std::vector<char>& along, const std::vector<Matrix6d>& pairs) const;
   double fewCellsFactor(Index scan, const Vector6d& direction, const std::vector<CellPull>& pulls) const;
   Matrix6d covarianceOf(Index scan, const std::vector<CellPull>& pulls) const;
 
@@ -190,27 +193,45 @@ Matrix6d CovarianceEstimator::covarianceOf(Index scan, const std::vector<CellPul
   return scale_.asDiagonal() * larger * scale_.asDiagonal();
 }
 
-// Scans that move with one that is pulled where it is held least, rather than stay.
-std::vector<char> CovarianceEstimator::goingAlong(Index scan) const
+// Of the inverse of the normal equations; zero for holders, which do not move.
+Matrix6d CovarianceEstimator::part(Index scan, Index other) const
 {
-  const auto part = [&](Index i) { return P_.block<6, 6>(6 * slots_[i], 6 * slots_[scan]); };
-  const Eigen::SelfAdjointEigenSolver<Matrix6d> solver(part(scan));
-  const Vector6d pull = solver.eigenvectors().col(5), own = part(scan) * pull;
+  return held(scan) || held(other) ? Matrix6d(Matrix6d::Zero())
+                                   : Matrix6d(P_.block<6, 6>(6 * slots_[scan], 6 * slots_[other]));
+}
+
+// Scans that move with the first rather than with the second if these are pulled apart where they are held least.
+std::vector<char> CovarianceEstimator::goingAlong(Index scan, Index against) const
+{
+  const Matrix6d to_scan = motionAlong(scan, against);
+  const auto response = [&](Index i) -> Matrix6d { return part(i, scan) - part(i, against) * to_scan.transpose(); };
+  const Eigen::SelfAdjointEigenSolver<Matrix6d> solver(response(scan) - to_scan * response(against));
+  const Vector6d pull = solver.eigenvectors().col(5), away = response(against) * pull;
+  const Vector6d own = response(scan) * pull - to_scan * away;
   std::vector<char> along(count_, 0);
   for (Index i = 0; i < count_; ++i)
-    if (!held(i)) {
-      const Vector6d as_one = motionAlong(i, scan) * own;
-      along[i] = as_one.dot(part(i) * pull) >= 0.5 * as_one.squaredNorm();
+    if (joint_.holders[i] == joint_.holders[scan]) {
+      const Vector6d as_one = motionAlong(i, scan) * own,
+                     relative = response(i) * pull - motionAlong(i, against) * away;
+      along[i] = as_one.dot(relative) >= 0.5 * as_one.squaredNorm();
     }
   return along;
 }
 
-/// @param pairs sums over the cells of each
-Matrix6d CovarianceEstimator::bodyInformation(Index scan, const std::vector<Matrix6d>& pairs) const
+// Sums over the cells of each pair.
+std::vector<Matrix6d> CovarianceEstimator::pairSums() const
 {
-  if (held(scan))
-    return Matrix6d::Zero();
-  const std::vector<char> along = goingAlong(scan);
+  std::vector<Matrix6d> pairs(joint_.links.size(), Matrix6d::Zero());
+  for (const CellSystem& cell : joint_.cells)
+    pairs[cell.pair] += cell.system.H;
+  return pairs;
+}
+
+// About a scan of those that go along, by the matches between them and the others.
+/// @param pairs see pairSums()
+Matrix6d CovarianceEstimator::acrossInformation(Index scan, const std::vector<char>& along,
+                                                const std::vector<Matrix6d>& pairs) const
+{
   const auto seen = [&](Index i, const Matrix6d& M, const Matrix6d& H) -> Matrix6d {
     const Matrix6d rows = motionAlong(i, scan).transpose() * scaled(M);
     return rows * H * rows.transpose();
@@ -229,13 +250,51 @@ Matrix6d CovarianceEstimator::bodyInformation(Index scan, const std::vector<Matr
 
 Covariances CovarianceEstimator::informations() const
 {
-  std::vector<Matrix6d> pairs(joint_.links.size(), Matrix6d::Zero());
-  for (const CellSystem& cell : joint_.cells)
-    pairs[cell.pair] += cell.system.H;
-  Covariances informations(count_);
+  const std::vector<Matrix6d> pairs = pairSums();
+  Covariances informations(count_, Matrix6d::Zero());
   parallelFor(
-      count_, joint_.threads, [&](Index i) { informations[i] = bodyInformation(i, pairs); }, 1);
+      count_, joint_.threads,
+      [&](Index i) {
+        if (!held(i))
+          informations[i] = acrossInformation(i, goingAlong(i, joint_.holders[i]), pairs);
+      },
+      1);
   return informations;
+}
+
+LooseCuts CovarianceEstimator::cuts() const
+{
+  const std::vector<Matrix6d> pairs = pairSums();
+  std::map<std::vector<char>, std::pair<Index, Index>> bodies;
+  for (const PairLink& link : joint_.links) {
+    std::vector<char> along = goingAlong(link.source, link.target);
+    if (along[link.source] && !along[link.target])
+      bodies.emplace(std::move(along), std::pair(link.source, link.target));
+  }
+  LooseCuts cuts;
+  for (const auto& [along, pulled] : bodies) {
+    std::vector<char> opposite(count_);
+    for (Index i = 0; i < count_; ++i)
+      opposite[i] = !along[i] && joint_.holders[i] == joint_.holders[pulled.first];
+    if (opposite < along && bodies.find(opposite) != bodies.end()) // told already
+      continue;
+    LooseCut& cut = cuts.emplace_back();
+    cut.about = pulled.first;
+    cut.information = acrossInformation(cut.about, along, pairs);
+    std::vector<char> linked(count_, 0);
+    for (const PairLink& link : joint_.links)
+      if (along[link.source] != along[link.target])
+        linked[link.source] = linked[link.target] = 1;
+    for (Index i = 0; i < count_; ++i) {
+      if (along[i])
+        cut.body.push_back(i);
+      else if (opposite[i])
+        cut.rest.push_back(i);
+      if (linked[i])
+        cut.linked.push_back(i);
+    }
+  }
+  return cuts;
 }
 
 Covariances CovarianceEstimator::run() const
@@ -258,6 +317,8 @@ Covariances CovarianceEstimator::run() const
 Covariances jointCovariances(const JointSystem& joint) { return CovarianceEstimator(joint).run(); }
 
 Covariances bodyInformations(const JointSystem& joint) { return CovarianceEstimator(joint).informations(); }
+
+LooseCuts looseCuts(const JointSystem& joint) { return CovarianceEstimator(joint).cuts(); }
 
 PairInformations pairInformations(const JointSystem& joint)
 {

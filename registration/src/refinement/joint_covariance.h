@@ -41,6 +41,19 @@ Covariances jointCovariances(const JointSystem& joint);
 /// that hold each other may slide along a corridor as one. Zero for the holder of a group.
 Covariances bodyInformations(const JointSystem& joint);
 
+/// Two parts of a group that move against each other most easily where one pair of scans is pulled apart.
+struct LooseCut {
+  std::vector<Index> body, rest;           ///< scans, rising
+  std::vector<Index> linked;               ///< scans of either that matches across the cut join, rising
+  Index about = 0;                         ///< scan of the body
+  Matrix6d information = Matrix6d::Zero(); ///< of matches across the cut: rotation (about that scan's centre) first
+};
+using LooseCuts = std::vector<LooseCut, Eigen::aligned_allocator<LooseCut>>;
+
+/// One for each pair of scans that has matches, distinct. Whichever scan holds the frame: seen from it, a loose part elsewhere
+/// may be hidden by a looser one.
+LooseCuts looseCuts(const JointSystem& joint);
+
 /// Inverse covariance of the pose of b relative to a by the matches of this pair alone, in both directions.
 struct PairInformation {
   Index a = 0, b = 0;                      ///< a < b

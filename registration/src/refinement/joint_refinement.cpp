@@ -336,6 +336,7 @@ void Refinement::findCovariances(JointResult& result) const
                    [](const CellSystem& x, const CellSystem& y) { return x.cell < y.cell; });
   result.covariances = jointCovariances(joint);
   result.information = bodyInformations(joint);
+  result.cuts = looseCuts(joint);
   result.informations = pairInformations(joint);
 }
 

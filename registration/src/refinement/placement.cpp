@@ -2,6 +2,7 @@
 #include "refinement/placement.h"
 #include "pair/pair_overlap.h"
 #include "refinement/free_motion.h"
+#include "refinement/steady_parts.h"
 #include <algorithm>
 #include <cmath>
 #include <fresco/core/parallel.h>
@@ -124,17 +125,28 @@ void checkPairs(const std::vector<PreparedScan>& scans, const ScanRegistrationOp
   refuseLooseParts(scans, coarse, placement);
 }
 
-// Members of the largest set that accepted pairs hold together.
-Index heldTogether(const Placement& placement)
+// Per member, whether it is in the largest set that accepted pairs hold together.
+std::vector<char> largestHeld(const Placement& placement)
 {
-  UnionFind held(placement.members.size());
+  const Index n = placement.members.size();
+  UnionFind held(n);
   for (const PairResult& pair : placement.pairs)
     if (pair.accepted)
       held.join(memberOf(placement, pair.a), memberOf(placement, pair.b));
-  std::vector<Index> sizes(placement.members.size(), 0);
-  for (std::size_t m = 0; m < sizes.size(); ++m)
+  std::vector<Index> sizes(n, 0);
+  for (Index m = 0; m < n; ++m)
     ++sizes[held.root(m)];
-  return *std::max_element(sizes.begin(), sizes.end());
+  const Index largest = std::max_element(sizes.begin(), sizes.end()) - sizes.begin();
+  std::vector<char> in_largest(n);
+  for (Index m = 0; m < n; ++m)
+    in_largest[m] = held.root(m) == largest;
+  return in_largest;
+}
+
+Index heldTogether(const Placement& placement)
+{
+  const std::vector<char> held = largestHeld(placement);
+  return std::count(held.begin(), held.end(), 1);
 }
 
 // Whether all members are held together, and free space hardly contradicts start poses: a scan that lies on another wall
@@ -154,6 +166,62 @@ bool isBetter(const Placement& placement, const Placement& other)
   const Index held = heldTogether(placement), other_held = heldTogether(other);
   const double points = placement.violating_points, other_points = other.violating_points;
   return held != other_held ? held > other_held : other_points > points + 3.0 * std::sqrt(points + other_points);
+}
+
+// The part that keeps its place is the one with more of the scans that hang together.
+const std::vector<Index>& smallerPart(const LooseCut& cut, const std::vector<char>& in_largest)
+{
+  const auto count = [&](const std::vector<Index>& part) {
+    return std::count_if(part.begin(), part.end(), [&](Index m) { return in_largest[m]; });
+  };
+  return std::pair(count(cut.body), cut.body.size()) <= std::pair(count(cut.rest), cut.rest.size()) ? cut.body
+                                                                                                    : cut.rest;
+}
+
+// With start poses, of each scan against the one that holds the frame. Else of all parts that move easily against the others,
+// or are unsteady: start poses tell which place is meant.
+void findFreeMotions(const ScanPointers& members, const JointOptions& joint, Placement& placement)
+{
+  std::vector<std::optional<FreeMotion>>& motions = placement.free_motions;
+  motions.assign(members.size(), std::nullopt);
+  if (!placement.anchors.empty()) {
+    std::transform(placement.joint.information.begin(), placement.joint.information.end(), motions.begin(),
+                   findFreeMotion);
+    return;
+  }
+  const LooseCuts& cuts = placement.joint.cuts;
+  std::vector<std::optional<FreeMotion>> of_cuts(cuts.size());
+  parallelFor(
+      cuts.size(), joint.threads,
+      [&](Index k) {
+        of_cuts[k] = findFreeMotion(cuts[k].information);
+        if (!of_cuts[k])
+          of_cuts[k] = findUnsteadyMotion(members, placement.poses, cuts[k], joint);
+      },
+      1);
+  const std::vector<char> in_largest = largestHeld(placement);
+  for (std::size_t k = 0; k < cuts.size(); ++k)
+    if (of_cuts[k])
+      for (const Index m : smallerPart(cuts[k], in_largest))
+        motions[m] = motions[m] ? motions[m] : of_cuts[k];
+}
+
+// A scan to hold the frame where that of the first one is held loosely, or most scans are against it; -1 = the first may.
+Index betterHolder(const ScanPointers& members, const Placement& placement)
+{
+  Index held = -1, held_loosely = -1, loose = 0;
+  const Index n = members.size();
+  for (Index m = n; m-- > 0;) {
+    const bool is_loose = isLoose(*members[m], placement, m);
+    loose += is_loose ? 1 : 0;
+    if (placement.free_motions[m])
+      continue;
+    held = m;
+    held_loosely = is_loose ? m : held_loosely;
+  }
+  if (2 * loose > n)
+    return held_loosely;
+  return placement.free_motions[0] ? held : -1;
 }
 
 struct Reach {
@@ -185,17 +253,16 @@ void refineWithin(const Reach& reach, const std::vector<PreparedScan>& scans, co
     if (joint.excluded.size() == before)
       break;
   }
+  findFreeMotions(members, joint, placement);
   // What hangs together by surfaces that hold it loosely: the larger part stays.
-  std::vector<Index> loose;
-  for (std::size_t m = 0; m < placement.members.size(); ++m)
-    if (isLoose(*members[m], placement.joint, m))
-      loose.push_back(m);
-  if (joint.anchors.empty() && 2 * loose.size() > placement.members.size()) {
-    joint.anchors = {loose.front()};
-    placement.joint = refineJointly(members, placement.poses, joint, progress);
-    placement.poses = placement.joint.poses;
-    checkPairs(scans, options, placement);
-  }
+  const Index holder = placement.anchors.empty() ? betterHolder(members, placement) : -1;
+  if (holder < 0)
+    return;
+  joint.anchors = {holder};
+  placement.joint = refineJointly(members, placement.poses, joint, progress);
+  placement.poses = placement.joint.poses;
+  checkPairs(scans, options, placement);
+  findFreeMotions(members, joint, placement);
 }
 } // namespace
 
@@ -204,11 +271,11 @@ double positionDeviation(const JointResult& joint, Index member)
   return std::sqrt(joint.covariances[member].bottomRightCorner<3, 3>().trace());
 }
 
-bool isLoose(const PreparedScan& scan, const JointResult& joint, Index member)
+bool isLoose(const PreparedScan& scan, const Placement& placement, Index member)
 {
   constexpr double most_deviation = 0.02; // of the scan's size: what is next to it would no longer fit
-  return findFreeMotion(joint.information[member]) ||
-         (sawAround(scan) && positionDeviation(joint, member) > most_deviation * scan.size);
+  return placement.free_motions[member] ||
+         (sawAround(scan) && positionDeviation(placement.joint, member) > most_deviation * scan.size);
 }
 
 void refinePlacement(const std::vector<PreparedScan>& scans, const ScanRegistrationOptions& options,

@@ -2,17 +2,19 @@
 #pragma once
 #include "refinement/joint_refinement.h"
 #include <fresco/registration/core/scan_registration.h>
+#include <optional>
 namespace fresco::registration {
 /// Scans with a pose in one common frame, and what is known of their pairs.
 struct Placement {
-  std::vector<Index> members;    ///< indices of the scans
-  IsometryVector poses;          ///< frame from working frame, one per member
-  std::vector<Index> anchors;    ///< indices into members of the scans with a start pose
-  std::vector<char> fixed;       ///< per member, whether it does not move; empty = none
-  JointResult joint;             ///< of the last refinement, indices into members
-  std::vector<PairResult> pairs; ///< overlapping pairs, indices of scans
-  Index violating_points = 0;    ///< of all pairs of members, see PairCheck
-  bool look_alike = false;       ///< see ScanCluster
+  std::vector<Index> members;                          ///< indices of the scans
+  IsometryVector poses;                                ///< frame from working frame, one per member
+  std::vector<Index> anchors;                          ///< indices into members of the scans with a start pose
+  std::vector<char> fixed;                             ///< per member, whether it does not move; empty = none
+  JointResult joint;                                   ///< of the last refinement, indices into members
+  std::vector<PairResult> pairs;                       ///< overlapping pairs, indices of scans
+  Index violating_points = 0;                          ///< of all pairs of members, see PairCheck
+  bool look_alike = false;                             ///< see ScanCluster
+  std::vector<std::optional<FreeMotion>> free_motions; ///< per member; of unsteady parts, too
 };
 
 /// Standard deviation of the position of a member, length.
@@ -20,7 +22,7 @@ double positionDeviation(const JointResult& joint, Index member);
 
 /// Whether the others hold a member's place too loosely to rely on: a motion is free, or, of a scan that saw around, the
 /// position may be off by a fiftieth of the scan's size.
-bool isLoose(const PreparedScan& scan, const JointResult& joint, Index member);
+bool isLoose(const PreparedScan& scan, const Placement& placement, Index member);
 
 /// Refines all members at once, then leaves out the pairs that contradict each other's free space and refines again,
 /// until every pair in use is consistent. Pairs that share only what is sparse hold parts together where these are then held

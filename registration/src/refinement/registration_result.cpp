@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "refinement/registration_result.h"
-#include "refinement/free_motion.h"
 #include <algorithm>
 #include <cmath>
 #include <fresco/core/listed.h>
@@ -107,8 +106,8 @@ void Description::describeScans(const Placement& placement)
       scan(i).T_group_scan = *start_[i]; // to the last bit
       continue;
     }
-    scan(i).free_motion = findFreeMotion(placement.joint.information[m]);
-    loose_[i] = isLoose(prepared, placement.joint, m);
+    scan(i).free_motion = placement.free_motions[m];
+    loose_[i] = isLoose(prepared, placement, m);
     const Matrix6d& covariance = placement.joint.covariances[m];
     const FreeMotion free = scan(i).free_motion.value_or(FreeMotion());
     const auto deviation = [](double held, const Eigen::Vector3d& free_direction, double reach) {
