@@ -61,7 +61,8 @@ class Judge:
         self.tool("normals", cloud, all_points)
         vertices = read_ply(all_points)
         # A scan that names its points twice (lobby) must not have one of them on either side.
-        vertices = vertices[np.sort(np.unique(positions(vertices), axis=0, return_index=True)[1])]
+        if not self.options.doubled:
+            vertices = vertices[np.sort(np.unique(positions(vertices), axis=0, return_index=True)[1])]
         kept_out = np.random.default_rng(self.options.seed).random(len(vertices)) < self.options.share
         self.test, near = near_others(positions(vertices[kept_out]), positions(vertices[~kept_out]))
         self.viewpoints = np.stack([vertices[kept_out][near]["vp_" + axis] for axis in "xyz"], 1)
@@ -181,6 +182,7 @@ def main():
     parser.add_argument("--share", type=float, default=0.1, help="of the points kept out")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--threads", type=int, default=2)
+    parser.add_argument("--doubled", action="store_true", help="points that the scan names twice may be on both sides")
     parser.add_argument("--no_open3d", action="store_true")
     parser.add_argument("--free_space", action="store_true", help="rows with fresco_reconstruct -free_space, too")
     parser.add_argument("--volumetric_only", action="store_true", help="no rows of fresco_optimize")

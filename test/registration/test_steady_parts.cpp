@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "refinement/steady_parts.h"
 #include "refinement/free_motion.h"
+#include "refinement/steady_parts.h"
 #include "registration/registration_scene.h"
 #include <algorithm>
 #include <cmath>
@@ -48,8 +48,9 @@ std::set<Partition> partitions(const LooseCuts& cuts)
 
 const LooseCut* cutBetween(const LooseCuts& cuts, const Partition& parts)
 {
-  const auto found =
-      std::find_if(cuts.begin(), cuts.end(), [&](const auto& cut) { return Partition{cut.body, cut.rest} == parts; });
+  const auto found = std::find_if(cuts.begin(), cuts.end(), [&](const auto& cut) {
+    return Partition{cut.body, cut.rest} == parts;
+  });
   return found == cuts.end() ? nullptr : &*found;
 }
 
