@@ -178,50 +178,25 @@ const std::vector<Index>& smallerPart(const LooseCut& cut, const std::vector<cha
                                                                                                     : cut.rest;
 }
 
-// With start poses, of each scan against the one that holds the frame. Else of all parts that move easily against the others,
-// or are unsteady: start poses tell which place is meant.
-void findFreeMotions(const ScanPointers& members, const JointOptions& joint, Placement& placement)
+void findFreeMotions(Placement& placement)
 {
-  std::vector<std::optional<FreeMotion>>& motions = placement.free_motions;
-  motions.assign(members.size(), std::nullopt);
-  if (!placement.anchors.empty()) {
-    std::transform(placement.joint.information.begin(), placement.joint.information.end(), motions.begin(),
-                   findFreeMotion);
-    return;
-  }
-  const LooseCuts& cuts = placement.joint.cuts;
-  std::vector<std::optional<FreeMotion>> of_cuts(cuts.size());
-  parallelFor(
-      cuts.size(), joint.threads,
-      [&](Index k) {
-        of_cuts[k] = findFreeMotion(cuts[k].information);
-        if (!of_cuts[k])
-          of_cuts[k] = findUnsteadyMotion(members, placement.poses, cuts[k], joint);
-      },
-      1);
-  const std::vector<char> in_largest = largestHeld(placement);
-  for (std::size_t k = 0; k < cuts.size(); ++k)
-    if (of_cuts[k])
-      for (const Index m : smallerPart(cuts[k], in_largest))
-        motions[m] = motions[m] ? motions[m] : of_cuts[k];
+  placement.free_motions.clear();
+  for (const Matrix6d& information : placement.joint.information)
+    placement.free_motions.push_back(findFreeMotion(information));
 }
 
-// A scan to hold the frame where that of the first one is held loosely, or most scans are against it; -1 = the first may.
-Index betterHolder(const ScanPointers& members, const Placement& placement)
+void addUnsteadyParts(const ScanPointers& members, const JointOptions& joint, Placement& placement)
 {
-  Index held = -1, held_loosely = -1, loose = 0;
-  const Index n = members.size();
-  for (Index m = n; m-- > 0;) {
-    const bool is_loose = isLoose(*members[m], placement, m);
-    loose += is_loose ? 1 : 0;
-    if (placement.free_motions[m])
-      continue;
-    held = m;
-    held_loosely = is_loose ? m : held_loosely;
-  }
-  if (2 * loose > n)
-    return held_loosely;
-  return placement.free_motions[0] ? held : -1;
+  const LooseCuts& cuts = placement.joint.cuts;
+  std::vector<std::optional<FreeMotion>> motions(cuts.size());
+  parallelFor(
+      cuts.size(), joint.threads,
+      [&](Index k) { motions[k] = findUnsteadyMotion(members, placement.poses, cuts[k], joint); }, 1);
+  const std::vector<char> in_largest = largestHeld(placement);
+  for (std::size_t k = 0; k < cuts.size(); ++k)
+    if (motions[k])
+      for (const Index m : smallerPart(cuts[k], in_largest))
+        placement.free_motions[m] = placement.free_motions[m] ? placement.free_motions[m] : motions[k];
 }
 
 struct Reach {
@@ -253,16 +228,22 @@ void refineWithin(const Reach& reach, const std::vector<PreparedScan>& scans, co
     if (joint.excluded.size() == before)
       break;
   }
-  findFreeMotions(members, joint, placement);
-  // What hangs together by surfaces that hold it loosely: the larger part stays.
-  const Index holder = placement.anchors.empty() ? betterHolder(members, placement) : -1;
-  if (holder < 0)
+  findFreeMotions(placement);
+  if (!placement.anchors.empty()) // start poses tell which place is meant
     return;
-  joint.anchors = {holder};
-  placement.joint = refineJointly(members, placement.poses, joint, progress);
-  placement.poses = placement.joint.poses;
-  checkPairs(scans, options, placement);
-  findFreeMotions(members, joint, placement);
+  // What hangs together by surfaces that hold it loosely: the larger part stays.
+  std::vector<Index> loose;
+  for (std::size_t m = 0; m < placement.members.size(); ++m)
+    if (isLoose(*members[m], placement, m))
+      loose.push_back(m);
+  if (2 * loose.size() > placement.members.size()) {
+    joint.anchors = {loose.front()};
+    placement.joint = refineJointly(members, placement.poses, joint, progress);
+    placement.poses = placement.joint.poses;
+    checkPairs(scans, options, placement);
+    findFreeMotions(placement);
+  }
+  addUnsteadyParts(members, joint, placement);
 }
 } // namespace
 
