@@ -30,7 +30,7 @@ Refined refined(const test::ScannedScene& scene, Index anchor, float voxel)
   result.options.max_distance = 4.f * voxel;
   result.options.min_overlap = 0.5f * ScanRegistrationOptions().min_overlap; // as placements do
   result.options.first_level = check_level;
-  result.options.covariances = result.options.coarse_pairs = true;
+  result.options.covariances = result.options.cuts = result.options.coarse_pairs = true;
   result.options.anchors = {anchor};
   result.joint = refineJointly(result.members, truth, result.options, {});
   return result;

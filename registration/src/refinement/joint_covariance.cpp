@@ -38,6 +38,7 @@ private:
   Matrix6d part(Index scan, Index other) const;
   std::vector<char> goingAlong(Index scan, Index against) const;
   std::vector<Matrix6d> pairSums() const;
+  std::map<std::vector<char>, std::pair<Index, Index>> bodies() const;
   Matrix6d acrossInformation(Index scan, const std::vector<char>& along, const std::vector<Matrix6d>& pairs) const;
   double fewCellsFactor(Index scan, const Vector6d& direction, const std::vector<CellPull>& pulls) const;
   Matrix6d covarianceOf(Index scan, const std::vector<CellPull>& pulls) const;
@@ -262,26 +263,38 @@ Covariances CovarianceEstimator::informations() const
   return informations;
 }
 
+// Per body, the scans that are pulled apart.
+std::map<std::vector<char>, std::pair<Index, Index>> CovarianceEstimator::bodies() const
+{
+  std::vector<std::pair<Index, Index>> pulled;
+  for (const PairLink& link : joint_.links)
+    pulled.push_back(std::minmax(link.source, link.target));
+  std::sort(pulled.begin(), pulled.end());
+  pulled.erase(std::unique(pulled.begin(), pulled.end()), pulled.end());
+  std::vector<std::vector<char>> along(pulled.size());
+  parallelFor(
+      pulled.size(), joint_.threads, [&](Index k) { along[k] = goingAlong(pulled[k].first, pulled[k].second); }, 1);
+  std::map<std::vector<char>, std::pair<Index, Index>> found;
+  for (std::size_t k = 0; k < pulled.size(); ++k)
+    if (along[k][pulled[k].first] && !along[k][pulled[k].second])
+      found.emplace(std::move(along[k]), pulled[k]);
+  return found;
+}
+
 LooseCuts CovarianceEstimator::cuts() const
 {
   const std::vector<Matrix6d> pairs = pairSums();
-  std::map<std::vector<char>, std::pair<Index, Index>> bodies;
-  for (const PairLink& link : joint_.links) {
-    std::vector<char> along = goingAlong(link.source, link.target);
-    if (along[link.source] && !along[link.target])
-      bodies.emplace(std::move(along), std::pair(link.source, link.target));
-  }
+  const auto found = bodies();
   LooseCuts cuts;
-  for (const auto& [along, pulled] : bodies) {
-    std::vector<char> opposite(count_);
+  for (const auto& [along, pulled] : found) {
+    std::vector<char> opposite(count_), linked(count_, 0);
     for (Index i = 0; i < count_; ++i)
       opposite[i] = !along[i] && joint_.holders[i] == joint_.holders[pulled.first];
-    if (opposite < along && bodies.find(opposite) != bodies.end()) // told already
+    if (opposite < along && found.find(opposite) != found.end()) // told already
       continue;
     LooseCut& cut = cuts.emplace_back();
     cut.about = pulled.first;
     cut.information = acrossInformation(cut.about, along, pairs);
-    std::vector<char> linked(count_, 0);
     for (const PairLink& link : joint_.links)
       if (along[link.source] != along[link.target])
         linked[link.source] = linked[link.target] = 1;

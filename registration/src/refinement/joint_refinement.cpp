@@ -336,7 +336,8 @@ void Refinement::findCovariances(JointResult& result) const
                    [](const CellSystem& x, const CellSystem& y) { return x.cell < y.cell; });
   result.covariances = jointCovariances(joint);
   result.information = bodyInformations(joint);
-  result.cuts = looseCuts(joint);
+  if (options_.cuts)
+    result.cuts = looseCuts(joint);
   result.informations = pairInformations(joint);
 }
 

@@ -19,7 +19,8 @@ struct JointOptions {
   std::vector<std::pair<Index, Index>> excluded; ///< pairs not to use
   std::vector<Index> anchors; ///< rising; the first in a connected group keeps its pose, else the group's first scan
   std::vector<char> fixed;    ///< per scan, whether it does not move; pairs of two such are not used; empty = none
-  bool covariances = false;   ///< whether covariances, informations and cuts are found
+  bool covariances = false;   ///< whether covariances and informations are found
+  bool cuts = false;          ///< whether loose cuts are found, too
   bool coarse_pairs = false;  ///< whether pairs that overlap only on `check_level` are used to the end
   int threads = 0;
 };

@@ -215,6 +215,7 @@ void refineWithin(const Reach& reach, const std::vector<PreparedScan>& scans, co
   joint.max_distance = reach.distance;
   joint.first_level = reach.first_level;
   joint.anchors = placement.anchors;
+  joint.cuts = placement.anchors.empty();
   joint.fixed = placement.fixed;
   const IsometryVector start = placement.poses;
   for (int round = 0; round < most_rounds; ++round) {

@@ -47,7 +47,7 @@ std::optional<FreeMotion> findUnsteadyMotion(const ScanPointers& members, const 
   options.max_distance = reach * voxel;
   options.samples = std::min(options.samples, fewer_samples);
   options.first_level = check_level;
-  options.covariances = false;
+  options.covariances = options.cuts = false;
   options.threads = 1;
   const IsometryVector refined = refineJointly(across.scans, across.poses, options, {}).poses;
   Eigen::Vector3d moved = Eigen::Vector3d::Zero();
