@@ -78,8 +78,9 @@ bool PartCheck::fitsElsewhere(const ClusterPart& placed) const
 bool PartCheck::isClaimed(const ScanCluster& claimer, const ClusterPart& placed) const
 {
   constexpr double least_share = 0.25; // of the surfaces that agree here
+  const bool doubtful = isContradicted(placed.here);
   for (const ClusterFit& rough : fitter_.rough(claimer, placed.part, ClusterFitter::Use::contest)) {
-    if (!rough.certain)
+    if (!rough.certain && !(doubtful && rough.sound))
       continue;
     const ClusterFit fit = fitter_.settled(claimer, placed.part, rough);
     if (fit.evidence.agree >= least_share * placed.here.agree && isUndecided(placed.here, fit.evidence, fit.certain) &&

@@ -28,8 +28,8 @@ public:
   /// Whether it may as well be where one of the motions leads it.
   bool mayBeMoved(const ClusterPart& placed, const IsometryVector& motions) const;
 
-  /// Whether another cluster has a certain place for a part, and free space contradicts that cluster and the rest where
-  /// this place leads to.
+  /// Whether another cluster has a certain place for a part, or a sound one where free space contradicts the part's own,
+  /// and free space contradicts that cluster and the rest where this place leads to.
   bool isClaimed(const ScanCluster& claimer, const ClusterPart& placed) const;
 
   /// Whether two parts of one cluster fit at two places of another one alike: they may be at one each.
