@@ -140,32 +140,65 @@ TEST(FloorPlans, TwoScansOfACorridorHardlyContradictEachOther)
   }
 }
 
-// Scans of furnished rooms, each turned in its own way.
-TEST(FloorPlans, ScansShowWhichWayWasUp)
-{
-  const ScannedScene scene = test::scanTwoRooms(60000);
+struct TurnedScans {
   std::vector<PreparedScan> scans;
   std::vector<ScanPlanes> planes;
-  std::vector<Eigen::Vector3f> truth;
+  std::vector<Eigen::Vector3f> up; // true
+};
+
+// Each turned in its own way.
+TurnedScans turnedScans(const ScannedScene& scene, double voxel)
+{
+  TurnedScans turned;
   for (std::size_t k = 0; k < scene.scans.size(); ++k) {
     const Eigen::AngleAxisd turn(0.7 * static_cast<double>(k + 1), Eigen::Vector3d(1.0, k, -1.0).normalized());
     Eigen::Matrix4d T = Eigen::Matrix4d::Identity();
     T.topLeftCorner<3, 3>() = turn.toRotationMatrix();
-    scans.push_back(prepareScan(transformPoints(scene.scans[k], T), Thinning(0.04), 0));
-    planes.push_back(findPlanes(scans.back()));
-    truth.emplace_back((turn * scene.truth[k].linear().transpose().col(2)).cast<float>());
+    turned.scans.push_back(prepareScan(transformPoints(scene.scans[k], T), Thinning(voxel), 0));
+    turned.planes.push_back(findPlanes(turned.scans.back()));
+    turned.up.emplace_back((turn * scene.truth[k].linear().transpose().col(2)).cast<float>());
   }
-  const UpDirections ups = findUpDirections(scans, planes);
+  return turned;
+}
+
+void expectRightUps(const TurnedScans& turned, int least)
+{
+  const UpDirections ups = findUpDirections(turned.scans, turned.planes);
   int found = 0;
   for (std::size_t k = 0; k < ups.size(); ++k)
     if (ups[k]) {
       ++found;
-      EXPECT_GT(ups[k]->dot(truth[k]), 0.99f) << k;
+      EXPECT_GT(ups[k]->dot(turned.up[k]), 0.99f) << k;
     }
-  EXPECT_GE(found, 3); // one that sees few tops stays open
-  const PlanFrames frames = findPlanFrames(scans, 1);
+  EXPECT_GE(found, least);
+  const PlanFrames frames = findPlanFrames(turned.scans, 1);
   for (std::size_t k = 0; k < ups.size(); ++k)
     EXPECT_EQ(frames[k].has_value(), ups[k].has_value()) << k;
+}
+
+TEST(FloorPlans, ScansShowWhichWayWasUp)
+{
+  expectRightUps(turnedScans(test::scanTwoRooms(60000), 0.04), 3); // one that sees few tops stays open
+}
+
+// Lamps and the heads of doors are seen from below, but they are narrow.
+TEST(FloorPlans, DenseScansShowWhichWayWasUp)
+{
+  ScannedScene scene;
+  for (const double width : {2.4, 3.1, 3.7}) {
+    test::Boxes boxes;
+    test::addRoom(boxes, {0, 0, 0}, {9, width, 2.6}, std::numeric_limits<double>::quiet_NaN());
+    for (const double x : {0.6, 2.8, 5.0, 7.2}) {
+      test::addBox(boxes, {x, 1.1, 2.5}, {x + 1.2, 1.25, 2.6});
+      for (const double y : {0.0, width - 0.08})
+        test::addBox(boxes, {x, y, 2.05}, {x + 0.9, y + 0.08, 2.6});
+    }
+    test::addBox(boxes, {3.8, 1.7, 0}, {4.6, 2.3, 0.7});
+    const auto number = static_cast<unsigned>(scene.scans.size());
+    scene.truth.push_back(test::stationPose({2.0 + 2.0 * number, 0.8, 1.5}, 0.3 + number, 0.02));
+    scene.scans.push_back(test::scanBoxes(boxes, scene.truth.back(), 300000, 0.002, number + 1));
+  }
+  expectRightUps(turnedScans(scene, 0.02), 2);
 }
 
 // An equal room behind two doors is a partial alias, however dense the scan is.

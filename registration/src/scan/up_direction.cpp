@@ -15,7 +15,7 @@ struct OppositePlanes {
 
 class AxisView {
 public:
-  AxisView(const PreparedScan& scan, const Eigen::Vector3f& axis) : level_(scan.levels.back()), axis_(axis)
+  AxisView(const ScanLevel& level, const Eigen::Vector3f& axis) : level_(level), axis_(axis)
   {
     scanner_ = axis.dot(level_.viewpoints.rowwise().mean());
   }
@@ -81,12 +81,21 @@ Index AxisView::topsLessUndersides(const OppositePlanes& planes) const
 
 using PlanesOfAxes = std::array<OppositePlanes, 3>;
 
+// The finest level with voxels of a fortieth of the height and more. On finer ones lamps and the heads of doors, seen from
+// below, outnumber the tops of tables: on 2 cm for 10 of 24 scans, on 8 cm for none.
+const ScanLevel& levelOfThings(const PreparedScan& scan, float height)
+{
+  const auto fine = std::find_if(scan.levels.rbegin(), scan.levels.rend(),
+                                 [&](const ScanLevel& level) { return level.voxel >= height / 40.f; });
+  return fine != scan.levels.rend() ? *fine : scan.levels.front();
+}
+
 // The way along an axis in which the scanner saw surfaces from above.
 std::optional<Eigen::Vector3f> upAlong(const PreparedScan& scan, const Eigen::Vector3f& axis,
                                        const OppositePlanes& planes)
 {
   constexpr Index clear = 20; // points: of 546 scans 289 have more, all right; of 96 with 5 to 20, five are wrong
-  const Index tops = AxisView(scan, axis).topsLessUndersides(planes);
+  const Index tops = AxisView(levelOfThings(scan, planes.height()), axis).topsLessUndersides(planes);
   if (std::abs(tops) < clear)
     return std::nullopt;
   return tops > 0 ? axis : Eigen::Vector3f(-axis);
@@ -125,7 +134,7 @@ UpDirections findUpDirections(const std::vector<PreparedScan>& scans, const std:
       continue;
     tolerance = scans[k].levels.back().voxel;
     for (int axis = 0; axis < 3; ++axis)
-      found[k][axis] = AxisView(scans[k], planes[k].axes.col(axis)).planes();
+      found[k][axis] = AxisView(scans[k].levels.back(), planes[k].axes.col(axis)).planes();
   }
   const float height = commonHeight(found, tolerance);
   for (std::size_t k = 0; k < scans.size(); ++k) {
