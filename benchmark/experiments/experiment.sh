@@ -45,3 +45,20 @@ room_row() {
     $1 == "mesh" && $2 == "V" { size = $3 " | " $5 }
     END { printf "| %s | %s | %s | %s |\n", title, size, error, angles }'
 }
+
+# join_pcd OUT FILE...: binary files with the same fields as one.
+join_pcd() {
+  /usr/bin/python3 - "$@" <<'END'
+import re
+import sys
+bodies, count = [], 0
+for path in sys.argv[2:]:
+    with open(path, "rb") as file:
+        head, body = re.split(rb"(?<=\nDATA binary\n)", file.read(), maxsplit=1)
+    count += int(re.search(rb"\nPOINTS (\d+)", head)[1])
+    bodies.append(body)
+head = re.sub(rb"\n(WIDTH|POINTS) \d+", rb"\n\1 %d" % count, head)
+with open(sys.argv[1], "wb") as file:
+    file.write(head + b"".join(bodies))
+END
+}
