@@ -134,61 +134,74 @@ public:
     coverage_.vertex.assign(graph_.vertexCount(), 0);
     coverage_.nearness.setZero(graph_.vertexCount());
     coverage_.point_weight.setZero(data_.size());
+    feet_.resize(3, lists_.order.size());
+    parallelFor(graph_.faceCount(), threads_, [&](Index f) {
+      for (int j = lists_.begin[f]; j < lists_.begin[f + 1]; ++j)
+        feet_.col(j) = footOn(graph_, x_, f, data_.points.col(lists_.order[j]).cast<double>());
+    });
     const Eigen::VectorXd around = countAround();
     const std::vector<double> areas = vertexAreas(graph_, x_, threads_);
     std::vector<double> rate(areas.size()); // of a datum on the vertex
     coverage_.nearest = nearestData(graph_, x_, data_, lists_, threads_);
     const std::vector<double> spacing = spacingOf(graph_, data_, coverage_.nearest);
+    findNearness(spacing);
     for (Index v = 0; v < graph_.vertexCount(); ++v) {
       constexpr double enough = 0.5; // of a datum: takes the whole area
       const double own = ramp(around[v], 0.0, enough);
       rate[v] = areas[v] / std::max(around[v], enough);
-      giveToNearest(v, (1.0 - own) * areas[v], spacing);
+      if (own < 1.0)
+        giveToNearest(v, (1.0 - own) * areas[v], spacing);
     }
     for (Index f = 0; f < graph_.faceCount(); ++f)
-      for (int j = lists_.begin[f]; j < lists_.begin[f + 1]; ++j) {
-        const Vector3d foot = footOf(f, j);
+      for (int j = lists_.begin[f]; j < lists_.begin[f + 1]; ++j)
         for (int k = 0; k < 3; ++k)
           coverage_.point_weight[lists_.order[j]] +=
-              static_cast<float>(lists_.share[j] * foot[k] * rate[graph_.faces(k, f)]);
-      }
+              static_cast<float>(lists_.share[j] * feet_(k, j) * rate[graph_.faces(k, f)]);
     return std::move(coverage_);
   }
 
 private:
-  Vector3d footOf(Index f, int j) const
-  {
-    return footOn(graph_, x_, f, data_.points.col(lists_.order[j]).cast<double>());
-  }
-
   // Data on the faces around each vertex, by their barycentric coordinates.
   Eigen::VectorXd countAround() const
   {
     Eigen::VectorXd around = Eigen::VectorXd::Zero(graph_.vertexCount());
     for (Index f = 0; f < graph_.faceCount(); ++f)
-      for (int j = lists_.begin[f]; j < lists_.begin[f + 1]; ++j) {
-        const Vector3d foot = footOf(f, j);
+      for (int j = lists_.begin[f]; j < lists_.begin[f + 1]; ++j)
         for (int k = 0; k < 3; ++k)
-          around[graph_.faces(k, f)] += lists_.share[j] * foot[k];
-      }
+          around[graph_.faces(k, f)] += lists_.share[j] * feet_(k, j);
     return around;
   }
 
-  void giveToNearest(Index v, double area, const std::vector<double>& spacing)
+  // The share of a near datum that counts.
+  static double partOf(const NearDatum& n, const std::vector<double>& spacing)
   {
     // Lengths of an edge, or of the distance between neighbouring data where that is longer: two and a half pass over
     // one missing datum, but not over two.
     constexpr double reach_lengths = 2.5, near_lengths = 2.25;
+    const double unit = std::max(1.0, spacing[n.datum]);
+    return n.share * ramp(n.distance, reach_lengths * unit, near_lengths * unit);
+  }
+
+  void findNearness(const std::vector<double>& spacing)
+  {
+    parallelRanges(graph_.vertexCount(), threads_, [&](Index begin, Index end) {
+      std::vector<NearDatum> near;
+      for (Index v = begin; v < end; ++v) {
+        findNear(graph_, x_, data_, coverage_.nearest, v, near);
+        double nearness = 0.0;
+        for (const NearDatum& n : near)
+          nearness += partOf(n, spacing);
+        coverage_.nearness[v] = static_cast<float>(nearness);
+        coverage_.vertex[v] = nearness > 0.0 ? 1 : 0;
+      }
+    });
+  }
+
+  void giveToNearest(Index v, double area, const std::vector<double>& spacing)
+  {
     findNear(graph_, x_, data_, coverage_.nearest, v, near_);
-    double nearness = 0.0;
-    for (const NearDatum& n : near_) {
-      const double unit = std::max(1.0, spacing[n.datum]);
-      const double part = n.share * ramp(n.distance, reach_lengths * unit, near_lengths * unit);
-      nearness += part;
-      coverage_.point_weight[n.datum] += static_cast<float>(part * area);
-    }
-    coverage_.nearness[v] = static_cast<float>(nearness);
-    coverage_.vertex[v] = nearness > 0.0 ? 1 : 0;
+    for (const NearDatum& n : near_)
+      coverage_.point_weight[n.datum] += static_cast<float>(partOf(n, spacing) * area);
   }
 
   const MeshGraph& graph_;
@@ -197,6 +210,7 @@ private:
   const FacePoints& lists_;
   int threads_;
   DataCoverage coverage_;
+  Eigen::Matrix3Xd feet_; // barycentric, by entry of the lists
   std::vector<NearDatum> near_;
 };
 } // namespace

@@ -4,7 +4,9 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <fresco/core/parallel.h>
+#include <fresco/core/simd.h>
 #include <limits>
 namespace fresco::optimization {
 struct FaceShare {
@@ -20,24 +22,26 @@ public:
     parallelFor(graph.faceCount(), threads, [&](Index f) {
       Eigen::Matrix4f& planes = planes_[f];
       planes.setZero(); // of a face without area: nothing is known
-      const Eigen::Vector3d normal = areaVector(graph, x, f).stableNormalized();
+      const Eigen::Vector3d normal = areaVector(graph, x, f).normalized();
       for (int k = 0; k < 3 && !normal.isZero(0.0); ++k) {
         const Eigen::Vector3d a = x.col(graph.faces(k, f)), b = x.col(graph.faces((k + 1) % 3, f));
-        const Eigen::Vector3d outward = (b - a).cross(normal).stableNormalized();
+        const Eigen::Vector3d outward = (b - a).cross(normal).normalized();
         planes.row(k) << outward.cast<float>().transpose(), static_cast<float>(-outward.dot(a));
         planes.row(3) << normal.cast<float>().transpose(), static_cast<float>(-normal.dot(a));
       }
     });
   }
 
-  /// Not more than the squared distance of p to face f.
-  float leastSquaredDistance(int f, const Eigen::Vector3f& p) const
+  /// False only if p is farther from face f than `reach`.
+  bool mayReach(int f, const Eigen::Vector3f& p, float reach) const
   {
+    using namespace simd;
     constexpr float rounding = 1e-3f; // mean edge lengths
-    const Eigen::Vector4f heights = planes_[f] * p.homogeneous();
-    const float beside = std::max(0.f, heights.head<3>().maxCoeff() - rounding),
-                above = std::max(0.f, std::abs(heights[3]) - rounding);
-    return beside * beside + above * above;
+    const float most = reach + rounding, *columns = planes_[f].data();
+    const Float4 heights = load<Float4>(columns) * p.x() + load<Float4>(columns + 4) * p.y() +
+                           load<Float4>(columns + 8) * p.z() + load<Float4>(columns + 12);
+    const Int4 outside = heights > most;
+    return (outside[0] | outside[1] | outside[2]) == 0 && std::abs(heights[3]) <= most;
   }
 
 private:
@@ -87,26 +91,35 @@ private:
   {
     constexpr std::size_t most_faces = 64; // where hundreds meet at a point
     candidates_.clear();
+    seen_ = 0;
     least_ = least_counted_ = std::numeric_limits<double>::infinity();
     add(face, p, normal);
     for (std::size_t i = 0; i < candidates_.size() && candidates_.size() < most_faces; ++i)
       for (int k = 0; k < 3 && candidates_[i].distance <= least_ + width; ++k)
         for (const int f : facesAround(graph_, graph_.faces(k, candidates_[i].face)))
-          if (std::none_of(candidates_.begin(), candidates_.end(), [f](const Candidate& c) { return c.face == f; }))
+          if (isNew(f))
             add(f, p, normal);
   }
+
+  bool isNew(int f) const
+  {
+    return (seen_ & bitOf(f)) == 0 ||
+           std::none_of(candidates_.begin(), candidates_.end(), [f](const Candidate& c) { return c.face == f; });
+  }
+
+  static std::uint64_t bitOf(int f) { return std::uint64_t{1} << (f & 63); }
 
   void add(int f, const Eigen::Vector3d& p, const Eigen::Vector3d& normal)
   {
     Candidate next{f, std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
-    const double reach = least_counted_ + width;
-    if (!(prisms_.leastSquaredDistance(f, p.cast<float>()) > reach * reach)) {
+    if (prisms_.mayReach(f, p.cast<float>(), static_cast<float>(least_counted_ + width))) {
       next.distance = offsetFrom(graph_, x_, f, footOn(graph_, x_, f, p), p).norm();
       next.counted = next.distance + handicap(f, normal);
       least_ = std::min(least_, next.distance);
       least_counted_ = std::min(least_counted_, next.counted);
     }
     candidates_.push_back(next);
+    seen_ |= bitOf(f);
   }
 
   // The more a face is turned away the more it counts as farther off.
@@ -125,6 +138,7 @@ private:
   const Positions& x_;
   const FacePrisms& prisms_;
   std::vector<Candidate> candidates_;
+  std::uint64_t seen_ = 0; ///< bits of their faces
   double least_ = 0.0, least_counted_ = 0.0;
   std::vector<FaceShare> shares_;
 };

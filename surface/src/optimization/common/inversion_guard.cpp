@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fresco/core/parallel.h>
-#include <numeric>
+#include <utility>
 namespace fresco::optimization {
 namespace {
 using Eigen::Vector3d;
@@ -25,17 +25,6 @@ double partAllowed(const MeshGraph& graph, const Positions& x, const Positions& 
   // The least t > 0 with linear t + square t^2 = -most_lost, in a form without cancellation.
   const double denominator = -linear + std::sqrt(linear * linear - 4.0 * square * most_lost);
   return denominator > 2.0 * most_lost ? 2.0 * most_lost / denominator : 1.0;
-}
-
-// Faces that are inverted at x and were not so before.
-std::vector<int> newlyInverted(const MeshGraph& graph, const Positions& x, const std::vector<char>& before, int threads)
-{
-  const std::vector<char> now = invertedFaces(graph, x, threads);
-  std::vector<int> found;
-  for (Index f = 0; f < graph.faceCount(); ++f)
-    if (now[f] && !before[f])
-      found.push_back(static_cast<int>(f));
-  return found;
 }
 
 // Sum of the areas of the faces around the corners of face f.
@@ -65,18 +54,87 @@ double leastWayBack(const MeshGraph& graph, const Positions& start, const Positi
   return inside >= 0.0 && denominator > -2.0 * area ? std::max(0.0, -2.0 * area / denominator) : 1.0;
 }
 
+// Numbers below a limit, each once, in the order in which they came.
+class NumberSet {
+public:
+  explicit NumberSet(Index limit) : here_(limit, 0) {}
+  void add(int number)
+  {
+    if (!here_[number])
+      numbers_.push_back(number);
+    here_[number] = 1;
+  }
+  void clear()
+  {
+    for (const int number : numbers_)
+      here_[number] = 0;
+    numbers_.clear();
+  }
+  const std::vector<int>& numbers() const { return numbers_; }
+
+private:
+  std::vector<char> here_;
+  std::vector<int> numbers_;
+};
+
+// Faces that are inverted at x and were not so before: of all, then of those near the last ones.
+class NewlyInverted {
+public:
+  NewlyInverted(const MeshGraph& graph, const std::vector<char>& before, int threads)
+      : graph_(graph), before_(before), threads_(threads), near_(graph.faceCount())
+  {}
+
+  const std::vector<int>& findAll(const Positions& x)
+  {
+    const std::vector<char> now = invertedFaces(graph_, x, threads_);
+    found_.clear();
+    for (Index f = 0; f < graph_.faceCount(); ++f)
+      if (now[f] && !before_[f])
+        found_.push_back(static_cast<int>(f));
+    return found_;
+  }
+
+  // Where only corners of the last ones have moved, or those of the faces around them.
+  const std::vector<int>& findAgain(const Positions& x)
+  {
+    constexpr int rings = 3; // of faces that depend on what has moved
+    near_.clear();
+    for (const int f : found_)
+      near_.add(f);
+    for (int ring = 0; ring < rings; ++ring)
+      for (const int f : std::vector<int>(near_.numbers()))
+        for (int k = 0; k < 3; ++k)
+          for (const int g : facesAround(graph_, graph_.faces(k, f)))
+            near_.add(g);
+    found_.clear();
+    for (const int f : near_.numbers())
+      if (!before_[f] && areaVector(graph_, x, f).dot(areaAround(graph_, x, f)) < 0.0)
+        found_.push_back(f);
+    std::sort(found_.begin(), found_.end());
+    return found_;
+  }
+
+private:
+  const MeshGraph& graph_;
+  const std::vector<char>& before_;
+  int threads_;
+  NumberSet near_;
+  std::vector<int> found_;
+};
+
 // Puts the corners of inverted faces back to the start, and where they are there, the ring around them: with all of
 // that at the start a face cannot be inverted.
-void putBack(const MeshGraph& graph, const Positions& start, const std::vector<char>& before, Positions& x, int threads)
+void putBack(const MeshGraph& graph, const Positions& start, NewlyInverted& inverted, Positions& x)
 {
   const auto put = [&](Index v) {
     const bool away = x.col(v) != start.col(v);
     x.col(v) = start.col(v);
     return away;
   };
-  for (bool any = true; any;) {
+  std::vector<int> faces = inverted.findAll(x);
+  for (bool any = true; any; faces = inverted.findAgain(x)) {
     any = false;
-    for (const int f : newlyInverted(graph, x, before, threads)) {
+    for (const int f : faces) {
       bool corners = false;
       for (int k = 0; k < 3; ++k)
         corners |= put(graph.faces(k, f));
@@ -87,12 +145,6 @@ void putBack(const MeshGraph& graph, const Positions& start, const std::vector<c
             any |= put(graph.faces(j, g));
     }
   }
-}
-
-void sortUnique(std::vector<int>& numbers)
-{
-  std::sort(numbers.begin(), numbers.end());
-  numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
 }
 
 // Vertices inside the surface go to the middle of their neighbours, the share(v) of the way.
@@ -137,33 +189,36 @@ Eigen::VectorXf limitMoves(const MeshGraph& graph, const Positions& x, const Eig
   constexpr double all = 1.0 - 1e-6;
   Eigen::VectorXf left = Eigen::VectorXf::Ones(graph.vertexCount());
   Eigen::VectorXd part = Eigen::VectorXd::Ones(graph.faceCount());
-  // The vertices whose moves the last round made shorter: only the faces around them can allow less than they did.
-  std::vector<int> faces(graph.faceCount()), held;
-  std::iota(faces.begin(), faces.end(), 0);
+  const auto allow = [&](int f) {
+    const Vector3d normal = normals.col(f).cast<double>();
+    part[f] = graph.face_edges(0, f) < 0 || normal.isZero(0.0) ? 1.0 : partAllowed(graph, x, move, normal, f);
+  };
+  parallelFor(graph.faceCount(), threads, allow);
+  NumberSet faces(graph.faceCount()), held(graph.vertexCount());
+  for (int f = 0; f < graph.faceCount(); ++f)
+    if (part[f] < 1.0)
+      faces.add(f);
   for (int round = 0; round < most_rounds; ++round) {
-    parallelFor(faces.size(), threads, [&](Index i) {
-      const int f = faces[i];
-      const Vector3d normal = normals.col(f).cast<double>();
-      part[f] = graph.face_edges(0, f) < 0 || normal.isZero(0.0) ? 1.0 : partAllowed(graph, x, move, normal, f);
-    });
-    if (std::all_of(faces.begin(), faces.end(), [&](int f) { return part[f] >= all; }))
+    if (std::all_of(faces.numbers().begin(), faces.numbers().end(), [&](int f) { return part[f] >= all; }))
       break;
     held.clear();
-    for (const int f : faces)
-      if (part[f] < 1.0)
-        held.insert(held.end(), graph.faces.col(f).begin(), graph.faces.col(f).end());
-    sortUnique(held);
-    faces.clear();
-    parallelFor(held.size(), threads, [&](Index i) {
+    for (const int f : faces.numbers())
+      for (int k = 0; k < 3 && part[f] < 1.0; ++k)
+        held.add(graph.faces(k, f));
+    parallelFor(held.numbers().size(), threads, [&](Index i) {
+      const int v = held.numbers()[i];
       double least = 1.0;
-      for (const int f : facesAround(graph, held[i]))
+      for (const int f : facesAround(graph, v))
         least = std::min(least, part[f]);
-      move.col(held[i]) *= least;
-      left[held[i]] *= static_cast<float>(least);
+      move.col(v) *= least;
+      left[v] *= static_cast<float>(least);
     });
-    for (const int v : held)
-      faces.insert(faces.end(), facesAround(graph, v).begin(), facesAround(graph, v).end());
-    sortUnique(faces);
+    // Only the faces around vertices whose moves became shorter can allow less than they did.
+    faces.clear();
+    for (const int v : held.numbers())
+      for (const int f : facesAround(graph, v))
+        faces.add(f);
+    parallelFor(faces.numbers().size(), threads, [&](Index i) { allow(faces.numbers()[i]); });
   }
   return left;
 }
@@ -205,20 +260,23 @@ Index repairInverted(const MeshGraph& graph, const Positions& start, const Eigen
   for (int round = 0; round < relaxations; ++round)
     relaxInverted(graph, part, x, threads);
   const Positions relaxed = x;
-  Eigen::VectorXd back(graph.vertexCount());
-  for (int round = 0; round < rounds; ++round) {
-    const std::vector<int> faces = newlyInverted(graph, x, before, threads);
-    if (faces.empty())
-      break;
-    back.setZero();
+  Eigen::VectorXd back = Eigen::VectorXd::Zero(graph.vertexCount());
+  NewlyInverted inverted(graph, before, threads);
+  std::vector<int> faces = inverted.findAll(x);
+  for (int round = 0; round < rounds && !faces.empty(); ++round) {
     for (const int f : faces) {
       const double way = std::min(1.0, farther * leastWayBack(graph, start, x, f));
       for (int k = 0; k < 3; ++k)
         back[graph.faces(k, f)] = std::max(back[graph.faces(k, f)], way);
     }
-    parallelFor(graph.vertexCount(), threads, [&](Index v) { x.col(v) += back[v] * (start.col(v) - x.col(v)); });
+    for (const int f : faces)
+      for (int k = 0; k < 3; ++k) {
+        const int v = graph.faces(k, f);
+        x.col(v) += std::exchange(back[v], 0.0) * (start.col(v) - x.col(v));
+      }
+    faces = inverted.findAgain(x);
   }
-  putBack(graph, start, before, x, threads);
+  putBack(graph, start, inverted, x);
   return (x.array() != relaxed.array()).colwise().any().count();
 }
 } // namespace fresco::optimization

@@ -114,6 +114,6 @@ double rmsMove(const Positions& move, const std::vector<char>& counts, int threa
 
 std::size_t fresco::optimizationMemory(Index faces, Index points)
 {
-  constexpr std::size_t per_face = 370, per_point = 65; // bytes, measured: docs/measurements/optimization.md
+  constexpr std::size_t per_face = 400, per_point = 65; // bytes, measured: docs/measurements/optimization.md
   return per_face * static_cast<std::size_t>(faces) + per_point * static_cast<std::size_t>(points);
 }

@@ -8,13 +8,13 @@ namespace {
 using Eigen::Vector3f;
 
 struct Datum {
-  int face;
   float share;
-  Vector3f point, normal;
+  Vector3f point, normal, filtered; ///< its own normal, and the filtered one of its face; unit or zero
 };
 
 /// On the faces around v; of many every n-th, since all pairs of them are looked at.
-void dataAround(const OptimizationProblem& problem, const FacePoints& lists, Index v, std::vector<Datum>& found)
+void dataAround(const OptimizationProblem& problem, const FacePoints& lists, const Eigen::Matrix3Xf& normals, Index v,
+                std::vector<Datum>& found)
 {
   constexpr int most_data = 48; // a few times what three directions need
   found.clear();
@@ -28,39 +28,41 @@ void dataAround(const OptimizationProblem& problem, const FacePoints& lists, Ind
       if (next++ % step != 0)
         continue;
       const int i = lists.order[j];
-      found.push_back({f, lists.share[j], problem.data.points.col(i), problem.data.normals.col(i)});
+      found.push_back({lists.share[j], problem.data.points.col(i), problem.data.normals.col(i), normals.col(f)});
     }
 }
 
 /// 0 where the differences between data around a vertex are at right angles to the filtered normals, as far as noise
 /// lets them; to 1 where they are so to the data's own normals only. A chord of a circle is at right angles to the mean
 /// of the normals at its ends; beside a crease normals that are blunt contradict the places.
-double curvature(const std::vector<Datum>& data, const Eigen::Matrix3Xf& normals, double noise)
+double curvature(const std::vector<Datum>& data, double noise)
 {
   constexpr float same_piece = 0.5f; // cosine: beyond 60 degrees a pair lies across a crease
   constexpr double blurred = 0.25;   // mean edge lengths: normals are estimated over so many then that they are blunt
   constexpr double least_data = 3.0, explained = 0.2, told = 1.0; // data; standard deviations of the ratio
-  double flat_squares = 0, own_squares = 0, noise_squares = 0, count = 0;
-  for (std::size_t a = 0; a < data.size(); ++a) {
-    count += data[a].share;
+  double count = 0;
+  for (const Datum& datum : data)
+    count += datum.share;
+  const double enough = ramp(count, 0.5 * least_data, least_data) * ramp(noise, blurred, 0.5 * blurred);
+  if (!(enough > 0))
+    return 0;
+  double flat_squares = 0, own_squares = 0, noise_squares = 0;
+  for (std::size_t a = 0; a < data.size(); ++a)
     for (std::size_t b = a + 1; b < data.size(); ++b) {
-      const Vector3f filtered = normals.col(data[a].face) + normals.col(data[b].face);
-      const Vector3f own = data[a].normal + data[b].normal;
-      if (normals.col(data[a].face).dot(normals.col(data[b].face)) < same_piece ||
-          data[a].normal.dot(data[b].normal) < same_piece)
+      const float filtered_cosine = data[a].filtered.dot(data[b].filtered), cosine = data[a].normal.dot(data[b].normal);
+      if (filtered_cosine < same_piece || cosine < same_piece)
         continue;
       const Vector3f way = data[b].point - data[a].point;
       const double weight = data[a].share * data[b].share * way.squaredNorm(); // near ones show noise only
-      flat_squares += weight * std::pow(way.dot(filtered), 2) / filtered.squaredNorm();
-      own_squares += weight * std::pow(way.dot(own), 2) / own.squaredNorm();
+      const float flat = way.dot(data[a].filtered + data[b].filtered), own = way.dot(data[a].normal + data[b].normal);
+      flat_squares += weight * (flat * flat / (2 + 2 * filtered_cosine)); // the sum of unit vectors, squared
+      own_squares += weight * (own * own / (2 + 2 * cosine));
       noise_squares += weight * 2 * noise * noise;
     }
-  }
   if (!(noise_squares > 0))
     return 0;
   const double ratio = (flat_squares + noise_squares) / (own_squares + noise_squares), deviation = std::sqrt(2 / count);
-  return ramp(ratio, 1 + explained * deviation, 1 + told * deviation) * ramp(count, 0.5 * least_data, least_data) *
-         ramp(noise, blurred, 0.5 * blurred);
+  return ramp(ratio, 1 + explained * deviation, 1 + told * deviation) * enough;
 }
 
 /// Of the data on a face and on the faces around it that look the same way; zero where there are none.
@@ -84,8 +86,8 @@ void followCurvedData(const OptimizationProblem& problem, const Eigen::Matrix3Xd
   Eigen::VectorXf curved = Eigen::VectorXf::Zero(graph.vertexCount());
   parallelFor(graph.vertexCount(), threads, [&](Index v) {
     thread_local std::vector<Datum> data;
-    dataAround(problem, lists, v, data);
-    curved[v] = curvature(data, normals, std::max(noise, least_noise));
+    dataAround(problem, lists, normals, v, data);
+    curved[v] = curvature(data, std::max(noise, least_noise));
   });
   Eigen::Matrix3Xf given = Eigen::Matrix3Xf::Zero(3, graph.faceCount());
   parallelFor(graph.faceCount(), threads, [&](Index f) {

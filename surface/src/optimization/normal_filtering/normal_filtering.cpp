@@ -124,11 +124,10 @@ public:
 
   void iterate(const Progress& progress)
   {
-    // The first steps find the surface. Those after them refine it, and wander where nothing settles: where data
-    // contradict each other they cut it into facets, and they magnify any rounding. So they grow shorter, to nothing
-    // after nine more. Denser meshes than data lose a little of their exactness by it.
-    constexpr int whole_steps = 5;
-    constexpr double shorter = 0.65, least_part = 0.02; // less cannot be seen
+    // The first steps find the surface and refine it. Where data contradict each other steps wander on, cut the surface
+    // into facets and magnify any rounding: so after these one shorter step ends it.
+    constexpr int whole_steps = 7;
+    constexpr double shorter = 0.25, least_part = 0.1; // steps with less gain nothing to speak of
     double part = 1.0;
     for (int i = 0; i < options_.iterations && part > least_part; ++i) {
       report(progress, "optimize", 0.1 + 0.75 * i / options_.iterations);

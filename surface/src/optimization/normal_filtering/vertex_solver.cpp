@@ -7,19 +7,36 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-struct System {
-  const QuadraticEnergy& energy;
-  const MeshGraph& graph;
-  int threads;
-  Index size() const { return graph.vertexCount(); }
-};
-
 int cornerOf(const MeshGraph& graph, int f, Index v)
 {
   return graph.faces(0, f) == v ? 0 : graph.faces(1, f) == v ? 1 : 2;
 }
 
-Vector3d heights(const FaceTerm& term, const MeshGraph& graph, Index f, const Positions& d)
+// The faces around a vertex side by side: entry j is face graph.vertex_faces[j].
+struct System {
+  System(const QuadraticEnergy& given, const MeshGraph& of, int use)
+      : energy(given), graph(of), threads(use), entry(3, of.faceCount()), normals(3, of.vertex_faces.size())
+  {
+    entry.setConstant(-1); // of degenerate faces
+    parallelFor(size(), threads, [&](Index v) {
+      for (int j = graph.face_begin[v]; j < graph.face_begin[v + 1]; ++j) {
+        const int f = graph.vertex_faces[j];
+        entry(cornerOf(graph, f, v), f) = j;
+        normals.col(j) = energy.faces[f].normal;
+      }
+    });
+  }
+
+  Index size() const { return graph.vertexCount(); }
+
+  const QuadraticEnergy& energy;
+  const MeshGraph& graph;
+  int threads;
+  Faces entry;              // 3xF, of each corner
+  Eigen::Matrix3Xf normals; // by entry
+};
+
+inline Vector3d heights(const FaceTerm& term, const MeshGraph& graph, Index f, const Positions& d)
 {
   const Vector3d n = term.normal.cast<double>();
   return {n.dot(d.col(graph.faces(0, f))), n.dot(d.col(graph.faces(1, f))), n.dot(d.col(graph.faces(2, f)))};
@@ -34,48 +51,60 @@ Vector3d times(const FaceTerm& t, const Vector3d& u)
           p20 * u[0] + p12 * u[1] + (t.diagonal[2] + 2 * s) * u[2]};
 }
 
-// Sum over the faces around each free vertex of its corner's share, along the face's normal, and own(v) of the vertex.
-template <typename Own>
-void gather(const System& system, const Eigen::Matrix3Xd& shares, const Own& own, Positions& result)
+using Shares = Eigen::VectorXd; // along the normals of the faces, by entry
+
+// Sets the shares of the corners of each face to what `of` says.
+template <typename Of>
+void setShares(const System& system, const Of& of, Shares& shares)
 {
-  parallelFor(system.size(), system.threads, [&](Index v) {
-    if (!system.energy.free[v]) {
-      result.col(v).setZero();
-      return;
-    }
-    Vector3d sum = own(v);
-    for (const int f : facesAround(system.graph, v))
-      sum += shares(cornerOf(system.graph, f, v), f) * system.energy.faces[f].normal.cast<double>();
-    result.col(v) = sum;
+  parallelFor(system.graph.faceCount(), system.threads, [&](Index f) {
+    const Vector3d corners = of(f);
+    for (int k = 0; k < 3; ++k)
+      if (const int j = system.entry(k, f); j >= 0)
+        shares[j] = corners[k];
   });
 }
 
-void multiply(const System& system, const Positions& d, Eigen::Matrix3Xd& shares, Positions& result)
+// Sum of the shares around v.
+Vector3d gathered(const System& system, const Shares& shares, Index v)
 {
-  parallelFor(system.graph.faceCount(), system.threads, [&](Index f) {
+  Vector3d sum = Vector3d::Zero();
+  for (int j = system.graph.face_begin[v]; j < system.graph.face_begin[v + 1]; ++j)
+    sum += shares[j] * system.normals.col(j).cast<double>();
+  return sum;
+}
+
+// The matrix times d, zero for vertices that are not free. @returns d . result
+double multiply(const System& system, const Positions& d, Shares& shares, Positions& result)
+{
+  const auto product = [&](Index f) {
     const FaceTerm& term = system.energy.faces[f];
-    shares.col(f) = times(term, heights(term, system.graph, f, d));
+    return times(term, heights(term, system.graph, f, d));
+  };
+  setShares(system, product, shares);
+  return parallelSum(system.size(), system.threads, 0.0, [&](Index v) {
+    if (system.energy.free[v])
+      result.col(v) = system.energy.vertices[v].tangential.cast<double>() * d.col(v) + gathered(system, shares, v);
+    else
+      result.col(v).setZero();
+    return d.col(v).dot(result.col(v));
   });
-  const auto own = [&](Index v) -> Vector3d { return system.energy.vertices[v].tangential.cast<double>() * d.col(v); };
-  gather(system, shares, own, result);
 }
 
-Positions rightHandSide(const System& system, const Positions& x)
+Positions rightHandSide(const System& system, const Positions& x, Shares& shares)
 {
-  Eigen::Matrix3Xd shares(3, system.graph.faceCount());
-  parallelFor(system.graph.faceCount(), system.threads, [&](Index f) {
+  const auto pull = [&](Index f) -> Vector3d {
     const FaceTerm& t = system.energy.faces[f];
     const Vector3d u = heights(t, system.graph, f, x);
-    const double sum = u.sum();
-    for (int k = 0; k < 3; ++k)
-      shares(k, f) = t.linear[k] + t.smoothness * (sum - 3 * u[k]);
-  });
-  Positions b(3, system.size());
-  const auto own = [&](Index v) -> Vector3d {
-    const VertexTerm& term = system.energy.vertices[v];
-    return (term.tangential * term.target).cast<double>();
+    return Vector3d(t.linear[0], t.linear[1], t.linear[2]) + t.smoothness * (Vector3d::Constant(u.sum()) - 3 * u);
   };
-  gather(system, shares, own, b);
+  setShares(system, pull, shares);
+  Positions b = Positions::Zero(3, system.size());
+  parallelFor(system.size(), system.threads, [&](Index v) {
+    const VertexTerm& term = system.energy.vertices[v];
+    if (system.energy.free[v])
+      b.col(v) = (term.tangential * term.target).cast<double>() + gathered(system, shares, v);
+  });
   return b;
 }
 
@@ -95,16 +124,6 @@ std::vector<Matrix3d> inverseBlocks(const System& system)
     inverse[v] = block.inverse();
   });
   return inverse;
-}
-
-double dot(const Positions& a, const Positions& b, int threads)
-{
-  return parallelSum(a.cols(), threads, 0.0, [&](Index v) { return a.col(v).dot(b.col(v)); });
-}
-
-void precondition(const System& system, const std::vector<Matrix3d>& inverse, const Positions& r, Positions& z)
-{
-  parallelFor(system.size(), system.threads, [&](Index v) { z.col(v) = inverse[v] * r.col(v); });
 }
 } // namespace
 
@@ -143,33 +162,34 @@ QuadraticTerms evaluate(const QuadraticEnergy& energy, const MeshGraph& graph, c
 
 Positions solveMoves(const QuadraticEnergy& energy, const MeshGraph& graph, const Positions& x, int rounds, int threads)
 {
-  const System system{energy, graph, threads};
+  const System system(energy, graph, threads);
   const std::vector<Matrix3d> inverse = inverseBlocks(system);
-  Positions residual = rightHandSide(system, x);
-  Positions move = Positions::Zero(3, system.size()), z(3, system.size()), product(3, system.size());
-  Eigen::Matrix3Xd shares(3, graph.faceCount());
-  precondition(system, inverse, residual, z);
-  Positions direction = z;
-  double rho = dot(residual, z, threads);
+  Shares shares = Shares::Zero(graph.vertex_faces.size());
+  Positions residual = rightHandSide(system, x, shares);
+  Positions move = Positions::Zero(3, system.size()), direction(3, system.size()), product(3, system.size());
+  Positions& preconditioned = product; // residual, once the product has served
+  double rho = parallelSum(system.size(), threads, 0.0, [&](Index v) {
+    direction.col(v) = inverse[v] * residual.col(v);
+    return residual.col(v).dot(direction.col(v));
+  });
   const double enough = 1e-4 * rho; // a hundredth of the first residual: the next iteration has another energy
   double part = 1.0;                // of a round that counts, so that no round comes or goes at once
   for (int round = 0; round < rounds; ++round) {
     part = std::min(part, ramp(rho, enough, 2.0 * enough));
     if (!(part > 0.0))
       break;
-    multiply(system, direction, shares, product);
-    const double curvature = dot(direction, product, threads);
+    const double curvature = multiply(system, direction, shares, product);
     if (!(curvature > 0.0))
       break;
-    const double step = rho / curvature;
-    parallelFor(system.size(), threads, [&](Index v) {
+    const double step = rho / curvature, last = rho;
+    rho = parallelSum(system.size(), threads, 0.0, [&](Index v) {
       move.col(v) += part * step * direction.col(v);
       residual.col(v) -= step * product.col(v);
+      preconditioned.col(v) = inverse[v] * residual.col(v);
+      return residual.col(v).dot(preconditioned.col(v));
     });
-    precondition(system, inverse, residual, z);
-    const double last = rho;
-    rho = dot(residual, z, threads);
-    parallelFor(system.size(), threads, [&](Index v) { direction.col(v) = z.col(v) + rho / last * direction.col(v); });
+    parallelFor(system.size(), threads,
+                [&](Index v) { direction.col(v) = preconditioned.col(v) + rho / last * direction.col(v); });
   }
   return move;
 }

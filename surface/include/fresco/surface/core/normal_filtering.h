@@ -11,8 +11,8 @@ namespace fresco {
 /// Zheng, Fu, Au, Tai 2011, "Bilateral normal filtering for mesh denoising".
 /// Weights are for lengths in mean edge lengths, so that they mean the same for every model.
 struct NormalFilteringOptions {
-  int iterations = 15;          ///< at most, 1..10000; correspondences are found anew in each. Later steps grow shorter
-  double smoothness_weight = 1; ///< of the edges' slopes against the filtered normals, >= 0
+  int iterations = 15;            ///< at most, 1..10000; eight are enough, more are not done
+  double smoothness_weight = 1;   ///< of the edges' slopes against the filtered normals, >= 0
   double tangential_weight = 0.1; ///< of sliding towards well-shaped triangles, >= 0
   bool flip = false;              ///< edges are flipped so that they follow the creases
   double tolerance = 1e-3;        ///< ends when a step moves the vertices by less; RMS, mean edge lengths, >= 0
