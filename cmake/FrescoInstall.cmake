@@ -8,10 +8,16 @@ install(FILES "${PROJECT_BINARY_DIR}/frescoConfig.cmake" "${PROJECT_BINARY_DIR}/
         DESTINATION "${config_dir}" COMPONENT development)
 install(EXPORT frescoTargets NAMESPACE fresco:: DESTINATION "${config_dir}" COMPONENT development)
 install(FILES "${PROJECT_SOURCE_DIR}/package.xml" DESTINATION "${CMAKE_INSTALL_DATADIR}/fresco" COMPONENT development)
-install(FILES "${PROJECT_SOURCE_DIR}/README.md" "${PROJECT_SOURCE_DIR}/CHANGELOG.md"
-        DESTINATION "${CMAKE_INSTALL_DATADIR}/doc/fresco" COMPONENT runtime)
+# README's links lead to the pages and examples beside it, and theirs back.
+install(FILES "${PROJECT_SOURCE_DIR}/README.md" "${PROJECT_SOURCE_DIR}/CHANGELOG.md" "${PROJECT_SOURCE_DIR}/CONTRIBUTING.md"
+        DESTINATION "${CMAKE_INSTALL_DATADIR}/doc/fresco" COMPONENT documentation)
+install(DIRECTORY "${PROJECT_SOURCE_DIR}/docs" "${PROJECT_SOURCE_DIR}/examples"
+        DESTINATION "${CMAKE_INSTALL_DATADIR}/doc/fresco" COMPONENT documentation
+        PATTERN "site" EXCLUDE PATTERN ".ipynb_checkpoints" EXCLUDE)
 # Debian wants the licence of each package under this name.
 install(FILES "${PROJECT_SOURCE_DIR}/LICENSE" DESTINATION "${CMAKE_INSTALL_DATADIR}/doc/fresco" RENAME copyright
         COMPONENT runtime)
 install(FILES "${PROJECT_SOURCE_DIR}/LICENSE" DESTINATION "${CMAKE_INSTALL_DATADIR}/doc/libfresco-dev" RENAME copyright
         COMPONENT development)
+install(FILES "${PROJECT_SOURCE_DIR}/LICENSE" DESTINATION "${CMAKE_INSTALL_DATADIR}/doc/fresco-doc" RENAME copyright
+        COMPONENT documentation)

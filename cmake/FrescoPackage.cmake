@@ -1,5 +1,6 @@
 # Debian packages: cpack -G DEB in the build folder gives fresco (libraries, tools, manual), libfresco-dev (headers,
-# CMake package) and python3-fresco. Configure with -DCMAKE_INSTALL_PREFIX=/usr, so that libraries go to Debian's folder for them.
+# CMake package), fresco-doc (pages, examples) and python3-fresco. Configure with -DCMAKE_INSTALL_PREFIX=/usr, so that
+# libraries go to Debian's folder for them.
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME fresco)
 set(CPACK_PACKAGE_VENDOR "The fresco authors")
@@ -10,7 +11,7 @@ set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_PACKAGE_DIRECTORY "${PROJECT_BINARY_DIR}/packages")
 set(CPACK_STRIP_FILES ON)
 set(CPACK_VERBATIM_VARIABLES ON)
-set(CPACK_COMPONENTS_ALL runtime development)
+set(CPACK_COMPONENTS_ALL runtime development documentation)
 
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
@@ -29,6 +30,10 @@ set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
     "fresco (= ${PROJECT_VERSION}-1), libpcl-dev (>= 1.13), libeigen3-dev (>= 3.4)")
 set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION "Headers and CMake package of fresco: PCL-compatible classes.")
+set(CPACK_DEBIAN_DOCUMENTATION_PACKAGE_NAME fresco-doc)
+set(CPACK_DEBIAN_DOCUMENTATION_PACKAGE_SECTION doc)
+set(CPACK_DEBIAN_DOCUMENTATION_PACKAGE_ARCHITECTURE all)
+set(CPACK_COMPONENT_DOCUMENTATION_DESCRIPTION "Documentation and example programs of fresco.")
 if(TARGET fresco_python) # what the module links, fresco links, too
   list(APPEND CPACK_COMPONENTS_ALL python)
   execute_process(COMMAND "${FRESCO_PYTHON}" -c "import sys; print('%d.%d' % sys.version_info[:2])"

@@ -70,6 +70,20 @@ run("${CMAKE_COMMAND}" -S "${snippets}" -B "${snippets}/build" -G Ninja "-DCMAKE
     ${flags})
 run("${CMAKE_COMMAND}" --build "${snippets}/build")
 
+# Links of the installed pages lead to installed files.
+set(pages "${prefix}/share/doc/fresco")
+file(GLOB_RECURSE names "${pages}/*.md")
+expect_file("${pages}/docs/index.md")
+foreach(name IN LISTS names)
+  get_filename_component(folder "${name}" DIRECTORY)
+  file(READ "${name}" text)
+  string(REGEX MATCHALL "\\([A-Za-z0-9_./-]+\\.(md|cpp|ipynb|bib|jpg|png)[#)]" links "${text}")
+  foreach(link IN LISTS links)
+    string(REGEX REPLACE "^\\(|[#)]$" "" link "${link}")
+    expect_file("${folder}/${link}")
+  endforeach()
+endforeach()
+
 # What a package holds besides.
 file(GLOB_RECURSE installed RELATIVE "${prefix}" "${prefix}/*")
 foreach(part "libfresco_core.so.${SOVERSION}" "libfresco_surface.so.${SOVERSION}." share/man/man1/fresco_model.1
