@@ -224,8 +224,9 @@ Figures pointsFromFrames(const Job& job, const Progress& progress)
 
 double finestCell(const Job& job)
 {
-  constexpr double pixels_per_cell = 3; // finer cells follow the noise of single pixels: docs/measurements/model.md
-  constexpr double scans = 0.02;        // metres: rooms from a few stations, some 1 to 10 mm between points
+  // Finer cells follow the noise of single pixels: docs/measurements/depth_fusion.md.
+  constexpr double pixels_per_cell = 3;
+  constexpr double scans = 0.02; // metres: rooms from a few stations, some 1 to 10 mm between points
   if (job.options.cell > 0)
     return job.options.cell;
   return job.input.rgbd ? pixels_per_cell * pixelFootprint(*job.input.rgbd) : scans;

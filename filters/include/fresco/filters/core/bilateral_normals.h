@@ -36,7 +36,7 @@ FRESCO_EXPORT BilateralResult smoothNormals(const Points& points, const Points& 
 
 /// As above with set.points. If set.viewpoints are known, after each of the first two rounds normals beside creases are
 /// compared with the directions that are frequent around, by how the neighbours lie about their planes for the noise
-/// along the beams; a trained network weighs that (docs/filters.md). Normals that do not face their viewpoint stay.
+/// along the beams; a trained network weighs that (docs/normal_smoothing.md). Normals that do not face their viewpoint stay.
 /// @param normals 3xN, facing the viewpoints; those of the set are not used
 /// @throws std::invalid_argument also if the set's attributes do not fit
 FRESCO_EXPORT BilateralResult smoothNormals(const PointSet& set, const Points& normals,
