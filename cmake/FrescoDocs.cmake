@@ -15,7 +15,7 @@ if(DOXYGEN_FOUND AND TARGET fresco_tools AND NOT CMAKE_CROSSCOMPILING)
     list(APPEND includes "\"${PROJECT_SOURCE_DIR}/${module}/include\"")
   endforeach()
   string(JOIN " " FRESCO_SITE_INCLUDES ${includes})
-  set(FRESCO_SITE_INPUT "\"${PROJECT_SOURCE_DIR}/docs\" \"${FRESCO_SITE}/tools\" ${FRESCO_SITE_INCLUDES}")
+  set(FRESCO_SITE_INPUT "\"${PROJECT_SOURCE_DIR}/docs\" \"${PROJECT_SOURCE_DIR}/CONTRIBUTING.md\" \"${FRESCO_SITE}/tools\" ${FRESCO_SITE_INCLUDES}")
   configure_file("${PROJECT_SOURCE_DIR}/docs/site/Doxyfile.in" "${FRESCO_SITE}/Doxyfile" @ONLY)
   add_custom_target(docs_site
     COMMAND Doxygen::doxygen "${FRESCO_SITE}/Doxyfile"

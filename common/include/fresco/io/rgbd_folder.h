@@ -22,8 +22,9 @@ struct RgbdFolderFiles {
 /// Whether `camera-intrinsics.txt` lies in the folder.
 FRESCO_EXPORT bool isRgbdFolder(const std::string& folder);
 
-/// Lists `camera-intrinsics.txt` (3x3) and `frame-*.{color.jpg or color.png, depth.png, pose.txt}`. Numbers within names
-/// are compared as numbers: frame-9 comes before frame-10. Of the images only the size of the first is looked at.
+/// Lists `camera-intrinsics.txt` (3x3) and of each frame N `frame-N.color.jpg` (or `.png`), `frame-N.depth.png` and
+/// `frame-N.pose.txt`. Numbers within names are compared as numbers: frame-9 comes before frame-10. Of the images only the
+/// size of the first is looked at.
 /// @throws std::runtime_error naming the file that is missing or malformed
 FRESCO_EXPORT RgbdFolderFiles listRgbdFolder(const std::string& folder);
 
