@@ -27,7 +27,7 @@ try {
   pcl::PolygonMesh sharp;
   optimization.process(sharp);
 
-  const fresco::NormalFilteringResult& result = optimization.getNormalFilteringResult();
+  const fresco::NormalFilteringResult& result = optimization.getResult();
   std::cout << sharp.polygons.size() << " triangles, " << result.iterations << " iterations, " << result.flipped_edges
             << " edges flipped\n";
   return pcl::io::savePLYFileBinary(argv[3], sharp) == 0 ? 0 : 1;

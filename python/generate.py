@@ -14,12 +14,12 @@ from typing import NamedTuple
 NAMES = """PointSet TriangleMesh TexturedMesh CameraModel CameraProjection View CameraSet ScanInfo MeshTopology
 NormalOptions NormalField BilateralOptions BilateralResult MixedPixelOptions OutlierOptions
 ScanRegistrationOptions ScanRegistrationResult ScanResult PairResult AlternativePose FreeMotion
-VolumetricOptions VolumetricResult SurfaceOptimizationResult NormalFilteringOptions NormalFilteringResult NormalFilteringStep EnergyOptions EnergyResult
-EnergyStep DepthFusionOptions DepthFusionResult MeshDistanceOptions MeshDistanceResult TwoSidedDistance DistanceStatistics
+VolumetricOptions VolumetricResult NormalFilteringOptions NormalFilteringResult NormalFilteringStep
+DepthFusionOptions DepthFusionResult MeshDistanceOptions MeshDistanceResult TwoSidedDistance DistanceStatistics
 NormalDeviation TextureOptions TextureView TextureResult PlacedCamera PhotographFit PointTextureOptions PointTextureResult
 PointLook ModelOptions ModelReport ModelStage PictureOptions Viewpoint""".split()
 # What a function is called in Python where it is not its name in C++ with underscores.
-RENAMED = {"reconstructVolumetric": "reconstruct", "filterSurface": "optimize", "minimizeSurfaceEnergy": "minimize_energy",
+RENAMED = {"reconstructVolumetric": "reconstruct", "filterSurface": "optimize",
            "measureMeshDistance": "compare", "withoutMixedPixels": "remove_mixed_pixels", "withoutOutliers": "remove_outliers",
            "readColmap": "read_cameras", "writeColmap": "write_cameras"}
 ERRORS = {"std::invalid_argument": "ValueError", "std::runtime_error": "Error"}

@@ -9,7 +9,6 @@
 #include <fresco/io/mesh_io.h>
 #include <fresco/surface/core/mesh_distance.h>
 #include <fresco/surface/core/normal_filtering.h>
-#include <fresco/surface/core/surface_energy.h>
 #include <fresco/surface/core/surface_samples.h>
 #include <fresco/surface/core/volumetric_reconstruction.h>
 #include <random>
@@ -19,7 +18,7 @@ using namespace fresco;
 struct Request {
   int count = 100000, depth = 7;
   double noise = 0.25;
-  std::string keep, mode = "normal_filtering";
+  std::string keep;
   std::vector<std::string> models;
   bool flip = false;
   CommonOptions common;
@@ -36,13 +35,10 @@ Request parse(int argc, char** argv)
   args.option("count", request.count, "samples, > 0");
   args.option("noise", request.noise, "deviation of Gaussian noise, % of the diagonal of the bounding box, > 0");
   args.option("depth", request.depth, "octree depth of the reconstruction, 2..16");
-  args.option("mode", request.mode, "normal_filtering or energy");
   args.flag("flip", request.flip, "with edge flips");
   args.option("keep", request.keep, "folder (must exist) for the meshes: NAME_before.ply, NAME_after.ply");
   request.common.declare(args);
   request.models = args.parse(argc, argv, 0, 100);
-  if (request.mode != "normal_filtering" && request.mode != "energy")
-    throw UsageError("-mode is normal_filtering or energy, not '" + request.mode + "'");
   return request;
 }
 
@@ -78,11 +74,6 @@ void printRow(const std::string& name, const TriangleMesh& mesh, const TriangleM
 
 TriangleMesh optimized(const TriangleMesh& mesh, const PointSet& points, const Request& request)
 {
-  if (request.mode == "energy") {
-    EnergyOptions options;
-    options.threads = request.common.threads;
-    return minimizeSurfaceEnergy(mesh, points, options).mesh;
-  }
   NormalFilteringOptions options;
   options.flip = request.flip;
   options.threads = request.common.threads;

@@ -19,25 +19,15 @@ void addOptimization(const py::module_& module)
 {
   addRecord<NormalFilteringResult>(module);
   addRecord<NormalFilteringStep>(module);
-  addRecord<EnergyResult>(module);
-  addRecord<EnergyStep>(module);
-  const std::vector<Argument> arguments{{"mesh", "TriangleMesh"}, {"points", "PointSet"}};
   addFunction<NormalFilteringOptions>(
-      module, {"optimize", "filterSurface", arguments, "NormalFilteringResult"}, [](const Call& call) {
+      module,
+      {"optimize", "filterSurface", {{"mesh", "TriangleMesh"}, {"points", "PointSet"}}, "NormalFilteringResult"},
+      [](const Call& call) {
         const auto mesh = lendMesh(call);
         const auto set = lendPoints(call);
         const auto options = call.options<NormalFilteringOptions>();
         return call.run([&](const Progress& progress) { return filterSurface(*mesh, *set, options, progress); });
       });
-  addFunction<EnergyOptions>(module, {"minimize_energy", "minimizeSurfaceEnergy", arguments, "EnergyResult"},
-                             [](const Call& call) {
-                               const auto mesh = lendMesh(call);
-                               const auto set = lendPoints(call);
-                               const auto options = call.options<EnergyOptions>();
-                               return call.run([&](const Progress& progress) {
-                                 return minimizeSurfaceEnergy(*mesh, *set, options, progress);
-                               });
-                             });
 }
 
 void addDistance(const py::module_& module)

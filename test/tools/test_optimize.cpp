@@ -7,7 +7,6 @@
 #include <fresco/io/mesh_io.h>
 #include <fresco/io/point_io.h>
 #include <fresco/surface/core/normal_filtering.h>
-#include <fresco/surface/core/surface_energy.h>
 #include <nlohmann/json.hpp>
 #include <sys/wait.h>
 namespace fresco {
@@ -37,13 +36,6 @@ TEST(Optimize, DoesWhatTheCoreDoes)
   EXPECT_GE(report.at("steps").size(), 3U);
   EXPECT_EQ(report.at("vertices"), mesh.vertexCount());
   EXPECT_TRUE(report.at("steps")[0].at("tangential").is_number());
-  EnergyOptions energy;
-  energy.iterations = 2;
-  for (const std::string mode : {"energy", "faithful"}) { // the second is the old name
-    EXPECT_EQ(runTool(files + " -mode " + mode + " -iterations 2 -quiet", folder), 0);
-    EXPECT_EQ(readMesh(folder + "/out.ply").vertices, minimizeSurfaceEnergy(mesh, points, energy).mesh.vertices);
-  }
-  EXPECT_EQ(runTool(files + " -mode best -iterations 1 -quiet", folder), 0);
 }
 
 TEST(Optimize, OptionsAreNamedAndChecked)
@@ -51,10 +43,10 @@ TEST(Optimize, OptionsAreNamedAndChecked)
   const std::string folder = test::scratchFolder(), files = "mesh.ply points.ply out.ply ";
   ASSERT_EQ(runTool("-h", folder), 0);
   const std::string help = readFile(folder + "/stdout.txt");
-  for (const char* const option : {"-iterations", "-kappa1", "-kappa2", "-flip", "-mode", "-tolerance", "-report"})
+  for (const char* const option : {"-iterations", "-kappa1", "-kappa2", "-flip", "-tolerance", "-report"})
     EXPECT_NE(help.find(option), std::string::npos) << option;
-  for (const char* const wrong : {"-iterations -1", "-iterations 0", "-iterations 10001", "-tolerance -1", "-kappa1 -1",
-                                  "-mode energy -flip", "-mode", "-nonsense"})
+  for (const char* const wrong : {"-iterations -1", "-iterations 0", "-iterations 9", "-tolerance -1", "-kappa1 -1",
+                                  "-kappa2 -1", "-mode energy", "-nonsense"})
     EXPECT_EQ(runTool(files + wrong, folder), 2) << wrong;
 }
 
@@ -71,7 +63,6 @@ TEST(Optimize, BadInputEndsCleanly)
   EXPECT_NE(readFile(folder + "/stderr.txt").find("mesh.ply"), std::string::npos);
   EXPECT_EQ(runTool(mesh + folder + "/absent.ply " + out, folder), 1);
   EXPECT_EQ(runTool(folder + "/points.ply " + folder + "/points.ply " + out, folder), 1);
-  EXPECT_EQ(runTool(mesh + folder + "/points.ply " + out + " -mode other", folder), 2);
   EXPECT_EQ(runTool(mesh + folder + "/points.ply", folder), 2);
   EXPECT_EQ(runTool("-h", folder), 0);
   EXPECT_FALSE(std::filesystem::exists(out));

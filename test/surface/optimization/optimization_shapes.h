@@ -5,7 +5,6 @@
 #include <fresco/core/constants.h>
 #include <fresco/core/point_set.h>
 #include <fresco/surface/core/normal_filtering.h>
-#include <fresco/surface/core/surface_energy.h>
 #include <fresco/surface/core/volumetric_reconstruction.h>
 #include <map>
 #include <random>

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The parts of the optimiser: gradients, solver, line search, inverted faces, flips.
+// The parts of the optimiser: correspondences, solver, inverted faces, flips.
 #include "common/shapes.h"
 #include "optimization/common/inversion_guard.h"
-#include "optimization/energy/energy.h"
-#include "optimization/energy/line_search.h"
 #include "optimization/normal_filtering/edge_flips.h"
 #include "optimization/normal_filtering/vertex_energy.h"
 #include "optimization/normal_filtering/vertex_solver.h"
@@ -34,53 +32,6 @@ Positions randomMove(Index vertices, double size, unsigned seed)
   for (Index i = 0; i < move.size(); ++i)
     move.data()[i] = normal(random);
   return move;
-}
-
-struct Kappas {
-  double fit, smooth, topology;
-};
-
-// Largest difference between the gradient and central differences along random directions, relative to the gradient.
-double gradientError(const OptimizationProblem& problem, const Kappas& kappas)
-{
-  OptimizationProblem scaled = problem;
-  scaled.coverage.point_weight *= static_cast<float>(kappas.fit);
-  SurfaceEnergy energy{scaled,
-                       pointsOfFaces(scaled.data, scaled.graph.faceCount()),
-                       oneRings(scaled.graph, scaled.start, 1),
-                       kappas.smooth,
-                       kappas.topology,
-                       3.0,
-                       1};
-  const Positions x = scaled.start + randomMove(scaled.start.cols(), 0.1, 5);
-  Positions gradient(3, x.cols());
-  evaluate(energy, x, &gradient);
-  double worst = 0.0;
-  for (unsigned seed = 10; seed < 14; ++seed) {
-    const Positions direction = randomMove(x.cols(), 1.0, seed);
-    const double h = 1e-5;
-    const double numeric = (evaluate(energy, x + h * direction, nullptr).sum(energy) -
-                            evaluate(energy, x - h * direction, nullptr).sum(energy)) /
-                           (2 * h);
-    worst = std::max(worst, std::abs(numeric - gradient.cwiseProduct(direction).sum()));
-  }
-  return worst / gradient.norm();
-}
-
-TEST(OptimizationTerms, GradientsEqualFiniteDifferences)
-{
-  const OptimizationProblem problem = problemOf(test::roundedCube(8, 0.3), test::cubePoints(1500, 0.02));
-  EXPECT_LT(gradientError(problem, {1, 0, 0}), 1e-4) << "fit";
-  EXPECT_LT(gradientError(problem, {0, 1, 0}), 1e-5) << "smooth";
-  EXPECT_LT(gradientError(problem, {0, 0, 1}), 1e-6) << "topology";
-  EXPECT_LT(gradientError(problem, {1, 0.3, 0.7}), 1e-4) << "all";
-}
-
-TEST(OptimizationTerms, SmoothnessPrefersOneCreaseToManySmallAngles)
-{
-  EXPECT_EQ(smoothnessPotential(0.0), 0.0);
-  EXPECT_LT(smoothnessPotential(1.0), 5 * smoothnessPotential(0.2));
-  EXPECT_GT(smoothnessPotential(0.5), smoothnessPotential(0.4));
 }
 
 TEST(OptimizationTerms, FollowingFindsTheClosestFaceAgain)
@@ -147,19 +98,6 @@ TEST(OptimizationTerms, SolverReachesTheMinimum)
   EXPECT_LT(least, evaluate(energy, problem.graph, problem.x, Positions::Zero(3, move.cols()), 1).sum());
   for (unsigned seed = 0; seed < 5; ++seed)
     EXPECT_GE(evaluate(energy, problem.graph, problem.x, move + randomMove(move.cols(), 1e-2, seed), 1).sum(), least);
-}
-
-TEST(OptimizationTerms, LineSearchSatisfiesStrongWolfe)
-{
-  for (const double width : {0.01, 1.0, 100.0}) {
-    const auto at = [&](double step) {
-      const double t = step / width;
-      return LinePoint{step, -t / (t * t + 2), (t * t - 2) / ((t * t + 2) * (t * t + 2)) / width}; // More, Thuente 1994
-    };
-    const LinePoint start = at(0.0), found = lineSearch(start, 0.1, at, {1e-4, 0.1, 40});
-    EXPECT_LE(found.value, start.value + 1e-4 * found.step * start.slope) << width;
-    EXPECT_LE(std::abs(found.slope), 0.1 * std::abs(start.slope)) << width;
-  }
 }
 
 TEST(OptimizationTerms, InvertedFacesAreRepaired)

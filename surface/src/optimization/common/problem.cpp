@@ -56,15 +56,6 @@ TriangleMesh movedMesh(const TriangleMesh& mesh, const OptimizationProblem& prob
 }
 } // namespace
 
-void validateOptions(int iterations, double smoothness_weight, double shape_weight, double tolerance)
-{
-  require(iterations >= 1 && iterations <= 10000, "optimisation: ", iterations, " iterations are not in 1..10000");
-  for (const double weight : {smoothness_weight, shape_weight})
-    require(weight >= 0 && std::isfinite(weight), "optimisation: weight ", weight, " is negative or not finite");
-  require(tolerance >= 0 && std::isfinite(tolerance), "optimisation: tolerance ", tolerance,
-          " is negative or not finite");
-}
-
 OptimizationProblem makeProblem(const TriangleMesh& mesh, const PointSet& points, int threads)
 {
   constexpr double reach =
@@ -89,7 +80,7 @@ OptimizationProblem makeProblem(const TriangleMesh& mesh, const PointSet& points
   return problem;
 }
 
-void finish(const TriangleMesh& mesh, OptimizationProblem& problem, int threads, SurfaceOptimizationResult& result)
+void finish(const TriangleMesh& mesh, OptimizationProblem& problem, int threads, NormalFilteringResult& result)
 {
   const std::vector<char>& covered = problem.coverage.vertex;
   result.edge_length = problem.frame.unit;

@@ -9,9 +9,24 @@
 #include <algorithm>
 #include <cmath>
 #include <fresco/core/parallel.h>
+#include <fresco/core/require.h>
 namespace fresco {
 using namespace optimization;
 namespace {
+// The first steps find the surface and refine it. Where data contradict each other steps wander on, cut the surface into
+// facets and magnify any rounding: so after the whole ones a shorter step ends it.
+constexpr int most_steps = 8;
+constexpr double last_part = 0.25;
+
+void validate(const NormalFilteringOptions& options)
+{
+  require(options.iterations >= 1 && options.iterations <= most_steps, "optimisation: ", options.iterations,
+          " iterations are not in 1..", most_steps);
+  for (const double value : {options.smoothness_weight, options.tangential_weight, options.tolerance})
+    require(value >= 0 && std::isfinite(value), "optimisation: weight or tolerance ", value,
+            " is negative or not finite");
+}
+
 // The smoothness weight is the square of the length over which data are averaged: half the distance between data, so
 // that exact ones are hardly averaged, and more with noise. Dense data need less: with the root of noise times distance
 // the number of data averaged grows as noise does. Factors by measurement on
@@ -124,15 +139,12 @@ public:
 
   void iterate(const Progress& progress)
   {
-    // The first steps find the surface and refine it. Where data contradict each other steps wander on, cut the surface
-    // into facets and magnify any rounding: so after these one shorter step ends it.
-    constexpr int whole_steps = 7;
-    constexpr double shorter = 0.25, least_part = 0.1; // steps with less gain nothing to speak of
+    constexpr double least_part = 0.1; // steps with less gain nothing to speak of
     double part = 1.0;
     for (int i = 0; i < options_.iterations && part > least_part; ++i) {
       report(progress, "optimize", 0.1 + 0.75 * i / options_.iterations);
       step(part);
-      part *= i + 1 < whole_steps ? 1.0 : shorter;
+      part *= i + 2 < most_steps ? 1.0 : last_part;
     }
     result_.converged = result_.steps.back().move <= 2.0 * options_.tolerance;
   }
@@ -170,7 +182,7 @@ private:
 NormalFilteringResult filterSurface(const TriangleMesh& mesh, const PointSet& points,
                                     const NormalFilteringOptions& options, const Progress& progress)
 {
-  validateOptions(options.iterations, options.smoothness_weight, options.tangential_weight, options.tolerance);
+  validate(options);
   report(progress, "correspondences", 0.0);
   OptimizationProblem problem = makeProblem(mesh, points, options.threads);
   NormalFilteringResult result;

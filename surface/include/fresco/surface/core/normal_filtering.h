@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+#include <cstddef>
 #include <fresco/core/export.h>
+#include <fresco/core/mesh.h>
 #include <fresco/core/point_set.h>
 #include <fresco/core/progress.h>
-#include <fresco/surface/core/surface_optimization.h>
 #include <vector>
 namespace fresco {
 /// Two-stage mesh denoising with data: filtered face normals, then a vertex update, alternately.
@@ -11,7 +12,7 @@ namespace fresco {
 /// Zheng, Fu, Au, Tai 2011, "Bilateral normal filtering for mesh denoising".
 /// Weights are for lengths in mean edge lengths, so that they mean the same for every model.
 struct NormalFilteringOptions {
-  int iterations = 15;            ///< at most, 1..10000; eight are enough, more are not done
+  int iterations = 8;             ///< at most, 1..8
   double smoothness_weight = 1;   ///< of the edges' slopes against the filtered normals, >= 0
   double tangential_weight = 0.1; ///< of sliding towards well-shaped triangles, >= 0
   bool flip = false;              ///< edges are flipped so that they follow the creases
@@ -30,9 +31,19 @@ struct NormalFilteringStep {
   double move = 0;       ///< RMS move of the vertices
 };
 
-struct NormalFilteringResult : SurfaceOptimizationResult {
+/// Lengths are in the unit of the mesh.
+struct NormalFilteringResult {
+  TriangleMesh mesh;      ///< input with moved vertices; normals anew where the input has them, other attributes kept
+  Index iterations = 0;   ///< number of accepted steps
+  bool converged = false; ///< ended by the convergence test, not by the count
+  double edge_length = 0; ///< mean over edges of the input: the unit of the steps
+  double spacing = 0;     ///< between the points, median
+  Index used_points = 0;  ///< points with a face
+  Index left_out_points = 0;   ///< not finite, too far from the mesh, or seen from the wrong side
+  Index covered_vertices = 0;  ///< vertices near data; the others stay exactly where they were
+  Index restored_vertices = 0; ///< vertices put back by the final check
   std::vector<NormalFilteringStep> steps;
-  double noise = 0; ///< deviation of the points from the surface, estimated from the points; unit of the mesh
+  double noise = 0; ///< deviation of the points from the surface, estimated from the points
   Index flipped_edges = 0;
 };
 
@@ -49,4 +60,8 @@ struct NormalFilteringResult : SurfaceOptimizationResult {
 FRESCO_EXPORT NormalFilteringResult filterSurface(const TriangleMesh& mesh, const PointSet& points,
                                                   const NormalFilteringOptions& options = {},
                                                   const Progress& progress = {});
+
+/// Bytes that an optimisation of so many faces by so many points takes, mesh and points included, to about a tenth. The
+/// whole mesh is optimised at once: one that takes more than machineMemory() is refused.
+FRESCO_EXPORT std::size_t optimizationMemory(Index faces, Index points);
 } // namespace fresco

@@ -27,25 +27,10 @@ inline void SurfaceOptimization::process(pcl::PolygonMesh& output)
   output = std::move(moved);
 }
 
-inline const SurfaceOptimizationResult& SurfaceOptimization::getResult() const
-{
-  if (result_mode_ == OptimizationMode::energy)
-    return energy_result_;
-  return filtering_result_;
-}
-
 inline void SurfaceOptimization::performProcessing(pcl::PolygonMesh& output)
 {
-  const auto put = [&](auto& result, auto optimized) {
-    toPolygonMesh(optimized.mesh, output);
-    optimized.mesh = {};
-    result = std::move(optimized);
-  };
-  const TriangleMesh mesh = toTriangleMesh(*input_mesh_);
-  if (isEnergy())
-    put(energy_result_, minimizeSurfaceEnergy(mesh, points_, energy_, progress_));
-  else
-    put(filtering_result_, filterSurface(mesh, points_, filtering_, progress_));
-  result_mode_ = mode_;
+  result_ = filterSurface(toTriangleMesh(*input_mesh_), points_, options_, progress_);
+  toPolygonMesh(result_.mesh, output);
+  result_.mesh = {};
 }
 } // namespace fresco
