@@ -11,7 +11,7 @@ if(DOXYGEN_FOUND AND TARGET fresco_tools AND NOT CMAKE_CROSSCOMPILING)
   file(WRITE "${FRESCO_SITE}/tools/tools.md" "${tool_list}")
 
   set(includes "")
-  foreach(module common filters surface registration texture model)
+  foreach(module common filters surface registration tracking alignment texture model)
     list(APPEND includes "\"${PROJECT_SOURCE_DIR}/${module}/include\"")
   endforeach()
   string(JOIN " " FRESCO_SITE_INCLUDES ${includes})

@@ -1,4 +1,4 @@
-# CMake package: find_package(fresco COMPONENTS core io image search filters surface registration texture deliverables model).
+# CMake package: find_package(fresco COMPONENTS core io image search filters surface registration tracking alignment texture deliverables model).
 include(CMakePackageConfigHelpers)
 set(config_dir "${CMAKE_INSTALL_LIBDIR}/cmake/fresco")
 configure_package_config_file("${PROJECT_SOURCE_DIR}/cmake/frescoConfig.cmake.in" "${PROJECT_BINARY_DIR}/frescoConfig.cmake"

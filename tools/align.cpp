@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "support/tool.h"
+#include <fresco/alignment/core/camera_alignment.h>
 #include <fresco/core/constants.h>
 #include <fresco/core/require.h>
 #include <fresco/io/colmap.h>
@@ -7,7 +8,6 @@
 #include <fresco/io/image_io.h>
 #include <fresco/io/mesh_io.h>
 #include <fresco/io/point_io.h>
-#include <fresco/registration/core/camera_alignment.h>
 #include <fresco/surface/core/surface_samples.h>
 namespace {
 using namespace fresco;

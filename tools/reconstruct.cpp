@@ -7,10 +7,10 @@
 #include <filesystem>
 #include <fresco/core/require.h>
 #include <fresco/core/scratch_space.h>
+#include <fresco/distributed/mesh_part.h>
 #include <fresco/io/file.h>
 #include <fresco/io/formats.h>
 #include <fresco/io/mesh_io.h>
-#include <fresco/io/mesh_part.h>
 #include <fresco/io/point_files.h>
 #include <fresco/io/shared_files.h>
 #include <fresco/surface/core/volumetric_reconstruction.h>

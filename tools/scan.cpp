@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "simulation/sensors/dataset.h"
 #include "support/tool.h"
 #include <fresco/io/formats.h>
+#include <fresco/simulation/sensors/dataset.h>
 using namespace fresco;
 using namespace fresco::simulation;
 

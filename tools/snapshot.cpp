@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "rendering/requested_view.h"
 #include "support/scan_option.h"
 #include "support/tool.h"
 #include <Eigen/Geometry>
@@ -11,6 +10,7 @@
 #include <fresco/io/image_io.h>
 #include <fresco/io/mesh_io.h>
 #include <fresco/io/point_io.h>
+#include <fresco/rendering/requested_view.h>
 #include <fresco/surface/core/mesh_distance.h>
 #include <optional>
 #include <sstream>

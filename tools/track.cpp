@@ -6,7 +6,7 @@
 #include <fresco/io/image_io.h>
 #include <fresco/io/pose_file.h>
 #include <fresco/io/rgbd_folder.h>
-#include <fresco/registration/core/rgbd_tracking.h>
+#include <fresco/tracking/core/rgbd_tracking.h>
 namespace {
 using namespace fresco;
 

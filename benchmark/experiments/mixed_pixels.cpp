@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "experiments/scanned_room.h"
-#include "simulation/scene/labels.h"
 #include "support/tool.h"
 #include <cstdio>
 #include <fresco/filters/core/mixed_pixels.h>
 #include <fresco/search/neighbors.h>
 #include <fresco/search/triangle_tree.h>
+#include <fresco/simulation/scene/labels.h>
 /// Mixed pixels of laser scans of a generated room that withoutMixedPixels() finds, and what else it takes, against the labels
 /// of the generator.
 using namespace fresco;

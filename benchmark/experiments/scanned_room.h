@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include "simulation/scene/places.h"
-#include "simulation/sensors/dataset.h"
+#include <fresco/simulation/scene/places.h>
+#include <fresco/simulation/sensors/dataset.h>
 using namespace fresco::simulation;
 namespace fresco {
 /// A scene that is scanned and not photographed: light is coarse.

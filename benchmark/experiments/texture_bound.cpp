@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // How well any texture could do: the true colours of a generated room, painted into the layout that fresco_texture made
 // of its true mesh, at most as fine as photographs show them.
-#include "simulation/sensors/dataset.h"
-#include "simulation/sensors/lighting.h"
 #include "support/tool.h"
 #include <fresco/core/parallel.h>
 #include <fresco/core/require.h>
 #include <fresco/io/colmap.h>
 #include <fresco/io/mesh_io.h>
+#include <fresco/simulation/sensors/dataset.h>
+#include <fresco/simulation/sensors/lighting.h>
 using namespace fresco;
 using namespace fresco::simulation;
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "experiments/scanned_room.h"
 #include "mixed_pixels/mixed_pixel_score.h"
-#include "simulation/scene/labels.h"
-#include "simulation/sensors/random.h"
 #include "support/tool.h"
 #include <algorithm>
 #include <fresco/io/file.h>
 #include <fresco/search/triangle_tree.h>
+#include <fresco/simulation/scene/labels.h>
+#include <fresco/simulation/sensors/random.h>
 #include <mutex>
 #include <numeric>
 /// What withoutMixedPixels() judges, with the truth: the input of mixed_pixels.py.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "job/stage_log.h"
 #include "photographs/structure_from_motion.h"
 #include "report/report.h"
-#include "stage_log.h"
 #include "stages/stages.h"
 #include <chrono>
 #include <cmath>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bindings.h"
 #include "call.h"
-#include "rendering/requested_view.h"
+#include <fresco/rendering/requested_view.h>
 namespace fresco::python {
 /// Names as in the tool.
 template <>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "graph/global_alignment.h"
+#include "global_alignment.h"
 #include "graph/scan_exchange.h"
-#include "refinement/registration_result.h"
+#include "registration_result.h"
 #include "scan/scan_survey.h"
 #include <algorithm>
 #include <cmath>

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "seeds.h"
 #include "common/io/las_writer.h"
-#include "simulation/sensors/e57_writer.h"
-#include "stage_log.h"
+#include "job/stage_log.h"
 #include "targets.h"
 #include <filesystem>
 #include <fresco/core/image.h>
@@ -12,6 +11,7 @@
 #include <fresco/io/mesh_io.h>
 #include <fresco/io/point_io.h>
 #include <fresco/io/pose_file.h>
+#include <fresco/simulation/sensors/e57_writer.h>
 using namespace fresco::model;
 namespace fresco::fuzz {
 namespace {

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "targets.h"
 #include "input/rgbd.h"
-#include "simulation/sensors/e57_writer.h"
-#include "stage_log.h"
+#include "job/stage_log.h"
 #include "support/args.h"
 #include <filesystem>
 #include <fresco/core/require.h>
@@ -15,6 +14,7 @@
 #include <fresco/io/pose_file.h>
 #include <fresco/io/scan_file.h>
 #include <fresco/io/scan_images.h>
+#include <fresco/simulation/sensors/e57_writer.h>
 #include <fstream>
 using namespace fresco::model;
 namespace fresco::fuzz {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "input/model_input.h"
 #include "input/scan_pictures.h"
-#include "simulation/sensors/e57_writer.h"
 #include "test_data.h"
 #include <fresco/core/constants.h>
 #include <fresco/core/require.h>
 #include <fresco/io/file.h>
 #include <fresco/io/image_io.h>
+#include <fresco/simulation/sensors/e57_writer.h>
 namespace fresco::model {
 namespace {
 namespace e57 = simulation::e57;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "graph/pose_graph.h"
+#include <fresco/registration/core/pose_graph.h>
 #include <gtest/gtest.h>
 #include <random>
 using namespace fresco::registration;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "refinement/free_motion.h"
 #include "refinement/placement.h"
-#include "refinement/registration_result.h"
 #include "registration/look_alike_scenes.h"
 #include "registration/registration_scene.h"
+#include "registration_result.h"
 #include <fresco/registration/core/point_to_plane_registration.h>
 #include <fresco/registration/core/scan_registration.h>
 #include <gtest/gtest.h>

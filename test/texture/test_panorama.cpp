@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "cameras/view_parts.h"
+#include "photographs/photo_store.h"
+#include "photographs/view_parts.h"
 #include "texture/texture_scene.h"
-#include "views/photo_store.h"
 #include <gtest/gtest.h>
 namespace fresco::texture {
 namespace {

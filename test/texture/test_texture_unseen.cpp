@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "filling/exemplar_synthesis.h"
-#include "input_checks.h"
 #include "painting/color_growth.h"
+#include "photographs/input_checks.h"
 #include "test_data.h"
 #include "texture/texture_scene.h"
 #include <fresco/io/file.h>

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // fresco_model with each kind of input that scans come in.
-#include "simulation/sensors/e57_writer.h"
 #include "test_data.h"
 #include "tools/small_room.h"
 #include "tools/tool_runs.h"
 #include <fresco/core/constants.h>
 #include <fresco/io/file.h>
 #include <fresco/io/image_io.h>
+#include <fresco/simulation/sensors/e57_writer.h>
 #include <map>
 #include <nlohmann/json.hpp>
 namespace fresco::test {

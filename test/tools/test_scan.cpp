@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "simulation/scene/scene_builder.h"
-#include "simulation/sensors/dataset.h"
 #include "test_data.h"
 #include <fresco/io/colmap.h>
 #include <fresco/io/file.h>
@@ -10,6 +8,8 @@
 #include <fresco/io/pose_file.h>
 #include <fresco/io/scan_file.h>
 #include <fresco/io/scan_images.h>
+#include <fresco/simulation/scene/scene_builder.h>
+#include <fresco/simulation/sensors/dataset.h>
 #include <map>
 using namespace fresco;
 using namespace fresco::simulation;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "registration/registration_scene.h"
-#include "simulation/sensors/e57_writer.h"
 #include "tools/cloud_tool.h"
 #include <fresco/io/pose_file.h>
 #include <fresco/io/scan_file.h>
+#include <fresco/simulation/sensors/e57_writer.h>
 #include <nlohmann/json.hpp>
 namespace fresco {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "rendering/picture_fixtures.h"
 #include "test_data.h"
-#include "tools/rendering/picture_fixtures.h"
 #include <cstdlib>
 #include <filesystem>
 #include <fresco/io/file.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "registration/rgbd_room.h"
 #include "tools/tool_runs.h"
+#include "tracking/rgbd_room.h"
 #include <fresco/io/file.h>
 #include <gtest/gtest.h>
 #include <opencv2/imgcodecs.hpp>

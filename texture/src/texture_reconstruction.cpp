@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cameras/camera_refinement.h"
 #include "charts/given_layout.h"
-#include "input_checks.h"
-#include "photo_painting.h"
+#include "photographs/input_checks.h"
+#include "tiles/photo_painting.h"
 #include "tiles/tiled_texture.h"
 #include "views/face_orientation.h"
 #include "views/patch_visibility.h"

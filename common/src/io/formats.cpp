@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Every format of points and meshes. A new one is a row of the table below and, in docs/formats.md, a row of the list.
-#include "io/format_table.h"
+#include "io/files/format_table.h"
 #include "io/mesh/obj.h"
 #include "io/mesh/ply.h"
 #include "io/mesh/vtk_polydata.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "io/inputs.h"
+#include "io/files/inputs.h"
 #include <algorithm>
 #include <cerrno>
 #include <chrono>

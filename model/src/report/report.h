@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include "files.h"
-#include "stage_log.h"
+#include "job/files.h"
+#include "job/stage_log.h"
 #include <Eigen/Core>
 #include <fresco/model/build_model.h>
 namespace fresco::model {

@@ -3,10 +3,10 @@
 #include "stages/placed_points.h"
 #include "stages/stages.h"
 #include <Eigen/Geometry>
+#include <fresco/alignment/core/camera_alignment.h>
 #include <fresco/core/constants.h>
 #include <fresco/io/colmap.h>
 #include <fresco/io/image_io.h>
-#include <fresco/registration/core/camera_alignment.h>
 namespace fresco::model {
 namespace {
 StructureFromMotion structureFromMotion(const Job& job)

@@ -4,7 +4,7 @@
 #include <fresco/core/require.h>
 #include <fresco/io/image_io.h>
 #include <fresco/io/pose_file.h>
-#include <fresco/registration/core/rgbd_tracking.h>
+#include <fresco/tracking/core/rgbd_tracking.h>
 namespace fresco::model {
 std::vector<RgbdFrame> placedFrames(const Job& job)
 {

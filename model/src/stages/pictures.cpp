@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "rendering/indoor_view.h"
-#include "rendering/picture.h"
 #include "stages/stages.h"
 #include <algorithm>
 #include <cmath>
@@ -8,6 +6,8 @@
 #include <fresco/io/image_io.h>
 #include <fresco/io/mesh_io.h>
 #include <fresco/io/pose_file.h>
+#include <fresco/rendering/indoor_view.h>
+#include <fresco/rendering/picture.h>
 #include <limits>
 namespace fresco::model {
 using namespace rendering;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include "files.h"
 #include "input/model_input.h"
+#include "job/files.h"
 #include <fresco/core/progress.h>
 #include <fresco/model/build_model.h>
 #include <nlohmann/json.hpp>

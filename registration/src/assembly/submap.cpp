@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "assembly/submap.h"
 #include "refinement/joint_refinement.h"
-#include "scan/surface_normals.h"
 #include <algorithm>
 #include <cmath>
+#include <fresco/registration/core/surface_points.h>
 namespace fresco::registration {
 namespace {
 // Of the levels of scans: plans are right to a voxel of the first, and coarser ones make what little holds slide.

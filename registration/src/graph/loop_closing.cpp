@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "graph/loop_closing.h"
-#include "graph/pose_graph.h"
 #include <algorithm>
+#include <fresco/registration/core/pose_graph.h>
 namespace fresco::registration {
 namespace {
 // What all pairs between the cluster's scans say of poses near those it has.

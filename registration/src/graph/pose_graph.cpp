@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "graph/pose_graph.h"
 #include <Eigen/SparseCholesky>
 #include <cmath>
+#include <fresco/registration/core/pose_graph.h>
 namespace fresco::registration {
 namespace {
 Eigen::Isometry3d motion(const Vector6d& step, double size)

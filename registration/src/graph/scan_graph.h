@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include "graph/pair_evidence.h"
-#include "refinement/rigid_motion.h"
+#include <fresco/core/rigid_motion.h>
 namespace fresco::registration {
 /// Scans in one common frame.
 struct ScanCluster {

@@ -1,12 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include "scan/scan_features.h"
+#include <fresco/registration/core/sc2_pcr.h>
 namespace fresco::registration {
-/// Two features that look alike.
-struct Correspondence {
-  Index a = 0, b = 0;
-};
-
 /// For each feature of one scan the most similar of the other, in both directions; those that choose each other first,
 /// then by distance of their descriptors.
 std::vector<Correspondence> matchFeatures(const ScanFeatures& a, const ScanFeatures& b, std::size_t most);

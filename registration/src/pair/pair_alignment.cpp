@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pair/pair_alignment.h"
+#include "pair/feature_matching.h"
 #include "pair/plan_correlation.h"
 #include "pair/plane_matching.h"
 #include <algorithm>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include "pair/pair_verification.h"
+#include "scan/scan_features.h"
 namespace fresco::registration {
 /// All that is known of one pair of scans without a start pose.
 struct PairAlignment {

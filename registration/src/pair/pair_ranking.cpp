@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pair/pair_ranking.h"
+#include "pair/feature_matching.h"
 #include "pair/place_likeness.h"
 #include <algorithm>
 #include <fresco/core/parallel.h>

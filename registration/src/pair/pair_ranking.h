@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include "pair/sc2_pcr.h"
+#include "scan/scan_features.h"
+#include <fresco/registration/core/sc2_pcr.h>
 namespace fresco::registration {
 struct RankedPair {
   Index a = 0, b = 0;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include "pair/pair_overlap.h"
-#include "pair/sc2_pcr.h"
+#include "overlap/pair_overlap.h"
+#include <fresco/registration/core/sc2_pcr.h>
 namespace fresco::registration {
 /// A relative pose of two scans, refined and checked on their points.
 struct VerifiedHypothesis {

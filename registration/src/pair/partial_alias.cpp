@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pair/partial_alias.h"
+#include "pair/feature_matching.h"
 #include "pair/self_alignment.h"
 #include "refinement/joint_refinement.h"
 #include <Eigen/Eigenvalues>

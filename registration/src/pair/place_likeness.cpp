@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pair/place_likeness.h"
+#include "pair/feature_matching.h"
 #include "pair/plane_matching.h"
 #include <algorithm>
 #include <cmath>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include "pair/sc2_pcr.h"
 #include "scan/floor_plan.h"
 #include <complex>
+#include <fresco/registration/core/sc2_pcr.h>
 namespace fresco::registration {
 /// The grid for plans of scanners as high as most of `frames`, and scans as large as most of `scans`.
 PlanGrid choosePlanGrid(const std::vector<std::optional<PlanFrame>>& frames, const std::vector<PreparedScan>& scans);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include "pair/sc2_pcr.h"
 #include "scan/scan_planes.h"
+#include <fresco/registration/core/sc2_pcr.h>
 namespace fresco::registration {
 /// Poses under which the planes of two scans lie on each other: for each of the 24 ways in which their axes can agree,
 /// shifts along each axis where the correlation of the histograms has a peak. After Weiss, Wetzler, von Puttkamer 1994,

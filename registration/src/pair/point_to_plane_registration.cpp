@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "pair/pair_overlap.h"
+#include "overlap/pair_overlap.h"
 #include "refinement/free_motion.h"
 #include "refinement/joint_refinement.h"
 #include <algorithm>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "pair/sc2_pcr.h"
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <fresco/registration/core/sc2_pcr.h>
 namespace fresco::registration {
 namespace {
 constexpr Index fewest_votes = 3; // points that fix a rigid motion
@@ -33,7 +33,7 @@ struct MatchedPoints {
   Points a, b, normals_a, normals_b;
 };
 
-MatchedPoints gather(const ScanFeatures& a, const ScanFeatures& b, const std::vector<Correspondence>& matches)
+MatchedPoints gather(const OrientedPoints& a, const OrientedPoints& b, const std::vector<Correspondence>& matches)
 {
   MatchedPoints points;
   const Index n = matches.size();
@@ -173,7 +173,7 @@ double poseDistance(const Eigen::Isometry3d& first, const Eigen::Isometry3d& sec
   return difference.translation().norm() + size * Eigen::AngleAxisd(difference.linear()).angle();
 }
 
-PoseHypotheses runSc2Pcr(const ScanFeatures& a, const ScanFeatures& b, const std::vector<Correspondence>& matches,
+PoseHypotheses runSc2Pcr(const OrientedPoints& a, const OrientedPoints& b, const std::vector<Correspondence>& matches,
                          const Sc2PcrOptions& options)
 {
   constexpr int most_seeds = 300; // bounds the time

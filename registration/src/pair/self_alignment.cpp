@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pair/self_alignment.h"
+#include "pair/feature_matching.h"
 #include "pair/pair_verification.h"
 #include "pair/partial_alias.h"
 #include <algorithm>

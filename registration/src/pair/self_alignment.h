@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include "pair/pair_verification.h"
-#include "pair/sc2_pcr.h"
+#include "scan/scan_features.h"
+#include <fresco/registration/core/sc2_pcr.h>
 namespace fresco::registration {
 constexpr double alias_distance = 0.5; ///< of a scan's size: nearer places that look alike are one place
 constexpr double alias_color = 0.6;    ///< correlation of two places: below, their colours differ more than light does

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include "refinement/rigid_motion.h"
+#include <fresco/core/rigid_motion.h>
 #include <fresco/registration/core/scan_registration.h>
 #include <optional>
 namespace fresco::registration {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "refinement/joint_refinement.h"
-#include "pair/pair_overlap.h"
+#include "overlap/pair_overlap.h"
 #include "refinement/point_to_plane_system.h"
 #include <Eigen/SparseCholesky>
 #include <algorithm>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include "refinement/joint_covariance.h"
-#include "refinement/rigid_motion.h"
 #include "scan/prepared_scan.h"
 #include <fresco/core/progress.h>
+#include <fresco/core/rigid_motion.h>
 #include <utility>
 namespace fresco::registration {
 using ScanPointers = std::vector<const PreparedScan*>;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "refinement/placement.h"
-#include "pair/pair_overlap.h"
+#include "overlap/pair_overlap.h"
 #include "refinement/free_motion.h"
 #include "refinement/steady_parts.h"
 #include <algorithm>

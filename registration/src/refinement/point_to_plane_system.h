@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include "refinement/rigid_motion.h"
 #include "scan/prepared_scan.h"
+#include <fresco/core/rigid_motion.h>
 namespace fresco::registration {
 constexpr float match_angle = 1.0f; ///< radians between the normals of a match: wide, as start poses may be turned
 

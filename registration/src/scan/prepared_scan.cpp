@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scan/prepared_scan.h"
-#include "scan/surface_normals.h"
 #include "scan/viewpoint_search.h"
 #include <algorithm>
 #include <fresco/core/require.h>
+#include <fresco/registration/core/surface_points.h>
 namespace fresco::registration {
 namespace {
 // Neighbours of points are searched in `level`, which brings a search of the caller if there is one.

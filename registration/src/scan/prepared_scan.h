@@ -9,21 +9,11 @@
 #include <vector>
 namespace fresco::registration {
 /// One scan at one resolution, in the scan's working frame.
-struct ScanLevel {
-  float voxel = 0.f;                       ///< edge of the thinning cells, length
-  Points points;                           ///< 3xN, one per cell, the mean of its points
-  std::shared_ptr<const PointTree> tree;   ///< over them, unless there is a search
+struct ScanLevel : SurfacePoints {
   std::shared_ptr<const NearestGrid> grid; ///< for many searches, see prepareManySearches(); may be null
   PointBlocks blocks;                      ///< of the points, for many judgements; likewise, may be empty
-  std::shared_ptr<NeighborSearch> search;  ///< the caller's own, in place of the tree; may be null
-  Points viewpoints;                       ///< 3xN
-  Points colors;                           ///< 3xN, means over the cells, or 3x0
-  Points normals;                          ///< 3xN unit, zero where the neighbours do not span a plane
-  Eigen::Matrix<std::int32_t, 8, Eigen::Dynamic>
-      around;                        ///< 8xN, nearest points, itself first, -1 = fewer; not of the finest
-  Eigen::VectorXf surface_variation; ///< N, smallest eigenvalue / sum of eigenvalues of the neighbourhood, 0..1/3
-  std::vector<Index> samples;        ///< see normalSpaceOrder()
-  std::vector<char> maybe_person;    ///< N, see findPeople(); empty = not looked for
+  std::vector<Index> samples;              ///< see normalSpaceOrder()
+  std::vector<char> maybe_person;          ///< N, see findPeople(); empty = not looked for
 
   /// To be called before searches: a caller's own search holds the points of one level at a time.
   void prepareSearch() const;
@@ -57,10 +47,6 @@ struct PreparedScan {
   bool spares_doubtful = false;                     ///< people and what was seen through only nearby contradict nothing
   ScanAliases aliases;                              ///< found by findAliases()
 };
-
-constexpr Index fewest_points = 50; ///< thinned points of a scan: below, a pose has hardly any redundancy
-/// Of a neighbourhood: beyond a third of the largest possible, its plane means little.
-constexpr float variation_limit = 0.1f;
 
 /// Level on which two scans are compared: fine enough for furniture, coarser than the errors of a measured pose.
 constexpr int check_level = level_count - 2;

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include "scan/scan_planes.h"
+#include <fresco/registration/core/sc2_pcr.h>
 namespace fresco::registration {
 /// Distinctive points of a scan with a description of what lies around them, in its working frame.
-struct ScanFeatures {
-  Points points;               ///< 3xK
-  Points normals;              ///< 3xK unit
+struct ScanFeatures : OrientedPoints {
   Eigen::MatrixXf descriptors; ///< 33xK, see computeFpfh()
   ScanPlanes planes;
 };

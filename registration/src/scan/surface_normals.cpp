@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "scan/surface_normals.h"
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <fresco/core/parallel.h>
+#include <fresco/registration/core/surface_points.h>
 #include <fresco/search/batch_knn.h>
 namespace fresco::registration {
 namespace {
@@ -43,7 +43,7 @@ LocalPlane fitPlane(const Points& points, const Eigen::Vector3f& center, const s
 
 /// use(i, hits) for every point of a level, with its `k` nearest points by distance, itself first. In parallel.
 template <typename Use>
-void forNeighborhoods(const ScanLevel& level, int k, int threads, const Use& use)
+void forNeighborhoods(const SurfacePoints& level, int k, int threads, const Use& use)
 {
   if (!level.search) {
     const std::vector<int>& columns = level.tree->columns();
@@ -84,7 +84,7 @@ std::uint32_t scramble(std::uint32_t x)
 }
 } // namespace
 
-void estimateNormals(ScanLevel& level, int threads)
+void estimateNormals(SurfacePoints& level, int threads)
 {
   constexpr int neighbor_count = 16;         // of a normal: a disc of about two cells' radius
   constexpr float widest_neighborhood = 6.f; // voxels: further points of sparse regions belong to other surfaces
@@ -103,7 +103,7 @@ void estimateNormals(ScanLevel& level, int threads)
   });
 }
 
-std::vector<Index> normalSpaceOrder(const ScanLevel& level)
+std::vector<Index> normalSpaceOrder(const SurfacePoints& level)
 {
   std::array<std::vector<Index>, 125> bins;
   for (Index i = 0; i < level.points.cols(); ++i)

@@ -1,14 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include <array>
-#include <fresco/core/point_set.h>
+#include <fresco/registration/core/surface_points.h>
 namespace fresco::registration {
-/// Points with their viewpoints, relative to a scan's centre.
-struct RawScan {
-  Points points, viewpoints; ///< 3xN
-  Points colors;             ///< 3xN, or 3x0 where the scan has none
-};
-
 /// Resolutions: the coarsest cells, 8 times the finest, still show walls and furniture.
 constexpr int level_count = 4;
 constexpr double voxels_per_size = 100.0; ///< finest thinning: a room of 3 m radius in 3 cm cells
@@ -20,13 +14,6 @@ struct WorkingCenter {
   bool assumed = false; ///< it is the frame's origin; neither: the middle of points that lie far from the origin
 };
 WorkingCenter workingCenter(const PointSet& scan);
-
-/// Finite points of a scan, seen from the center where no viewpoint is known.
-RawScan finitePoints(const PointSet& scan, const Eigen::Vector3d& center);
-
-/// One point for each occupied cell of a grid: the mean; the viewpoint is that of its first point.
-/// @param voxel edge of the cells, length
-RawScan thin(const RawScan& raw, float voxel);
 
 /// Median distance of the finite points from the viewpoints (the scan's origin if unknown), length; 0 if there are
 /// none.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include "poisson/isosurface/isosurface.h"
-#include "poisson/samples.h"
+#include "poisson/samples/samples.h"
 namespace fresco::poisson {
 struct AttributedSamples {
   const SampleLevel& level;

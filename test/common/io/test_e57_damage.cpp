@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "common/io/test_io_data.h"
 #include "io/points/e57/paged_file.h"
-#include "simulation/sensors/e57_writer.h"
 #include <fresco/io/point_io.h>
 #include <fresco/io/scan_file.h>
 #include <fresco/io/scan_images.h>
+#include <fresco/simulation/sensors/e57_writer.h>
 namespace {
 using namespace fresco;
 

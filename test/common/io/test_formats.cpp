@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "common/io/test_io_data.h"
-#include "io/format_table.h"
+#include "io/files/format_table.h"
 #include <fresco/io/mesh_io.h>
 #include <fresco/io/point_io.h>
 namespace {

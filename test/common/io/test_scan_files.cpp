@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "common/io/las_writer.h"
 #include "common/io/test_io_data.h"
-#include "simulation/sensors/e57_writer.h"
 #include <fresco/io/point_io.h>
 #include <fresco/io/scan_file.h>
+#include <fresco/simulation/sensors/e57_writer.h>
 #include <sstream>
 namespace {
 using namespace fresco;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "poisson/density.h"
 #include "poisson/octree/select.h"
 #include "poisson/octree/splat.h"
+#include "poisson/samples/density.h"
 #include "poisson/solver/base_solver.h"
 #include "surface/poisson/volumetric_shapes.h"
 #include "test_data.h"

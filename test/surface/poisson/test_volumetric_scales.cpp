@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "poisson/density.h"
-#include "poisson/noise.h"
 #include "poisson/octree/halo.h"
+#include "poisson/samples/density.h"
+#include "poisson/samples/noise.h"
 #include "poisson/solver/constraints.h"
 #include "poisson/solver/low_pass_filter.h"
 #include "surface/poisson/volumetric_shapes.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "poisson/exact_sum.h"
-#include "poisson/occupied_cells.h"
-#include "poisson/point_sketch.h"
+#include "poisson/samples/exact_sum.h"
+#include "poisson/samples/occupied_cells.h"
+#include "poisson/samples/point_sketch.h"
 #include "surface/poisson/volumetric_shapes.h"
 #include <algorithm>
 #include <gtest/gtest.h>

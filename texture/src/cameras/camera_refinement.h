@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include "views/photo_store.h"
+#include "photographs/photo_store.h"
 #include <fresco/core/progress.h>
 #include <fresco/search/ray_scene.h>
 namespace fresco::texture {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cameras/patch_search.h"
-#include "grid.h"
+#include "photographs/grid.h"
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include "cameras/grey_pyramid.h"
-#include "cameras/projector.h"
-#include "grid.h"
+#include "photographs/grid.h"
+#include "photographs/projector.h"
 #include <algorithm>
 #include <fresco/search/ray_scene.h>
 namespace fresco::texture {

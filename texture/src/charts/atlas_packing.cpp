@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "charts/atlas_packing.h"
-#include "grid.h"
+#include "photographs/grid.h"
 #include <algorithm>
 #include <boost/dynamic_bitset.hpp>
 #include <cmath>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "charts/chart_raster.h"
-#include "grid.h"
+#include "photographs/grid.h"
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include "cameras/projector.h"
+#include "photographs/projector.h"
 #include "views/patch_mesh.h"
 #include <fresco/core/simd.h>
 namespace fresco::texture {

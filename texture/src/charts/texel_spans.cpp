@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "charts/texel_spans.h"
-#include "grid.h"
+#include "photographs/grid.h"
 #include <algorithm>
 namespace fresco::texture {
 OwnedTexels OwnedTexels::from(const std::vector<int>& owner, int width)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include "cameras/projector.h"
 #include "charts/chart.h"
+#include "photographs/projector.h"
 #include <fresco/texture/core/texture_reconstruction.h>
 namespace fresco::texture {
 /// P, pixels per mesh unit in each patch's view, mean of the directions on the surface; 0 where unseen.

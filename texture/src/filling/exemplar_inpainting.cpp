@@ -2,7 +2,7 @@
 #include "filling/exemplar_inpainting.h"
 #include "filling/creases.h"
 #include "filling/exemplar_synthesis.h"
-#include "grid.h"
+#include "photographs/grid.h"
 #include <algorithm>
 #include <cmath>
 #include <fresco/core/parallel.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include "grid.h"
+#include "photographs/grid.h"
 #include <Eigen/Core>
 #include <array>
 #include <cmath>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "painting/atlas_paint.h"
-#include "charts/patch_frame.h"
+#include "painting/patch_frame.h"
 #include <algorithm>
 #include <cmath>
 #include <fresco/core/parallel.h>

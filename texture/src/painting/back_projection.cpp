@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "painting/back_projection.h"
-#include "charts/patch_frame.h"
+#include "painting/patch_frame.h"
 #include "painting/photo_residual.h"
 #include <algorithm>
 #include <cmath>

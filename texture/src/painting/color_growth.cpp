@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "painting/color_growth.h"
-#include "grid.h"
+#include "photographs/grid.h"
 #include <algorithm>
 #include <fresco/core/parallel.h>
 namespace fresco::texture {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "painting/outline_texels.h"
-#include "charts/patch_frame.h"
-#include "grid.h"
 #include "painting/color_growth.h"
+#include "painting/patch_frame.h"
+#include "photographs/grid.h"
 #include <algorithm>
 #include <cmath>
 #include <fresco/core/parallel.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "painting/photo_residual.h"
-#include "charts/patch_frame.h"
-#include "grid.h"
+#include "painting/patch_frame.h"
+#include "photographs/grid.h"
 #include <algorithm>
 #include <cmath>
 #include <fresco/core/simd.h>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include "charts/patch_map.h"
-#include "grid.h"
 #include "painting/atlas_paint.h"
+#include "photographs/grid.h"
 #include <algorithm>
 #include <array>
 #include <cstdint>

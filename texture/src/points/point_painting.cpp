@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "points/point_painting.h"
-#include "charts/patch_frame.h"
 #include "painting/outline_texels.h"
+#include "painting/patch_frame.h"
 #include "views/visible_surface.h"
 #include <algorithm>
 #include <fresco/core/parallel.h>

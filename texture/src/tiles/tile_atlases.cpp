@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tiles/tile_atlases.h"
 #include "charts/chart.h"
-#include "input_checks.h"
+#include "photographs/input_checks.h"
 #include <fresco/core/require.h>
 namespace fresco::texture {
 TileAtlases::TileAtlases(const AtlasSink& take, TextureResult& result) : take_(take), result_(result)

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tiles/tiled_texture.h"
 #include "cameras/camera_refinement.h"
-#include "input_checks.h"
-#include "photo_painting.h"
+#include "photographs/input_checks.h"
 #include "tiles/coarse_mesh.h"
+#include "tiles/photo_painting.h"
 #include "tiles/tile_traces.h"
 #include "views/face_orientation.h"
 #include "views/patch_visibility.h"

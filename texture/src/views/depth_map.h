@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include "cameras/projector.h"
-#include "grid.h"
+#include "photographs/grid.h"
+#include "photographs/projector.h"
 #include <fresco/core/array.h>
 #include <fresco/search/ray_scene.h>
 #include <vector>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include "cameras/projector.h"
+#include "photographs/projector.h"
 #include <fresco/search/ray_scene.h>
 #include <fresco/texture/core/texture_reconstruction.h>
 namespace fresco::texture {

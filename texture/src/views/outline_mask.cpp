@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "views/outline_mask.h"
-#include "grid.h"
+#include "photographs/grid.h"
 #include <algorithm>
 #include <cmath>
 namespace fresco::texture {

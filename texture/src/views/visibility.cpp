@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "views/visibility.h"
-#include "grid.h"
+#include "photographs/grid.h"
 #include "views/patch_visibility.h"
 #include <Eigen/Geometry>
 #include <algorithm>

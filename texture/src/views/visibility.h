@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include "cameras/projector.h"
-#include "photometry/photometry.h"
+#include "photographs/photo_store.h"
+#include "photographs/photometry.h"
+#include "photographs/projector.h"
 #include "views/outline_mask.h"
 #include "views/patch_mesh.h"
-#include "views/photo_store.h"
 #include <array>
 #include <cmath>
 #include <fresco/core/progress.h>

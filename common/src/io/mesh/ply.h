@@ -49,9 +49,4 @@ void writePly(const std::string& path, PointTable vertices, const Faces& faces);
 /// The same, with part(begin, end) = rows begin .. end - 1: the whole table is never in memory.
 void writePly(const std::string& path, Index rows, const std::function<PointTable(Index, Index)>& part,
               const Faces& faces);
-
-/// What such a file consists of: header, vertices, faces.
-std::string plyHeader(const PointTable& rows, Index vertices, Index faces);
-PointTable plyRows(PointTable vertices);
-std::string plyFaceRows(const Faces& faces, Index begin, Index end);
 } // namespace fresco::io

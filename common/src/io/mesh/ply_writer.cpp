@@ -6,6 +6,7 @@
 #include <cstring>
 #include <fresco/core/require.h>
 #include <fresco/io/file.h>
+#include <fresco/io/ply_rows.h>
 namespace fresco::io {
 namespace {
 const char* typeName(Scalar type)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "io/points/file_window.h"
-#include "io/inputs.h"
+#include "io/files/inputs.h"
 #include <algorithm>
 #include <cerrno>
 #include <cstring>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "io/points/row_file.h"
-#include "io/format_table.h"
+#include "io/files/format_table.h"
 #include "io/points/scan_reader.h"
 #include <algorithm>
 #include <fresco/core/require.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "io/format_table.h"
+#include "io/files/format_table.h"
 #include "io/points/parse_file.h"
 #include "io/points/scan_reader.h"
 #include <algorithm>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "io/texture/texture_io.h"
-#include "io/format_table.h"
+#include "io/files/format_table.h"
 #include "io/points/parse_file.h"
 #include <filesystem>
 #include <fresco/core/require.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include "poisson/isosurface/edges.h"
-#include "poisson/ranks/runs.h"
+#include "poisson/octree/runs.h"
 #include <fresco/core/scratch_space.h>
 namespace fresco::poisson {
 /// Vertices first..first + count - 1 lie on edges of a brick, or in its cells.

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "poisson/octree/bytes.h"
+#include "poisson/octree/ghost_finder.h"
 #include "poisson/octree/node_field.h"
 #include "poisson/octree/radix_sort.h"
 #include "poisson/octree/select.h"
-#include "poisson/ranks/bytes.h"
-#include "poisson/ranks/ghost_finder.h"
 #include <algorithm>
 #include <fresco/core/morton.h>
 #include <fresco/core/parallel.h>

@@ -2,7 +2,7 @@
 #pragma once
 #include "poisson/octree/bit_count.h"
 #include "poisson/octree/ghosts.h"
-#include "poisson/ranks/partition.h"
+#include "poisson/octree/partition.h"
 #include <Eigen/Core>
 #include <array>
 #include <cstddef>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include "poisson/ranks/point_shares.h"
+#include "poisson/samples/point_shares.h"
 namespace fresco::poisson {
 /// As reconstructVolumetricPart(), divided as told.
 VolumetricPart reconstructPart(std::unique_ptr<PointStream> points, const VolumetricOptions& options,

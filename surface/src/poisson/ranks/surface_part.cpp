@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "poisson/ranks/surface_part.h"
-#include "poisson/small_components.h"
+#include "poisson/isosurface/small_components.h"
 #include <algorithm>
 #include <array>
 #include <fresco/core/parallel.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "poisson/ranks/whole_mesh.h"
-#include "poisson/ranks/bytes.h"
+#include "poisson/octree/bytes.h"
 #include <algorithm>
 namespace fresco::poisson {
 namespace {

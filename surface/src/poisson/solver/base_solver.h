@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include "poisson/octree/octree.h"
-#include "poisson/samples.h"
+#include "poisson/samples/samples.h"
 #include "poisson/solver/constraints.h"
 namespace fresco::poisson {
 /// Solves the depths at which the octree is complete, one after the other, with free (Neumann) boundary: conjugate

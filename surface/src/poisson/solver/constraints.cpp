@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "poisson/solver/constraints.h"
 #include "poisson/octree/splat.h"
-#include "poisson/ranks/shared_splat.h"
+#include "poisson/samples/shared_splat.h"
 #include "poisson/solver/transfer.h"
 #include <algorithm>
 #include <fresco/core/release.h>

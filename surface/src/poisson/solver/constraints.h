@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include "poisson/octree/node_field.h"
-#include "poisson/samples.h"
+#include "poisson/samples/samples.h"
 namespace fresco::poisson {
 /// Right-hand sides b_j = integral V . grad B_j of all depths (Kazhdan, Bolitho & Hoppe 2006, sections 4.2, 4.3 and
 /// 4.5), divided by the depth's cell side. V is the normal field: each sample's normal times its area, spread over a

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include "poisson/samples.h"
+#include "poisson/samples/samples.h"
 #include <Eigen/Core>
 #include <vector>
 namespace fresco::poisson {

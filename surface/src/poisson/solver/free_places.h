@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include "poisson/samples.h"
+#include "poisson/samples/samples.h"
 #include <fresco/surface/core/free_space_map.h>
 namespace fresco::poisson {
 /// Where beams passed, asked in cells of the octree.

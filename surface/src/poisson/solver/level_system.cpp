@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "poisson/solver/level_system.h"
-#include "poisson/exact_sum.h"
 #include "poisson/octree/splat.h"
+#include "poisson/samples/exact_sum.h"
 #include <algorithm>
 #include <cmath>
 #include <cstring>

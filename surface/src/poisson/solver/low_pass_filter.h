@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include "poisson/octree/node_field.h"
-#include "poisson/samples.h"
+#include "poisson/samples/samples.h"
 #include <vector>
 namespace fresco::poisson {
 /// Takes waves out of chi that the samples do not sustain: those about as short as the cells of a depth, where samples

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include "poisson/octree/halo.h"
-#include "poisson/samples.h"
+#include "poisson/samples/samples.h"
 #include "poisson/solver/hat_function.h"
 // The screening term of Kazhdan & Hoppe 2013, "Screened Poisson Surface Reconstruction", section 4: chi shall be 0 at
 // the samples p_i. It adds to the energy of depth d

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "poisson/solver/solve.h"
-#include "poisson/ranks/sample_ghosts.h"
+#include "poisson/samples/sample_ghosts.h"
 #include "poisson/solver/base_solver.h"
 #include "poisson/solver/level_system.h"
 #include "poisson/solver/low_pass_filter.h"

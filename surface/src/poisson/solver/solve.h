@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include "poisson/octree/node_field.h"
-#include "poisson/samples.h"
+#include "poisson/samples/samples.h"
 #include "poisson/solver/constraints.h"
 #include "poisson/solver/free_places.h"
 #include <fresco/core/progress.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "poisson/solver/transfer.h"
-#include "poisson/ranks/bytes.h"
+#include "poisson/octree/bytes.h"
 #include <algorithm>
 #include <cstring>
 namespace fresco::poisson {

@@ -1,4 +1,0 @@
-// SPDX-License-Identifier: BSD-3-Clause
-// The old name of <fresco/core/progress.h>, for one version.
-#pragma once
-#include <fresco/core/progress.h>

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include <fresco/distributed/mesh_part.h>
+namespace fresco::io {
+/// A rank's part as a mesh by itself.
+struct SeparateMesh {
+  TriangleMesh mesh;                   ///< own faces and the vertices that they use
+  std::vector<MeshPart::Run> vertices; ///< which of the whole those are, in their order, some of them other ranks' own
+};
+
+/// By all ranks. Own vertices that no rank's face uses stay, so that the parts together have every vertex.
+SeparateMesh separateMesh(const MeshPart& part, Exchange& ranks);
+} // namespace fresco::io

@@ -1,0 +1,285 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "registration_result.h"
+#include <algorithm>
+#include <cmath>
+#include <fresco/core/listed.h>
+#include <fresco/core/require.h>
+#include <fresco/core/union_find.h>
+#include <map>
+namespace fresco::registration {
+namespace {
+using Groups = std::vector<std::vector<Index>>;
+
+// Members held together by accepted pairs or because none moves, largest group first after that, each in rising order.
+Groups acceptedGroups(const Placement& placement, Index scan_count)
+{
+  UnionFind held(scan_count);
+  Index fixed = -1;
+  for (std::size_t m = 0; m < placement.fixed.size(); ++m)
+    if (placement.fixed[m]) {
+      fixed = fixed < 0 ? placement.members[m] : fixed;
+      held.join(fixed, placement.members[m]);
+    }
+  for (const PairResult& pair : placement.pairs)
+    if (pair.accepted)
+      held.join(pair.a, pair.b);
+  Groups groups(scan_count);
+  for (const Index scan : placement.members)
+    groups[held.root(scan)].push_back(scan);
+  groups.erase(std::remove_if(groups.begin(), groups.end(), [](const auto& g) { return g.empty(); }), groups.end());
+  const auto holdsFixed = [&](const std::vector<Index>& group) {
+    return std::find(group.begin(), group.end(), fixed) != group.end();
+  };
+  std::stable_sort(groups.begin(), groups.end(), [&](const auto& a, const auto& b) {
+    return holdsFixed(a) != holdsFixed(b) ? holdsFixed(a) : a.size() > b.size();
+  });
+  return groups;
+}
+
+double pooledRms(const std::vector<PairResult>& pairs, Index scan)
+{
+  double squares = 0.0, count = 0.0;
+  for (const PairResult& pair : pairs)
+    if (pair.accepted && (scan < 0 || pair.a == scan || pair.b == scan)) {
+      squares += pair.matches * pair.rms * pair.rms;
+      count += pair.matches;
+    }
+  return count > 0.0 ? std::sqrt(squares / count) : 0.0;
+}
+
+// The placed scan whose free space contradicts the place of `scan`, -1 if none does.
+Index contradictingScan(const std::vector<PairResult>& pairs, Index scan, const std::vector<Index>& placed,
+                        double limit)
+{
+  for (const PairResult& pair : pairs)
+    for (const auto& [one, other] : {std::pair(pair.a, pair.b), std::pair(pair.b, pair.a)})
+      if (one == scan && pair.violation > limit && std::find(placed.begin(), placed.end(), other) != placed.end())
+        return other;
+  return -1;
+}
+
+class Description {
+public:
+  explicit Description(const RegistrationState& state)
+      : state_(state), scans_(state.scans), start_(state.start), options_(state.options), look_alike_(scans_.size(), 0),
+        loose_(scans_.size(), 0)
+  {
+    result_.voxel = options_.voxel;
+    result_.poses.resize(scans_.size());
+    result_.scans.resize(scans_.size());
+    for (std::size_t i = 0; i < scans_.size(); ++i) {
+      result_.scans[i].problem = scans_[i].problem;
+      result_.scans[i].duplicate_of = scans_[i].duplicate_of;
+      result_.scans[i].viewpoint_problem = scans_[i].viewpoint_problem;
+      if (scans_[i].viewpoint_found && scans_[i].oriented)
+        result_.scans[i].found_viewpoint = scans_[i].center;
+    }
+  }
+
+  ScanRegistrationResult run();
+
+private:
+  ScanResult& scan(Index i) { return result_.scans[i]; }
+  bool started(Index i) const { return !start_.empty() && start_[i].has_value(); }
+  void describeScans(const Placement& placement);
+  void placeMain(const std::vector<Index>& group);
+  void placeOther(const std::vector<Index>& group, const std::vector<Index>& main, bool same_frame);
+  void placeDuplicates();
+  void addTriedPairs();
+
+  const RegistrationState& state_;
+  const std::vector<PreparedScan>& scans_;
+  const std::vector<Pose>& start_;
+  const ScanRegistrationOptions& options_;
+  ScanRegistrationResult result_;
+  std::vector<char> look_alike_, loose_; // per scan
+};
+
+void Description::describeScans(const Placement& placement)
+{
+  for (std::size_t m = 0; m < placement.members.size(); ++m) {
+    const Index i = placement.members[m];
+    const PreparedScan& prepared = scans_[i];
+    scan(i).T_group_scan = (placement.poses[m] * Eigen::Translation3d(-prepared.center)).matrix();
+    scan(i).rms = pooledRms(placement.pairs, i);
+    if (!placement.fixed.empty() && placement.fixed[m]) {
+      scan(i).T_group_scan = *start_[i]; // to the last bit
+      continue;
+    }
+    scan(i).free_motion = placement.free_motions[m];
+    loose_[i] = isLoose(prepared, placement, m);
+    const Matrix6d& covariance = placement.joint.covariances[m];
+    const FreeMotion free = scan(i).free_motion.value_or(FreeMotion());
+    const auto deviation = [](double held, const Eigen::Vector3d& free_direction, double reach) {
+      return !free_direction.isZero() || !(held < reach) ? reach : held;
+    };
+    scan(i).translation_deviation =
+        deviation(positionDeviation(placement.joint, m), free.translation, options_.max_distance);
+    scan(i).rotation_deviation = deviation(std::sqrt(covariance.topLeftCorner<3, 3>().trace()), free.rotation,
+                                           options_.max_distance / prepared.size);
+  }
+}
+
+void Description::placeMain(const std::vector<Index>& group)
+{
+  for (const Index i : group) {
+    if (loose_[i] && !started(i)) {
+      scan(i).problem =
+          scan(i).free_motion
+              ? "its surfaces leave a motion free, and nothing tells where along it the scan belongs"
+              : concat("what it shares with other scans holds it only to ", scan(i).translation_deviation);
+      continue;
+    }
+    scan(i).placed = true;
+    result_.poses[i] = scan(i).T_group_scan;
+    if (scan(i).free_motion)
+      scan(i).problem = "its surfaces leave a motion free: the pose is arbitrary along it";
+  }
+}
+
+void Description::placeOther(const std::vector<Index>& group, const std::vector<Index>& main, bool same_frame)
+{
+  for (const Index i : group) {
+    const Index against = same_frame ? contradictingScan(result_.pairs, i, main, options_.max_violation) : -1;
+    if (against >= 0) {
+      scan(i).problem = "its place contradicts what " + scanName(options_, against) + " saw through";
+    } else if (same_frame && started(i)) {
+      scan(i).placed = true;
+      scan(i).problem = "overlaps none of the other placed scans enough: its start pose is kept unconfirmed";
+      scan(i).translation_deviation = options_.max_distance;
+      scan(i).rotation_deviation = options_.max_distance / scans_[i].size;
+      result_.poses[i] = scan(i).T_group_scan;
+    } else {
+      scan(i).problem = look_alike_[i] ? "fits in several places that look alike, and nothing seen tells which is right"
+                                       : "no place among the other scans is certain";
+    }
+    if (scan(i).free_motion)
+      scan(i).problem += "; within its group, its surfaces leave a motion free";
+  }
+}
+
+// Where the scan is that has the same points.
+void Description::placeDuplicates()
+{
+  const Index n = scans_.size();
+  for (Index i = 0; i < n; ++i) {
+    const Index original = scans_[i].duplicate_of;
+    if (original < 0)
+      continue;
+    const std::string problem = scan(i).problem;
+    scan(i) = scan(original);
+    scan(i).duplicate_of = original;
+    scan(i).problem = problem + (scan(i).placed ? ": placed on it" : ", which has no place");
+    result_.poses[i] = result_.poses[original];
+    if (scan(i).group < 0)
+      continue;
+    PairResult& pair = result_.pairs.emplace_back();
+    pair.a = std::min(i, original);
+    pair.b = std::max(i, original);
+    pair.overlap = 1.0;
+    pair.accepted = true;
+    pair.information_point = scans_[original].center;
+  }
+}
+
+// Pairs that are not in one placement have the best pose of those found; the others of each pair are its alternatives.
+void Description::addTriedPairs()
+{
+  std::map<std::pair<Index, Index>, std::size_t> known;
+  for (std::size_t k = 0; k < result_.pairs.size(); ++k)
+    known.emplace(std::pair(result_.pairs[k].a, result_.pairs[k].b), k);
+  for (const PairAlignment& tried : state_.tried) {
+    const PreparedScan &a = scans_[tried.a], &b = scans_[tried.b];
+    const PairGeometry geometry(a, b);
+    const auto at = known.find({tried.a, tried.b});
+    const bool is_new = at == known.end();
+    if (is_new && tried.hypotheses.empty())
+      continue;
+    PairResult& pair = is_new ? result_.pairs.emplace_back() : result_.pairs[at->second];
+    const Eigen::Translation3d to_working(-b.center);
+    for (const VerifiedHypothesis& hypothesis : tried.hypotheses) {
+      const Eigen::Isometry3d T = Eigen::Translation3d(a.center) * hypothesis.T_a_b * to_working;
+      const Eigen::Isometry3d taken(Eigen::Translation3d(-a.center) * Eigen::Isometry3d(pair.T_a_b) *
+                                    Eigen::Translation3d(b.center));
+      if (is_new && &hypothesis == &tried.hypotheses.front()) {
+        pair.a = tried.a;
+        pair.b = tried.b;
+        pair.overlap = hypothesis.check.overlap;
+        pair.violation = hypothesis.check.violation;
+        pair.T_a_b = T.matrix();
+        pair.information_point = b.center;
+      } else if (is_new || poseDistance(taken, hypothesis.T_a_b, geometry.size) > geometry.grain) {
+        pair.alternatives.push_back({T.matrix(), hypothesis.check.overlap, hypothesis.check.violation});
+      }
+    }
+  }
+}
+
+ScanRegistrationResult Description::run()
+{
+  const std::vector<Placement>& placements = state_.placements;
+  for (const Placement& placement : placements) {
+    result_.pairs.insert(result_.pairs.end(), placement.pairs.begin(), placement.pairs.end());
+    result_.iterations = std::max(result_.iterations, placement.joint.iterations);
+    result_.converged = (&placement == &placements.front() || result_.converged) && placement.joint.converged;
+    describeScans(placement);
+    for (const Index i : placement.members)
+      look_alike_[i] = placement.look_alike;
+  }
+  result_.rms = pooledRms(result_.pairs, -1);
+  result_.people_moved = std::any_of(scans_.begin(), scans_.end(), [](const auto& s) { return s.spares_doubtful; });
+  std::vector<Index> main;
+  for (const Placement& placement : placements)
+    for (const std::vector<Index>& group : acceptedGroups(placement, scans_.size())) {
+      for (const Index i : group)
+        scan(i).group = result_.groups;
+      if (result_.groups++ == 0)
+        placeMain(main = group);
+      else
+        placeOther(group, main, &placement == &placements.front());
+    }
+  addTriedPairs();
+  placeDuplicates();
+  std::sort(result_.pairs.begin(), result_.pairs.end(),
+            [](const PairResult& x, const PairResult& y) { return std::pair(x.a, x.b) < std::pair(y.a, y.b); });
+  return std::move(result_);
+}
+} // namespace
+
+ScanRegistrationResult describeRegistration(const RegistrationState& state) { return Description(state).run(); }
+} // namespace fresco::registration
+
+namespace fresco {
+namespace {
+std::string namesOf(const std::vector<Index>& scans, const ScanRegistrationOptions& options)
+{
+  std::vector<std::string> names;
+  for (const Index scan : scans)
+    names.push_back(scanName(options, scan));
+  return listed(names, 5);
+}
+} // namespace
+
+std::vector<std::string> registrationWarnings(const ScanRegistrationResult& result,
+                                              const ScanRegistrationOptions& options)
+{
+  std::vector<std::string> warnings;
+  std::vector<std::vector<Index>> groups(result.groups);
+  for (std::size_t i = 0; i < result.scans.size(); ++i) {
+    const ScanResult& scan = result.scans[i];
+    if (!scan.problem.empty())
+      warnings.push_back(scanName(options, i) + ": " + scan.problem);
+    if (!scan.viewpoint_problem.empty())
+      warnings.push_back(scanName(options, i) + ": free space not used: " + scan.viewpoint_problem);
+    if (scan.group > 0)
+      groups[scan.group].push_back(i);
+  }
+  if (result.people_moved)
+    warnings.push_back("people moved between the scans: what may be one speaks against no pose");
+  for (const std::vector<Index>& group : groups)
+    if (group.size() > 1)
+      warnings.push_back(concat("another group: ", group.size(),
+                                " scans hang together, but not with the placed ones: ", namesOf(group, options)));
+  return warnings;
+}
+} // namespace fresco

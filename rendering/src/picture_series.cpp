@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "canvas.h"
+#include "picture_parts.h"
+#include <fresco/core/require.h>
+#include <vtkProperty.h>
+namespace fresco::rendering {
+/// What stands before the eye.
+struct PictureSeries::Stage {
+  explicit Stage(const PictureOptions& options) : canvas(options) {}
+
+  void add(DrawMesh&& mesh, const SurfaceLook& look)
+  {
+    drawn.push_back(std::make_unique<DrawMesh>(std::move(mesh)));
+    actors.push_back(makeActor(*drawn.back(), look));
+    canvas.add(actors.back());
+  }
+
+  std::vector<std::unique_ptr<DrawMesh>> drawn; ///< actors use them in place
+  Canvas canvas;
+  std::vector<vtkSmartPointer<vtkActor>> actors;
+  Eigen::Vector3d origin;
+};
+
+namespace {
+/// Of the faces without texture where there is none.
+SurfaceLook texturedLook(const Image* texture)
+{
+  SurfaceLook look;
+  if (!texture)
+    return look;
+  look.texture = texture;
+  look.color = {1, 1, 1};
+  look.lit = false;
+  return look;
+}
+} // namespace
+
+PictureSeries::PictureSeries(const TexturedMesh& model, const PictureOptions& options)
+{
+  validatePictureOptions(options);
+  validateTexturedMesh(model);
+  const bool textured = options.shading == Shading::Texture;
+  require(!textured || !model.atlases.empty(), "picture: the model has no texture");
+  require(options.shading <= Shading::Flat || textured, "picture: no series of this shading");
+  require(model.mesh.faceCount() > 0, "picture: the model has no face");
+  stage_ = std::make_unique<Stage>(options);
+  stage_->origin = model.mesh.origin;
+  if (!textured) {
+    DrawMesh drawn = drawnFaces(model.mesh, options);
+    const SurfaceLook look = surfaceLook(drawn, options);
+    stage_->add(std::move(drawn), look);
+  }
+  for (int atlas = -1; textured && atlas < static_cast<int>(model.atlases.size()); ++atlas) {
+    DrawMesh drawn = texturedPart(model, atlas);
+    if (drawn.faces.cols() == 0)
+      continue;
+    const Image texture = atlas >= 0 ? shrinkTo(model.atlases[atlas], stage_->canvas.largestTexture()) : Image();
+    stage_->add(std::move(drawn), texturedLook(atlas >= 0 ? &texture : nullptr));
+  }
+}
+
+PictureSeries::~PictureSeries() = default;
+
+Image PictureSeries::draw(const Viewpoint& view, bool cull_back_faces)
+{
+  for (vtkActor* actor : stage_->actors)
+    actor->GetProperty()->SetBackfaceCulling(cull_back_faces);
+  return stage_->canvas.draw(view, stage_->origin);
+}
+
+Image renderPicture(const TexturedMesh& model, const PictureOptions& options)
+{
+  if (options.shading != Shading::Texture)
+    return renderPicture(model.mesh, options);
+  return PictureSeries(model, options).draw(chooseView(model.mesh, options), options.cull_back_faces);
+}
+} // namespace fresco::rendering

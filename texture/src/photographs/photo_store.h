@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include "photographs/view_parts.h"
+#include <list>
+#include <memory>
+#include <mutex>
+namespace fresco::texture {
+/// Photographs and parts of panoramas as 8-bit RGB, read when first asked for; the ones asked for last are kept within a limit of memory. May
+/// be used by several threads at a time.
+class PhotoStore {
+public:
+  PhotoStore(const std::vector<ViewPart>& views, std::size_t most_bytes);
+
+  /// @throws std::runtime_error naming the photograph if it cannot be read or is of another size than its camera
+  std::shared_ptr<const Image> get(Index view);
+
+  /// Where the photograph is to be used, one channel: 255, else 0, also where interpolation would reach what is 0. Black
+  /// ends of panoramas are not (blackEnds()). Not kept. Empty: everywhere.
+  /// @throws std::runtime_error as get(), naming the mask
+  Image mask(Index view);
+
+  std::size_t mostBytes() const { return most_bytes_; }
+  /// Keeps so much less while something else made of the photographs needs memory.
+  void setAside(std::size_t bytes);
+  /// Forgets all photographs unless every one is kept: the next pass in the same order would find none in time.
+  void dropUnlessAll();
+
+private:
+  void drop();
+  void dropOldest();
+  std::shared_ptr<const Image> load(Index view);
+  std::shared_ptr<const Image> panoramaOf(Index view);
+  void keep(Index view, std::shared_ptr<const Image> image);
+
+  struct Slot {
+    std::shared_ptr<const Image> image;
+    std::list<Index>::iterator recent;
+  };
+  const std::vector<ViewPart>& views_;
+  std::shared_ptr<const Image> panorama_; ///< the one cut last, wrapped
+  int panorama_view_ = -1;
+  std::size_t most_bytes_, aside_ = 0, bytes_ = 0;
+  std::vector<Slot> slots_;
+  std::list<Index> recent_; ///< kept views, the one asked for last in front
+  std::mutex mutex_;
+};
+
+/// Colour at a place in pixels, 0..255, by Catmull-Rom interpolation; places outside are moved to the border.
+Eigen::Vector3f samplePhoto(const Image& photo, float x, float y);
+
+/// The same by bilinear interpolation.
+Eigen::Vector3f samplePhotoQuickly(const Image& photo, float x, float y);
+} // namespace fresco::texture

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "photographs/view_parts.h"
+#include "photographs/photo_store.h"
+#include <algorithm>
+#include <cmath>
+namespace fresco::texture {
+namespace {
+constexpr int wrapped_columns = 2; // reach of cubic interpolation
+
+/// As many pixels per radian in the middle as the panorama has.
+CameraModel cubeSide(const CameraModel& panorama)
+{
+  constexpr double half_width = 1.25; // of the plane z = 1: the next side is met at 1, well inside of the border
+  CameraModel camera;
+  camera.fx = camera.fy = panorama.fx;
+  camera.width = camera.height = std::max<int>(3, std::ceil(2 * half_width * panorama.fx));
+  camera.cx = camera.cy = 0.5 * camera.width;
+  return camera;
+}
+
+/// Axes of the sides' cameras: around, then up and down.
+std::vector<Eigen::Matrix3d> cubeRotations()
+{
+  std::vector<Eigen::Matrix3d> out(6);
+  for (int k = 0; k < 4; ++k) {
+    const double c = k % 2 == 0 ? 1 - k : 0, s = k % 2 == 1 ? 2 - k : 0;
+    out[k] << c, 0, -s, 0, 1, 0, s, 0, c;
+  }
+  out[4] << 1, 0, 0, 0, 0, 1, 0, -1, 0;
+  out[5] << 1, 0, 0, 0, 0, -1, 0, 1, 0;
+  return out;
+}
+} // namespace
+
+std::vector<ViewPart> partsOf(const std::vector<TextureView>& views)
+{
+  std::vector<ViewPart> parts;
+  for (const TextureView& view : views) {
+    const int number = &view - views.data();
+    if (view.camera.projection != CameraProjection::spherical)
+      parts.push_back({&view, number, view.camera});
+    else
+      for (const Eigen::Matrix3d& R : cubeRotations())
+        parts.push_back({&view, number, cubeSide(view.camera), R});
+  }
+  return parts;
+}
+
+Image wrapPanorama(const Image& panorama)
+{
+  Image out(panorama.width + 2 * wrapped_columns, panorama.height);
+  for (int y = 0; y < out.height; ++y)
+    for (int x = 0; x < out.width; ++x)
+      std::copy_n(panorama.pixel((x - wrapped_columns + panorama.width) % panorama.width, y), 3, out.pixel(x, y));
+  return out;
+}
+
+Image blackEnds(const Image& panorama)
+{
+  constexpr int black = 10;      // of 255: what JPEG makes of 0
+  constexpr double whole = 0.99; // share of a row; JPEG bleeds in single blocks
+  const auto isBlack = [&](int x, int y) {
+    const std::uint8_t* color = panorama.pixel(x, y);
+    return std::max({color[0], color[1], color[2]}) <= black;
+  };
+  Image mask;
+  for (const bool lowest : {false, true}) {
+    const auto row = [&](int k) { return lowest ? panorama.height - 1 - k : k; };
+    int count = 0;
+    for (int x = 0; x < panorama.width; ++x)
+      count += isBlack(x, row(0));
+    if (count < whole * panorama.width)
+      continue;
+    if (mask.empty())
+      mask = Image(panorama.width, panorama.height, 3, 255);
+    for (int x = 0; x < panorama.width; ++x)
+      for (int k = 0; k < panorama.height && isBlack(x, row(k)); ++k)
+        std::fill_n(mask.pixel(x, row(k)), 3, 0);
+  }
+  return mask;
+}
+
+Image cutPanorama(const Image& wrapped, const ViewPart& part)
+{
+  const CameraModel& panorama = part.given->camera;
+  Image out(part.camera.width, part.camera.height);
+  const Eigen::Matrix3d R_view_part = part.R_part_view.transpose();
+  for (int y = 0; y < out.height; ++y)
+    for (int x = 0; x < out.width; ++x) {
+      Eigen::Vector3d ray = R_view_part * unproject(part.camera, {x + 0.5, y + 0.5});
+      if (part.given->mirrored)
+        ray.x() = -ray.x();
+      const Eigen::Vector2f at = project(panorama, ray).cast<float>();
+      const Eigen::Vector3f color = samplePhoto(wrapped, at.x() + wrapped_columns, at.y());
+      for (int c = 0; c < 3; ++c)
+        out.pixel(x, y)[c] = std::clamp(color[c], 0.f, 255.f) + 0.5f;
+    }
+  return out;
+}
+} // namespace fresco::texture
