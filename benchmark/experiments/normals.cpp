@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "experiments/normals_bounds.h"
+#include "experiments/normals_sample.h"
 #include "support/tool.h"
 #include <chrono>
 #include <cstdio>
@@ -71,35 +71,6 @@ Points pclNormals(const NormalSample& sample, int k, int threads)
   return normals;
 }
 
-template <typename Work>
-void printRow(const std::string& name, const std::vector<NormalSample>& samples, const Work& work)
-{
-  Errors errors;
-  for (const NormalSample& sample : samples) {
-    const PointTree tree(sample.points);
-    errors.add(sample, timed(errors, [&] { return work(sample, tree); }));
-  }
-  errors.print(name.c_str());
-}
-
-void printSorted(const std::vector<NormalSample>& samples)
-{
-  for (const int k : {16, 32, 64, 128})
-    printRow("sorted by truth, k = " + std::to_string(k), samples,
-             [&](const NormalSample& sample, const PointTree& tree) { return sortedByTruth(sample, tree, k); });
-}
-
-void printBound(const std::vector<NormalSample>& samples)
-{
-  const std::pair<SurfacePlanes, int> rows[] = {
-      {SurfacePlanes::exact, 64}, {SurfacePlanes::fitted, 128}, {SurfacePlanes::fitted, 64}};
-  for (const auto& [planes, k] : rows)
-    printRow("given to likeliest of " + std::to_string(k) + (planes == SurfacePlanes::exact ? ", exact" : ""), samples,
-             [&, planes = planes, k = k](const NormalSample& sample, const PointTree& tree) {
-               return givenToLikeliest(sample, tree, k, planes);
-             });
-}
-
 void compareAtNoise(const std::vector<NormalSample>& samples, int k, int threads)
 {
   Errors pcl_errors, ours, smooth[3];
@@ -137,8 +108,6 @@ int main(int argc, char** argv)
     Args args("fresco_benchmark_normals [options]",
               "Angles between estimated and true normals of generated laser scans, beside edges and elsewhere.");
     args.option("scene", options.scene, "conference_room, apartment or a mesh file");
-    args.flag("oracle", options.oracle, "also plane fits to those of k neighbours that truly lie on one surface");
-    args.flag("bound", options.bound, "also points given to the likeliest of the true surfaces around them");
     args.flag("merged", options.merged, "all stations in one cloud; else each station for itself");
     args.option("stations", options.stations, "laser stations");
     args.option("points", options.points, "laser points per station, about");
@@ -158,10 +127,6 @@ int main(int argc, char** argv)
                   "|---|---|---|---|---|---|\n",
                   options.k);
       compareAtNoise(samples, options.k, common.threads);
-      if (options.oracle)
-        printSorted(samples);
-      if (options.bound)
-        printBound(samples);
     }
   });
 }

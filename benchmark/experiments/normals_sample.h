@@ -6,7 +6,7 @@ namespace fresco {
 struct NormalMeasure {
   std::string scene = "conference_room";
   int stations = 2, points = 1000000, k = 16;
-  bool oracle = false, bound = false, merged = false;
+  bool merged = false;
   float edge = 0.02f;    ///< metres to a crease: "beside an edge"
   float plane = 0.1f;    ///< metres without any bend around: "on planes"
   float bend = 1.f;      ///< degrees between faces of one plane at most

@@ -3,7 +3,7 @@
 #include "bilateral/candidate_features.h"
 namespace fresco::filters {
 /// How well candidates fit a point, beside the normal it has: a multilayer perceptron over the features of a candidate and
-/// those of the own normal, trained by benchmark/training/candidate_score.py with scans of generated rooms. Scores of one
+/// those of the own normal, trained with scans of generated rooms (docs/normal_smoothing.md). Scores of one
 /// point can be compared.
 class CandidateScore {
 public:

@@ -4,7 +4,7 @@
 #include <vector>
 namespace fresco::filters {
 /// Logarithm of the odds that a point is a mixed pixel: networks with two hidden layers, trained by
-/// benchmark/training/mixed_pixels.py with scans of generated rooms.
+/// scans of generated rooms (docs/mixed_pixels.md).
 float mixedPixelScore(const MixedPixelFeatures& features);
 float mixedPixelScore(const SecondStageFeatures& features);
 

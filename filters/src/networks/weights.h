@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 namespace fresco::filters {
-/// Named matrices of a trained network: a file of filters/data, which benchmark/training/mlp.py writes and the build
+/// Named matrices of a trained network: a file of filters/data, which the build
 /// embeds into the library. All numbers are little endian:
 ///
 ///   8 bytes                "FRESCO", 26, "W"
