@@ -162,7 +162,7 @@ inline void addFunction(const py::module_& module, const Function& function, con
   addFunction(module, function, {}, "", body);
 }
 
-/// Held while something works that the process has only one of: the outputs of a model, VTK's messages.
+/// Held while something works that the process has only one of: the outputs of a model.
 std::mutex& oneAtATime();
 
 /// Points, or a mesh, that must not be empty, with attributes that fit and faces in range.

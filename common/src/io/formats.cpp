@@ -3,7 +3,8 @@
 #include "io/files/format_table.h"
 #include "io/mesh/obj.h"
 #include "io/mesh/ply.h"
-#include "io/mesh/vtk_polydata.h"
+#include "io/mesh/stl.h"
+#include "io/mesh/vtk_file.h"
 #include "io/points/e57/e57.h"
 #include "io/points/las.h"
 #include "io/points/parse_file.h"
@@ -22,8 +23,6 @@ TriangleMesh joinMesh(const PointTable& vertices, Faces faces)
   mesh.faces = std::move(faces);
   return mesh;
 }
-
-TriangleMesh meshOf(VtkContent vtk) { return joinMesh(vtk.vertices, std::move(vtk.faces)); }
 
 PointTable readPcd(const std::string& path) { return parseFile(path, parsePcd); }
 
@@ -60,16 +59,18 @@ PointTable readVtkPoints(const std::string& path)
 
 TriangleMesh readVtkMesh(const std::string& path)
 {
-  return parseFile(path, [](std::string_view content) { return meshOf(parseVtk(content)); });
+  return parseFile(path, [](std::string_view content) {
+    VtkContent vtk = parseVtk(content);
+    return joinMesh(vtk.vertices, std::move(vtk.faces));
+  });
 }
 
 void writeVtkMesh(const std::string& path, const TriangleMesh& mesh) { writeVtk(path, meshToTable(mesh), mesh.faces); }
 
 void writeVtpMesh(const std::string& path, const TriangleMesh& mesh) { writeVtp(path, meshToTable(mesh), mesh.faces); }
 
-PointTable readStlPoints(const std::string& path) { return readStl(path).vertices; }
-TriangleMesh readStlMesh(const std::string& path) { return meshOf(readStl(path)); }
-void writeStlMesh(const std::string& path, const TriangleMesh& mesh) { writeStl(path, meshToTable(mesh), mesh.faces); }
+TriangleMesh readStlMesh(const std::string& path) { return parseFile(path, parseStl); }
+PointTable readStlPoints(const std::string& path) { return meshToTable(readStlMesh(path)); }
 
 PointTable readObjPoints(const std::string& path)
 {
@@ -117,7 +118,7 @@ const std::vector<Format>& formats()
       withRows({"PLY", {".ply"}, readPlyPoints, writePlyPoints, readPlyMesh, writePlyMesh}, plyRows),
       {"legacy VTK", {".vtk"}, readVtkPoints, nullptr, readVtkMesh, writeVtkMesh},
       {"VTK XML", {".vtp"}, nullptr, nullptr, nullptr, writeVtpMesh},
-      {"STL", {".stl"}, readStlPoints, nullptr, readStlMesh, writeStlMesh},
+      {"STL", {".stl"}, readStlPoints, nullptr, readStlMesh, writeStl},
       {"OBJ", {".obj"}, readObjPoints, nullptr, readObjMesh, writeObj, true},
       {"XYZ", {".xyz", ".txt", ".asc"}, readXyz, writeXyzPoints},
       scansFormat<openE57>("E57", ".e57"),

@@ -2,13 +2,16 @@
 #include "common/io/test_io_data.h"
 #include <algorithm>
 #include <cstring>
+#include <fresco/core/require.h>
 #include <fresco/io/mesh_io.h>
+#include <fresco/io/point_io.h>
 #include <vtkCellArray.h>
 #include <vtkPointData.h>
 #include <vtkPolyData.h>
 #include <vtkPolyDataReader.h>
 #include <vtkPolyDataWriter.h>
 #include <vtkSmartPointer.h>
+#include <vtkXMLPolyDataReader.h>
 namespace {
 using namespace fresco;
 using test::fullMesh;
@@ -216,19 +219,85 @@ TEST(MeshIo, ReadsWhatVtkWrites)
     }
 }
 
+TEST(MeshIo, VtkReadsOurXml)
+{
+  const std::string path = test::scratchFolder() + "/mesh.vtp";
+  TriangleMesh mesh = fullMesh(9);
+  mesh.fields["a <\"b\"> & c"] = mesh.fields.at("curvature");
+  writeMesh(path, mesh);
+  const auto reader = vtkSmartPointer<vtkXMLPolyDataReader>::New();
+  reader->SetFileName(path.c_str());
+  reader->Update();
+  vtkPolyData& data = *reader->GetOutput();
+  ASSERT_EQ(data.GetNumberOfPoints(), mesh.vertexCount());
+  ASSERT_EQ(data.GetNumberOfPolys(), mesh.faceCount());
+  vtkPointData& attributes = *data.GetPointData();
+  for (const auto& [name, values] : mesh.fields)
+    ASSERT_NE(attributes.GetArray(name.c_str()), nullptr) << name;
+  for (Index v = 0; v < mesh.vertexCount(); ++v) {
+    for (int k = 0; k < 3; ++k) {
+      EXPECT_EQ(data.GetPoint(v)[k], static_cast<double>(mesh.vertices(k, v)));
+      EXPECT_EQ(attributes.GetNormals()->GetComponent(v, k), static_cast<double>(mesh.normals(k, v)));
+      EXPECT_EQ(attributes.GetScalars()->GetComponent(v, k), mesh.colors(k, v));
+    }
+    for (const auto& [name, values] : mesh.fields)
+      EXPECT_EQ(attributes.GetArray(name.c_str())->GetComponent(v, 0), static_cast<double>(values[v]));
+  }
+  for (Index f = 0; f < mesh.faceCount(); ++f)
+    for (int k = 0; k < 3; ++k)
+      EXPECT_EQ(data.GetCell(f)->GetPointId(k), mesh.faces(k, f));
+}
+
 TEST(MeshIo, StlKeepsTheSurface)
 {
   const std::string path = test::scratchFolder() + "/mesh.stl";
   const TriangleMesh mesh = fullMesh(12);
   writeMesh(path, mesh);
-  const TriangleMesh back = readMesh(path);
-  EXPECT_EQ(back.vertexCount(), mesh.vertexCount());
-  ASSERT_EQ(back.faceCount(), mesh.faceCount());
-  for (Index i = 0; i < mesh.faces.size(); ++i)
-    EXPECT_EQ(back.vertices.col(back.faces.data()[i]), mesh.vertices.col(mesh.faces.data()[i])) << i;
-  test::writeText(path, "solid s\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0.5\n"
-                        "endloop\nendfacet\nendsolid s\n");
-  EXPECT_EQ(readMesh(path).vertices.col(2), Eigen::Vector3f(0, 1, 0.5f));
+  for (const char* title : {"", "solid of another program"}) { // which some begin binary files with
+    std::string bytes = readFile(path);
+    writeFile(path, bytes.replace(0, std::string_view(title).size(), title));
+    const TriangleMesh back = readMesh(path);
+    EXPECT_EQ(back.vertexCount(), mesh.vertexCount());
+    ASSERT_EQ(back.faceCount(), mesh.faceCount());
+    for (Index i = 0; i < mesh.faces.size(); ++i)
+      EXPECT_EQ(back.vertices.col(back.faces.data()[i]), mesh.vertices.col(mesh.faces.data()[i])) << i;
+  }
+  EXPECT_EQ(readPoints(path).size(), mesh.vertexCount());
+  TriangleMesh empty = mesh;
+  empty.faces.resize(3, 0);
+  EXPECT_THROW(writeMesh(path, empty), std::runtime_error);
+}
+
+TEST(MeshIo, StlAsText)
+{
+  const std::string path = test::scratchFolder() + "/mesh.stl";
+  const auto facet = [](const char* a, const char* b, const char* c) {
+    return concat("  facet normal 0 0 nan\r\n outer loop\nvertex ", a, "\n\tVERTEX ", b, "\nvertex ", c,
+                  "\nendloop\nendfacet\n");
+  };
+  const std::string first = facet("0 0 0", "1 0 0", "0 1e0 0.5"), second = facet("1 0 0", "1 1 0", "0 1 0.5");
+  test::writeText(path, "solid vertex facet\n" + first + "endsolid vertex facet\nSolid\n" + second +
+                            facet("0 0 0", "0 0 0", "1 0 0") + "endsolid\n");
+  const TriangleMesh mesh = readMesh(path);
+  EXPECT_EQ(mesh.vertexCount(), 4); // two are shared
+  ASSERT_EQ(mesh.faceCount(), 2);   // the third has no area
+  EXPECT_EQ(mesh.vertices.col(mesh.faces(2, 0)), Eigen::Vector3f(0, 1, 0.5f));
+  EXPECT_EQ(mesh.faces(2, 0), mesh.faces(2, 1));
+
+  test::writeText(path,
+                  "solid\n" + facet("500000 5400000.001 0", "500000 5400000.002 0", "500001 5400000 0") + "endsolid\n");
+  const TriangleMesh far = readMesh(path);
+  EXPECT_NEAR(far.origin.y() + faceCorner(far, 0, 1).y(), 5400000.002, 1e-4);
+
+  for (const std::string& wrong : std::vector<std::string>{
+           "solid\n" + first, std::string("solid\nendsolid\n"),
+           "solid\n" + facet("0 0 0", "1 0", "0 1 0") + "endsolid\n",
+           "solid\n" + facet("0 0 0", "1 0 inf", "0 1 0") + "endsolid\n",
+           std::string("solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nendloop\nendfacet\nendsolid\n"),
+           "solid\ncircle\n" + first + "endsolid\n"}) {
+    test::writeText(path, wrong);
+    EXPECT_THROW(readMesh(path), std::runtime_error) << wrong;
+  }
 }
 
 TEST(MeshIo, ErrorsNameFileAndReason)

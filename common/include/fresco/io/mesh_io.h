@@ -7,14 +7,14 @@
 #include <string>
 #include <vector>
 namespace fresco {
-/// PLY (ASCII, both binary orders, polygons, triangle strips), OBJ, legacy VTK polydata by extension. Polygons are
-/// triangulated as fans. Normals, colours and further scalars per vertex are kept. Coordinates too large for float are
+/// PLY (ASCII, both binary orders, polygons, triangle strips), OBJ, legacy VTK polydata, STL by extension. Polygons
+/// are triangulated as fans. Normals, colours and further scalars per vertex are kept. Coordinates too large for float are
 /// kept exact through `origin`.
 /// @throws std::runtime_error "PATH: reason" if the file is missing, empty, truncated, malformed or has no vertex;
 ///         faces may be absent
 FRESCO_EXPORT TriangleMesh readMesh(const std::string& path);
 
-/// PLY (binary), OBJ or legacy VTK (binary) by extension; whole or not at all.
+/// PLY (binary), OBJ, legacy VTK (binary), VTK XML or STL (binary) by extension; whole or not at all.
 FRESCO_EXPORT void writeMesh(const std::string& path, const TriangleMesh& mesh);
 
 /// OBJ + MTL + PNG (`NAME.obj`, `NAME.mtl`, `NAME.png` or `NAME_0.png` ...; `.jpg` with `jpeg_quality`) or binary glTF

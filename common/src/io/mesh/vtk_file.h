@@ -14,5 +14,8 @@ struct VtkContent {
 VtkContent parseVtk(std::string_view content);
 
 /// Legacy VTK polydata, binary. Normals become NORMALS, colours COLOR_SCALARS, the rest arrays of a FIELD.
-void writeVtk(const std::string& path, const PointTable& vertices, const Faces& faces);
+void writeVtk(const std::string& path, PointTable vertices, const Faces& faces);
+
+/// XML PolyData (.vtp), raw and not compressed; the same arrays.
+void writeVtp(const std::string& path, PointTable vertices, const Faces& faces);
 } // namespace fresco::io

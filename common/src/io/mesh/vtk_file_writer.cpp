@@ -5,31 +5,56 @@
 #include <fresco/io/file.h>
 namespace fresco::io {
 namespace {
-const char* typeName(Scalar type)
+struct TypeNames {
+  Scalar type;
+  const char *legacy, *xml;
+};
+constexpr TypeNames type_names[] = {
+    {Scalar::int8, "char", "Int8"},           {Scalar::uint8, "unsigned_char", "UInt8"},
+    {Scalar::int16, "short", "Int16"},        {Scalar::uint16, "unsigned_short", "UInt16"},
+    {Scalar::int32, "int", "Int32"},          {Scalar::uint32, "unsigned_int", "UInt32"},
+    {Scalar::int64, "vtktypeint64", "Int64"}, {Scalar::uint64, "vtktypeuint64", "UInt64"},
+    {Scalar::float32, "float", "Float32"},    {Scalar::float64, "double", "Float64"},
+};
+
+const TypeNames& namesOf(Scalar type)
 {
-  switch (type) {
-  case Scalar::int8:
-    return "char";
-  case Scalar::uint8:
-    return "unsigned_char";
-  case Scalar::int16:
-    return "short";
-  case Scalar::uint16:
-    return "unsigned_short";
-  case Scalar::int32:
-    return "int";
-  case Scalar::uint32:
-    return "unsigned_int";
-  case Scalar::int64:
-    return "vtktypeint64";
-  case Scalar::uint64:
-    return "vtktypeuint64";
-  case Scalar::float32:
-    return "float";
-  case Scalar::float64:
-    return "double";
-  }
-  throw std::logic_error("unknown scalar type");
+  return *std::find_if(std::begin(type_names), std::end(type_names), [&](const auto& n) { return n.type == type; });
+}
+
+/// Columns of equal type that are one array for VTK.
+struct ColumnArray {
+  std::string name;
+  std::vector<Column> columns;
+
+  Scalar type() const { return columns[0].type; }
+  std::size_t components() const { return columns.size() * columns[0].count; }
+};
+
+/// Points, normals and colours (empty: there are none), everything else.
+struct Arrays {
+  ColumnArray points, normals, colors;
+  std::vector<ColumnArray> rest;
+};
+
+Arrays arraysOf(const std::string& path, const PointTable& table)
+{
+  Arrays arrays;
+  std::vector<std::string> used;
+  const auto take = [&](const char* name, NameTriple names, ColumnArray& array) {
+    if (const auto found = findTriple(table, names)) {
+      array = {name, {found->begin(), found->end()}};
+      used.insert(used.end(), std::begin(names), std::end(names));
+    }
+  };
+  take("Points", xyz_names, arrays.points);
+  take("Normals", normal_names, arrays.normals);
+  take("rgb", color_names, arrays.colors);
+  require(!arrays.points.columns.empty(), path, ": no coordinates x y z");
+  for (const Column& column : table.columns)
+    if (std::find(used.begin(), used.end(), column.name) == used.end())
+      arrays.rest.push_back({column.name, {column}});
+  return arrays;
 }
 
 /// Legacy VTK stores the high byte first.
@@ -38,13 +63,13 @@ void appendSwapped(std::string& bytes, const std::uint8_t* value, std::size_t si
   bytes.append(std::make_reverse_iterator(value + size), std::make_reverse_iterator(value));
 }
 
-/// The values of some columns of equal type, row by row.
-std::string columnBytes(const PointTable& table, const std::vector<Column>& columns)
+/// The values of an array, row by row.
+std::string swappedBytes(const PointTable& table, const ColumnArray& array)
 {
   std::string bytes;
-  bytes.reserve(table.data.size());
+  bytes.reserve(table.rows * array.components() * scalarSize(array.type()) + 1);
   for (Index row = 0; row < table.rows; ++row)
-    for (const Column& column : columns)
+    for (const Column& column : array.columns)
       for (std::size_t k = 0; k < column.count; ++k)
         appendSwapped(bytes, table.cell(row, column) + k * scalarSize(column.type), scalarSize(column.type));
   return bytes + '\n';
@@ -73,45 +98,116 @@ void writePolygons(OutputFile& file, const Faces& faces)
   file.write(bytes + '\n');
 }
 
-void writeAttributes(OutputFile& file, const PointTable& table)
+void writeAttributes(OutputFile& file, const PointTable& table, const Arrays& arrays)
 {
-  std::vector<Column> rest;
-  const auto normals = findTriple(table, normal_names), colors = findTriple(table, color_names);
-  const auto is_in = [](const auto& triple, const Column& column) {
-    return triple &&
-           std::any_of(triple->begin(), triple->end(), [&](const Column& c) { return c.name == column.name; });
-  };
-  const auto xyz = findTriple(table, xyz_names);
-  for (const Column& column : table.columns)
-    if (!is_in(xyz, column) && !is_in(normals, column) && !is_in(colors, column))
-      rest.push_back(column);
-  if (!normals && !colors && rest.empty())
+  const bool has_colors = !arrays.colors.columns.empty(), has_normals = !arrays.normals.columns.empty();
+  if (!has_normals && !has_colors && arrays.rest.empty())
     return;
   file.write(concat("POINT_DATA ", table.rows, '\n'));
-  if (colors)
-    file.write("COLOR_SCALARS rgb 3\n" + columnBytes(table, {colors->begin(), colors->end()}));
-  if (normals)
-    file.write("NORMALS Normals float\n" + columnBytes(table, {normals->begin(), normals->end()}));
-  if (!rest.empty())
-    file.write(concat("FIELD FieldData ", rest.size(), '\n'));
-  for (const Column& column : rest)
-    file.write(concat(encodeName(column.name), ' ', column.count, ' ', table.rows, ' ', typeName(column.type), '\n') +
-               columnBytes(table, {column}));
+  if (has_colors)
+    file.write("COLOR_SCALARS rgb 3\n" + swappedBytes(table, arrays.colors));
+  if (has_normals)
+    file.write("NORMALS Normals float\n" + swappedBytes(table, arrays.normals));
+  if (!arrays.rest.empty())
+    file.write(concat("FIELD FieldData ", arrays.rest.size(), '\n'));
+  for (const ColumnArray& array : arrays.rest)
+    file.write(concat(encodeName(array.name), ' ', array.components(), ' ', table.rows, ' ',
+                      namesOf(array.type()).legacy, '\n') +
+               swappedBytes(table, array));
+}
+
+std::string xmlText(const std::string& text)
+{
+  static constexpr std::pair<char, const char*> special[] = {
+      {'&', "&amp;"}, {'<', "&lt;"}, {'>', "&gt;"}, {'"', "&quot;"}};
+  std::string result;
+  for (const char c : text) {
+    const auto* const found =
+        std::find_if(std::begin(special), std::end(special), [&](const auto& s) { return s.first == c; });
+    result +=
+        found != std::end(special) ? found->second : std::string(1, static_cast<unsigned char>(c) < ' ' ? '_' : c);
+  }
+  return result;
+}
+
+/// Arrays behind the XML of a file: each is its length in bytes, then its values.
+struct AppendedData {
+  std::vector<std::string> blocks;
+  std::size_t size = 0;
+
+  /// @return the element that stands for the array
+  std::string add(const std::string& name, Scalar type, std::size_t components, std::string bytes)
+  {
+    const std::string element =
+        concat("<DataArray type=\"", namesOf(type).xml, "\" Name=\"", xmlText(name), "\" NumberOfComponents=\"",
+               components, "\" format=\"appended\" offset=\"", size, "\"/>\n");
+    size += sizeof(std::uint64_t) + bytes.size();
+    blocks.push_back(std::move(bytes));
+    return element;
+  }
+  std::string add(const PointTable& table, const ColumnArray& array)
+  {
+    std::string bytes;
+    bytes.reserve(table.rows * array.components() * scalarSize(array.type()));
+    for (Index row = 0; row < table.rows; ++row)
+      for (const Column& column : array.columns)
+        bytes.append(reinterpret_cast<const char*>(table.cell(row, column)), column.bytes());
+    return add(array.name, array.type(), array.components(), std::move(bytes));
+  }
+};
+
+/// The elements of the triangles.
+std::string addPolygons(const Faces& faces, AppendedData& data)
+{
+  std::string corners(reinterpret_cast<const char*>(faces.data()), faces.size() * sizeof(int)), ends;
+  for (std::int64_t end = 3; end <= faces.size(); end += 3)
+    ends.append(reinterpret_cast<const char*>(&end), sizeof(end));
+  return data.add("connectivity", Scalar::int32, 1, std::move(corners)) +
+         data.add("offsets", Scalar::int64, 1, std::move(ends));
 }
 } // namespace
 
-void writeVtk(const std::string& path, const PointTable& vertices, const Faces& faces)
+void writeVtk(const std::string& path, PointTable table, const Faces& faces)
 {
-  PointTable table = vertices;
   unpackColors(table);
-  const auto xyz = findTriple(table, xyz_names);
-  require(xyz.has_value(), path, ": no coordinates x y z");
+  const Arrays arrays = arraysOf(path, table);
   OutputFile file(path);
   file.write("# vtk DataFile Version 3.0\nfresco\nBINARY\nDATASET POLYDATA\n");
-  file.write(concat("POINTS ", table.rows, ' ', typeName((*xyz)[0].type), '\n'));
-  file.write(columnBytes(table, {xyz->begin(), xyz->end()}));
+  file.write(concat("POINTS ", table.rows, ' ', namesOf(arrays.points.type()).legacy, '\n'));
+  file.write(swappedBytes(table, arrays.points));
   writePolygons(file, faces);
-  writeAttributes(file, table);
+  writeAttributes(file, table, arrays);
+  file.commit();
+}
+
+void writeVtp(const std::string& path, PointTable table, const Faces& faces)
+{
+  unpackColors(table);
+  const Arrays arrays = arraysOf(path, table);
+  AppendedData data;
+  std::string point_data, roles;
+  for (const auto& [array, role] : {std::pair(&arrays.normals, "Normals"), std::pair(&arrays.colors, "Scalars")})
+    if (!array->columns.empty()) {
+      point_data += data.add(table, *array);
+      roles += concat(' ', role, "=\"", array->name, '"');
+    }
+  for (const ColumnArray& array : arrays.rest)
+    point_data += data.add(table, array);
+  const std::string points = data.add(table, arrays.points), polygons = addPolygons(faces, data);
+  OutputFile file(path);
+  file.write("<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\" "
+             "header_type=\"UInt64\">\n<PolyData>\n");
+  file.write(concat("<Piece NumberOfPoints=\"", table.rows,
+                    "\" NumberOfVerts=\"0\" NumberOfLines=\"0\" NumberOfStrips=\"0\" ", "NumberOfPolys=\"",
+                    faces.cols(), "\">\n<PointData", roles, ">\n", point_data, "</PointData>\n"));
+  file.write("<Points>\n" + points + "</Points>\n<Polys>\n" + polygons + "</Polys>\n</Piece>\n</PolyData>\n");
+  file.write("<AppendedData encoding=\"raw\">\n_");
+  for (const std::string& block : data.blocks) {
+    const std::uint64_t size = block.size();
+    file.write(&size, sizeof(size));
+    file.write(block);
+  }
+  file.write("\n</AppendedData>\n</VTKFile>\n");
   file.commit();
 }
 } // namespace fresco::io
