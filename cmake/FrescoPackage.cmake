@@ -28,7 +28,7 @@ texture it from calibrated photographs.")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libfresco-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
-    "fresco (= ${PROJECT_VERSION}-1), libpcl-dev (>= 1.13), libeigen3-dev (>= 3.4)")
+    "fresco (= ${PROJECT_VERSION}-1), libpcl-dev (>= 1.12), libeigen3-dev (>= 3.4)")
 set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION "Headers and CMake package of fresco: PCL-compatible classes.")
 set(CPACK_DEBIAN_DOCUMENTATION_PACKAGE_NAME fresco-doc)
 set(CPACK_DEBIAN_DOCUMENTATION_PACKAGE_SECTION doc)

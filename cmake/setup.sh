@@ -3,7 +3,7 @@
 fresco_packages=(
   g++ cmake ninja-build ccache pkg-config ca-certificates
   libpcl-dev libvtk9-dev libopencv-dev libeigen3-dev libflann-dev libboost-dev libembree-dev
-  libtinygltf-dev libjpeg-dev zlib1g-dev liblzf-dev libpugixml-dev nlohmann-json3-dev libgtest-dev clang-format clang-tidy git python3
+  libtinygltf-dev libjpeg-dev libpng-dev libwebp-dev zlib1g-dev liblzf-dev libpugixml-dev nlohmann-json3-dev libgtest-dev clang-format clang-tidy git python3
   libopenmpi-dev openmpi-bin
   libegl-dev libglew-dev libegl-mesa0 libgl1-mesa-dri python3-numpy
   pybind11-dev python3-dev python3-pytest python3-nbclient python3-ipykernel mypy

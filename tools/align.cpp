@@ -61,7 +61,9 @@ void run(int argc, char** argv)
     throw std::runtime_error(files[0] + ": no sparse points (points3D.txt or points3D.bin) in it");
   const PointSet surface = readSurface(files[1], common.threads);
   if (!images.empty())
-    options.photograph = [&](Index view) { return readImage(images + "/" + set.views[view].image); };
+    options.photograph = [&](Index view) {
+      return readImage(images + "/" + set.views[view].image, set.cameras[set.views[view].camera]);
+    };
   CameraAlignmentResult result;
   try {
     result = alignCameras(set, points, surface, options, printProgress(common.quiet));

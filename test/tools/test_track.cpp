@@ -2,8 +2,8 @@
 #include "tools/tool_runs.h"
 #include "tracking/rgbd_room.h"
 #include <fresco/io/file.h>
+#include <fresco/io/image_io.h>
 #include <gtest/gtest.h>
-#include <opencv2/imgcodecs.hpp>
 namespace fresco::test {
 namespace {
 constexpr int frames = 40;
@@ -18,8 +18,7 @@ std::string videoFolder()
   for (int f = 0; f < frames; ++f) {
     const std::string stem = folder + "/video/frame-" + std::to_string(f);
     writeImage(stem + ".color.jpg", images[f].color);
-    Image16 depth = images[f].depth;
-    cv::imwrite(stem + ".depth.png", cv::Mat(depth.height, depth.width, CV_16U, depth.data.data()));
+    writeImage(stem + ".depth.png", images[f].depth);
   }
   return folder;
 }
@@ -54,8 +53,7 @@ TEST(ToolTrack, BadFoldersAreOneLine)
   EXPECT_EQ(run(folder, "track video -o video").status, 2);
   EXPECT_EQ(run(folder, "track video -o out -rounds 11").status, 2);
   const Image16 other{80, 60, std::vector<std::uint16_t>(4800, 1500)};
-  cv::imwrite(folder + "/video/frame-9.depth.png",
-              cv::Mat(60, 80, CV_16U, const_cast<std::uint16_t*>(other.data.data())));
+  writeImage(folder + "/video/frame-9.depth.png", other);
   expectRefused(folder, "track video -o out", "two videos");
   fs::remove(folder + "/video/frame-3.color.jpg");
   expectRefused(folder, "track video -o out", "frame-3.color.jpg");

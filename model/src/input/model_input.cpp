@@ -195,10 +195,7 @@ void checkPhotographs(const ModelInput& input, int threads)
   const auto look = [&](Index i) {
     const auto& [file, mask, camera, panorama] = photographs[i];
     try {
-      const Image image = readImage(file);
-      if (camera && (image.width != camera->width || image.height != camera->height))
-        problems[i] = concat(file, ": is ", image.width, "x", image.height, " pixels, its camera has ", camera->width,
-                             "x", camera->height);
+      const Image image = camera ? readImage(file, *camera) : readImage(file);
       if (panorama && image.width != 2 * image.height)
         problems[i] =
             concat(file, ": a panorama of ", image.width, "x", image.height, " pixels is not twice as wide as high");

@@ -30,8 +30,8 @@ bool isOneCamera(const std::string& images, const std::vector<std::string>& name
         file.read(text.data(), head);
         told[i] = text.find("Exif") != std::string::npos;
         if (!told[i]) {
-          const Image image = readImage(path);
-          sizes[i] = {image.width, image.height};
+          const ImageSize size = readImageSize(path);
+          sizes[i] = {size.width, size.height};
         }
       },
       1);

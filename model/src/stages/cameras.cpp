@@ -53,7 +53,9 @@ Figures alignCameras(const Job& job, const Progress& progress)
   constexpr Index most_points = 5000000; // the search takes far fewer, and drawings of 24 places hardly show more
   CameraAlignmentOptions options;
   options.threads = job.options.threads;
-  options.photograph = [&](Index view) { return readImage(job.input.images + "/" + set.views[view].image); };
+  options.photograph = [&](Index view) {
+    return readImage(job.input.images + "/" + set.views[view].image, set.cameras[set.views[view].camera]);
+  };
   CameraAlignmentResult result;
   try {
     result = fresco::alignCameras(set, points, PlacedPoints(job.files.points).sample(most_points), options, progress);

@@ -41,7 +41,7 @@ std::vector<TextureView> panoramaViews(const Job& job, const std::vector<Pose>& 
   for (const Panorama& panorama : job.input.panoramas) {
     if (!poses.at(panorama.scan))
       continue;
-    const Image image = readImage(panorama.file);
+    const ImageSize image = readImageSize(panorama.file);
     TextureView next;
     next.camera = sphericalCamera(image.width, image.height);
     next.T_camera_world = (Eigen::Isometry3d(*poses[panorama.scan]) *

@@ -10,7 +10,6 @@
 #include <fresco/simulation/sensors/random.h>
 #include <iomanip>
 #include <limits>
-#include <opencv2/imgcodecs.hpp>
 #include <queue>
 namespace fresco::simulation {
 using Eigen::Vector3d;
@@ -229,10 +228,7 @@ void writeRgbdWalk(const LitScene& lit, const std::string& folder, const std::ve
     const Shot shot{camera, view, exposure};
     const std::string stem = folder + "/" + frameName(f);
     writeImage(stem + ".color.jpg", takePhotograph(lit, shot, options.threads), options.jpeg_quality);
-    Image16 depth = takeDepthImage(lit, shot, options.threads);
-    std::vector<std::uint8_t> bytes;
-    cv::imencode(".png", cv::Mat(depth.height, depth.width, CV_16U, depth.data.data()), bytes);
-    writeFile(stem + ".depth.png", {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+    writeImage(stem + ".depth.png", takeDepthImage(lit, shot, options.threads));
     poses.emplace_back(T_world_camera[f].matrix());
   }
   writePoses(folder + "/poses.txt", poses);

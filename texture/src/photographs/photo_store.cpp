@@ -26,21 +26,20 @@ Eigen::Vector4f cubicWeights(float t)
   return {-0.5f * t + t2 - 0.5f * t3, 1 - 2.5f * t2 + 1.5f * t3, 0.5f * t + 2 * t2 - 1.5f * t3, -0.5f * t2 + 0.5f * t3};
 }
 
+/// For images that were given, not read.
 void requireSize(const Image& image, const CameraModel& camera, const std::string& name)
-{
-  if (image.width != camera.width || image.height != camera.height)
-    throw std::runtime_error(concat(name, ": is ", image.width, "x", image.height, " pixels, its camera has ",
-                                    camera.width, "x", camera.height));
+try {
+  requireImageSize({image.width, image.height}, camera);
+} catch (const std::runtime_error& error) {
+  throw std::runtime_error(name + ": " + error.what());
 }
 
 std::shared_ptr<const Image> loadGiven(const TextureView& v, Index view)
 {
-  std::shared_ptr<const Image> image;
   if (v.image.empty())
-    image = std::make_shared<const Image>(readImage(v.path));
-  else
-    image = std::shared_ptr<const Image>(std::shared_ptr<void>(), &v.image);
-  requireSize(*image, v.camera, v.path.empty() ? concat("photograph ", view) : v.path);
+    return std::make_shared<const Image>(readImage(v.path, v.camera));
+  const std::shared_ptr<const Image> image(std::shared_ptr<void>(), &v.image);
+  requireSize(*image, v.camera, concat("photograph ", view));
   return image->channels == 3 ? image : std::make_shared<const Image>(asRgb(*image));
 }
 } // namespace
@@ -91,8 +90,8 @@ Image PhotoStore::mask(Index view)
   const TextureView& v = *part.given;
   Image rgb;
   if (!v.mask.empty() || !v.mask_path.empty()) {
-    rgb = asRgb(v.mask.empty() ? readImage(v.mask_path) : v.mask);
-    requireSize(rgb, v.camera, v.mask_path.empty() ? concat("mask of photograph ", part.view) : v.mask_path);
+    rgb = v.mask.empty() ? readImage(v.mask_path, v.camera) : asRgb(v.mask);
+    requireSize(rgb, v.camera, concat("mask of photograph ", part.view));
   }
   if (part.ofPanorama()) {
     const Image ends = blackEnds(*panoramaOf(view));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "io/texture/png_writer.h"
+#include "io/image/codecs.h"
 #include <algorithm>
 #include <cstdlib>
 #include <fresco/core/parallel.h>
@@ -90,16 +90,15 @@ std::vector<Band> compressedRows(const Image& image)
   parallelFor(bands.size(), 0, compress, 1);
   return bands;
 }
-} // namespace
-
-std::vector<std::uint8_t> encodePng(const Image& image)
+/// @param image whose channels are bytes of a pixel
+/// @param depth bits a sample; color_type 0 grey, 2 RGB, 6 RGBA
+Bytes encode(const Image& image, std::uint8_t depth, std::uint8_t color_type)
 {
-  constexpr std::uint8_t depth = 8, grey = 0, rgb = 2, rgba = 6;
   const std::vector<Band> bands = compressedRows(image);
   Bytes out{0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'}, header;
   appendNumber(image.width, header);
   appendNumber(image.height, header);
-  header.insert(header.end(), {depth, image.channels == 1 ? grey : image.channels == 3 ? rgb : rgba, 0, 0, 0});
+  header.insert(header.end(), {depth, color_type, 0, 0, 0});
   appendChunk("IHDR", header, out);
   appendChunk("IDAT", {0x78, 0x01}, out); // zlib's header: window of 32 kB, fastest
   uLong check = adler32(0, nullptr, 0);
@@ -112,5 +111,21 @@ std::vector<std::uint8_t> encodePng(const Image& image)
   appendChunk("IDAT", end, out);
   appendChunk("IEND", {}, out);
   return out;
+}
+} // namespace
+
+std::vector<std::uint8_t> encodePng(const Image& image)
+{
+  return encode(image, 8, image.channels == 1 ? 0 : image.channels == 3 ? 2 : 6);
+}
+
+std::vector<std::uint8_t> encodePng(const Image16& image)
+{
+  Image bytes(image.width, image.height, 2); // the high byte first
+  for (std::size_t i = 0; i < image.data.size(); ++i) {
+    bytes.data[2 * i] = image.data[i] >> 8;
+    bytes.data[2 * i + 1] = image.data[i] & 0xff;
+  }
+  return encode(bytes, 16, 0);
 }
 } // namespace fresco::io

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "io/image/codecs.h"
+#include <cstdio>
+#include <cstdlib>
+#include <jerror.h>
+#include <jpeglib.h>
+namespace fresco::io {
+namespace {
+/// Takes the library's errors; warnings, too, unless they say no more than that another program wrote the file.
+struct ErrorHandler : jpeg_error_mgr {
+  LibraryErrors errors;
+
+  ErrorHandler()
+  {
+    jpeg_std_error(this);
+    error_exit = fail;
+    emit_message = [](j_common_ptr common, int level) {
+      const int code = common->err->msg_code;
+      if (level < 0 && code != JWRN_JFIF_MAJOR && code != JWRN_ADOBE_XFORM)
+        fail(common);
+    };
+  }
+  static void fail(j_common_ptr common)
+  {
+    auto& own = *static_cast<ErrorHandler*>(common->err);
+    static_assert(sizeof(own.errors.message) >= JMSG_LENGTH_MAX);
+    common->err->format_message(common, own.errors.message);
+    own.errors.fail();
+  }
+};
+
+/// An open file, its header read.
+struct JpegReader {
+  ErrorHandler handler;
+  jpeg_decompress_struct jpeg{};
+
+  explicit JpegReader(std::string_view bytes)
+  {
+    jpeg.err = &handler;
+    try {
+      callLibrary(handler.errors, [&] {
+        jpeg_create_decompress(&jpeg);
+        jpeg_mem_src(&jpeg, reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size());
+        jpeg_read_header(&jpeg, TRUE);
+      });
+    } catch (...) {
+      jpeg_destroy_decompress(&jpeg);
+      throw;
+    }
+  }
+  ~JpegReader() { jpeg_destroy_decompress(&jpeg); }
+  JpegReader(const JpegReader&) = delete;
+  JpegReader& operator=(const JpegReader&) = delete;
+  ImageSize size() const { return {int(jpeg.image_width), int(jpeg.image_height)}; }
+};
+
+/// One row of CMYK as Adobe's programs store it, 255 = no ink.
+void toRgb(const std::uint8_t* cmyk, std::uint8_t* rgb, int width)
+{
+  for (int x = 0; x < width; ++x)
+    for (int c = 0; c < 3; ++c)
+      rgb[3 * x + c] = static_cast<std::uint8_t>(cmyk[4 * x + c] * cmyk[4 * x + 3] / 255);
+}
+} // namespace
+
+ImageSize jpegSize(std::string_view bytes) { return JpegReader(bytes).size(); }
+
+Image decodeJpeg(std::string_view bytes)
+{
+  JpegReader reader(bytes);
+  jpeg_decompress_struct& jpeg = reader.jpeg;
+  const bool is_cmyk = jpeg.num_components == 4;
+  Image image(reader.size().width, reader.size().height, 3);
+  std::vector<std::uint8_t> cmyk(is_cmyk ? std::size_t{4} * jpeg.image_width : 0);
+  callLibrary(reader.handler.errors, [&] {
+    jpeg.out_color_space = is_cmyk ? JCS_CMYK : JCS_RGB;
+    jpeg_start_decompress(&jpeg);
+    while (jpeg.output_scanline < jpeg.output_height) {
+      std::uint8_t* const target = image.pixel(0, static_cast<int>(jpeg.output_scanline));
+      JSAMPROW row = is_cmyk ? cmyk.data() : target;
+      jpeg_read_scanlines(&jpeg, &row, 1);
+      if (is_cmyk)
+        toRgb(cmyk.data(), target, image.width);
+    }
+    jpeg_finish_decompress(&jpeg);
+  });
+  return image;
+}
+
+std::vector<std::uint8_t> encodeJpeg(const Image& image, int quality)
+{
+  ErrorHandler handler;
+  jpeg_compress_struct jpeg{};
+  jpeg.err = &handler;
+  unsigned char* bytes = nullptr;
+  unsigned long size = 0;
+  const auto cleanUp = [&] {
+    jpeg_destroy_compress(&jpeg);
+    std::free(bytes);
+  };
+  try {
+    callLibrary(handler.errors, [&] {
+      jpeg_create_compress(&jpeg);
+      jpeg_mem_dest(&jpeg, &bytes, &size);
+      jpeg.image_width = image.width;
+      jpeg.image_height = image.height;
+      jpeg.input_components = image.channels;
+      jpeg.in_color_space = image.channels == 1 ? JCS_GRAYSCALE : image.channels == 3 ? JCS_RGB : JCS_EXT_RGBX;
+      jpeg_set_defaults(&jpeg);
+      jpeg_set_quality(&jpeg, quality, TRUE);
+      jpeg_start_compress(&jpeg, TRUE);
+      while (jpeg.next_scanline < jpeg.image_height) {
+        JSAMPROW row = const_cast<std::uint8_t*>(image.pixel(0, static_cast<int>(jpeg.next_scanline)));
+        jpeg_write_scanlines(&jpeg, &row, 1);
+      }
+      jpeg_finish_compress(&jpeg);
+    });
+    std::vector<std::uint8_t> result(bytes, bytes + size);
+    cleanUp();
+    return result;
+  } catch (...) {
+    cleanUp();
+    throw;
+  }
+}
+} // namespace fresco::io
