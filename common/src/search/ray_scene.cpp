@@ -1,20 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "search/embree_scene.h"
 #include <fresco/search/ray_scene.h>
+#include <type_traits>
 namespace fresco {
 struct RayScene::Embree : search::EmbreeScene {
   using EmbreeScene::EmbreeScene;
 };
 
 namespace {
-RTCIntersectContext newContext(RTCIntersectContextFlags flags)
-{
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  context.flags = flags;
-  return context;
-}
-
 /// Embree ends the program over other rays; they hit nothing.
 bool isTraceable(const Ray& ray)
 {
@@ -38,19 +31,6 @@ void setRay(Lanes& lanes, std::size_t i, const Ray& ray)
   lanes.tnear[i] = ray.near, lanes.tfar[i] = ray.far, lanes.time[i] = 0.f;
   lanes.mask[i] = ~0u, lanes.id[i] = 0, lanes.flags[i] = 0;
 }
-
-template <std::size_t n>
-struct Embrees;
-template <>
-struct Embrees<8> {
-  using RayHits = RTCRayHit8;
-  static constexpr auto intersect = rtcIntersect8;
-};
-template <>
-struct Embrees<16> {
-  using RayHits = RTCRayHit16;
-  static constexpr auto intersect = rtcIntersect16;
-};
 } // namespace
 
 RayScene::RayScene(const TriangleMesh& mesh, bool watertight)
@@ -65,14 +45,13 @@ RayHit RayScene::intersect(const Ray& ray) const
 {
   if (!isTraceable(ray))
     return {};
-  RTCIntersectContext context = newContext(RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT);
   RTCRayHit query{};
   query.ray.org_x = ray.origin.x(), query.ray.org_y = ray.origin.y(), query.ray.org_z = ray.origin.z();
   query.ray.dir_x = ray.direction.x(), query.ray.dir_y = ray.direction.y(), query.ray.dir_z = ray.direction.z();
   query.ray.tnear = ray.near, query.ray.tfar = ray.far;
   query.ray.mask = ~0u;
   query.hit.geomID = query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-  rtcIntersect1(embree_->scene(), &context, &query);
+  search::RayQuery(false).trace(embree_->scene(), query);
   const RTCHit& hit = query.hit;
   if (hit.geomID == RTC_INVALID_GEOMETRY_ID)
     return {};
@@ -82,16 +61,14 @@ RayHit RayScene::intersect(const Ray& ray) const
 template <std::size_t n>
 HitPacket<n> RayScene::intersect(const RayPacket<n>& rays, RayOrder order) const
 {
-  RTCIntersectContext context = newContext(order == RayOrder::coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT
-                                                                       : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT);
   alignas(64) int valid[n];
-  typename Embrees<n>::RayHits query;
+  std::conditional_t<n == 8, RTCRayHit8, RTCRayHit16> query;
   for (std::size_t i = 0; i < n; ++i) {
     valid[i] = isTraceable(rays[i]) ? -1 : 0;
     setRay(query.ray, i, valid[i] != 0 ? rays[i] : harmlessRay());
     query.hit.geomID[i] = query.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
   }
-  Embrees<n>::intersect(valid, embree_->scene(), &context, &query);
+  search::RayQuery(order == RayOrder::coherent).trace(valid, embree_->scene(), query);
   const auto& hit = query.hit;
   HitPacket<n> hits;
   for (std::size_t i = 0; i < n; ++i)
@@ -109,14 +86,13 @@ template FRESCO_EXPORT HitPacket<16> RayScene::intersect(const RayPacket<16>&, R
 
 unsigned RayScene::occluded(const RayPacket<16>& rays, int count) const
 {
-  RTCIntersectContext context = newContext(RTC_INTERSECT_CONTEXT_FLAG_COHERENT);
   alignas(64) int valid[16];
   RTCRay16 query;
   for (int i = 0; i < 16; ++i) {
     valid[i] = i < count && isTraceable(rays[i]) ? -1 : 0;
     setRay(query, i, valid[i] != 0 ? rays[i] : harmlessRay());
   }
-  rtcOccluded16(valid, embree_->scene(), &context, &query);
+  search::RayQuery(true).occlude(valid, embree_->scene(), query);
   unsigned blocked = 0;
   for (int i = 0; i < count; ++i)
     if (valid[i] != 0 && query.tfar[i] < 0.f)
