@@ -6,6 +6,7 @@
 #include <csignal>
 #include <fresco/io/file.h>
 #include <nlohmann/json.hpp>
+#include <regex>
 #include <sstream>
 #include <sys/stat.h>
 #include <thread>
@@ -54,6 +55,24 @@ TEST(Usage, NumbersOutOfRangeAreWrongBeforeAnythingIsRead)
   expectStatus(folder, "register missing.pcd -o out -min_overlap 0", 2);
   expectStatus(folder, "model missing out -size 100x100", 2);
   expectStatus(folder, "scan missing.ply out -images 10x1000", 2);
+}
+
+TEST(Usage, EveryToolTellsItsVersion)
+{
+  const std::string folder = soundFolder();
+  for (const std::string& tool : tools()) {
+    const Outcome outcome = run(folder, tool + " --version");
+    EXPECT_EQ(outcome.status, 0) << tool;
+    EXPECT_TRUE(std::regex_match(outcome.out, std::regex("fresco [0-9]+\\.[0-9]+\\.[0-9]+( with .*[0-9])?\n")))
+        << outcome.out;
+  }
+  const auto expectNamed = [&](const std::string& tool, const std::string& library) {
+    const std::string line = run(folder, tool + " --version").out;
+    EXPECT_TRUE(std::regex_search(line, std::regex(library + " [0-9]+\\.[0-9]+"))) << line;
+  };
+  expectNamed("filter", "PCL");
+  for (const char* library : {"Embree", "OpenCV", "VTK"})
+    expectNamed("model", library);
 }
 
 TEST(Usage, OutputsCollideNeitherWithEachOtherNorWithInputs)

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "support/args.h"
+#include "support/version.h"
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
@@ -227,11 +228,13 @@ std::vector<std::string> Args::parse(int argc, char** argv, std::size_t least, s
 {
   const std::vector<std::string> words(argv + 1, argv + argc);
   const auto end_of_options = std::find(words.begin(), words.end(), "--");
-  for (auto word = words.begin(); word != end_of_options; ++word)
-    if (*word == "-h" || *word == "-help" || *word == "--help") {
-      std::cout << usage();
+  for (auto word = words.begin(); word != end_of_options; ++word) {
+    const bool is_help = *word == "-h" || *word == "-help" || *word == "--help";
+    if (is_help || *word == "--version") {
+      std::cout << (is_help ? usage() : versionLine() + "\n");
       throw HelpShown();
     }
+  }
   std::vector<std::string> files;
   for (std::size_t i = 0; i < words.size();) {
     if (words[i] == "--") { // all that follow are files, whatever they begin with
@@ -274,6 +277,7 @@ std::string Args::usage() const
     line(left, option.help + (option.shown_default.empty() ? "" : " (default " + option.shown_default + ")"));
   }
   line("-h", "this text");
+  line("--version", "version of fresco and of the libraries that this tool loads");
   if (!notes_.empty())
     text << "\n" << notes_;
   return text.str();

@@ -10,7 +10,7 @@ struct UsageError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// `-h` was given: usage() has been printed, the tool exits with 0.
+/// `-h` or `--version` was given: usage() or versionLine() has been printed, the tool exits with 0.
 struct HelpShown {};
 
 /// Command line in the style of PCL's tools: `fresco_x INPUT OUTPUT -option value`, parsed strictly: an unknown option,
