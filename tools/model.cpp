@@ -43,7 +43,6 @@ int main(int argc, char** argv)
     args.option("trim_levels", options.trim_levels,
                 "octree levels that the data may sustain less than they do elsewhere, else surface is cut off; 0 = "
                 "keep it closed");
-    args.option("trim", options.trim_levels, "old name of -trim_levels, for one version; 0 = keep it closed");
     args.flag("no_optimize", options.optimize,
               "leave the vertices where the reconstruction puts them: rounded edges; always so for RGB-D", false);
     args.option("texel", options.texel, "side of a texel, metres; 0 = as fine as photographs, panoramas or points");

@@ -111,7 +111,6 @@ void declareLook(Args& args, Request& request)
   args.flag("transparent", picture.transparent, "no background: PNG with alpha");
   args.option("crease", picture.crease_angle, "edges that bend by more look sharp with gouraud, 0..180 degrees");
   args.flag("no_colors", picture.no_colors, "leave out the colours of vertices and points: the shape alone");
-  args.flag("plain", picture.no_colors, "old name of -no_colors, for one version");
   args.option("point_size", picture.point_size, "size of points, pixels, 0..1000; 0 = by their number");
   args.option("oversampling", picture.oversampling, "pixels drawn per pixel along each side, 1..4: finer, slower");
 }

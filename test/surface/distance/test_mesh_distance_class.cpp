@@ -52,7 +52,7 @@ TEST(MeshDistanceClass, HasTheSettersOfTheOtherClasses)
   options.samples = 7;
   distance.setOptions(options);
   EXPECT_EQ(distance.getNumberOfSamples(), 7);
-  distance.setSamples(8); // old name
+  distance.setNumberOfSamples(8);
   EXPECT_EQ(distance.getOptions().samples, 8);
   distance.setThreads(2);
   EXPECT_EQ(distance.getNumberOfThreads(), 2);

@@ -134,7 +134,7 @@ TEST(VolumetricClass, HasTheSettersOfTheOtherClasses)
   poisson.setMaximumIterations(9);
   EXPECT_EQ(poisson.getThreads(), 3);
   EXPECT_EQ(poisson.getNumberOfThreads(), 3);
-  EXPECT_EQ(poisson.getIterations(), 9);
+  EXPECT_EQ(poisson.getMaximumIterations(), 9);
   EXPECT_EQ(poisson.getOptions().iterations, 9);
   poisson.setOptions(atDepth(5));
   EXPECT_EQ(poisson.getDepth(), 5);

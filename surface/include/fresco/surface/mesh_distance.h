@@ -33,12 +33,6 @@ public:
   /// Called between steps. If it answers false, Cancelled is thrown.
   void setProgress(Progress progress) { progress_ = std::move(progress); }
 
-  /// Old names of setNumberOfSamples() and setNumberOfNormalSamples(), for one version.
-  void setSamples(int samples) { options_.samples = samples; }
-  int getSamples() const { return options_.samples; }
-  void setNormalSamples(int samples) { options_.normal_samples = samples; }
-  int getNormalSamples() const { return options_.normal_samples; }
-
   /// The distance that is blue; 0 = the largest that occurs.
   void setLargestColor(float largest) { largest_color_ = largest; }
   float getLargestColor() const { return largest_color_; }

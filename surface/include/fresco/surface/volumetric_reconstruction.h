@@ -54,9 +54,6 @@ public:
   /// As setNumberOfThreads(); pcl::Poisson's name for it.
   void setThreads(int threads) { options_.threads = threads; }
   int getThreads() const { return options_.threads; }
-  /// Old name of setMaximumIterations(), for one version.
-  void setIterations(int iterations) { options_.iterations = iterations; }
-  int getIterations() const { return options_.iterations; }
 
   /// Kept for pcl::Poisson's users, without effect: all depths are solved with the same method.
   void setSolverDivide(int solver_divide) { solver_divide_ = solver_divide; }
