@@ -2,9 +2,9 @@
 #include "registration_result.h"
 #include <algorithm>
 #include <cmath>
-#include <fresco/core/listed.h>
 #include <fresco/core/require.h>
 #include <fresco/core/union_find.h>
+#include <fresco/io/listed.h>
 #include <map>
 namespace fresco::registration {
 namespace {

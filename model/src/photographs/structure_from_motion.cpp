@@ -3,11 +3,11 @@
 #include "photographs/program.h"
 #include <algorithm>
 #include <filesystem>
-#include <fresco/core/listed.h>
 #include <fresco/core/parallel.h>
 #include <fresco/io/colmap.h>
 #include <fresco/io/file.h>
 #include <fresco/io/image_io.h>
+#include <fresco/io/listed.h>
 #include <fstream>
 #include <regex>
 #include <set>

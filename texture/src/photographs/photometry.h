@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include "photographs/view_parts.h"
 #include "photographs/response_curve.h"
+#include "photographs/view_parts.h"
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
