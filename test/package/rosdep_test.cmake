@@ -1,0 +1,13 @@
+# Fails where package.xml names what is no key of rosdep: cmake -D SOURCE_DIR=... -P rosdep_test.cmake
+cmake_minimum_required(VERSION 3.20)
+file(STRINGS "${SOURCE_DIR}/test/package/rosdep_keys.txt" keys REGEX "^[^#]")
+file(STRINGS "${SOURCE_DIR}/package.xml" lines REGEX "depend>")
+if(NOT lines)
+  message(FATAL_ERROR "package.xml names nothing that it depends on")
+endif()
+foreach(line IN LISTS lines)
+  string(REGEX REPLACE ".*depend>([^<]*)<.*" "\\1" key "${line}")
+  if(NOT key IN_LIST keys)
+    message(SEND_ERROR "package.xml: '${key}' is not among test/package/rosdep_keys.txt")
+  endif()
+endforeach()
