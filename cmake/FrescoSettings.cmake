@@ -29,10 +29,16 @@ if(FRESCO_SANITIZE)
   add_compile_definitions(EIGEN_MALLOC_ALREADY_ALIGNED=1) # PCL's own allocations are taken for foreign ones otherwise
 endif()
 
-# Release builds: an overrun stack or buffer of known size ends the program, and addresses of functions of libraries are
-# looked up at the start and cannot be changed after it.
-add_compile_options($<$<CONFIG:Release>:-fstack-protector-strong> $<$<CONFIG:Release>:-U_FORTIFY_SOURCE>
-                    $<$<CONFIG:Release>:-D_FORTIFY_SOURCE=2>)
+# Eigen's fast square roots begin with the processor's own estimate of 1/sqrt(x), which differs between makers.
+add_compile_definitions(EIGEN_FAST_MATH=0)
+
+# Release builds: an overrun stack or buffer of known size ends the program, as does a jump to where no function begins, and
+# addresses of functions of libraries are looked up at the start and cannot be changed after it.
+add_compile_options($<$<CONFIG:Release>:-fstack-protector-strong> $<$<CONFIG:Release>:-fstack-clash-protection>
+                    $<$<CONFIG:Release>:-U_FORTIFY_SOURCE> $<$<CONFIG:Release>:-D_FORTIFY_SOURCE=2>)
+if(CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64)$")
+  add_compile_options($<$<CONFIG:Release>:-fcf-protection>)
+endif()
 add_link_options($<$<CONFIG:Release>:LINKER:-z,relro,-z,now>)
 
 option(FRESCO_COVERAGE "Count which lines run (gcov)" OFF)
