@@ -8,7 +8,9 @@
 #include <fresco/filters/core/outliers.h>
 #include <fresco/filters/core/voxel_thinning.h>
 #include <fresco/io/cloud_file.h>
+#include <fresco/io/file.h>
 #include <fresco/io/formats.h>
+#include <fresco/io/scan_writer.h>
 #include <numeric>
 #include <pcl/common/io.h>
 using namespace fresco;
@@ -187,6 +189,19 @@ void filterCloud(CloudFile& file, const std::string& name, const Args& args, con
   for (const auto& line : lines)
     inform(quiet, line);
 }
+/// Scan by scan, so that poses and pictures stay.
+void filterScans(const std::vector<std::string>& files, const Args& args, const FilterOptions& options, bool quiet)
+{
+  std::vector<PlacedCloud> scans = readPlacedClouds(files[0]);
+  for (std::size_t i = 0; i < scans.size(); ++i)
+    if (scans[i].cloud.cloud.width > 0) {
+      const std::string name = ScanPath{files[0], Index(i)}.name();
+      inform(quiet, name);
+      filterCloud(scans[i].cloud, name, args, options, quiet);
+    }
+  const std::vector<ScanPicture> pictures = readScanPictures(files[0]);
+  writeOutputs([&] { writeScans(files[1], scans, pictures); });
+}
 } // namespace
 
 int main(int argc, char** argv)
@@ -205,6 +220,8 @@ int main(int argc, char** argv)
     validate(args, options);
     requireDistinct({files[1]}, {files[0]});
     options.outliers.threads = options.mixed_pixels.threads = common.threads;
+    if (scan.number == 0 && extension(files[0]) == ".e57" && extension(files[1]) == ".e57")
+      return filterScans(files, args, options, common.quiet);
     CloudFile file = readCloud(scan.of(files[0]));
     filterCloud(file, files[0], args, options, common.quiet);
     writeOutputs([&] { writeCloud(files[1], file); });

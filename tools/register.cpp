@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "support/scan_option.h"
 #include "support/tool.h"
 #include <algorithm>
 #include <fresco/core/constants.h>
@@ -50,6 +51,7 @@ Request parse(int argc, char** argv)
               "share of a scan in space that the other saw through from which a pair is wrong, 0..1");
   args.flag("upright", request.options.upright, "all scanners stood upright to 10 degrees, z upwards");
   args.option("iterations", request.options.max_iterations, "of the joint refinement per resolution, at least 1");
+  declareColumns(args);
   request.common.declare(args);
   args.note("example: fresco_register scans/*.pcd -o registered");
   const std::vector<std::string> words = args.parse(argc, argv, 1, 100000);

@@ -167,7 +167,7 @@ Model readModel(const Request& request)
   const bool textured = std::count(request.shadings.begin(), request.shadings.end(), Shading::Texture) > 0;
   if (!isReadable(request.model, FileKind::mesh) && isReadable(request.model, FileKind::points))
     return readPoints(request.scan);
-  if (end == ".glb" || (textured && end == ".obj"))
+  if (end == ".glb" || (textured && (end == ".obj" || end == ".ply")))
     return readTexturedMesh(request.model);
   TriangleMesh mesh = readMesh(request.model);
   if (mesh.faceCount() == 0)

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "support/scan_option.h"
 #include "support/tool.h"
 #include <algorithm>
 #include <fresco/core/require.h>
@@ -224,10 +225,11 @@ void run(int argc, char** argv)
                 readableExtensions(FileKind::mesh) +
                 ".\nCAMERAS_DIR: a COLMAP model, text or binary.\n"
                 "IMAGES_DIR: the photographs it names; masks/NAME.png in it or beside it is white where NAME.jpg is to "
-                "be used.\nOUT: .obj (with .mtl and .png beside it) or .glb. Beside it "
+                "be used.\nOUT: .obj (with .mtl and .png beside it), .ply (with .png) or .glb. Beside it "
                 "NAME_mask.png:\n"
                 "white where no photograph saw the surface, or no point lies on it, and the colour is inpainted.");
   declare(args, options, tool);
+  declareColumns(args);
   common.declare(args);
   args.note("Example: fresco_texture mesh.ply scan/cameras scan/images model.glb");
   const std::vector<std::string> files = args.parse(argc, argv, 2, 4);

@@ -2,6 +2,7 @@
 #include "dice.h"
 #include "generator.h"
 #include "targets.h"
+#include <algorithm>
 #include <fresco/core/require.h>
 #include <functional>
 #include <map>
@@ -25,16 +26,17 @@ GeneratedFile ply(Dice& dice)
   const Encoding put{format != "ascii", format == "binary_big_endian"};
   const int vertices = dice.between(3, 9), faces = dice.between(0, 5);
   const bool colors = dice.chance(), normals = dice.chance(), lists = dice.chance(), strips = dice.chance();
-  Parts parts{"ply\n", "format " + format + " 1.0\n", "comment c\n"}, data;
+  Parts parts{"ply\n", "format " + format + " 1.0\n", "comment c\n", "comment TextureFile t.png\n"}, data;
   parts.push_back(concat("element vertex ", vertices, "\n"));
   for (const std::string name : {"x", "y", "z"})
     parts.push_back("property float " + name + "\n");
   for (const std::string name : {"nx", "ny", "nz"})
     if (normals)
       parts.push_back("property double " + name + "\n");
+  const std::string color_type = dice.of<std::string>({"uchar", "ushort", "float", "char"});
   for (const std::string name : {"red", "green", "blue"})
     if (colors)
-      parts.push_back("property uchar " + name + "\n");
+      parts.push_back("property " + color_type + " " + name + "\n");
   if (lists)
     parts.push_back("property list uchar short ids\n");
   for (int v = 0; v < vertices; ++v) {
@@ -42,7 +44,10 @@ GeneratedFile ply(Dice& dice)
     for (int k = 0; k < 3 && normals; ++k)
       row += put(double(k == 2));
     for (int k = 0; k < 3 && colors; ++k)
-      row += put(std::uint8_t(dice.below(256)));
+      row += color_type == "ushort"  ? put(std::uint16_t(dice.below(65536)))
+             : color_type == "float" ? put(dice.value())
+             : color_type == "char"  ? put(std::int8_t(dice.below(128)))
+                                     : put(std::uint8_t(dice.below(256)));
     const int items = dice.below(4);
     if (lists)
       row += put(std::uint8_t(items));
@@ -52,11 +57,20 @@ GeneratedFile ply(Dice& dice)
   }
   parts.push_back(concat("element ", strips ? "tristrips " : "face ", faces, "\n"));
   parts.push_back("property list uchar int vertex_indices\n");
+  const bool texture = dice.chance();
+  if (texture)
+    parts.insert(parts.end(), {"property list uchar float texcoord\n", "property int texnumber\n"});
   for (int f = 0; f < faces; ++f) {
     const int corners = dice.between(3, 6);
     std::string row = put(std::uint8_t(corners));
     for (int k = 0; k < corners; ++k)
       row += put(std::int32_t(strips && k == 3 ? -1 : dice.below(std::size_t(vertices))));
+    if (texture) {
+      row += put(std::uint8_t(2 * corners));
+      for (int k = 0; k < 2 * corners; ++k)
+        row += put(dice.value());
+      row += put(std::int32_t(dice.below(3)) - 1);
+    }
     data.push_back(row + put.line());
   }
   parts.push_back("end_header\n");
@@ -152,11 +166,12 @@ GeneratedFile vtk(Dice& dice)
 GeneratedFile obj(Dice& dice)
 {
   const int vertices = dice.between(3, 8), faces = dice.between(1, 5);
-  Parts parts{"mtllib input.mtl\n"};
+  Parts parts{dice.of<std::string>({"mtllib input.mtl\n", "mtllib .\\input.mtl input.mtl # both\n"})};
   for (int v = 0; v < vertices; ++v)
     parts.push_back(concat("v ", dice.value(), ' ', dice.value(), ' ', dice.value(), "\n"));
   for (int v = 0; v < vertices; ++v)
-    parts.push_back(concat("vt ", dice.value(), ' ', dice.value(), "\n"));
+    parts.push_back(dice.chance() ? concat("vt ", dice.value(), ' ', dice.value(), "\n")
+                                  : concat("vt ", dice.value(), "\n"));
   parts.push_back("vn 0 0 1\n");
   for (int f = 0; f < faces; ++f) {
     std::string line = "f";
@@ -215,14 +230,26 @@ GeneratedFile stl(Dice& dice)
 
 GeneratedFile xyz(Dice& dice)
 {
-  const int columns = dice.of<int>({3, 4, 6, 7});
-  Parts parts{dice.chance() ? "# comment\n" : "// x y z\n"};
-  for (int row = dice.between(1, 6); row > 0; --row) {
+  const std::vector<std::string> names{"x", "y", "\"z\"", "Intensity", "r [8 bit]", "G", "blue", "nx", "ny", "nz"};
+  const std::string separator = dice.of<std::string>({" ", ",", ";", "\t", ", ", " | "});
+  const bool decimal_comma = separator != "," && separator != ", " && dice.chance(), whole = dice.chance();
+  const int columns = dice.of<int>({3, 4, 6, 7, 9, 10});
+  const auto row = [&](const auto& cell) {
     std::string line;
     for (int c = 0; c < columns; ++c)
-      line += concat(dice.value(), dice.chance() ? " " : ",");
-    parts.push_back(line + "\n");
-  }
+      line += (c > 0 ? separator : "") + cell(c);
+    return line + dice.of<std::string>({"\n", "\r\n", " # comment\n", separator + "\n"});
+  };
+  Parts parts;
+  if (dice.chance())
+    parts.push_back(dice.of<std::string>({"", "# ", "//"}) + row([&](int c) { return names[std::size_t(c)]; }));
+  for (int r = dice.between(1, 6); r > 0; --r)
+    parts.push_back(row([&](int c) {
+      std::string number = whole && c > 2 ? concat(dice.below(256)) : concat(dice.value());
+      if (decimal_comma)
+        std::replace(number.begin(), number.end(), '.', ',');
+      return number;
+    }));
   return {parts};
 }
 

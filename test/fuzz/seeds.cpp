@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "seeds.h"
+#include "common/io/e57_file.h"
 #include "common/io/las_writer.h"
 #include "job/stage_log.h"
 #include "targets.h"
@@ -11,7 +12,6 @@
 #include <fresco/io/mesh_io.h>
 #include <fresco/io/point_io.h>
 #include <fresco/io/pose_file.h>
-#include <fresco/simulation/sensors/e57_writer.h>
 using namespace fresco::model;
 namespace fresco::fuzz {
 namespace {
@@ -68,7 +68,7 @@ const char* const two_stations_ptx = "2\n2\n1 2 3\n1 0 0\n0 1 0\n0 0 1\n1 0 0 0\
 /// Without checksums, as the target wants it.
 std::string someE57()
 {
-  using simulation::e57::Field;
+  using test::e57::Field;
   Field x{"cartesianX"}, range{"sphericalRange"};
   x.reals = {1, 2, 3};
   Field y = x, z{"cartesianZ", "ScaledInteger", false, -5, 500, 0.5, 2, {-5, 7, 500}};
@@ -85,11 +85,11 @@ std::string someE57()
   Field azimuth = range, elevation = range;
   azimuth.name = "sphericalAzimuth";
   elevation.name = "sphericalElevation";
-  const simulation::e57::Image picture{"<sphericalRepresentation type=\"Structure\"><jpegImage type=\"Blob\" PICTURE/>"
-                                       "</sphericalRepresentation>",
-                                       "jpeg", ""};
-  const std::string file = simulation::e57::fileOf(
-      {{"a", {x, y, z, state, row, column, red, green, blue, label}, 3, simulation::e57::poseXml(1, 0, 1, 2, 3)},
+  const test::e57::Image picture{"<sphericalRepresentation type=\"Structure\"><jpegImage type=\"Blob\" PICTURE/>"
+                                 "</sphericalRepresentation>",
+                                 "jpeg", ""};
+  const std::string file = test::e57::fileOf(
+      {{"a", {x, y, z, state, row, column, red, green, blue, label}, 3, test::e57::poseXml(1, 0, 1, 2, 3)},
        {"b", {range, azimuth, elevation}, 3}},
       {picture});
   std::string logical;

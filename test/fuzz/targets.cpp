@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "targets.h"
+#include "common/io/e57_file.h"
 #include "input/rgbd.h"
 #include "job/stage_log.h"
 #include "support/args.h"
@@ -14,7 +15,6 @@
 #include <fresco/io/pose_file.h>
 #include <fresco/io/scan_file.h>
 #include <fresco/io/scan_images.h>
-#include <fresco/simulation/sensors/e57_writer.h>
 #include <fstream>
 using namespace fresco::model;
 namespace fresco::fuzz {
@@ -108,8 +108,8 @@ void readE57(Bytes bytes, const std::string& folder)
   std::string logical(bytes);
   logical.resize((logical.size() + 1019) / 1020 * 1020);
   if (logical.size() >= 24)
-    logical.replace(16, 8, simulation::e57::raw(std::uint64_t{logical.size() / 1020 * 1024}));
-  store(path, simulation::e57::File::withChecksums(logical));
+    logical.replace(16, 8, test::e57::raw(std::uint64_t{logical.size() / 1020 * 1024}));
+  store(path, test::e57::File::withChecksums(logical));
   readChecked(folder, [&] { readPointsAndCloud(path); });
   readChecked(folder, [&] { readScans(path); });
   readChecked(folder, [&] {
@@ -249,7 +249,7 @@ void parseArgs(Bytes bytes, const std::string&)
 const std::vector<Target>& targets()
 {
   static const std::vector<Target> all = {
-      fileTarget("ply", {as_points, as_mesh}),
+      fileTarget("ply", {as_points, as_mesh, as_model}),
       fileTarget("pcd", {as_points}),
       fileTarget("vtk", {as_points, as_mesh}),
       fileTarget("stl", {as_points, as_mesh}),

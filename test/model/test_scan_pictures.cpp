@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "common/io/e57_file.h"
 #include "input/model_input.h"
 #include "input/scan_pictures.h"
 #include "test_data.h"
@@ -6,10 +7,9 @@
 #include <fresco/core/require.h>
 #include <fresco/io/file.h>
 #include <fresco/io/image_io.h>
-#include <fresco/simulation/sensors/e57_writer.h>
 namespace fresco::model {
 namespace {
-namespace e57 = simulation::e57;
+namespace e57 = test::e57;
 using e57::element;
 using Eigen::Isometry3d;
 using Eigen::Vector3d;

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // fresco_model with each kind of input that scans come in.
+#include "common/io/e57_file.h"
 #include "test_data.h"
 #include "tools/small_room.h"
 #include "tools/tool_runs.h"
 #include <fresco/core/constants.h>
 #include <fresco/io/file.h>
 #include <fresco/io/image_io.h>
-#include <fresco/simulation/sensors/e57_writer.h>
 #include <map>
 #include <nlohmann/json.hpp>
 namespace fresco::test {
@@ -219,9 +219,9 @@ TEST(ModelInputs, PanoramasTextureTheModel)
 
 /// A station of a survey with its points and a panorama of three quarters of the directions around.
 void addStation(const std::string& folder, int number, const Eigen::Isometry3d& T_world_scan,
-                std::vector<simulation::e57::Scan>& scans, std::vector<simulation::e57::Image>& images)
+                std::vector<test::e57::Scan>& scans, std::vector<test::e57::Image>& images)
 {
-  namespace e57 = simulation::e57;
+  namespace e57 = test::e57;
   const PointSet points = readPoints(folder + "/room/scans/scan_0" + std::to_string(number) + ".pcd");
   scans.push_back({std::to_string(number), {}, std::size_t(points.size()), e57::poseXml(T_world_scan)});
   for (int k = 0; k < 3; ++k) {
@@ -253,12 +253,12 @@ TEST(ModelInputs, PicturesInsideOfASurveyAreUsedWhereTheyShowSomething)
 {
   const std::string folder = scansAlone();
   const std::vector<Pose> poses = readPoses(folder + "/room/poses.txt");
-  std::vector<simulation::e57::Scan> scans;
-  std::vector<simulation::e57::Image> images;
+  std::vector<test::e57::Scan> scans;
+  std::vector<test::e57::Image> images;
   for (int k = 0; k < 2; ++k)
     addStation(folder, k, Eigen::Isometry3d(*poses[k]), scans, images);
   fs::remove_all(folder + "/room");
-  writeFile(folder + "/survey.e57", simulation::e57::fileOf(scans, images));
+  writeFile(folder + "/survey.e57", test::e57::fileOf(scans, images));
   const Outcome outcome = run(folder, "model survey.e57 out -use_poses -cell 0.1 -size 160x120");
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   const nlohmann::json report = nlohmann::json::parse(get(folder + "/out/report.json"));

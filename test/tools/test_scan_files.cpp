@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "common/io/e57_file.h"
 #include "registration/registration_scene.h"
 #include "tools/cloud_tool.h"
 #include <fresco/io/pose_file.h>
 #include <fresco/io/scan_file.h>
-#include <fresco/simulation/sensors/e57_writer.h>
 #include <nlohmann/json.hpp>
 namespace fresco {
 namespace {
-simulation::e57::Scan scanOf(const std::string& name, const PointSet& points)
+test::e57::Scan scanOf(const std::string& name, const PointSet& points)
 {
-  simulation::e57::Scan scan{name, {}, static_cast<std::size_t>(points.size())};
+  test::e57::Scan scan{name, {}, static_cast<std::size_t>(points.size())};
   for (int axis = 0; axis < 3; ++axis) {
-    simulation::e57::Field field{std::string("cartesian") + "XYZ"[axis]};
+    test::e57::Field field{std::string("cartesian") + "XYZ"[axis]};
     field.single = true;
     for (Index i = 0; i < points.size(); ++i)
       field.reals.push_back(points.points(axis, i));
@@ -28,11 +28,11 @@ protected:
 TEST_F(RegisterStations, EachScanOfAFileIsPlacedAndAnEmptyOneIsNamed)
 {
   const test::ScannedScene scene = test::scanTwoRooms(20000);
-  std::vector<simulation::e57::Scan> scans = {scanOf("a", scene.scans[0]), scanOf("nothing", PointSet()),
-                                              scanOf("b", scene.scans[1])};
-  for (simulation::e57::Scan& scan : scans)
-    scan.more = simulation::e57::poseXml(1, 0, 100, 0, 0); // all alike: not where they belong
-  writeFile(path("all.e57"), simulation::e57::fileOf(scans));
+  std::vector<test::e57::Scan> scans = {scanOf("a", scene.scans[0]), scanOf("nothing", PointSet()),
+                                        scanOf("b", scene.scans[1])};
+  for (test::e57::Scan& scan : scans)
+    scan.more = test::e57::poseXml(1, 0, 100, 0, 0); // all alike: not where they belong
+  writeFile(path("all.e57"), test::e57::fileOf(scans));
   ASSERT_EQ(run(path("all.e57") + " -o " + path("all")), 0) << errors();
   EXPECT_NE(errors().find("all.e57 scan 2: only 0 finite points"), std::string::npos) << errors();
   const std::vector<Pose> poses = readPoses(path("all/poses.txt"));

@@ -12,11 +12,13 @@
 #include <fresco/core/parallel.h>
 #include <fresco/core/require.h>
 #include <fresco/io/file.h>
+#include <fresco/io/reading.h>
 #include <fresco/io/unfinished_files.h>
 #include <iostream>
 #include <memory>
 #include <mutex>
 #include <new>
+#include <set>
 #include <sys/ioctl.h>
 #include <system_error>
 #include <thread>
@@ -241,8 +243,23 @@ private:
 };
 } // namespace
 
+namespace {
+std::atomic<bool> is_quiet{false};
+
+/// A line for each thing that readers remark, once: files may be read twice.
+void hearReaders(const std::string& remark)
+{
+  static std::mutex mutex;
+  static std::set<std::string> heard;
+  const std::lock_guard<std::mutex> lock(mutex);
+  if (heard.insert(remark).second)
+    inform(is_quiet, "warning: " + remark);
+}
+} // namespace
+
 void CommonOptions::declare(Args& args)
 {
+  listenToReaders(hearReaders);
   args.values("threads", "N", "number of threads, 0 = all cores; never changes the result (default 0)",
               [this](const auto& words) {
                 const long long given = Args::integer("threads", words[0]);
@@ -252,7 +269,7 @@ void CommonOptions::declare(Args& args)
                 setDefaultThreads(threads); // for what has no option of its own, such as readers
               });
   args.values("quiet", "", "print nothing but errors", [this](const auto&) {
-    quiet = true;
+    quiet = is_quiet = true;
     muteLibraries();
   });
 }

@@ -209,41 +209,4 @@ CoordinateBounds coordinateBounds(const PointTable& table, const std::array<Colu
   }
   return bounds;
 }
-
-namespace {
-Scalar rowType(const std::string& name, Scalar coordinate)
-{
-  const auto is_in = [&](NameTriple names) { return std::count(names, names + 3, name) > 0; };
-  return is_in(xyz_names) || is_in(viewpoint_names) ? coordinate : is_in(color_names) ? Scalar::uint8 : Scalar::float32;
-}
-
-PointTable convertRows(const std::vector<std::string>& names, const std::vector<double>& values, Scalar coordinate)
-{
-  PointTable table;
-  for (const std::string& name : names)
-    table.addColumn(name, rowType(name, coordinate));
-  table.allocate(values.size() / names.size());
-  for (std::size_t c = 0; c < names.size(); ++c)
-    visitScalar(table.columns[c].type, [&](auto zero) {
-      using T = decltype(zero);
-      for (Index row = 0; row < table.rows; ++row) {
-        double value = values[row * names.size() + c];
-        if constexpr (std::is_integral_v<T>)
-          value = value > 0 ? std::min(std::round(value), 255.0) : 0.0;
-        const T stored = value;
-        std::memcpy(table.cell(row, table.columns[c]), &stored, sizeof(T));
-      }
-    });
-  return table;
-}
-} // namespace
-
-PointTable tableOfRows(const std::vector<std::string>& names, const std::vector<double>& values)
-{
-  PointTable table = convertRows(names, values, Scalar::float64);
-  const auto xyz = findTriple(table, xyz_names);
-  if (xyz && coordinateBounds(table, *xyz).exceedsFloat())
-    return table;
-  return convertRows(names, values, Scalar::float32);
-}
 } // namespace fresco::core

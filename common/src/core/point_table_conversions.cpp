@@ -51,18 +51,6 @@ Eigen::Vector3d originOf(const PointTable& table)
   return bounds.exceedsFloat() ? bounds.origin() : Eigen::Vector3d::Zero();
 }
 
-/// A colour component of any type as 0..255: bytes as they are, 16 bit by their high byte, floats from 0..1.
-template <typename T>
-std::uint8_t colorByte(T value)
-{
-  if constexpr (std::is_floating_point_v<T>)
-    return value > T(0) ? std::min(T(255), std::round(value * T(255))) : T(0);
-  else if constexpr (std::is_same_v<T, std::uint16_t>)
-    return value >> 8;
-  else
-    return std::clamp<std::int64_t>(value, 0, 255);
-}
-
 Colors readColors(const PointTable& table)
 {
   Colors colors;
@@ -74,18 +62,19 @@ Colors readColors(const PointTable& table)
     });
   } else if (const auto rgb = findTriple(table, color_names)) {
     colors.resize(3, table.rows);
+    const double full = fullColor(table, *rgb);
     for (int channel = 0; channel < 3; ++channel)
-      forEachValue(table, (*rgb)[channel], 0, [&](Index row, auto value) { colors(channel, row) = colorByte(value); });
+      forEachValue(table, (*rgb)[channel], 0, [&](Index row, auto value) {
+        colors(channel, row) = sizeof(value) == 1 ? std::uint8_t(value) : colorByte(value, full);
+      });
   }
   return colors;
 }
 
-Eigen::VectorXf firstOf(const PointTable& table, std::initializer_list<const char*> names)
+Eigen::VectorXf valuesOf(const PointTable& table, const char* name)
 {
-  for (const char* name : names)
-    if (const Column* column = table.find(name); column)
-      return columnValues(table, *column);
-  return {};
+  const Column* column = table.find(name);
+  return column ? columnValues(table, *column) : Eigen::VectorXf();
 }
 
 /// Adds columns with what fills them; they are filled once all are there.
@@ -161,8 +150,8 @@ PointSet tableToPoints(const PointTable& table, const Eigen::Vector3d& origin)
   set.points = tripleValues(table, xyz_names, set.origin);
   set.normals = tripleValues(table, normal_names);
   set.colors = readColors(table);
-  set.intensities = firstOf(table, {"intensity", "intensities", "scalar_intensity", "scalar_Intensity"});
-  set.confidences = firstOf(table, {"confidence"});
+  set.intensities = valuesOf(table, "intensity");
+  set.confidences = valuesOf(table, "confidence");
   set.viewpoints = tripleValues(table, viewpoint_names, set.origin);
   if (set.viewpoints.cols() == 0 && table.sensor)
     set.viewpoints = (table.sensor->position - set.origin).cast<float>();

@@ -13,7 +13,10 @@
 #include "io/points/text_scans.h"
 #include "io/points/xyz.h"
 #include <algorithm>
+#include <fresco/core/pcl_cloud_table.h>
 #include <fresco/io/mesh_io.h>
+#include <fresco/io/scan_writer.h>
+#include <pcl/PCLPointCloud2.h>
 namespace fresco {
 namespace io {
 namespace {
@@ -100,13 +103,30 @@ PointTable readScans(const std::string& path)
   return namingFile(path, [&] { return readMergedTable(*open(path)); });
 }
 
-/// A format of several scans, which is only read.
+/// A format of several scans.
 template <auto open>
-Format scansFormat(const char* name, const char* extension)
+Format scansFormat(const char* name, const char* extension,
+                   void (*write)(const std::string&, const PointTable&, bool) = nullptr)
 {
-  Format format{name, {extension}, readScans<open>};
+  Format format{name, {extension}, readScans<open>, write};
   format.open_scans = open;
   return format;
+}
+
+void writeLasPoints(const std::string& path, const PointTable& points, bool) { writeLas(path, points); }
+void writeLazPoints(const std::string& path, const PointTable& points, bool) { writeLaz(path, points); }
+
+/// One scan, in the frame of its sensor where that is known.
+void writeE57Points(const std::string& path, const PointTable& points, bool)
+{
+  PlacedCloud scan{"scan 1", {}, {}};
+  PointTable table = points;
+  if (points.sensor) {
+    scan.T_file_scan = Eigen::Isometry3d(Eigen::Translation3d(points.sensor->position));
+    moveOrigin(table, points.sensor->position);
+  }
+  scan.cloud.cloud = cloudOfTable(std::move(table));
+  writeScans(path, {scan});
 }
 } // namespace
 
@@ -115,16 +135,17 @@ const std::vector<Format>& formats()
   static const std::vector<Format> all = {
       // name, extensions, points: reads, writes; mesh: reads, writes; with texture
       withRows({"PCD", {".pcd"}, readPcd, writePcd}, pcdRows),
-      withRows({"PLY", {".ply"}, readPlyPoints, writePlyPoints, readPlyMesh, writePlyMesh}, plyRows),
+      withRows({"PLY", {".ply"}, readPlyPoints, writePlyPoints, readPlyMesh, writePlyMesh, true}, plyRows),
       {"legacy VTK", {".vtk"}, readVtkPoints, nullptr, readVtkMesh, writeVtkMesh},
       {"VTK XML", {".vtp"}, nullptr, nullptr, nullptr, writeVtpMesh},
       {"STL", {".stl"}, readStlPoints, nullptr, readStlMesh, writeStl},
       {"OBJ", {".obj"}, readObjPoints, nullptr, readObjMesh, writeObj, true},
-      {"XYZ", {".xyz", ".txt", ".asc"}, readXyz, writeXyzPoints},
-      scansFormat<openE57>("E57", ".e57"),
+      {"XYZ", {".xyz", ".txt", ".asc", ".csv"}, readXyz, writeXyzPoints},
+      scansFormat<openE57>("E57", ".e57", writeE57Points),
       scansFormat<openPtx>("PTX", ".ptx"),
       scansFormat<openPts>("PTS", ".pts"),
-      scansFormat<openLas>("LAS", ".las"),
+      scansFormat<openLas>("LAS", ".las", writeLasPoints),
+      scansFormat<openLaz>("LAZ", ".laz", writeLazPoints),
       {"binary glTF", {".glb"}, nullptr, nullptr, nullptr, nullptr, true},
   };
   return all;
@@ -175,8 +196,6 @@ const Format& formatToRead(const std::string& path, FileKind kind)
 {
   if (const Format* const format = find(path, kind, &Format::reads))
     return *format;
-  if (extension(path) == ".laz")
-    throw std::runtime_error(path + ": " + laz_hint);
   throw std::runtime_error(path + ": not a " + nameOf(kind) + ": expected " + readableExtensions(kind));
 }
 
@@ -187,7 +206,12 @@ const Format& formatToWrite(const std::string& path, FileKind kind)
   throw std::runtime_error(path + ": cannot write this type of " + nameOf(kind) + ": use " + writableExtensions(kind));
 }
 
-PointTable readTable(const std::string& path) { return formatToRead(path, FileKind::points).read_points(path); }
+PointTable readTable(const std::string& path)
+{
+  PointTable table = formatToRead(path, FileKind::points).read_points(path);
+  normalizeColors(table);
+  return table;
+}
 
 void writeTable(const std::string& path, const PointTable& table, bool compressed)
 {

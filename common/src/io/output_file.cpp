@@ -9,7 +9,6 @@
 #include <fresco/core/require.h>
 #include <fresco/io/file.h>
 #include <fresco/io/unfinished_files.h>
-#include <iomanip>
 #include <map>
 #include <mutex>
 #include <optional>
@@ -61,9 +60,9 @@ struct TemporaryNames {
   std::string next() const
   {
     std::random_device random;
-    std::ostringstream name;
-    name << begin << std::hex << std::setfill('0') << std::setw(8) << random() << std::setw(8) << random() << end;
-    return (folder / name.str()).string();
+    char number[digits + 1];
+    std::snprintf(number, sizeof(number), "%08x%08x", random(), random());
+    return (folder / (begin + number + end)).string();
   }
   bool isOne(const std::string& name) const
   {

@@ -1,22 +1,23 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "io/points/text_numbers.h"
 #include <fresco/core/require.h>
-#include <fresco/io/file.h>
 #include <fresco/io/pose_file.h>
-#include <iomanip>
-#include <sstream>
 namespace fresco {
 namespace {
-Pose parsePose(const std::string& line, const std::string& where)
+Pose parsePose(std::string_view line, const std::string& where)
 {
-  std::istringstream words(line);
-  std::string word;
-  if (std::istringstream(line) >> word && word == "none")
+  io::TextScanner words(line);
+  std::string_view word = words.word();
+  if (word == "none")
     return {};
   Eigen::Matrix4d T;
-  for (int i = 0; i < 16; ++i)
-    if (!(words >> T(i / 4, i % 4)))
+  for (int i = 0; i < 16; ++i, word = words.word())
+    try {
+      T(i / 4, i % 4) = io::parseNumber<double>(word);
+    } catch (const std::runtime_error&) {
       throw std::runtime_error(concat(where, ": wants 16 numbers or the word none"));
-  if (words >> word)
+    }
+  if (!word.empty())
     throw std::runtime_error(concat(where, ": more than 16 numbers"));
   if (!isRigid(T, 1e-3))
     throw std::runtime_error(concat(where, ": not a rigid transform"));
@@ -26,12 +27,13 @@ Pose parsePose(const std::string& line, const std::string& where)
 
 std::vector<Pose> readPoses(const std::string& path)
 {
-  std::istringstream lines(readFile(path));
+  const std::string content = readFile(path);
   std::vector<Pose> poses;
-  std::string line;
-  for (int number = 1; std::getline(lines, line); ++number) {
+  for (io::TextScanner lines(content); !lines.done();) {
+    const std::size_t number = lines.line();
+    std::string_view line = lines.restOfLine();
     line = line.substr(0, line.find('#'));
-    if (line.find_first_not_of(" \t\r") != std::string::npos)
+    if (line.find_first_not_of(" \t") != std::string_view::npos)
       poses.push_back(parsePose(line, concat(path, ": line ", number)));
   }
   if (poses.empty())
@@ -41,15 +43,16 @@ std::vector<Pose> readPoses(const std::string& path)
 
 void writePoses(const std::string& path, const std::vector<Pose>& poses)
 {
-  std::ostringstream text;
-  text << std::setprecision(17);
+  OutputFile file(path);
+  io::TextWriter text(file);
   for (const Pose& pose : poses) {
     if (!pose)
-      text << "none";
+      text.text("none");
     for (int i = 0; pose && i < 16; ++i)
-      text << (i > 0 ? " " : "") << (*pose)(i / 4, i % 4);
-    text << "\n";
+      text.text(i > 0 ? " " : "").number((*pose)(i / 4, i % 4));
+    text.text("\n");
   }
-  writeFile(path, text.str());
+  text.flush();
+  file.commit();
 }
 } // namespace fresco

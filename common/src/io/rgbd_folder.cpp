@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "io/points/text_numbers.h"
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
@@ -7,7 +8,6 @@
 #include <fresco/io/file.h>
 #include <fresco/io/image_io.h>
 #include <fresco/io/rgbd_folder.h>
-#include <sstream>
 #include <tuple>
 namespace fresco {
 namespace {
@@ -16,14 +16,15 @@ namespace fs = std::filesystem;
 /// `rows` x `columns` numbers, nothing else; "nan" and "inf" are numbers, too.
 Eigen::MatrixXd readMatrix(const std::string& path, int rows, int columns)
 {
-  std::istringstream words(readFile(path));
+  const std::string content = readFile(path);
+  io::TextScanner words(content);
   Eigen::MatrixXd matrix(rows, columns);
-  std::string word;
-  for (int i = 0; i < rows * columns; ++i) {
-    char* end = nullptr;
-    if (!(words >> word) || (matrix(i / columns, i % columns) = std::strtod(word.c_str(), &end), *end != '\0'))
+  for (int i = 0; i < rows * columns; ++i)
+    try {
+      matrix(i / columns, i % columns) = io::parseNumber<double>(words.wordAcrossLines());
+    } catch (const std::runtime_error&) {
       throw std::runtime_error(concat(path, ": wants ", rows, "x", columns, " numbers"));
-  }
+    }
   return matrix;
 }
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "common/io/e57_file.h"
 #include "common/io/test_io_data.h"
 #include "io/points/e57/e57.h"
 #include <fresco/core/constants.h>
 #include <fresco/io/point_io.h>
 #include <fresco/io/scan_images.h>
-#include <fresco/simulation/sensors/e57_writer.h>
 namespace {
 using namespace fresco;
-using simulation::e57::Field;
-using simulation::e57::Scan;
+using test::e57::Field;
+using test::e57::Scan;
 
 std::vector<double> randomReals(std::size_t count, unsigned seed)
 {
@@ -91,7 +91,7 @@ TEST(E57, IntegersOfEveryWidthAreReadAsWritten)
       field.stored[1] = maximum;
       Scan scan{"widths", cartesian(count), count};
       scan.fields.push_back(field);
-      const std::string path = stored(simulation::e57::fileOf({scan}));
+      const std::string path = stored(test::e57::fileOf({scan}));
       for (const Index window : {Index{7}, Index{1000}})
         EXPECT_EQ(valuesOf<std::int64_t>(rowsOf(path, window), "value"), field.stored) << bits << " bits, " << minimum;
     }
@@ -102,7 +102,7 @@ TEST(E57, FloatsAndScaledIntegersAreReadAsWritten)
   constexpr std::size_t count = 2000;
   for (const bool single : {false, true}) {
     const Scan scan{"floats", cartesian(count, single), count};
-    const io::PointTable rows = rowsOf(stored(simulation::e57::fileOf({scan})), 333);
+    const io::PointTable rows = rowsOf(stored(test::e57::fileOf({scan})), 333);
     EXPECT_EQ(rows.columns[0].type, single ? io::Scalar::float32 : io::Scalar::float64);
     for (std::size_t axis = 0; axis < 3; ++axis)
       EXPECT_EQ(valuesOf<double>(rows, io::xyz_names[axis]), scan.fields[axis].reals);
@@ -118,7 +118,7 @@ TEST(E57, FloatsAndScaledIntegersAreReadAsWritten)
     x.stored.push_back(static_cast<std::int64_t>(i * 7919 % 16000001) - 8000000);
     expected.push_back(static_cast<double>(x.stored.back()) * x.scale + x.offset);
   }
-  EXPECT_EQ(valuesOf<double>(rowsOf(stored(simulation::e57::fileOf({scan})), 333), "x"), expected);
+  EXPECT_EQ(valuesOf<double>(rowsOf(stored(test::e57::fileOf({scan})), 333), "x"), expected);
 }
 
 TEST(E57, EveryFieldOfAPointIsKept)
@@ -148,7 +148,7 @@ TEST(E57, EveryFieldOfAPointIsKept)
     normal.reals = {1, 0, 0.5, -1};
     scan.fields.push_back(normal);
   }
-  const std::string path = stored(simulation::e57::fileOf({scan}));
+  const std::string path = stored(test::e57::fileOf({scan}));
   const io::PointTable rows = rowsOf(path, 100);
   EXPECT_EQ(valuesOf<int>(rows, "red"), (std::vector<int>{0, 255, 1, 1}));
   EXPECT_EQ(valuesOf<int>(rows, "green"), (std::vector<int>{0, 1, 128, 255}));
@@ -169,10 +169,10 @@ TEST(E57, EveryFieldOfAPointIsKept)
 
 TEST(E57, FieldsWithNamesOfOursAreNotTakenForThem)
 {
-  Scan scan{"names", cartesian(3), 3, simulation::e57::poseXml(1, 0, 5, 0, 0)};
+  Scan scan{"names", cartesian(3), 3, test::e57::poseXml(1, 0, 5, 0, 0)};
   for (const char* name : {"vp_x", "vp_y", "vp_z", "rgb", "row", "x", "normal_x", "normal_y", "normal_z"})
     scan.fields.push_back(whole(name, 0, 1, {0, 1, 0}));
-  const std::string path = stored(simulation::e57::fileOf({scan, scan}));
+  const std::string path = stored(test::e57::fileOf({scan, scan}));
   const PointSet points = readPoints(path);
   EXPECT_EQ(points.size(), 6);
   EXPECT_EQ(points.colors.cols() + points.normals.cols(), 0);
@@ -193,7 +193,7 @@ TEST(E57, SphericalPointsLieWhereTheirAnglesSay)
     azimuth.reals[i] = std::atan2(y, x);
     elevation.reals[i] = std::asin(z / range.reals[i]);
   }
-  const std::string path = stored(simulation::e57::fileOf({scan}));
+  const std::string path = stored(test::e57::fileOf({scan}));
   const io::PointTable rows = rowsOf(path, 64);
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const std::vector<double> values = valuesOf<double>(rows, io::xyz_names[axis]);
@@ -220,7 +220,7 @@ TEST(E57, RowsAndColumnsMakeAnOrganisedCloud)
   scan.fields[1].reals.assign(rows.begin(), rows.end());
   scan.fields.push_back(whole("rowIndex", 0, 100, rows));
   scan.fields.push_back(whole("columnIndex", 0, 100, columns));
-  const std::string path = stored(simulation::e57::fileOf({scan}));
+  const std::string path = stored(test::e57::fileOf({scan}));
   const CloudFile cloud = readCloud(path);
   EXPECT_EQ(cloud.cloud.width, 5u);
   EXPECT_EQ(cloud.cloud.height, 4u);
@@ -232,7 +232,7 @@ TEST(E57, RowsAndColumnsMakeAnOrganisedCloud)
       EXPECT_EQ(points.points.col(i).head<2>(), Eigen::Vector2f(float(i % width), float(i / width + 10)));
   scan.fields[4].stored[1] = scan.fields[4].stored[0] = 0; // two returns of one beam
   scan.fields[3].stored[1] = scan.fields[3].stored[0];
-  const CloudFile list = readCloud(stored(simulation::e57::fileOf({scan})));
+  const CloudFile list = readCloud(stored(test::e57::fileOf({scan})));
   EXPECT_EQ(list.cloud.height, 1u);
   EXPECT_EQ(list.cloud.width, scan.count);
 }
@@ -242,22 +242,20 @@ TEST(E57, PicturesAreTheBytesThatWereStored)
   const std::string picture(3000, 'p'), mask(70, 'm');
   const std::string sizes = "<imageWidth type=\"Integer\">640</imageWidth><imageHeight type=\"Integer\">480"
                             "</imageHeight>";
-  simulation::e57::Image pinhole{
-      "<pinholeRepresentation type=\"Structure\"><pngImage type=\"Blob\" PICTURE/><imageMask "
-      "type=\"Blob\" MASK/>" +
-          sizes +
-          "<focalLength type=\"Float\">0.01</focalLength><pixelWidth type=\"Float\">0.00002"
-          "</pixelWidth><pixelHeight type=\"Float\">0.00001</pixelHeight><principalPointX "
-          "type=\"Float\">320</principalPointX><principalPointY type=\"Float\">240"
-          "</principalPointY></pinholeRepresentation>",
-      picture, mask};
-  pinhole.more = simulation::e57::poseXml(std::sqrt(0.5), std::sqrt(0.5), 1, 2, 3) +
+  test::e57::Image pinhole{"<pinholeRepresentation type=\"Structure\"><pngImage type=\"Blob\" PICTURE/><imageMask "
+                           "type=\"Blob\" MASK/>" +
+                               sizes +
+                               "<focalLength type=\"Float\">0.01</focalLength><pixelWidth type=\"Float\">0.00002"
+                               "</pixelWidth><pixelHeight type=\"Float\">0.00001</pixelHeight><principalPointX "
+                               "type=\"Float\">320</principalPointX><principalPointY type=\"Float\">240"
+                               "</principalPointY></pinholeRepresentation>",
+                           picture, mask};
+  pinhole.more = test::e57::poseXml(std::sqrt(0.5), std::sqrt(0.5), 1, 2, 3) +
                  "<associatedData3DGuid type=\"String\">guid of a</associatedData3DGuid>";
-  const simulation::e57::Image spherical{
-      "<sphericalRepresentation type=\"Structure\"><jpegImage type=\"Blob\" PICTURE/>" + sizes +
-          "</sphericalRepresentation>",
-      "jpeg", ""};
-  const std::string path = stored(simulation::e57::fileOf({Scan{"a", cartesian(3), 3}}, {pinhole, spherical}));
+  const test::e57::Image spherical{"<sphericalRepresentation type=\"Structure\"><jpegImage type=\"Blob\" PICTURE/>" +
+                                       sizes + "</sphericalRepresentation>",
+                                   "jpeg", ""};
+  const std::string path = stored(test::e57::fileOf({Scan{"a", cartesian(3), 3}}, {pinhole, spherical}));
   const std::vector<ScanImage> images = readScanImages(path);
   ASSERT_EQ(images.size(), 2u);
   EXPECT_EQ(images[0].projection, ScanImage::Projection::pinhole);

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <fresco/core/export.h>
@@ -62,6 +64,7 @@ struct Column {
   Scalar type = Scalar::float32;
   std::size_t count = 1;  ///< values per row, >= 1
   std::size_t offset = 0; ///< bytes from the begin of a row
+  double full = 0;        ///< of red green blue: the value that shows as 255; 0 = judged by type and values
 
   std::size_t bytes() const { return count * scalarSize(type); }
 };
@@ -135,6 +138,30 @@ inline constexpr const char* normal_names[3] = {"normal_x", "normal_y", "normal_
 inline constexpr const char* viewpoint_names[3] = {"vp_x", "vp_y", "vp_z"};
 inline constexpr const char* color_names[3] = {"red", "green", "blue"};
 
+/// What every reader calls a column that programs name `name`: "nx" and "NormalX" are normal_x, "R" is red. Names without
+/// a meaning here stay as they are.
+FRESCO_EXPORT std::string standardName(std::string_view name);
+
+/// The value of a colour that shows as 255, by the type of its fields and the largest value in them: fractions are floats
+/// of which none is above 1; whole numbers of more than 8 bits stand for 8 where none is above 255.
+FRESCO_EXPORT double fullColor(Scalar type, double largest);
+/// The same of the columns of a table, by Column::full where that is known.
+FRESCO_EXPORT double fullColor(const PointTable& table, const std::array<Column, 3>& rgb);
+
+/// 0..255; values of more than 8 bits by their highest 8 bits, NaN as 0.
+inline std::uint8_t colorByte(double value, double full)
+{
+  const double byte = full > 255 ? std::floor(256 * value / (full + 1)) : std::round(255 * value / full);
+  return byte > 0 ? std::min(byte, 255.0) : 0.0;
+}
+
+/// The largest finite value of columns; 0 if there is none above.
+FRESCO_EXPORT double largestValue(const PointTable& table, const std::array<Column, 3>& columns);
+
+/// Makes columns red green blue of whatever type bytes, by fullColor(), and whole numbers in a float column rgb the packed
+/// colour that they mean.
+FRESCO_EXPORT void normalizeColors(PointTable& table);
+
 /// Column rgb or rgba of four bytes, nullptr if there is none.
 FRESCO_EXPORT const Column* packedColor(const PointTable& table);
 
@@ -156,9 +183,15 @@ struct FRESCO_EXPORT CoordinateBounds {
 };
 FRESCO_EXPORT CoordinateBounds coordinateBounds(const PointTable& table, const std::array<Column, 3>& xyz);
 
-/// Values of `names`, row by row, as float32, red green blue as uint8; x y z and vp_x vp_y vp_z as float64 where float
-/// loses more than 1e-6 of the extent of x y z.
+/// Values of `names`, row by row, as float32, red green blue as uint8 by fullColor(); x y z and vp_x vp_y vp_z as float64
+/// where float loses more than 1e-6 of the extent of x y z. Columns without a name are left out.
 FRESCO_EXPORT PointTable tableOfRows(const std::vector<std::string>& names, const std::vector<double>& values);
+
+/// x y z and vp_x vp_y vp_z become float32 where that loses no more than 1e-6 of the extent.
+FRESCO_EXPORT void narrowCoordinates(PointTable& table);
+
+/// Takes `origin` off x y z, which become float64.
+FRESCO_EXPORT void moveOrigin(PointTable& table, const Eigen::Vector3d& origin);
 
 /// @throws std::runtime_error if x y z are missing
 FRESCO_EXPORT PointSet tableToPoints(const PointTable& table);

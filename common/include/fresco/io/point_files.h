@@ -23,7 +23,7 @@ FRESCO_EXPORT std::unique_ptr<PointStream>
 openPointFiles(const std::vector<ScanPath>& files, Index window = points_per_window, const WindowShare& share = {});
 
 /// Folders replaced by the files of points in them, in the order of their names; other words stay. Text files there are
-/// notes or poses, and .stl files hold no scans.
+/// notes or poses, .stl files hold no scans, and hidden files do not count.
 /// @throws std::runtime_error "PATH: reason" if a word is no file, or a folder has no file of points
 FRESCO_EXPORT std::vector<std::string> pointFilesIn(const std::vector<std::string>& words);
 } // namespace fresco

@@ -5,7 +5,6 @@
 #include <fresco/core/require.h>
 #include <fresco/io/colmap.h>
 #include <fresco/io/file.h>
-#include <sstream>
 namespace fresco {
 namespace {
 using io::CameraEntry;
@@ -13,17 +12,18 @@ using io::CameraEntry;
 std::vector<CameraEntry> readCamerasText(const std::string& path)
 {
   std::vector<CameraEntry> cameras;
-  io::forEachLine(path, [&](const std::string& line, const std::string& where) {
-    if (line.find_first_not_of(" \t") == std::string::npos)
+  io::forEachLine(path, [&](std::string_view line, const std::string& where) {
+    constexpr const char* wanted = "CAMERA_ID MODEL WIDTH HEIGHT PARAMS";
+    if (line.empty())
       return;
-    std::istringstream words(line);
-    std::uint64_t id = 0, width = 0, height = 0;
-    std::string model;
-    if (!(words >> id >> model >> width >> height))
-      throw std::runtime_error(where + ": wants CAMERA_ID MODEL WIDTH HEIGHT PARAMS");
+    io::TextScanner words(line);
+    const auto id = io::nextNumber<std::uint64_t>(words, where, wanted);
+    const std::string model(words.word());
+    const auto width = io::nextNumber<std::uint64_t>(words, where, wanted);
+    const auto height = io::nextNumber<std::uint64_t>(words, where, wanted);
     std::vector<double> parameters;
-    for (double value; words >> value;)
-      parameters.push_back(value);
+    while (!words.atLineEnd())
+      parameters.push_back(io::nextNumber<double>(words, where, wanted));
     cameras.push_back({id, io::makeCamera(model, width, height, parameters, where)});
   });
   return cameras;

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+#include "io/points/text_numbers.h"
 #include <cstdint>
 #include <fresco/core/camera.h>
 #include <fresco/core/require.h>
 #include <fresco/io/file.h>
-#include <sstream>
 #include <string>
 #include <vector>
 /// Parts that COLMAP's text and binary models share. `where` names file and place in errors.
@@ -21,17 +21,27 @@ struct ImageEntry {
   std::vector<Eigen::Vector2d> pixels; ///< of its feature points; empty unless asked for
 };
 
-/// use(line, where) for lines that are no comments; `where` names file and line.
+/// use(line, where) for lines that are no comments, without blanks at their ends; `where` names file and line.
 template <typename Use>
 void forEachLine(const std::string& path, const Use& use)
 {
-  std::istringstream lines(readFile(path));
-  std::string line;
-  for (int number = 1; std::getline(lines, line); ++number) {
-    if (!line.empty() && line.back() == '\r')
-      line.pop_back();
+  const std::string content = readFile(path);
+  for (TextScanner lines(content); !lines.done();) {
+    const std::size_t number = lines.line();
+    const std::string_view line = lines.restOfLine();
     if (line.empty() || line[0] != '#')
       use(line, concat(path, ": line ", number));
+  }
+}
+
+/// The next word of a line as a number. @throws std::runtime_error "`where`: wants `what`"
+template <typename T>
+T nextNumber(TextScanner& words, const std::string& where, const char* what)
+{
+  try {
+    return parseNumber<T>(words.word());
+  } catch (const std::runtime_error&) {
+    throw std::runtime_error(concat(where, ": wants ", what));
   }
 }
 

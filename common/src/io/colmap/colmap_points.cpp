@@ -15,26 +15,32 @@ std::vector<ImageEntry> readImagesText(const std::string& path, bool with_pixels
 {
   std::vector<ImageEntry> images;
   bool points_line = false;
-  forEachLine(path, [&](const std::string& line, const std::string& where) {
+  forEachLine(path, [&](std::string_view line, const std::string& where) {
     const bool skip = points_line;
     points_line = !points_line;
+    TextScanner words(line);
     if (skip) {
-      std::istringstream words(with_pixels ? line : std::string());
-      std::string point;
-      for (double x, y; words >> x >> y >> point;)
+      while (with_pixels && !words.atLineEnd()) {
+        const auto x = nextNumber<double>(words, where, "X Y POINT3D_ID"), y = nextNumber<double>(words, where, "Y");
+        words.word();
         images.back().pixels.emplace_back(x, y);
+      }
       return;
     }
-    if (line.find_first_not_of(" \t") == std::string::npos) {
+    if (line.empty()) {
       points_line = false;
       return;
     }
-    std::istringstream words(line);
+    constexpr const char* wanted = "IMAGE_ID QW QX QY QZ TX TY TZ CAMERA_ID NAME";
     ImageEntry image;
     double q[4], t[3];
-    if (!(words >> image.id >> q[0] >> q[1] >> q[2] >> q[3] >> t[0] >> t[1] >> t[2] >> image.camera))
-      throw std::runtime_error(where + ": wants IMAGE_ID QW QX QY QZ TX TY TZ CAMERA_ID NAME");
-    std::getline(words >> std::ws, image.name);
+    image.id = nextNumber<std::uint64_t>(words, where, wanted);
+    for (double& value : q)
+      value = nextNumber<double>(words, where, wanted);
+    for (double& value : t)
+      value = nextNumber<double>(words, where, wanted);
+    image.camera = nextNumber<std::uint64_t>(words, where, wanted);
+    image.name = std::string(words.restOfLine());
     image.T_camera_world = makePose(q, t, where);
     images.push_back(image);
   });
@@ -78,29 +84,24 @@ void requireFinite(const SparsePoint& point, const std::string& where)
 SparsePoints readPointsText(const std::string& path, const Images& images)
 {
   SparsePoints points;
-  forEachLine(path, [&](const std::string& line, const std::string& where) {
-    if (line.find_first_not_of(" \t") == std::string::npos)
+  forEachLine(path, [&](std::string_view line, const std::string& where) {
+    if (line.empty())
       return;
-    std::string words = line;
-    std::replace(words.begin(), words.end(), '\t', ' ');
-    const char* at = words.c_str();
-    char* end = nullptr;
+    TextScanner words(line);
     double value[8]; // id x y z r g b error
-    for (double& number : value) {
-      number = std::strtod(at, &end); // as streams do not, it reads "nan"
-      if (end == at)
-        fail(where, "wants POINT3D_ID X Y Z R G B ERROR TRACK[]");
-      at = end;
-    }
+    for (double& number : value)
+      number = nextNumber<double>(words, where, "POINT3D_ID X Y Z R G B ERROR TRACK[]");
     SparsePoint point;
     point.position << value[1], value[2], value[3];
     point.error = value[7];
     requireFinite(point, where);
     for (int c = 0; c < 3; ++c)
       point.color[c] = value[4 + c] > 0 ? static_cast<std::uint8_t>(std::min(value[4 + c], 255.0)) : 0;
-    std::istringstream track(at);
-    for (std::uint64_t image, feature; track >> image >> feature;)
+    while (!words.atLineEnd()) {
+      const auto image = nextNumber<std::uint64_t>(words, where, "IMAGE_ID POINT2D_IDX"),
+                 feature = nextNumber<std::uint64_t>(words, where, "POINT2D_IDX behind IMAGE_ID");
       point.track.push_back(images.observation(image, feature, where));
+    }
     points.push_back(std::move(point));
   });
   return points;

@@ -15,7 +15,7 @@ struct ObjTriangle {
 };
 
 struct ObjContent {
-  std::vector<double> vertices; ///< x y z each, or x y z r g b (0..255) each if `has_colors`
+  std::vector<double> vertices; ///< x y z each, or x y z r g b (as in the file) each if `has_colors`
   bool has_colors = false;
   std::vector<double> normals;  ///< x y z each
   std::vector<float> texcoords; ///< u v each

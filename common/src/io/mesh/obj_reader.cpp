@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "io/files/remarks.h"
 #include "io/mesh/obj.h"
 #include "io/points/text_numbers.h"
 #include <algorithm>
+#include <cmath>
 #include <fresco/core/polygon_fans.h>
 #include <fresco/core/require.h>
 #include <limits>
 #include <unordered_map>
 namespace fresco::io {
 namespace {
-/// Next word of a statement; a backslash at the end of a line continues it.
+/// Next word of a statement, empty at its end; a backslash at the end of a line continues it, '#' begins a comment.
 std::string_view nextWord(TextScanner& scanner)
 {
   std::string_view word = scanner.word();
@@ -16,7 +18,7 @@ std::string_view nextWord(TextScanner& scanner)
     scanner.nextLine();
     word = scanner.word();
   }
-  return word;
+  return word.substr(0, 1) == "#" ? std::string_view() : word;
 }
 
 struct Corner {
@@ -37,6 +39,8 @@ public:
     }
     if (content_.vertices.empty())
       throw std::runtime_error("no vertices");
+    if (has_lines_)
+      remark("lines and points are left out");
     finishColors();
     checkIndices();
     return std::move(content_);
@@ -51,13 +55,15 @@ private:
     else if (keyword == "vn")
       append(content_.normals, 3);
     else if (keyword == "vt")
-      append(content_.texcoords, 2);
+      parseTexcoord();
     else if (keyword == "f" || keyword == "fo")
       parseFace();
     else if (keyword == "usemtl")
       useMaterial(std::string(restOfStatement()));
     else if (keyword == "mtllib")
       parseLibraries();
+    else if (keyword == "l" || keyword == "p")
+      has_lines_ = true;
   }
 
   template <typename T>
@@ -65,6 +71,14 @@ private:
   {
     for (int i = 0; i < count; ++i)
       values.push_back(parseNumber<T>(nextWord(scanner_)));
+  }
+
+  /// u [v [w]]
+  void parseTexcoord()
+  {
+    append(content_.texcoords, 1);
+    const std::string_view v = nextWord(scanner_);
+    content_.texcoords.push_back(v.empty() ? 0.f : parseNumber<float>(v));
   }
 
   void parseVertex()
@@ -77,7 +91,7 @@ private:
     if (count < 3)
       return;
     const auto row = content_.vertices.size() / 3 - 1;
-    colors_.resize(3 * row, 1.0);
+    colors_.resize(3 * row, no_color);
     colors_.insert(colors_.end(), extra + count - 3, extra + count);
   }
 
@@ -139,27 +153,31 @@ private:
   /// Names may hold blanks.
   std::string_view restOfStatement()
   {
-    const std::string_view first = scanner_.word();
+    const std::string_view first = nextWord(scanner_);
     std::string_view last = first;
-    for (std::string_view word = scanner_.word(); !word.empty(); word = scanner_.word())
+    for (std::string_view word = nextWord(scanner_); !word.empty(); word = nextWord(scanner_))
       last = word;
     return {first.data(), static_cast<std::size_t>(last.data() + last.size() - first.data())};
   }
 
-  /// Colours beside the coordinates: 0..1 become 0..255, vertices without colour white.
+  /// Joins coordinates and colours; vertices without a colour are white.
   void finishColors()
   {
     if (colors_.empty())
       return;
     const std::size_t count = content_.vertices.size() / 3;
-    colors_.resize(3 * count, 1.0);
-    const bool is_unit = std::none_of(colors_.begin(), colors_.end(), [](double value) { return value > 1.0; });
-    std::vector<double> joined(6 * count);
-    for (std::size_t i = 0; i < count; ++i)
-      for (std::size_t k = 0; k < 3; ++k) {
-        joined[6 * i + k] = content_.vertices[3 * i + k];
-        joined[6 * i + 3 + k] = colors_[3 * i + k] * (is_unit ? 255.0 : 1.0);
-      }
+    colors_.resize(3 * count, no_color);
+    double largest = 0;
+    for (const double value : colors_)
+      largest = std::max(largest, std::isfinite(value) ? value : 0);
+    const double white = fullColor(Scalar::float64, largest);
+    std::vector<double> joined;
+    joined.reserve(6 * count);
+    for (std::size_t i = 0; i < count; ++i) {
+      joined.insert(joined.end(), content_.vertices.data() + 3 * i, content_.vertices.data() + 3 * (i + 1));
+      for (std::size_t k = 0; k < 3; ++k)
+        joined.push_back(std::isnan(colors_[3 * i + k]) ? white : colors_[3 * i + k]);
+    }
     content_.vertices = std::move(joined);
     content_.has_colors = true;
   }
@@ -178,12 +196,14 @@ private:
       }
   }
 
+  static constexpr double no_color = std::numeric_limits<double>::quiet_NaN();
   TextScanner scanner_;
   ObjContent content_;
   std::vector<double> colors_;
   std::vector<Corner> corners_;
   std::unordered_map<std::string, int> materials_; ///< their numbers
   int material_ = -1;
+  bool has_lines_ = false;
 };
 
 /// 3 values per vertex; empty if the file's normals belong to no vertex.
@@ -253,7 +273,9 @@ std::vector<std::pair<std::string, std::string>> parseMtl(std::string_view conte
   TextScanner scanner(content);
   while (!scanner.done()) {
     const std::string_view keyword = scanner.word();
-    const std::string_view rest = scanner.restOfLine();
+    std::string_view rest = scanner.restOfLine();
+    rest = rest.substr(0, std::min(rest.find(" #"), rest.size()));
+    rest = rest.substr(0, rest.find_last_not_of(" \t") + 1);
     if (keyword == "newmtl")
       materials.emplace_back(rest, "");
     else if (keyword == "map_Kd" && !materials.empty())

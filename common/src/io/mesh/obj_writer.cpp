@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "io/files/remarks.h"
 #include "io/mesh/obj.h"
 #include "io/points/text_numbers.h"
 namespace fresco::io {
@@ -27,6 +28,9 @@ void writeObjVertices(TextWriter& writer, const TriangleMesh& mesh)
 void writeObj(const std::string& path, const TriangleMesh& mesh)
 {
   validateMesh(mesh);
+  if (!mesh.fields.empty())
+    remark(concat(path, ": fields have no place in OBJ: ", mesh.fields.begin()->first,
+                  mesh.fields.size() > 1 ? " ..." : ""));
   OutputFile file(path);
   TextWriter writer(file);
   writeObjVertices(writer, mesh);

@@ -27,20 +27,25 @@ struct PlyElement {
 struct PlyHeader {
   PlyFormat format = PlyFormat::ascii;
   std::vector<PlyElement> elements;
-  std::size_t size = 0; ///< bytes up to the first data
+  std::vector<std::string> textures; ///< image files that comments name, by texture number
+  std::size_t size = 0;              ///< bytes up to the first data
 };
 
 /// @throws std::runtime_error if malformed
 PlyHeader parsePlyHeader(std::string_view content);
 
 struct PlyContent {
-  PointTable vertices; ///< colours as byte columns red green blue, normals under PCL's names; may view `content`
+  PointTable vertices; ///< columns by standardName(); may view `content`
   Faces faces;         ///< polygons as fans, strips as triangles
+  // With texture only: comments TextureFile as MeshLab, OpenMVS and Metashape write them.
+  std::vector<std::string> textures;
+  std::vector<float> texcoords; ///< u v of each corner of `faces`, NaN where there is none
+  std::vector<int> texnumbers;  ///< of each face
 };
 
-/// @throws std::runtime_error if malformed or truncated, without vertices, or if a face names a vertex that is not
-/// there
-PlyContent parsePly(std::string_view content);
+/// What is left out is remarked.
+/// @throws std::runtime_error if malformed or truncated, without vertices, or if a face names a vertex that is not there
+PlyContent parsePly(std::string_view content, bool with_texture = false);
 
 /// Binary little-endian. A sensor pose becomes the element `camera` that PCL reads.
 /// @param faces 0 columns: no element `face`

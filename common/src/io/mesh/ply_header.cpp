@@ -73,7 +73,10 @@ bool parseLine(TextScanner& scanner, PlyHeader& header, bool& has_format)
     if (header.elements.empty())
       throw std::runtime_error("PLY header: property before any element");
     header.elements.back().properties.push_back(parseProperty(scanner));
-  } else if (keyword != "comment" && keyword != "obj_info" && !keyword.empty()) {
+  } else if (keyword == "comment") {
+    if (scanner.word() == "TextureFile")
+      header.textures.emplace_back(scanner.restOfLineInPlace());
+  } else if (keyword != "obj_info" && !keyword.empty()) {
     throw std::runtime_error(concat("PLY header: unknown keyword '", keyword.substr(0, 40), "'"));
   }
   return true;

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "io/files/remarks.h"
 #include "io/mesh/ply.h"
 #include "io/points/row_file.h"
 #include "io/points/text_numbers.h"
+#include "io/points/text_table.h"
 #include <algorithm>
 #include <cmath>
 #include <fresco/core/polygon_fans.h>
@@ -118,24 +120,13 @@ void checkSize(const Source& source, const PlyElement& element)
     throw std::runtime_error(concat("too many rows of '", element.name, "'"));
 }
 
-std::string columnName(const std::string& property)
-{
-  static constexpr std::pair<const char*, const char*> names[] = {
-      {"nx", "normal_x"},         {"ny", "normal_y"}, {"nz", "normal_z"},       {"diffuse_red", "red"}, {"r", "red"},
-      {"diffuse_green", "green"}, {"g", "green"},     {"diffuse_blue", "blue"}, {"b", "blue"}};
-  for (const auto& [from, to] : names)
-    if (property == from)
-      return to;
-  return property;
-}
-
 /// Columns of the properties that are no lists.
 PointTable layoutOf(const PlyElement& element)
 {
   PointTable table;
   for (const PlyProperty& property : element.properties)
     if (!property.count_type)
-      table.addColumn(columnName(property.name), property.type);
+      table.addColumn(standardName(property.name), property.type);
   if (table.columns.empty())
     throw std::runtime_error("vertices without properties");
   return table;
@@ -164,20 +155,22 @@ PointTable readVertices(Source& source, const PlyElement& element)
         at += sizeof(value);
       });
     }
+  if constexpr (std::is_same_v<Source, TextSource>)
+    repackWholeNumbers(table);
   return table;
 }
 
-template <typename Source>
-void readList(Source& source, const PlyProperty& list, std::vector<std::int64_t>& items)
+template <typename T, typename Source>
+void readList(Source& source, const PlyProperty& list, std::vector<T>& items)
 {
   items.resize(nextLength(source, list));
   visitScalar(list.type, [&](auto zero) {
-    using T = decltype(zero);
-    if constexpr (std::is_floating_point_v<T>)
+    using Item = decltype(zero);
+    if constexpr (std::is_floating_point_v<Item> && !std::is_floating_point_v<T>)
       throw std::runtime_error("vertex indices are no integers");
     else
-      for (std::int64_t& item : items)
-        item = source.template next<T>();
+      for (T& item : items)
+        item = source.template next<Item>();
   });
 }
 
@@ -192,29 +185,89 @@ bool isPlainIndexList(const PlyProperty& property)
          (property.type == Scalar::int32 || property.type == Scalar::uint32);
 }
 
+/// A row of faces with what textures it.
+struct TexturedRow {
+  std::vector<std::int64_t> corners;
+  std::vector<float> texcoords;
+  int number = 0;
+
+  void addTo(PlyContent& content) const
+  {
+    const bool all = texcoords.size() == 2 * corners.size();
+    triangulate(corners.size(), [&](std::size_t i, std::size_t k, std::size_t l) {
+      content.texnumbers.push_back(number);
+      for (const std::size_t corner : {i, k, l})
+        for (const std::size_t at : {2 * corner, 2 * corner + 1})
+          content.texcoords.push_back(all ? texcoords[at] : std::numeric_limits<float>::quiet_NaN());
+    });
+  }
+};
+
+bool isTexcoordList(const PlyProperty& property)
+{
+  return property.count_type && (property.name == "texcoord" || property.name == "texture_coordinates");
+}
+
+bool isTexnumber(const PlyProperty& property)
+{
+  return !property.count_type && (property.name == "texnumber" || property.name == "texture_id");
+}
+
 template <typename Source>
-void readFaces(Source& source, const PlyElement& element, FaceCollector& collector)
+void readFaceProperty(Source& source, const PlyProperty& property, bool textured, TexturedRow& row)
+{
+  if (isIndexList(property))
+    readList(source, property, row.corners);
+  else if (textured && isTexcoordList(property))
+    readList(source, property, row.texcoords);
+  else if (textured && isTexnumber(property))
+    visitScalar(property.type, [&](auto zero) {
+      row.number = int(std::clamp<double>(source.template next<decltype(zero)>(), -1, std::numeric_limits<int>::max()));
+    });
+  else
+    skipProperty(source, property);
+}
+
+/// @param textured content also gets texture coordinates
+template <typename Source>
+void readFaces(Source& source, const PlyElement& element, bool textured, FaceCollector& collector, PlyContent& content)
 {
   const bool strips = element.name == "tristrips";
-  const bool plain = !strips && element.properties.size() == 1 && isPlainIndexList(element.properties[0]);
-  std::vector<std::int64_t> corners;
-  for (std::uint64_t row = 0; row < element.count && !element.properties.empty(); ++row) {
+  const bool plain = !strips && !textured && element.properties.size() == 1 && isPlainIndexList(element.properties[0]);
+  TexturedRow row;
+  for (std::uint64_t i = 0; i < element.count && !element.properties.empty(); ++i) {
     if (plain)
-      row += source.copyTriangles(element.count - row, collector);
-    if (row == element.count)
+      i += source.copyTriangles(element.count - i, collector);
+    if (i == element.count)
       break;
-    for (const PlyProperty& property : element.properties) {
-      if (!isIndexList(property)) {
-        skipProperty(source, property);
-        continue;
-      }
-      readList(source, property, corners);
-      if (strips)
-        collector.addStrip(corners.data(), corners.size());
-      else
-        collector.addPolygon(corners.data(), corners.size());
-    }
+    row.corners.clear();
+    row.texcoords.clear();
+    for (const PlyProperty& property : element.properties)
+      readFaceProperty(source, property, textured, row);
+    if (strips)
+      collector.addStrip(row.corners.data(), row.corners.size());
+    else
+      collector.addPolygon(row.corners.data(), row.corners.size());
+    if (textured && !strips)
+      row.addTo(content);
   }
+}
+
+/// Says which properties of a file have no place in a table or mesh.
+void remarkOnOmissions(const PlyHeader& header)
+{
+  std::string names;
+  for (const PlyElement& element : header.elements) {
+    const bool vertices = element.name == "vertex", faces = element.name == "face" || element.name == "tristrips";
+    if (element.count == 0 || element.name == "camera")
+      continue;
+    for (const PlyProperty& property : element.properties)
+      if (vertices ? property.count_type.has_value()
+                   : !faces || !(isIndexList(property) || isTexcoordList(property) || isTexnumber(property)))
+        names += concat(names.empty() ? "" : ", ", property.name, " of ", element.name);
+  }
+  if (!names.empty())
+    remark("left out: " + names);
 }
 
 template <typename Source>
@@ -252,9 +305,10 @@ void readCamera(Source& source, const PlyElement& element, PointTable& sensor)
 }
 
 template <typename Source>
-PlyContent readElements(Source source, const PlyHeader& header)
+PlyContent readElements(Source source, const PlyHeader& header, bool textured)
 {
   PlyContent content;
+  content.textures = header.textures;
   FaceCollector collector;
   PointTable camera;
   for (const PlyElement& element : header.elements) {
@@ -264,7 +318,7 @@ PlyContent readElements(Source source, const PlyHeader& header)
     if (element.name == "vertex")
       content.vertices = readVertices(source, element);
     else if (element.name == "face" || element.name == "tristrips")
-      readFaces(source, element, collector);
+      readFaces(source, element, textured, collector, content);
     else if (element.name == "camera" && !element.hasList() && !element.properties.empty())
       readCamera(source, element, camera);
     else
@@ -280,17 +334,18 @@ PlyContent readElements(Source source, const PlyHeader& header)
 }
 } // namespace
 
-PlyContent parsePly(std::string_view content)
+PlyContent parsePly(std::string_view content, bool with_texture)
 {
   const PlyHeader header = parsePlyHeader(content);
+  remarkOnOmissions(header);
   const std::string_view data = content.substr(header.size);
   switch (header.format) {
   case PlyFormat::ascii:
-    return readElements(TextSource(data), header);
+    return readElements(TextSource(data), header, with_texture);
   case PlyFormat::little_endian:
-    return readElements(BinarySource<false>(data), header);
+    return readElements(BinarySource<false>(data), header, with_texture);
   case PlyFormat::big_endian:
-    return readElements(BinarySource<true>(data), header);
+    return readElements(BinarySource<true>(data), header, with_texture);
   }
   throw std::logic_error("unknown PLY format");
 }

@@ -46,8 +46,8 @@ std::string propertyLines(const PointTable& table)
   std::string lines;
   for (const Column& column : table.columns)
     for (std::size_t k = 0; k < column.count; ++k)
-      lines += concat("property ", typeName(column.type), ' ', propertyName(column.name),
-                      column.count > 1 ? concat('_', k) : "", '\n');
+      lines += textOf("property ", typeName(column.type), ' ', propertyName(column.name),
+                      column.count > 1 ? textOf('_', k) : "", '\n');
   return lines;
 }
 
@@ -56,7 +56,7 @@ std::pair<std::string, std::string> cameraElement(const PointTable& table, Index
 {
   std::string header = "element camera 1\n", row;
   const auto add = [&](const std::string& name, auto value) {
-    header += concat("property ",
+    header += textOf("property ",
                      sizeof(value) == 8                    ? "double"
                      : std::is_integral_v<decltype(value)> ? "int"
                                                            : "float",
@@ -98,10 +98,10 @@ void prepare(const std::string& path, PointTable& table)
 /// Everything before the first vertex of `rows`, and what comes after faces.
 std::pair<std::string, std::string> headerAndEnd(const PointTable& table, Index rows, Index faces)
 {
-  std::string header = concat("ply\nformat binary_little_endian 1.0\nelement vertex ", rows, '\n');
+  std::string header = textOf("ply\nformat binary_little_endian 1.0\nelement vertex ", rows, '\n');
   header += propertyLines(table);
   if (faces > 0)
-    header += concat("element face ", faces, "\nproperty list uchar int vertex_indices\n");
+    header += textOf("element face ", faces, "\nproperty list uchar int vertex_indices\n");
   std::string camera;
   if (table.sensor) {
     const auto [lines, row] = cameraElement(table, rows);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "io/mesh/vtk_file.h"
+#include "io/points/text_numbers.h"
 #include <algorithm>
 #include <fresco/core/require.h>
 #include <fresco/io/file.h>
@@ -89,7 +90,7 @@ std::string encodeName(const std::string& name)
 
 void writePolygons(OutputFile& file, const Faces& faces)
 {
-  file.write(concat("POLYGONS ", faces.cols(), ' ', 4 * faces.cols(), '\n'));
+  file.write(textOf("POLYGONS ", faces.cols(), ' ', 4 * faces.cols(), '\n'));
   std::string bytes;
   bytes.reserve(16 * static_cast<std::size_t>(faces.cols()));
   for (Index f = 0; f < faces.cols(); ++f)
@@ -103,15 +104,15 @@ void writeAttributes(OutputFile& file, const PointTable& table, const Arrays& ar
   const bool has_colors = !arrays.colors.columns.empty(), has_normals = !arrays.normals.columns.empty();
   if (!has_normals && !has_colors && arrays.rest.empty())
     return;
-  file.write(concat("POINT_DATA ", table.rows, '\n'));
+  file.write(textOf("POINT_DATA ", table.rows, '\n'));
   if (has_colors)
     file.write("COLOR_SCALARS rgb 3\n" + swappedBytes(table, arrays.colors));
   if (has_normals)
     file.write("NORMALS Normals float\n" + swappedBytes(table, arrays.normals));
   if (!arrays.rest.empty())
-    file.write(concat("FIELD FieldData ", arrays.rest.size(), '\n'));
+    file.write(textOf("FIELD FieldData ", arrays.rest.size(), '\n'));
   for (const ColumnArray& array : arrays.rest)
-    file.write(concat(encodeName(array.name), ' ', array.components(), ' ', table.rows, ' ',
+    file.write(textOf(encodeName(array.name), ' ', array.components(), ' ', table.rows, ' ',
                       namesOf(array.type()).legacy, '\n') +
                swappedBytes(table, array));
 }
@@ -139,7 +140,7 @@ struct AppendedData {
   std::string add(const std::string& name, Scalar type, std::size_t components, std::string bytes)
   {
     const std::string element =
-        concat("<DataArray type=\"", namesOf(type).xml, "\" Name=\"", xmlText(name), "\" NumberOfComponents=\"",
+        textOf("<DataArray type=\"", namesOf(type).xml, "\" Name=\"", xmlText(name), "\" NumberOfComponents=\"",
                components, "\" format=\"appended\" offset=\"", size, "\"/>\n");
     size += sizeof(std::uint64_t) + bytes.size();
     blocks.push_back(std::move(bytes));
@@ -173,7 +174,7 @@ void writeVtk(const std::string& path, PointTable table, const Faces& faces)
   const Arrays arrays = arraysOf(path, table);
   OutputFile file(path);
   file.write("# vtk DataFile Version 3.0\nfresco\nBINARY\nDATASET POLYDATA\n");
-  file.write(concat("POINTS ", table.rows, ' ', namesOf(arrays.points.type()).legacy, '\n'));
+  file.write(textOf("POINTS ", table.rows, ' ', namesOf(arrays.points.type()).legacy, '\n'));
   file.write(swappedBytes(table, arrays.points));
   writePolygons(file, faces);
   writeAttributes(file, table, arrays);
@@ -189,7 +190,7 @@ void writeVtp(const std::string& path, PointTable table, const Faces& faces)
   for (const auto& [array, role] : {std::pair(&arrays.normals, "Normals"), std::pair(&arrays.colors, "Scalars")})
     if (!array->columns.empty()) {
       point_data += data.add(table, *array);
-      roles += concat(' ', role, "=\"", array->name, '"');
+      roles += textOf(' ', role, "=\"", array->name, '"');
     }
   for (const ColumnArray& array : arrays.rest)
     point_data += data.add(table, array);
@@ -197,7 +198,7 @@ void writeVtp(const std::string& path, PointTable table, const Faces& faces)
   OutputFile file(path);
   file.write("<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\" "
              "header_type=\"UInt64\">\n<PolyData>\n");
-  file.write(concat("<Piece NumberOfPoints=\"", table.rows,
+  file.write(textOf("<Piece NumberOfPoints=\"", table.rows,
                     "\" NumberOfVerts=\"0\" NumberOfLines=\"0\" NumberOfStrips=\"0\" ", "NumberOfPolys=\"",
                     faces.cols(), "\">\n<PointData", roles, ">\n", point_data, "</PointData>\n"));
   file.write("<Points>\n" + points + "</Points>\n<Polys>\n" + polygons + "</Polys>\n</Piece>\n</PolyData>\n");

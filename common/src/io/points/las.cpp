@@ -1,17 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "io/points/las.h"
 #include "io/points/file_window.h"
+#include "io/points/las_fields.h"
 #include <Eigen/Core>
 #include <algorithm>
 #include <fresco/core/require.h>
 #include <limits>
-#include <stdexcept>
 namespace fresco::io {
 namespace {
-/// Offsets in bytes follow the LAS 1.4 R15 specification, table 3 (header) and 7 to 17 (records).
+/// Offsets in bytes follow the LAS 1.4 R15 specification, table 3.
 struct LasHeader {
-  std::uint64_t data = 0, points = 0; ///< offset of the first record; records
-  std::size_t record = 0;             ///< bytes
+  std::uint64_t records = 0, data = 0,
+                points = 0; ///< offsets of the first variable length record, of the first point; points
+  std::uint32_t record_count = 0;
+  std::size_t record = 0; ///< bytes of a point
   int format = 0;
   Eigen::Array3d scale, offset;
 };
@@ -21,15 +23,6 @@ T loadAt(const std::uint8_t* bytes, std::size_t offset)
 {
   return loadScalar<T>(bytes + offset);
 }
-
-constexpr std::size_t record_bytes[] = {20, 28, 26, 34, 57, 63, 30, 36, 38, 59, 67};
-
-/// Where a format has its colours, 0 for none.
-constexpr std::size_t color_offsets[] = {0, 0, 20, 28, 0, 28, 0, 30, 30, 0, 30};
-constexpr std::size_t infrared_offsets[] = {0, 0, 0, 0, 0, 0, 0, 0, 36, 0, 36};
-
-/// Where a format has the time, 0 for none.
-constexpr std::size_t time_offsets[] = {0, 20, 0, 20, 20, 20, 22, 22, 22, 22, 22};
 
 LasHeader readHeader(const RandomAccessFile& file)
 {
@@ -46,11 +39,13 @@ LasHeader readHeader(const RandomAccessFile& file)
   LasHeader header;
   constexpr int compressed = 0x80;
   if ((bytes[104] & compressed) != 0)
-    throw std::runtime_error(laz_hint);
+    throw std::runtime_error("compressed (LAZ): name it .laz");
   header.format = bytes[104];
   header.record = loadAt<std::uint16_t>(bytes, 105);
-  if (header.format > 10 || header.record < record_bytes[header.format])
+  if (header.format > 10 || header.record < lasRecordBytes(header.format))
     throw std::runtime_error(concat("points of format ", header.format, " in ", header.record, " bytes"));
+  header.records = loadAt<std::uint16_t>(bytes, 94);
+  header.record_count = loadAt<std::uint32_t>(bytes, 100);
   header.data = loadAt<std::uint32_t>(bytes, 96);
   header.points = loadAt<std::uint32_t>(bytes, 107);
   if (minor == 4 && file.size() >= newest && loadAt<std::uint64_t>(bytes, 247) > 0)
@@ -64,21 +59,68 @@ LasHeader readHeader(const RandomAccessFile& file)
   return header;
 }
 
-/// Values one after the other into a row.
-struct RowWriter {
-  std::uint8_t* at;
-
-  template <typename T>
-  void put(T value)
-  {
-    std::memcpy(at, &value, sizeof(T));
-    at += sizeof(T);
+/// Descriptors of extra bytes, the record 4 of LASF_Spec; none where it is missing or damaged.
+std::string extraDescriptors(const RandomAccessFile& file, const LasHeader& header)
+{
+  constexpr std::size_t head = 54;
+  std::uint64_t at = header.records;
+  for (std::uint32_t i = 0; i < header.record_count && at + head <= std::min(header.data, file.size()); ++i) {
+    std::uint8_t bytes[head];
+    file.read(at, bytes, head);
+    const auto length = loadAt<std::uint16_t>(bytes, 20);
+    if (std::memcmp(bytes + 2, "LASF_Spec", 10) == 0 && loadAt<std::uint16_t>(bytes, 18) == 4 &&
+        length <= file.size() - at - head) {
+      std::string text(length, '\0');
+      file.read(at + head, text.data(), length);
+      return text;
+    }
+    at += head + length;
   }
-};
+  return {};
+}
+
+/// Fields of the points of a file: those of the format, then extra bytes, which replace one of their name.
+std::vector<LasField> fieldsOf(const RandomAccessFile& file, const LasHeader& header)
+{
+  std::vector<LasField> fields = lasFields(header.format);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    fields[axis].scale = header.scale[Index(axis)];
+    fields[axis].origin = header.offset[Index(axis)];
+  }
+  const std::string descriptors = extraDescriptors(file, header);
+  std::size_t at = lasRecordBytes(header.format);
+  for (std::size_t i = 0; i + las_descriptor_bytes <= descriptors.size(); i += las_descriptor_bytes) {
+    LasField extra = lasExtraField(reinterpret_cast<const std::uint8_t*>(&descriptors[i]), at);
+    const std::size_t bytes = extra.count * scalarSize(extra.stored);
+    if (bytes > header.record - at)
+      break;
+    at += bytes;
+    const auto same =
+        std::find_if(fields.begin() + 3, fields.end(), [&](const auto& f) { return f.name == extra.name; });
+    same == fields.end() ? fields.push_back(extra) : void(*same = extra);
+  }
+  if (at < header.record) {
+    LasField rest{"extra_bytes", Scalar::uint8, at};
+    rest.count = header.record - at;
+    fields.push_back(rest);
+  }
+  return fields;
+}
+
+template <typename T>
+T converted(double value)
+{
+  if constexpr (std::is_integral_v<T>)
+    return std::isnan(value) ? T(0)
+                             : std::clamp<double>(value, std::numeric_limits<T>::min(), std::numeric_limits<T>::max());
+  else
+    return value;
+}
 
 class LasReader : public ScanReader {
 public:
-  explicit LasReader(const std::string& path) : file_(path), header_(readHeader(file_))
+  explicit LasReader(const std::string& path)
+      : file_(path), header_(readHeader(file_)), fields_(fieldsOf(file_, header_))
   {
     const std::uint64_t left = file_.size() - std::min(header_.data, file_.size());
     if (header_.points > left / header_.record)
@@ -88,28 +130,18 @@ public:
     info.points = points();
     info.intensity_limits = Eigen::Array2d(0, std::numeric_limits<std::uint16_t>::max());
     scans_.push_back(info);
-    bytes_per_color_ = widestColor() > 255 ? 2 : 1;
+    full_color_ = fullColor(Scalar::uint16, largestColor());
+    if (header_.format == 4 || header_.format == 5 || header_.format >= 9)
+      remark("waveforms are left out");
   }
 
   PointTable open(Index) override
   {
     next_ = 0;
     PointTable layout;
-    for (const char* name : xyz_names)
-      layout.addColumn(name, Scalar::float64);
-    layout.addColumn("intensity", Scalar::float32);
-    for (const char* name : color_names)
-      if (color_offsets[header_.format] > 0)
-        layout.addColumn(name, Scalar::uint8);
-    if (infrared_offsets[header_.format] > 0)
-      layout.addColumn("near_infrared", Scalar::uint16);
-    if (time_offsets[header_.format] > 0)
-      layout.addColumn("gps_time", Scalar::float64);
-    for (const char* name :
-         {"return_number", "number_of_returns", "classification", "classification_flags", "user_data"})
-      layout.addColumn(name, Scalar::uint8);
-    layout.addColumn("scan_angle", Scalar::float32);
-    layout.addColumn("point_source_id", Scalar::uint16);
+    for (const LasField& field : fields_)
+      layout.addColumn(field.name, field.column, field.count);
+    columns_ = layout.columns;
     return layout;
   }
 
@@ -118,8 +150,9 @@ public:
     const auto left = points() - next_;
     const Index count = std::min({end - begin, left, rows_per_window});
     readRecords(next_, count);
-    for (Index i = 0; i < count; ++i)
-      storeRecord(record(i), table.cell(begin + i, table.columns[0]));
+    for (std::size_t f = 0; f < fields_.size(); ++f)
+      for (Index i = 0; i < count; ++i)
+        store(fields_[f], record(i), table.cell(begin + i, columns_[f]));
     next_ += count;
     return count;
   }
@@ -133,74 +166,55 @@ private:
     file_.read(header_.data + first * header_.record, records_.data(), records_.size());
   }
 
-  /// Colours have 16 bits, but many writers fill only the lower 8: a look at places all over the file tells.
-  std::uint16_t widestColor()
+  /// By a look at places all over the file.
+  double largestColor()
   {
     constexpr Index places = 64, points_per_place = 1024;
-    std::uint16_t widest = 0;
+    double largest = 0;
     const auto total = points();
-    for (Index place = 0; color_offsets[header_.format] > 0 && place < places; ++place) {
-      const Index first = total / places * place;
-      const Index count = std::min(points_per_place, total - first);
-      readRecords(first, count);
-      for (Index i = 0; i < count; ++i)
-        for (std::size_t channel = 0; channel < 3; ++channel)
-          widest = std::max(widest, colorAt(record(i), channel));
+    for (const LasField& field : fields_)
+      for (Index place = 0; isColor(field) && place < places; ++place) {
+        const Index first = total / places * place;
+        const Index count = std::min(points_per_place, total - first);
+        readRecords(first, count);
+        for (Index i = 0; i < count; ++i)
+          largest = std::max<double>(largest, loadAt<std::uint16_t>(record(i), field.offset));
+      }
+    return largest;
+  }
+
+  static bool isColor(const LasField& field)
+  {
+    return field.stored == Scalar::uint16 && std::count(color_names, color_names + 3, field.name) > 0;
+  }
+
+  void store(const LasField& field, const std::uint8_t* record, std::uint8_t* to) const
+  {
+    const std::uint8_t* from = record + field.offset;
+    if (field.stored == field.column && field.bits == 0 && !field.no_data) {
+      std::memcpy(to, from, field.count * scalarSize(field.stored));
+      return;
     }
-    return widest;
-  }
-
-  std::uint16_t colorAt(const std::uint8_t* record, std::size_t channel) const
-  {
-    return loadAt<std::uint16_t>(record, color_offsets[header_.format] + 2 * channel);
-  }
-
-  /// In the order of open().
-  void storeRecord(const std::uint8_t* record, std::uint8_t* row) const
-  {
-    RowWriter out{row};
-    for (int axis = 0; axis < 3; ++axis)
-      out.put<double>(loadAt<std::int32_t>(record, 4 * axis) * header_.scale[axis] + header_.offset[axis]);
-    out.put<float>(loadAt<std::uint16_t>(record, 12));
-    for (std::size_t channel = 0; color_offsets[header_.format] > 0 && channel < 3; ++channel) {
-      const unsigned color = colorAt(record, channel);
-      out.put<std::uint8_t>(bytes_per_color_ == 2 ? color >> 8U : std::min(color, 255U));
+    for (std::size_t k = 0; k < field.count; ++k) {
+      double value = visitScalar(
+          field.stored, [&](auto zero) { return double(loadScalar<decltype(zero)>(from + k * sizeof(zero))); });
+      if (field.bits > 0)
+        value = unsigned(value) >> field.shift & ((1U << field.bits) - 1);
+      value = field.no_data && value == *field.no_data ? std::numeric_limits<double>::quiet_NaN()
+              : isColor(field)                         ? colorByte(value, full_color_)
+                                                       : value * field.scale + field.origin;
+      visitScalar(field.column, [&](auto zero) {
+        const auto stored = converted<decltype(zero)>(value);
+        std::memcpy(to + k * sizeof(stored), &stored, sizeof(stored));
+      });
     }
-    if (const std::size_t at = infrared_offsets[header_.format]; at > 0)
-      out.put<std::uint16_t>(loadAt<std::uint16_t>(record, at));
-    if (const std::size_t at = time_offsets[header_.format]; at > 0)
-      out.put<double>(loadAt<double>(record, at));
-    header_.format < 6 ? putOldFlags(record, out) : putNewFlags(record, out);
-  }
-
-  /// Formats 0 to 5.
-  static void putOldFlags(const std::uint8_t* record, RowWriter& out)
-  {
-    out.put<std::uint8_t>(record[14] & 7U);
-    out.put<std::uint8_t>(record[14] >> 3U & 7U);
-    out.put<std::uint8_t>(record[15] & 31U);
-    out.put<std::uint8_t>(record[15] >> 5U);
-    out.put<std::uint8_t>(record[17]);
-    out.put<float>(loadAt<std::int8_t>(record, 16));
-    out.put<std::uint16_t>(loadAt<std::uint16_t>(record, 18));
-  }
-
-  /// Formats 6 to 10.
-  static void putNewFlags(const std::uint8_t* record, RowWriter& out)
-  {
-    constexpr float degrees_per_step = 0.006f;
-    out.put<std::uint8_t>(record[14] & 15U);
-    out.put<std::uint8_t>(record[14] >> 4U);
-    out.put<std::uint8_t>(record[16]);
-    out.put<std::uint8_t>(record[15] & 15U);
-    out.put<std::uint8_t>(record[17]);
-    out.put<float>(degrees_per_step * loadAt<std::int16_t>(record, 18));
-    out.put<std::uint16_t>(loadAt<std::uint16_t>(record, 20));
   }
 
   RandomAccessFile file_;
   const LasHeader header_;
-  int bytes_per_color_ = 2;
+  const std::vector<LasField> fields_;
+  std::vector<Column> columns_; ///< of the table that open() gave
+  double full_color_ = 255;
   Index next_ = 0; ///< record
   std::vector<std::uint8_t> records_;
 };

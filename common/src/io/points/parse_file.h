@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include <fresco/core/point_table.h>
+#include "io/points/scan_reader.h"
 #include <fresco/io/file.h>
-#include <new>
 #include <string>
 #include <string_view>
 namespace fresco::io {
@@ -11,13 +10,7 @@ template <typename Parse>
 auto parseFile(const std::string& path, const Parse& parse) -> decltype(parse(std::string_view()))
 {
   const std::string content = readFile(path);
-  try {
-    return parse(std::string_view(content));
-  } catch (const std::bad_alloc&) {
-    throw std::runtime_error(path + ": not enough memory");
-  } catch (const std::exception& error) {
-    throw std::runtime_error(path + ": " + error.what());
-  }
+  return namingFile(path, [&] { return parse(std::string_view(content)); });
 }
 
 /// Points of PCD, PLY, VTK, OBJ, XYZ by extension; colours packed as PCL has them.

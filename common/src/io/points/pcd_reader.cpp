@@ -2,6 +2,7 @@
 #include "io/points/pcd.h"
 #include "io/points/row_file.h"
 #include "io/points/text_numbers.h"
+#include "io/points/text_table.h"
 #include <algorithm>
 #include <fresco/core/require.h>
 #include <liblzf/lzf.h>
@@ -150,7 +151,7 @@ std::vector<StoredField> storedFields(const PcdHeader& header, PointTable& table
       continue;
     }
     const Scalar type = scalarType(header.types[i], header.sizes[i]);
-    table.addColumn(header.names[i], type, count);
+    table.addColumn(count == 1 ? standardName(header.names[i]) : header.names[i], type, count);
     fields.push_back({table.columns.back().bytes(), table.columns.back()});
   }
   return fields;
@@ -216,8 +217,14 @@ void readCompressed(const PcdHeader& header, const std::vector<StoredField>& fie
 
 void parseCell(std::string_view word, const Column& column, std::uint8_t* at)
 {
+  const bool packed = column.name == "rgb" || column.name == "rgba";
   visitScalar(column.type, [&](auto zero) {
-    const auto value = parseNumber<decltype(zero)>(word);
+    using T = decltype(zero);
+    T value{};
+    if constexpr (std::is_integral_v<T> && sizeof(T) == 4)
+      value = packed ? static_cast<T>(parseNumber<std::int64_t>(word)) : parseNumber<T>(word); // signed or not
+    else
+      value = parseNumber<T>(word);
     std::memcpy(at, &value, sizeof(value));
   });
 }
@@ -237,6 +244,7 @@ void readAscii(const PcdHeader& header, const std::vector<StoredField>& fields, 
         if (fields[i].kept)
           parseCell(word, *fields[i].kept, table.cell(row, *fields[i].kept) + k * scalarSize(fields[i].kept->type));
       }
+  repackWholeNumbers(table);
 }
 } // namespace
 

@@ -3,10 +3,8 @@
 #include "io/points/text_numbers.h"
 #include <fresco/core/require.h>
 #include <fresco/io/file.h>
-#include <iomanip>
 #include <liblzf/lzf.h>
 #include <limits>
-#include <sstream>
 namespace fresco::io {
 namespace {
 char typeLetter(Scalar type)
@@ -19,24 +17,26 @@ char typeLetter(Scalar type)
 
 std::string headerText(const PointTable& table, bool compressed)
 {
-  std::ostringstream fields, sizes, types, counts, text;
+  std::string fields, sizes, types, counts, viewpoint;
   for (const Column& column : table.columns) {
-    fields << ' ' << singleWord(column.name);
-    sizes << ' ' << scalarSize(column.type);
-    types << ' ' << typeLetter(column.type);
-    counts << ' ' << column.count;
+    fields += " " + singleWord(column.name);
+    sizes += textOf(' ', scalarSize(column.type));
+    types += textOf(' ', typeLetter(column.type));
+    counts += textOf(' ', column.count);
   }
-  const bool organised = table.height > 0;
-  text << "# .PCD v0.7 - Point Cloud Data file format\nVERSION 0.7\nFIELDS" << fields.str() << "\nSIZE" << sizes.str()
-       << "\nTYPE" << types.str() << "\nCOUNT" << counts.str() << "\nWIDTH " << (organised ? table.width : table.rows)
-       << "\nHEIGHT " << (organised ? table.height : 1);
   if (table.sensor) {
     const auto& [position, q] = *table.sensor;
-    text << std::setprecision(17) << "\nVIEWPOINT " << position.x() << ' ' << position.y() << ' ' << position.z()
-         << std::setprecision(9) << ' ' << q.w() << ' ' << q.x() << ' ' << q.y() << ' ' << q.z();
+    viewpoint = "\nVIEWPOINT";
+    for (const double value : position)
+      viewpoint += " " + numberText(value);
+    for (const float value : {q.w(), q.x(), q.y(), q.z()})
+      viewpoint += " " + numberText(value);
   }
-  text << "\nPOINTS " << table.rows << "\nDATA " << (compressed ? "binary_compressed" : "binary") << '\n';
-  return text.str();
+  const bool organised = table.height > 0;
+  return textOf("# .PCD v0.7 - Point Cloud Data file format\nVERSION 0.7\nFIELDS", fields, "\nSIZE", sizes, "\nTYPE",
+                types, "\nCOUNT", counts, "\nWIDTH ", organised ? table.width : table.rows, "\nHEIGHT ",
+                organised ? table.height : 1, viewpoint, "\nPOINTS ", table.rows, "\nDATA ",
+                compressed ? "binary_compressed" : "binary", '\n');
 }
 
 /// Two sizes and the data, column after column. Empty if they do not become smaller or are too large for the format.

@@ -217,11 +217,12 @@ public:
   void read(const std::function<void(const PointSet&)>&) const override {}
 };
 
-/// In a folder, text files are notes or poses, and .stl files hold no normals.
+/// In a folder, text files are notes or poses, .stl files hold no normals, and hidden ones are of systems or unfinished.
 bool isPointFile(const std::filesystem::path& path)
 {
   const std::string ending = extension(path.string());
-  return isReadable(path.string(), FileKind::points) && ending != ".txt" && ending != ".stl";
+  return path.filename().string()[0] != '.' && isReadable(path.string(), FileKind::points) && ending != ".txt" &&
+         ending != ".stl";
 }
 } // namespace
 

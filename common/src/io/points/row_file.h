@@ -19,7 +19,7 @@ struct RowLayout {
 std::optional<RowLayout> plyRows(std::string_view begin);
 std::optional<RowLayout> pcdRows(std::string_view begin);
 
-/// A file of rows of fixed size, read at any place.
+/// A file of rows of fixed size, read at any place. It is open only while it is read, since there may be thousands.
 class RowFile {
 public:
   /// @return nothing if the file is not of that kind
@@ -28,11 +28,13 @@ public:
 
   Index size() const { return rows_; }
   const PointTable& layout() const { return layout_; }
-  /// Rows begin .. end - 1. @throws std::runtime_error if the file became shorter
+  /// Rows begin .. end - 1. @throws std::runtime_error if the file has changed its size
   PointTable read(Index begin, Index end) const;
 
 private:
-  std::shared_ptr<const RandomAccessFile> file_;
+  void judgeColors();
+  std::string path_;
+  std::uint64_t size_ = 0; ///< bytes of the file
   PointTable layout_;
   std::uint64_t offset_ = 0;
   Index rows_ = 0;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+#include "io/files/remarks.h"
 #include <fresco/core/point_table.h>
 #include <fresco/io/scan_file.h>
 #include <memory>
@@ -27,13 +28,17 @@ public:
   virtual Index read(PointTable& table, Index begin, Index end) = 0;
 
 protected:
-  std::vector<ScanInfo> scans_;
+  /// Remarks on the parts that cannot be read. @throws std::runtime_error with the first of them if no scan has points
+  void settle(const std::vector<std::string>& errors) const;
+
+  std::vector<ScanInfo> scans_; ///< those that cannot be read have no points
 };
 
 /// use(); every error is a std::runtime_error "PATH: reason".
 template <typename Use>
 auto namingFile(const std::string& path, const Use& use) -> decltype(use())
 try {
+  const FileInHand file(path);
   return use();
 } catch (const std::bad_alloc&) {
   throw std::runtime_error(path + ": not enough memory");
@@ -61,7 +66,4 @@ PointTable readMergedTable(ScanReader& reader);
 /// Puts the values of columns "row" and "column" to use: the table becomes organised and what is missing NaN, unless
 /// two rows have the same place or most places are empty.
 void organise(PointTable& table);
-
-/// x y z and vp_x vp_y vp_z become float32 where that loses no more than 1e-6 of the extent.
-void narrowCoordinates(PointTable& table);
 } // namespace fresco::io

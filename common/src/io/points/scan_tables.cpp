@@ -40,6 +40,15 @@ void blankCell(PointTable& table, Index row)
 }
 } // namespace
 
+void ScanReader::settle(const std::vector<std::string>& errors) const
+{
+  const bool any = std::any_of(scans_.begin(), scans_.end(), [](const ScanInfo& info) { return info.points > 0; });
+  if (!any && !errors.empty())
+    throw std::runtime_error(errors[0]);
+  for (const std::string& error : errors)
+    remark("could not be read: " + error);
+}
+
 void organise(PointTable& table)
 {
   const std::vector<Index> rows = wholeNumbers(table, row_column), columns = wholeNumbers(table, column_column);
@@ -78,37 +87,6 @@ void organise(PointTable& table)
   table = std::move(grid);
 }
 
-void narrowCoordinates(PointTable& table)
-{
-  const auto xyz = findTriple(table, xyz_names);
-  const auto wide = [](const Column& column) { return column.type == Scalar::float64; };
-  if (!xyz || !std::all_of(xyz->begin(), xyz->end(), wide) ||
-      (table.rows > 0 && coordinateBounds(table, *xyz).exceedsFloat()))
-    return;
-  const auto is_coordinate = [](const Column& column) {
-    const auto in = [&](NameTriple names) { return std::count(names, names + 3, column.name) > 0; };
-    return column.type == Scalar::float64 && (in(xyz_names) || in(viewpoint_names));
-  };
-  PointTable narrow;
-  for (const Column& column : table.columns)
-    narrow.addColumn(column.name, is_coordinate(column) ? Scalar::float32 : column.type, column.count);
-  // In place: no row grows, so none is overwritten before it was read.
-  std::vector<std::uint8_t> row(narrow.stride);
-  for (Index i = 0; i < table.rows; ++i) {
-    for (std::size_t c = 0; c < table.columns.size(); ++c) {
-      const Column &from = table.columns[c], &to = narrow.columns[c];
-      if (from.type == to.type)
-        std::memcpy(row.data() + to.offset, table.cell(i, from), to.bytes());
-      else
-        storeAt<float>(row.data() + to.offset, loadScalar<double>(table.cell(i, from)));
-    }
-    std::copy(row.begin(), row.end(), table.data.data() + i * narrow.stride);
-  }
-  table.columns = narrow.columns;
-  table.stride = narrow.stride;
-  table.data.resize(table.rows * narrow.stride);
-}
-
 PointTable readScanTable(ScanReader& reader, Index scan)
 {
   const ScanInfo& info = reader.scans()[scan];
@@ -128,26 +106,25 @@ PointTable readScanTable(ScanReader& reader, Index scan)
 
 namespace {
 /// What the layouts of all scans share; other types than the first one's become float64.
-PointTable sharedLayout(ScanReader& reader, const std::vector<Index>& used)
+PointTable sharedLayout(const std::vector<PointTable>& layouts)
 {
   PointTable shared;
-  std::vector<PointTable> layouts;
-  for (const Index scan : used)
-    layouts.push_back(reader.open(scan));
   for (const Column& column : layouts[0].columns) {
-    if (used.size() > 1 && (column.name == row_column || column.name == column_column))
+    if (layouts.size() > 1 && (column.name == row_column || column.name == column_column))
       continue; // places in different scans
     Scalar type = column.type;
     bool everywhere = true;
     for (const PointTable& layout : layouts) {
       const Column* other = layout.find(column.name);
-      everywhere = everywhere && other;
+      everywhere = everywhere && other && other->count == column.count;
       if (other && other->type != type)
         type = Scalar::float64;
     }
     const bool coordinate = std::count(xyz_names, xyz_names + 3, column.name) > 0;
-    if (everywhere)
-      shared.addColumn(column.name, coordinate ? Scalar::float64 : type);
+    if (everywhere && (type == column.type || column.count == 1))
+      shared.addColumn(column.name, coordinate ? Scalar::float64 : type, column.count);
+    else
+      remark(concat("field ", column.name, " is not in all scans: left out"));
   }
   return shared;
 }
@@ -198,6 +175,31 @@ void storeViewpoints(PointTable& table, Index begin, Index end, const Eigen::Vec
       storeAt(table.cell(row, (*columns)[axis]), viewpoint[axis]);
 }
 
+/// Scans of which one that cannot be read does not cost the others.
+class SoundParts {
+public:
+  template <typename Read>
+  void attempt(Index scan, const Read& read)
+  {
+    try {
+      read();
+    } catch (const std::runtime_error& error) {
+      errors_.push_back(concat("scan ", scan + 1, ": ", error.what()));
+    }
+  }
+  /// Remarks on the others. @throws std::runtime_error unless there is any
+  void requireAny(bool any)
+  {
+    if (!any)
+      throw std::runtime_error(errors_.empty() ? "no points" : errors_[0]);
+    for (const std::string& error : std::exchange(errors_, {}))
+      remark("could not be read: " + error);
+  }
+
+private:
+  std::vector<std::string> errors_;
+};
+
 /// One scan into the rows of `merged` from `begin` on. @return the row behind its last
 Index appendScan(ScanReader& reader, Index scan, PointTable& merged, Index begin)
 {
@@ -224,15 +226,18 @@ PointTable readMergedTable(ScanReader& reader)
 {
   const std::vector<ScanInfo>& scans = reader.scans();
   std::vector<Index> used;
+  std::vector<PointTable> layouts;
   Index rows = 0;
+  SoundParts parts;
   for (Index i = 0; i < Index(scans.size()); ++i)
-    if (scans[i].points > 0) {
-      used.push_back(i);
-      rows += scans[i].points;
-    }
-  if (used.empty())
-    throw std::runtime_error("no points");
-  PointTable merged = sharedLayout(reader, used);
+    if (scans[i].points > 0)
+      parts.attempt(i, [&] {
+        layouts.push_back(reader.open(i));
+        used.push_back(i);
+        rows += scans[i].points;
+      });
+  parts.requireAny(!used.empty());
+  PointTable merged = sharedLayout(layouts);
   const bool sensors = std::all_of(used.begin(), used.end(), [&](Index i) { return scans[i].sensor.has_value(); });
   if (sensors && used.size() > 1)
     for (const char* name : viewpoint_names)
@@ -241,7 +246,8 @@ PointTable readMergedTable(ScanReader& reader)
   merged.allocate(rows);
   Index done = 0;
   for (const Index scan : used)
-    done = appendScan(reader, scan, merged, done);
+    parts.attempt(scan, [&] { done = appendScan(reader, scan, merged, done); });
+  parts.requireAny(done > 0);
   merged.rows = done;
   merged.data.resize(done * merged.stride);
   if (sensors && used.size() == 1) {

@@ -5,6 +5,7 @@
 #include <fresco/io/file.h>
 #include <string>
 #include <string_view>
+#include <type_traits>
 namespace fresco::io {
 /// Words and numbers of a text, read without copies. Lines end with LF, CR LF or CR.
 class TextScanner {
@@ -19,10 +20,11 @@ public:
   bool atLineEnd();
   /// Next word of the line, empty at its end.
   std::string_view word();
-  /// Next word, on whatever line. @throws std::runtime_error at the end of the text
+  /// Next word, on whatever line; '#' at the begin of a word begins a comment. @throws std::runtime_error at the end of the text
   std::string_view wordAcrossLines();
   /// Rest of the line without blanks at its ends; goes on to the next line.
   std::string_view restOfLine();
+  std::string_view restOfLineInPlace(); ///< the same, but stays before the end of the line
   void nextLine();
   /// The next `count` bytes as they are. @throws std::runtime_error if there are fewer
   std::string_view bytes(std::size_t count);
@@ -33,10 +35,35 @@ private:
   std::size_t line_ = 1;
 };
 
-/// Whole word as a number; "nan", "inf" and a leading + are accepted, too large values become infinite.
+/// Whole word as a number, in any locale; "nan", "inf", what Windows writes for them ("1.#QNAN"), decimal commas and a leading + are
+/// accepted, too large values become infinite; whole numbers may have decimals: "128.0".
 /// @throws std::runtime_error naming the word
 template <typename T>
 T parseNumber(std::string_view word);
+
+/// The shortest text that is read back as the same value, in any locale.
+template <typename T>
+std::string numberText(T value)
+{
+  char text[64];
+  return {text, std::to_chars(text, text + sizeof(text), value).ptr};
+}
+
+/// Words and numbers one after the other, numbers by numberText(): what files are made of, where messages have concat().
+template <typename... Parts>
+std::string textOf(const Parts&... parts)
+{
+  std::string text;
+  const auto add = [&](const auto& part) {
+    using Part = std::decay_t<decltype(part)>;
+    if constexpr (std::is_arithmetic_v<Part> && !std::is_same_v<Part, char>)
+      text += numberText(part);
+    else
+      text += part;
+  };
+  (add(parts), ...);
+  return text;
+}
 
 /// `name` as one word: blanks and control characters become '_'.
 std::string singleWord(std::string name);

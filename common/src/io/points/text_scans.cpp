@@ -2,50 +2,41 @@
 #include "io/points/text_scans.h"
 #include "io/points/file_window.h"
 #include "io/points/text_numbers.h"
+#include "io/points/text_table.h"
 #include <algorithm>
 #include <cmath>
 #include <fresco/core/poses.h>
-#include <fresco/core/require.h>
 #include <limits>
-#include <stdexcept>
 namespace fresco::io {
 namespace {
 /// Points of one station.
 struct Block {
   std::uint64_t offset = 0, line = 1; ///< of its first point
-  std::size_t words = 0;              ///< of each line
+  std::size_t words = 0;              ///< of each line: x y z [intensity] [r g b [nx ny nz]]
   Index rows = 0;                     ///< of an organised station; 0: a list
+  double scale = 1;                   ///< of its matrix
+  double full_color = 255;            ///< see fullColor()
+
+  bool hasIntensity() const { return words == 4 || words == 7 || words == 10; }
+  bool hasColors() const { return words >= 6; }
+  bool hasNormals() const { return words >= 9; }
+  std::size_t firstColor() const { return hasIntensity() ? 4 : 3; }
 };
 
-constexpr std::size_t most_words = 7;
+using Words = std::vector<std::string_view>;
 
-/// Words of a line, at most `most`. @return how many there are, most + 1 if more
-std::size_t splitWords(std::string_view line, std::string_view* words, std::size_t most)
-{
-  std::size_t count = 0;
-  for (std::size_t at = 0; at < line.size();) {
-    const std::size_t begin = line.find_first_not_of(" \t", at);
-    if (begin == std::string_view::npos)
-      break;
-    at = std::min(line.find_first_of(" \t", begin), line.size());
-    if (count == most)
-      return most + 1;
-    words[count++] = line.substr(begin, at - begin);
-  }
-  return count;
-}
-
-bool isSingleWord(std::string_view line) { return line.find_first_of(" \t") == std::string_view::npos; }
+bool isSingleWord(std::string_view line) { return line.find_first_of(" \t,;") == std::string_view::npos; }
 
 /// Exactly `count` finite numbers.
 std::vector<double> numbersOf(std::string_view line, std::size_t count)
 {
-  std::string_view words[most_words];
-  if (splitWords(line, words, most_words) != count)
+  Words words;
+  TableDialect().split(line, words);
+  if (words.size() != count)
     throw std::runtime_error(concat("wants ", count, " numbers"));
   std::vector<double> numbers;
-  for (std::size_t i = 0; i < count; ++i) {
-    numbers.push_back(parseNumber<double>(words[i]));
+  for (const std::string_view word : words) {
+    numbers.push_back(parseNumber<double>(word));
     if (!std::isfinite(numbers.back()))
       throw std::runtime_error("a number is not finite");
   }
@@ -74,37 +65,71 @@ Index checkedCount(std::uint64_t count, const LineReader& lines)
   return count;
 }
 
-/// Goes over the lines of points up to a header or the end of the file. @return how many
-Index skipPoints(LineReader& lines, Block& block)
+void checkWords(std::size_t words, const Block& block)
 {
-  Index count = 0;
-  std::string_view line, words[most_words];
-  block.offset = lines.offset();
-  block.line = lines.line() + 1;
+  if (words != block.words)
+    throw std::runtime_error(concat("wants ", block.words, " numbers"));
+  if (words != 3 && words != 4 && words != 6 && words != 7 && words != 9 && words != 10)
+    throw std::runtime_error(concat("a point has 3, 4, 6, 7, 9 or 10 numbers, not ", words));
+}
+
+/// use(line) for the lines of points up to a header or the end of the file, while it says so; errors name the line.
+template <typename Use>
+void forEachPoint(LineReader& lines, const Use& use)
+{
+  std::string_view line;
   while (lines.next(line)) {
-    if (line.empty())
+    if (line.empty() || isComment(line))
       continue;
     if (isSingleWord(line)) {
       lines.unread();
-      break;
+      return;
     }
-    if (count == 0)
-      block.words = splitWords(line, words, most_words);
-    ++count;
+    try {
+      if (!use(line))
+        return;
+    } catch (const std::runtime_error& error) {
+      throw std::runtime_error(concat("line ", lines.line(), ": ", error.what()));
+    }
   }
+}
+
+/// Goes over the points of a block and fills in what it tells of their lines. @return how many
+Index measurePoints(LineReader& lines, Block& block)
+{
+  Index count = 0;
+  double largest = 0;
+  Words words;
+  block.offset = lines.offset();
+  block.line = lines.line() + 1;
+  forEachPoint(lines, [&](std::string_view line) {
+    TableDialect().split(line, words);
+    if (count++ == 0)
+      block.words = words.size();
+    checkWords(words.size(), block);
+    for (std::size_t k = 0; k < 3 && block.hasColors(); ++k)
+      if (const double value = parseNumber<double>(words[block.firstColor() + k]); std::isfinite(value))
+        largest = std::max(largest, value);
+    return true;
+  });
+  block.full_color = fullColor(Scalar::float64, largest);
   return count;
 }
 
 /// The transform in the last four lines of a PTX header, written transposed: the translation is the last row.
-Eigen::Isometry3d poseOf(LineReader& lines)
+/// @param scale of the matrix
+Eigen::Isometry3d poseOf(LineReader& lines, double& scale)
 {
   Eigen::Matrix4d M;
   for (int row = 0; row < 4; ++row) {
     const std::vector<double> numbers = numbersOf(contentLine(lines), 4);
     M.row(row) = Eigen::RowVector4d::Map(numbers.data());
   }
-  const Eigen::Matrix3d R = M.topLeftCorner<3, 3>().transpose();
+  Eigen::Matrix3d R = M.topLeftCorner<3, 3>().transpose();
   constexpr double rounded = 1e-3; // numbers are written with 6 digits
+  const double size = std::cbrt(R.determinant());
+  if (size > 0 && std::abs(size - 1) > rounded) // units, as of millimetres in a file of metres
+    R /= scale = size;
   if (!isRotation(R, rounded))
     throw std::runtime_error("its matrix is no rotation");
   Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
@@ -113,20 +138,20 @@ Eigen::Isometry3d poseOf(LineReader& lines)
   return T;
 }
 
-std::uint8_t colorByte(std::string_view word)
-{
-  const auto value = parseNumber<double>(word);
-  return value > 0 ? std::min(std::round(value), 255.0) : 0.0;
-}
+/// Values one after the other into a row.
+struct RowWriter {
+  std::uint8_t* at;
 
-template <typename T>
-std::uint8_t* store(std::uint8_t* at, T value)
-{
-  std::memcpy(at, &value, sizeof(T));
-  return at + sizeof(T);
-}
+  template <typename T>
+  void put(T value)
+  {
+    std::memcpy(at, &value, sizeof(T));
+    at += sizeof(T);
+  }
+};
 
-/// What PTX and PTS have in common: blocks of lines, found by a first pass over the file.
+/// What PTX and PTS have in common: blocks of lines, found by a first pass over the file. A block that cannot be read
+/// has no points and is remarked, unless none can.
 class TextReader : public ScanReader {
 public:
   TextReader(const std::string& path, const char* block_name) : file_(path), block_name_(block_name) {}
@@ -137,13 +162,17 @@ public:
     lines_ = std::make_unique<LineReader>(file_, block_.offset, block_.line);
     point_ = 0;
     PointTable layout;
-    for (const char* name : xyz_names)
-      layout.addColumn(name, Scalar::float64);
-    if (hasIntensity())
+    const auto add = [&](NameTriple names, Scalar type) {
+      for (const char* name : names)
+        layout.addColumn(name, type);
+    };
+    add(xyz_names, Scalar::float64);
+    if (block_.hasIntensity())
       layout.addColumn("intensity", Scalar::float32);
-    if (hasColors())
-      for (const char* name : color_names)
-        layout.addColumn(name, Scalar::uint8);
+    if (block_.hasColors())
+      add(color_names, Scalar::uint8);
+    if (block_.hasNormals())
+      add(normal_names, Scalar::float32);
     if (block_.rows > 0)
       for (const char* name : {row_column, column_column})
         layout.addColumn(name, Scalar::int32);
@@ -152,70 +181,94 @@ public:
 
   Index read(PointTable& table, Index begin, Index end) override
   {
-    std::string_view line;
     Index at = begin;
-    while (at < end && lines_->next(line)) {
-      if (line.empty())
-        continue;
-      if (isSingleWord(line)) { // the next station
-        lines_->unread();
-        break;
-      }
-      storeLine(line, table.cell(at++, table.columns[0]));
-    }
+    if (at < end)
+      forEachPoint(*lines_, [&](std::string_view line) {
+        storeLine(line, table.cell(at, table.columns[0]));
+        return ++at < end;
+      });
     return at - begin;
   }
 
 protected:
+  /// read(lines) reads blocks one after the other.
+  template <typename Read>
+  void readBlocks(const Read& read)
+  {
+    LineReader lines(file_);
+    std::string_view line;
+    std::vector<std::string> errors;
+    while (lines.next(line)) {
+      if (line.empty())
+        continue;
+      lines.unread();
+      try {
+        read(lines);
+      } catch (const std::runtime_error& error) {
+        errors.push_back(concat(block_name_, ' ', scans_.size() + 1, ": ", error.what()));
+        blocks_.emplace_back();
+        scans_.resize(blocks_.size());
+        skipBlock(lines);
+      }
+    }
+    settle(errors);
+    if (scans_.empty())
+      throw std::runtime_error(concat("no ", block_name_));
+  }
+
   /// @param announced points, nothing where the file does not say
   void addBlock(LineReader& lines, Block block, ScanInfo info, std::optional<Index> announced)
   {
-    const Index count = skipPoints(lines, block);
-    const auto fail = [&](const auto&... reason) {
-      throw std::runtime_error(concat(block_name_, ' ', blocks_.size() + 1, ": ", reason...));
-    };
-    if (announced && *announced != count)
-      fail(*announced, " points announced, ", count, " there (line ", block.line + count, ")");
-    if (count > 0 && block.words != 3 && block.words != 4 && block.words != 6 && block.words != 7)
-      fail("line ", block.line, ": a point has 3, 4, 6 or 7 numbers, not ", block.words);
-    info.points = count;
+    info.points = measurePoints(lines, block);
+    if (announced && *announced != info.points)
+      throw std::runtime_error(
+          concat(*announced, " points announced, ", info.points, " there (line ", block.line + info.points, ")"));
     blocks_.push_back(block);
     scans_.push_back(std::move(info));
   }
 
-  RandomAccessFile file_;
-
 private:
-  bool hasIntensity() const { return block_.words == 4 || block_.words == 7; }
-  bool hasColors() const { return block_.words >= 6; }
+  /// To where the next block may begin.
+  static void skipBlock(LineReader& lines)
+  {
+    std::string_view line;
+    while (lines.next(line))
+      if (!line.empty() && isSingleWord(line)) {
+        lines.unread();
+        return;
+      }
+  }
 
   void storeLine(std::string_view line, std::uint8_t* row)
-  try {
-    std::string_view words[most_words];
-    if (splitWords(line, words, most_words) != block_.words)
-      throw std::runtime_error(concat("wants ", block_.words, " numbers"));
-    Eigen::Vector3d p(parseNumber<double>(words[0]), parseNumber<double>(words[1]), parseNumber<double>(words[2]));
+  {
+    TableDialect().split(line, words_);
+    checkWords(words_.size(), block_);
+    RowWriter out{row};
+    Eigen::Vector3d p(parseNumber<double>(words_[0]), parseNumber<double>(words_[1]), parseNumber<double>(words_[2]));
     if (block_.rows > 0 && p.isZero(0)) // a beam that nothing returned
       p.setConstant(std::numeric_limits<double>::quiet_NaN());
     for (const double value : p)
-      row = store(row, value);
-    if (hasIntensity())
-      row = store(row, parseNumber<float>(words[3]));
-    for (std::size_t channel = 0; hasColors() && channel < 3; ++channel)
-      row = store(row, colorByte(words[block_.words - 3 + channel]));
+      out.put(value * block_.scale);
+    if (block_.hasIntensity())
+      out.put(parseNumber<float>(words_[3]));
+    const std::size_t color = block_.firstColor();
+    for (std::size_t k = color; k < color + 3 && block_.hasColors(); ++k)
+      out.put(colorByte(parseNumber<double>(words_[k]), block_.full_color));
+    for (std::size_t k = color + 3; k < color + 6 && block_.hasNormals(); ++k)
+      out.put(parseNumber<float>(words_[k]));
     if (block_.rows > 0) {
-      row = store<std::int32_t>(row, point_ % block_.rows);
-      store<std::int32_t>(row, point_ / block_.rows);
+      out.put<std::int32_t>(point_ % block_.rows);
+      out.put<std::int32_t>(point_ / block_.rows);
     }
     ++point_;
-  } catch (const std::runtime_error& error) {
-    throw std::runtime_error(concat("line ", lines_->line(), ": ", error.what()));
   }
 
+  RandomAccessFile file_;
   const char* block_name_;
   std::vector<Block> blocks_;
   Block block_;
   std::unique_ptr<LineReader> lines_;
+  Words words_;
   Index point_ = 0; ///< next one of the block
 };
 
@@ -223,15 +276,7 @@ class PtxReader : public TextReader {
 public:
   explicit PtxReader(const std::string& path) : TextReader(path, "station")
   {
-    LineReader lines(file_);
-    std::string_view line;
-    while (lines.next(line))
-      if (!line.empty()) {
-        lines.unread();
-        addStation(lines);
-      }
-    if (scans_.empty())
-      throw std::runtime_error("no station");
+    readBlocks([&](LineReader& lines) { addStation(lines); });
   }
 
 private:
@@ -240,20 +285,18 @@ private:
     Block block;
     ScanInfo info;
     std::uint64_t columns = 0, rows = 0;
-    Eigen::Vector3d position;
     try {
       columns = parseNumber<std::uint32_t>(contentLine(lines));
       rows = parseNumber<std::uint32_t>(contentLine(lines));
-      position = Eigen::Vector3d::Map(numbersOf(contentLine(lines), 3).data());
+      const Eigen::Vector3d position = Eigen::Vector3d::Map(numbersOf(contentLine(lines), 3).data());
       for (int axis = 0; axis < 3; ++axis)
         numbersOf(contentLine(lines), 3); // the matrix says it again
-      info.T_file_scan = poseOf(lines);
+      info.T_file_scan = poseOf(lines, block.scale);
+      info.sensor = info.T_file_scan.inverse() * position;
     } catch (const std::runtime_error& error) {
-      throw std::runtime_error(
-          concat("station ", scans_.size() + 1, ": header, line ", lines.line(), ": ", error.what()));
+      throw std::runtime_error(concat("header, line ", lines.line(), ": ", error.what()));
     }
     info.has_pose = true;
-    info.sensor = info.T_file_scan.inverse() * position;
     info.intensity_limits = Eigen::Array2d(0, 1);
     block.rows = rows;
     addBlock(lines, block, std::move(info), checkedCount(columns * rows, lines));
@@ -264,22 +307,19 @@ class PtsReader : public TextReader {
 public:
   explicit PtsReader(const std::string& path) : TextReader(path, "block")
   {
-    LineReader lines(file_);
-    std::string_view line;
-    while (lines.next(line)) {
-      if (line.empty())
-        continue;
+    readBlocks([&](LineReader& lines) {
       std::optional<Index> announced;
+      Words words;
+      const std::string_view line = contentLine(lines);
+      TableDialect().split(line, words);
       if (isSingleWord(line))
         announced = countIn(line, lines);
-      else if (scans_.empty())
+      else if (!isHeader(words)) // names of columns say nothing new
         lines.unread();
       ScanInfo info;
       info.intensity_limits = Eigen::Array2d(-2048, 2047); // as Cyclone writes them
       addBlock(lines, {}, info, announced);
-    }
-    if (scans_.empty())
-      throw std::runtime_error("no points");
+    });
   }
 
 private:

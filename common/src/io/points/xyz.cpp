@@ -1,149 +1,105 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "io/points/xyz.h"
+#include "io/files/remarks.h"
 #include "io/points/text_numbers.h"
+#include "io/points/text_table.h"
 #include <algorithm>
-#include <cmath>
-#include <fresco/core/require.h>
+#include <optional>
 namespace fresco::io {
 namespace {
-struct Rows {
-  std::vector<double> values;
-  std::size_t width = 0;         ///< values per row
-  std::string_view last_comment; ///< before the data
-};
+/// The rows of a file, and what names their columns.
+class TextCloud {
+public:
+  explicit TextCloud(std::string_view content) : dialect_(dialectOf(content)), scanner_(content) {}
 
-bool isSeparator(char c) { return c == ' ' || c == '\t' || c == ',' || c == ';'; }
-
-/// Words of a line.
-void splitLine(std::string_view line, std::vector<std::string_view>& words)
-{
-  words.clear();
-  for (std::size_t at = 0; at < line.size();) {
-    while (at < line.size() && isSeparator(line[at]))
-      ++at;
-    const std::size_t begin = at;
-    while (at < line.size() && !isSeparator(line[at]))
-      ++at;
-    if (at > begin)
-      words.push_back(line.substr(begin, at - begin));
+  PointTable table()
+  {
+    while (!scanner_.done()) {
+      const std::size_t number = scanner_.line();
+      try {
+        addLine(scanner_.restOfLine());
+      } catch (const std::runtime_error& error) {
+        throw std::runtime_error(concat("line ", number, ": ", error.what()));
+      }
+    }
+    if (values_.empty())
+      throw std::runtime_error("no points");
+    if (announced_ && *announced_ != values_.size() / width_)
+      remark(concat(*announced_, " points announced, ", values_.size() / width_, " there"));
+    return tableOfRows(names(), values_);
   }
-}
 
-bool isComment(std::string_view line) { return line[0] == '#' || line.substr(0, 2) == "//"; }
-
-/// The first line may hold the number of points alone. @return false if the line was that
-bool addRow(const std::vector<std::string_view>& words, bool first, Rows& rows)
-{
-  if (first && words.size() == 1) {
-    parseNumber<std::uint64_t>(words[0]);
-    return false;
-  }
-  if (rows.width == 0)
-    rows.width = words.size();
-  if (words.size() < 3 || words.size() != rows.width)
-    throw std::runtime_error(concat(words.size(), " columns, expected ", std::max<std::size_t>(rows.width, 3)));
-  for (const std::string_view word : words)
-    rows.values.push_back(parseNumber<double>(word));
-  return true;
-}
-
-Rows parseRows(std::string_view content)
-{
-  Rows rows;
-  TextScanner scanner(content);
-  std::vector<std::string_view> words;
-  bool first = true;
-  while (!scanner.done()) {
-    const std::size_t number = scanner.line();
-    const std::string_view line = scanner.restOfLine();
+private:
+  void addLine(std::string_view line)
+  {
     if (line.empty())
-      continue;
+      return;
     if (isComment(line)) {
-      if (rows.values.empty())
-        rows.last_comment = line;
-      continue;
+      if (values_.empty())
+        comment_ = line;
+      return;
     }
-    splitLine(line, words);
-    try {
-      addRow(words, first, rows);
-    } catch (const std::exception& error) {
-      throw std::runtime_error(concat("line ", number, ": ", error.what()));
-    }
-    first = false;
+    dialect_.split(line, cells_);
+    if (values_.empty() && header_.empty() && isHeader(cells_))
+      header_ = line;
+    else if (values_.empty() && !announced_ && cells_.size() == 1)
+      announced_ = parseNumber<std::uint64_t>(cells_[0]);
+    else
+      addRow(line);
   }
-  if (rows.values.empty())
-    throw std::runtime_error("no points");
-  return rows;
-}
 
-std::string standardName(std::string_view word)
-{
-  std::string name(word);
-  std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) { return std::tolower(c); });
-  static constexpr std::pair<const char*, const char*> names[] = {
-      {"nx", "normal_x"}, {"ny", "normal_y"}, {"nz", "normal_z"}, {"r", "red"},
-      {"g", "green"},     {"b", "blue"},      {"i", "intensity"}, {"scalar_intensity", "intensity"}};
-  for (const auto& [from, to] : names)
-    if (name == from)
-      return to;
-  return name;
-}
-
-/// Names that a comment gives, empty if they do not fit.
-std::vector<std::string> namesFromComment(const Rows& rows)
-{
-  std::string_view comment = rows.last_comment;
-  while (!comment.empty() && (comment[0] == '#' || comment[0] == '/'))
-    comment.remove_prefix(1);
-  std::vector<std::string_view> words;
-  splitLine(comment, words);
-  std::vector<std::string> names(words.size());
-  std::transform(words.begin(), words.end(), names.begin(), standardName);
-  const bool fits = names.size() == rows.width && std::equal(std::begin(xyz_names), std::end(xyz_names), names.begin());
-  return fits ? names : std::vector<std::string>();
-}
-
-/// Whether all finite values of three columns fulfil `test`.
-template <typename Test>
-bool allOf(const Rows& rows, std::size_t column, const Test& test)
-{
-  for (std::size_t at = column; at < rows.values.size(); at += rows.width)
-    for (std::size_t k = 0; k < 3; ++k)
-      if (std::isfinite(rows.values[at + k]) && !test(rows.values[at + k]))
-        return false;
-  return true;
-}
-
-bool looksLikeColor(const Rows& rows, std::size_t column)
-{
-  return allOf(rows, column, [](double value) { return value >= 0 && value <= 255 && value == std::floor(value); });
-}
-
-bool looksLikeNormal(const Rows& rows, std::size_t column)
-{
-  return allOf(rows, column, [](double value) { return std::abs(value) <= 1.001; });
-}
-
-std::vector<std::string> guessNames(const Rows& rows)
-{
-  std::vector<std::string> names(std::begin(xyz_names), std::end(xyz_names));
-  bool color = false, normal = false, intensity = false;
-  while (names.size() < rows.width) {
-    const std::size_t at = names.size();
-    const bool triple = at + 3 <= rows.width;
-    if (triple && !color && looksLikeColor(rows, at)) {
-      names.insert(names.end(), std::begin(color_names), std::end(color_names));
-      color = true;
-    } else if (triple && !normal && looksLikeNormal(rows, at)) {
-      names.insert(names.end(), std::begin(normal_names), std::end(normal_names));
-      normal = true;
-    } else {
-      names.push_back(intensity ? concat("column_", at + 1) : "intensity");
-      intensity = true;
-    }
+  void addRow(std::string_view line)
+  {
+    const std::size_t expected = width_ > 0 || header_.empty() ? width_ : namesIn(header_).size();
+    if (cells_.size() + 1 == expected && line.find_last_of(",;|") + 1 == line.size())
+      cells_.emplace_back(); // empty, behind the last separator
+    if (width_ == 0)
+      width_ = cells_.size();
+    if (cells_.size() < 3 || cells_.size() != width_)
+      throw std::runtime_error(concat(cells_.size(), " columns, expected ", std::max<std::size_t>(width_, 3)));
+    for (const std::string_view cell : cells_)
+      values_.push_back(cellNumber(cell));
   }
-  return names;
-}
+
+  static bool hasPosition(const std::vector<std::string>& names)
+  {
+    return std::all_of(xyz_names, xyz_names + 3,
+                       [&](const char* axis) { return std::count(names.begin(), names.end(), axis) > 0; });
+  }
+
+  /// What the user says, else the header, else a comment that fits, else the values.
+  std::vector<std::string> names() const
+  {
+    if (std::vector<std::string> told = textColumns(); !told.empty()) {
+      if (told.size() != width_)
+        throw std::runtime_error(concat("it has ", width_, " columns, but -columns names ", told.size()));
+      return told;
+    }
+    if (!header_.empty()) {
+      std::vector<std::string> named = namesIn(header_);
+      if (named.size() != width_ || !hasPosition(named))
+        throw std::runtime_error(concat("the header '", header_.substr(0, 60), "' names ", named.size(), " columns",
+                                        hasPosition(named) ? "" : ", of which none is x, y or z", ", the rows have ",
+                                        width_, ": ", columns_hint));
+      return named;
+    }
+    if (!comment_.empty())
+      if (std::vector<std::string> named = namesIn(comment_); named.size() == width_ && hasPosition(named))
+        return named;
+    std::vector<std::string> guessed = guessColumns(values_, width_);
+    if (width_ > 3)
+      remark(concat("no names of columns: read by their values as ", listOf(guessed), "; ", columns_hint));
+    return guessed;
+  }
+
+  const TableDialect dialect_;
+  TextScanner scanner_;
+  std::vector<std::string_view> cells_;
+  std::vector<double> values_;
+  std::size_t width_ = 0;
+  std::string_view header_, comment_; ///< before the points
+  std::optional<std::uint64_t> announced_;
+};
 
 std::string writtenName(const std::string& column)
 {
@@ -153,7 +109,7 @@ std::string writtenName(const std::string& column)
   return singleWord(column);
 }
 
-void writeRow(TextWriter& writer, const PointTable& table, Index row)
+void writeRow(TextWriter& writer, const PointTable& table, Index row, const char* between)
 {
   const char* separator = "";
   for (const Column& column : table.columns)
@@ -161,7 +117,7 @@ void writeRow(TextWriter& writer, const PointTable& table, Index row)
       using T = decltype(zero);
       for (std::size_t k = 0; k < column.count; ++k) {
         writer.text(separator).number(loadScalar<T>(table.cell(row, column) + k * sizeof(T)));
-        separator = " ";
+        separator = between;
       }
     });
   writer.text("\n");
@@ -170,23 +126,26 @@ void writeRow(TextWriter& writer, const PointTable& table, Index row)
 
 PointTable parseXyz(std::string_view content)
 {
-  const Rows rows = parseRows(content);
-  const std::vector<std::string> names = namesFromComment(rows);
-  return tableOfRows(names.empty() ? guessNames(rows) : names, rows.values);
+  constexpr std::string_view mark = "\xEF\xBB\xBF"; // of UTF-8, as spreadsheets write it
+  return TextCloud(content.substr(content.substr(0, 3) == mark ? 3 : 0)).table();
 }
 
 void writeXyz(const std::string& path, PointTable table)
 {
   unpackColors(table);
+  const bool csv = extension(path) == ".csv";
+  const char* const between = csv ? "," : " ";
   OutputFile file(path);
   TextWriter writer(file);
-  writer.text("#");
+  const char* separator = csv ? "" : "# ";
   for (const Column& column : table.columns)
-    for (std::size_t k = 0; k < column.count; ++k)
-      writer.text(" ").text(writtenName(column.name)).text(column.count > 1 ? concat('_', k) : std::string());
+    for (std::size_t k = 0; k < column.count; ++k) {
+      writer.text(separator).text(writtenName(column.name)).text(column.count > 1 ? textOf('_', k) : std::string());
+      separator = between;
+    }
   writer.text("\n");
   for (Index row = 0; row < table.rows; ++row)
-    writeRow(writer, table, row);
+    writeRow(writer, table, row, between);
   writer.flush();
   file.commit();
 }

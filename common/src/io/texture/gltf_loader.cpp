@@ -20,12 +20,12 @@ bool keepImageBytes(tinygltf::Image* image, int, std::string*, std::string*, int
 }
 
 /// Refuses what the library's parser is not made for: it calls itself for nested values and keeps half a kilobyte for
-/// each object.
+/// each object, and for each value of an array.
 void checkJson(std::string_view json)
 {
   constexpr int deepest = 100;
-  constexpr int most_objects = 100000;
-  int depth = 0, objects = 0;
+  constexpr int most_objects = 100000, most_values = 1000000;
+  int depth = 0, objects = 0, values = 0;
   bool quoted = false;
   for (std::size_t i = 0; i < json.size(); ++i) {
     const char c = json[i];
@@ -37,9 +37,11 @@ void checkJson(std::string_view json)
       continue;
     depth += c == '{' || c == '[' ? 1 : c == '}' || c == ']' ? -1 : 0;
     objects += c == '{' ? 1 : 0;
-    if (depth > deepest || objects > most_objects)
-      fail(depth > deepest ? concat("nested more than ", deepest, " deep")
-                           : concat("more than ", most_objects, " objects"));
+    values += c == ',' ? 1 : 0;
+    if (depth > deepest)
+      fail(concat("nested more than ", deepest, " deep"));
+    if (objects > most_objects || values > most_values)
+      fail(concat("more than ", most_objects, " objects or ", most_values, " values"));
   }
 }
 

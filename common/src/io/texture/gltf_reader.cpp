@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "io/files/remarks.h"
 #include "io/texture/gltf_loader.h"
 #include "io/texture/texture_io.h"
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <fresco/core/point_table.h>
 #include <fresco/core/require.h>
@@ -61,10 +63,13 @@ Eigen::MatrixXd readAccessor(const tinygltf::Model& gltf, int index, int compone
   Eigen::MatrixXd values(components, accessor.count);
   visitScalar(type, [&](auto zero) {
     using T = decltype(zero);
-    const double scale = accessor.normalized && std::is_integral_v<T> ? 1.0 / std::numeric_limits<T>::max() : 1.0;
+    const bool fraction = accessor.normalized && std::is_integral_v<T>;
+    const double scale = fraction ? 1.0 / std::numeric_limits<T>::max() : 1.0;
     for (Index i = 0; i < values.cols(); ++i)
-      for (int k = 0; k < components; ++k)
-        values(k, i) = scale * loadScalar<T>(bytes + i * stride + k * sizeof(T));
+      for (int k = 0; k < components; ++k) {
+        const double value = scale * loadScalar<T>(bytes + i * stride + k * sizeof(T));
+        values(k, i) = fraction ? std::max(value, -1.0) : value; // signed ones reach a step further down
+      }
   });
   return values;
 }
@@ -108,18 +113,24 @@ public:
   /// @param T_scene_mesh where the mesh stands, less the origin
   void addPrimitive(const tinygltf::Primitive& primitive, const Eigen::Affine3d& T_scene_mesh)
   {
-    if (primitive.mode != TINYGLTF_MODE_TRIANGLES && primitive.mode != -1)
-      fail("a primitive is no list of triangles");
+    if (primitive.mode >= 0 && primitive.mode < TINYGLTF_MODE_TRIANGLES) {
+      remark("points and lines are left out");
+      return;
+    }
     const Eigen::MatrixXd positions = attribute(primitive, "POSITION", 3);
     if (positions.cols() == 0)
       fail("a primitive has no positions");
     const std::vector<int> vertices = addVertices(primitive, T_scene_mesh, positions);
     const int atlas = atlasOf(primitive);
-    const Eigen::MatrixXd texcoords = atlas < 0 ? Eigen::MatrixXd() : attribute(primitive, "TEXCOORD_0", 2);
+    const Eigen::MatrixXd texcoords = atlas < 0 ? Eigen::MatrixXd() : textureCoordinates(primitive);
     const int first_texcoord = texcoords_.size();
     for (Index i = 0; i < texcoords.cols(); ++i)
       texcoords_.emplace_back(texcoords(0, i), 1.0 - texcoords(1, i));
-    addFaces(cornerIndices(primitive, positions.cols()), vertices, texcoords.cols() > 0 ? atlas : -1, first_texcoord);
+    std::vector<std::size_t> corners = triangleCorners(cornerIndices(primitive, positions.cols()), primitive.mode);
+    if (T_scene_mesh.linear().determinant() < 0) // mirrored
+      for (std::size_t i = 0; i + 2 < corners.size(); i += 3)
+        std::swap(corners[i + 1], corners[i + 2]);
+    addFaces(corners, vertices, texcoords.cols() > 0 ? atlas : -1, first_texcoord);
   }
 
   TexturedMesh take()
@@ -204,9 +215,48 @@ private:
         corners.push_back(indices(0, i));
       }
     }
-    if (corners.size() % 3 != 0)
-      fail("the number of indices is no multiple of 3");
     return corners;
+  }
+
+  /// Three corners of each triangle, from a list, strip or fan.
+  static std::vector<std::size_t> triangleCorners(std::vector<std::size_t> corners, int mode)
+  {
+    if (mode != TINYGLTF_MODE_TRIANGLE_STRIP && mode != TINYGLTF_MODE_TRIANGLE_FAN) {
+      if (corners.size() % 3 != 0)
+        fail("the number of indices is no multiple of 3");
+      return corners;
+    }
+    std::vector<std::size_t> triangles;
+    for (std::size_t i = 0; i + 2 < corners.size(); ++i) {
+      const bool fan = mode == TINYGLTF_MODE_TRIANGLE_FAN, odd = i % 2 != 0;
+      const std::array<std::size_t, 3> t = fan ? std::array<std::size_t, 3>{i + 1, i + 2, 0}
+                                               : std::array<std::size_t, 3>{i, i + (odd ? 2 : 1), i + (odd ? 1 : 2)};
+      if (const std::size_t a = corners[t[0]], b = corners[t[1]], c = corners[t[2]]; a != b && b != c && a != c)
+        triangles.insert(triangles.end(), {a, b, c});
+    }
+    return triangles;
+  }
+
+  /// Those that the texture of the base colour asks for, with its transform (KHR_texture_transform).
+  Eigen::MatrixXd textureCoordinates(const tinygltf::Primitive& primitive)
+  {
+    const tinygltf::TextureInfo& texture = gltf_.materials[primitive.material].pbrMetallicRoughness.baseColorTexture;
+    const auto extension = texture.extensions.find("KHR_texture_transform");
+    const auto value = [&](const char* name, int index, double otherwise) {
+      if (extension == texture.extensions.end() || !extension->second.Has(name))
+        return otherwise;
+      const tinygltf::Value& found = extension->second.Get(name);
+      const tinygltf::Value& number = found.IsArray() ? found.Get(index) : found;
+      return number.IsNumber() ? number.GetNumberAsDouble() : otherwise;
+    };
+    const int set = std::clamp(value("texCoord", 0, texture.texCoord), -1.0, 99.0);
+    Eigen::MatrixXd texcoords = attribute(primitive, concat("TEXCOORD_", set).c_str(), 2);
+    if (texcoords.cols() == 0 || extension == texture.extensions.end())
+      return texcoords;
+    const Eigen::Matrix2d R = Eigen::Rotation2Dd(value("rotation", 0, 0)).toRotationMatrix();
+    const Eigen::Vector2d scale(value("scale", 0, 1), value("scale", 1, 1)),
+        offset(value("offset", 0, 0), value("offset", 1, 0));
+    return ((R * scale.asDiagonal() * texcoords).colwise() + offset).eval();
   }
 
   void addFaces(const std::vector<std::size_t>& corners, const std::vector<int>& vertices, int atlas,
@@ -305,6 +355,9 @@ std::vector<PlacedMesh> collectMeshes(const tinygltf::Model& gltf, const tinyglt
 TexturedMesh parseGlb(std::string_view content, const std::string& folder)
 {
   const tinygltf::Model gltf = loadGltf(content, folder);
+  for (const std::string& name : gltf.extensionsRequired)
+    if (name.find("compression") != std::string::npos)
+      fail("compressed by the extension " + name + ", which is not read");
   const std::vector<PlacedMesh> meshes = collectMeshes(gltf, at(gltf.scenes, std::max(gltf.defaultScene, 0), "scene"));
   ModelBuilder builder(gltf, content.size());
   const Eigen::Vector3d origin = meshes.empty() ? Eigen::Vector3d::Zero() : meshes[0].T_scene_mesh.translation().eval();

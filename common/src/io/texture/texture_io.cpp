@@ -55,13 +55,13 @@ void writeTexturedMesh(const std::string& path, const TexturedMesh& model, int j
     io::writeGlb(path, model, jpeg_quality,
                  [&](std::size_t i) { return io::glbImage(model.atlases[i], jpeg_quality); });
   else
-    io::writeTexturedObj(path, model, jpeg_quality);
+    io::writeWithImageFiles(path, model, jpeg_quality);
 }
 
 struct TexturedMeshWriter::Parts {
   std::string path;
   int quality;
-  std::unique_ptr<io::ObjWriter> obj;            ///< null: .glb
+  std::unique_ptr<io::ImageFilesWriter> files;   ///< null: .glb
   std::vector<std::vector<std::uint8_t>> images; ///< of a .glb
   std::size_t count = 0;
 };
@@ -72,15 +72,15 @@ TexturedMeshWriter::TexturedMeshWriter(const std::string& path, int jpeg_quality
   parts_->path = path;
   parts_->quality = jpeg_quality;
   if (!isGlb(io::formatToWrite(path, FileKind::textured_mesh)))
-    parts_->obj = std::make_unique<io::ObjWriter>(path, jpeg_quality);
+    parts_->files = std::make_unique<io::ImageFilesWriter>(path, jpeg_quality);
 }
 
 TexturedMeshWriter::~TexturedMeshWriter() = default;
 
 void TexturedMeshWriter::addAtlas(const Image& atlas)
 {
-  if (parts_->obj)
-    parts_->obj->addAtlas(atlas, concat('_', parts_->count));
+  if (parts_->files)
+    parts_->files->addAtlas(atlas, concat('_', parts_->count));
   else
     parts_->images.push_back(io::glbImage(atlas, parts_->quality));
   ++parts_->count;
@@ -91,8 +91,8 @@ void TexturedMeshWriter::finish(const TexturedMesh& model)
   validateFaces(model);
   require(model.atlases.size() == parts_->count, "textured mesh: ", parts_->count, " atlases were added of ",
           model.atlases.size());
-  if (parts_->obj)
-    parts_->obj->finish(model);
+  if (parts_->files)
+    parts_->files->finish(model);
   else
     io::writeGlb(parts_->path, model, parts_->quality, [&](std::size_t i) { return std::move(parts_->images[i]); });
 }
@@ -108,12 +108,12 @@ TexturedMesh readTexturedMesh(const std::string& path)
     return io::parseFile(path, [&](std::string_view content) {
       return io::parseGlb(content, std::filesystem::path(path).parent_path().string());
     });
-  return io::readTexturedObj(path);
+  return extension(path) == ".ply" ? io::readTexturedPly(path) : io::readTexturedObj(path);
 }
 
 TexturedMesh readTextureLayout(const std::string& path)
 {
-  return isGlb(io::formatToRead(path, FileKind::textured_mesh)) ? readTexturedMesh(path)
-                                                                : io::readTexturedObj(path, true);
+  io::formatToRead(path, FileKind::textured_mesh);
+  return extension(path) == ".obj" ? io::readTexturedObj(path, true) : readTexturedMesh(path);
 }
 } // namespace fresco

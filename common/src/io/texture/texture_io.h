@@ -11,10 +11,10 @@ namespace fresco::io {
 /// Faces of atlas i as group i + 1; those without texture as group 0.
 Groups facesByAtlas(const TexturedMesh& model);
 
-/// NAME.obj, NAME.mtl and the images, of which all or none get their names.
-class ObjWriter {
+/// NAME.obj, NAME.mtl and the images, or NAME.ply and the images, of which all or none get their names.
+class ImageFilesWriter {
 public:
-  ObjWriter(const std::string& path, int jpeg_quality);
+  ImageFilesWriter(const std::string& path, int jpeg_quality);
   /// @param suffix of the image's name
   void addAtlas(const Image& atlas, const std::string& suffix);
   /// @param model whose atlases' pixels are not looked at
@@ -23,14 +23,25 @@ public:
 private:
   std::string folder_, stem_, kind_;
   int quality_;
-  OutputFile object_, materials_;
+  OutputFile object_;
+  std::unique_ptr<OutputFile> materials_; ///< of .obj
   std::vector<std::string> names_;
   std::vector<std::unique_ptr<OutputFile>> images_;
 };
 
-/// NAME.obj, NAME.mtl and the images; the .obj appears last.
+/// NAME.obj (and NAME.mtl) or NAME.ply and the images; the model appears last.
 /// @param jpeg_quality of the images, 1..100; 0: PNG
-void writeTexturedObj(const std::string& path, const TexturedMesh& model, int jpeg_quality);
+void writeWithImageFiles(const std::string& path, const TexturedMesh& model, int jpeg_quality);
+
+/// The model as MeshLab, OpenMVS and Metashape have it: comments TextureFile, texcoord and texnumber of each face.
+void writeTexturedPly(OutputFile& file, const TexturedMesh& model, const std::vector<std::string>& images);
+
+/// The same of others, also with s t, u v or texture_u texture_v of each vertex.
+/// @throws std::runtime_error "PATH: reason", also if it names no image
+TexturedMesh readTexturedPly(const std::string& path);
+
+/// As a path here, whatever system wrote it.
+std::string portablePath(std::string name);
 
 /// @throws std::runtime_error "PATH: reason"
 /// @param empty_atlases whether materials without image have an empty atlas

@@ -40,7 +40,7 @@ void writeMaterials(OutputFile& file, const TexturedMesh& model, const std::vect
 {
   // No light: photographs hold it already.
   for (std::size_t i = 0; i < images.size(); ++i)
-    file.write(concat("newmtl material_", i, "\nKa 1 1 1\nKd 1 1 1\nKs 0 0 0\nillum 0\nmap_Kd ", images[i], "\n\n"));
+    file.write(textOf("newmtl material_", i, "\nKa 1 1 1\nKd 1 1 1\nKs 0 0 0\nillum 0\nmap_Kd ", images[i], "\n\n"));
   if (hasUntextured(model))
     file.write("newmtl untextured\nKa 0.7 0.7 0.7\nKd 0.7 0.7 0.7\nKs 0 0 0\nillum 1\n");
 }
@@ -54,7 +54,7 @@ void writeModel(OutputFile& file, const TexturedMesh& model, const std::string& 
     writer.text("vt ").number(model.texcoords(0, i)).text(" ").number(model.texcoords(1, i)).text("\n");
   const Groups faces = facesByAtlas(model);
   for (std::size_t i = 0; i < model.atlases.size(); ++i) {
-    writer.text(concat("usemtl material_", i, "\n"));
+    writer.text(textOf("usemtl material_", i, "\n"));
     writeFaces(writer, model, faces, i);
   }
   if (hasUntextured(model)) {
@@ -64,13 +64,45 @@ void writeModel(OutputFile& file, const TexturedMesh& model, const std::string& 
   writer.flush();
 }
 
-/// File name of a map_Kd entry without options, relative to the .mtl file.
-std::string imageName(std::string entry)
+/// File name of a map_Kd entry without options and quotes, relative to the .mtl file.
+std::string imageName(std::string_view entry)
 {
-  if (!entry.empty() && entry[0] == '-')
-    entry = entry.substr(entry.find_last_of(" \t") + 1);
-  std::replace(entry.begin(), entry.end(), '\\', '/');
-  return entry;
+  const auto next = [&] {
+    const std::size_t end = std::min(entry.find_first_of(" \t"), entry.size());
+    const std::string_view word = entry.substr(0, end);
+    entry.remove_prefix(std::min(entry.find_first_not_of(" \t", end), entry.size()));
+    return word;
+  };
+  const auto is_number = [](std::string_view word) { return word.find_first_not_of("0123456789+-.eE") == word.npos; };
+  while (entry.substr(0, 1) == "-") {
+    const std::string_view option = next();
+    if (option == "-o" || option == "-s" || option == "-t" || option == "-mm") // one to three numbers
+      for (int i = 0; i < 3 && is_number(entry.substr(0, entry.find_first_of(" \t"))) && !entry.empty(); ++i)
+        next();
+    else
+      next();
+  }
+  if (entry.size() > 1 && entry.front() == '"' && entry.back() == '"')
+    entry = entry.substr(1, entry.size() - 2);
+  return portablePath(std::string(entry));
+}
+
+/// Files that a statement mtllib names: one whose name holds blanks, or several.
+std::vector<std::string> librariesIn(const std::string& folder, const std::string& entry)
+{
+  const std::string whole = portablePath(entry);
+  std::vector<std::string> files;
+  if (fs::is_regular_file(fs::path(folder) / whole))
+    return {whole};
+  for (std::size_t begin = 0; begin < whole.size();) {
+    std::size_t end = begin;
+    do // the next blank behind an extension
+      end = std::min(whole.find(' ', end + 1), whole.size());
+    while (end < whole.size() && extension(whole.substr(begin, end - begin)) != ".mtl");
+    files.push_back(whole.substr(begin, end - begin));
+    begin = std::min(whole.find_first_not_of(' ', end), whole.size());
+  }
+  return files;
 }
 
 /// Result of `read`, which reads a file that `path` names: errors say who wanted it.
@@ -89,15 +121,16 @@ std::map<std::string, std::string> readLibraries(const std::string& path, const 
 {
   std::map<std::string, std::string> images;
   const std::string folder = fs::path(path).parent_path().string();
-  for (const std::string& library : obj.libraries)
-    readFor(path, [&] {
-      const std::string file = fileBelow(folder, library);
-      // Images lie beside the library, but not outside of the model's folder.
-      const fs::path place = fs::path(library).parent_path();
-      for (const auto& [name, entry] : parseMtl(readFile(file)))
-        images[name] = entry.empty() ? "" : fileBelow(folder, (place / imageName(entry)).string());
-      return true;
-    });
+  for (const std::string& entry : obj.libraries)
+    for (const std::string& library : librariesIn(folder, entry))
+      readFor(path, [&] {
+        const std::string file = fileBelow(folder, library);
+        // Images lie beside the library, but not outside of the model's folder.
+        const fs::path place = fs::path(library).parent_path();
+        for (const auto& [name, map] : parseMtl(readFile(file)))
+          images[name] = map.empty() ? "" : fileBelow(folder, (place / imageName(map)).string());
+        return true;
+      });
   return images;
 }
 
@@ -110,7 +143,7 @@ std::vector<int> readAtlases(const std::string& path, const ObjContent& obj, std
   for (const std::string& material : obj.materials) {
     const auto file = files.find(material);
     if (file == files.end() && !obj.libraries.empty())
-      throw std::runtime_error(path + ": no library holds the material '" + material + "'");
+      remark(concat("no library holds the material '", material, "': its faces have no texture"));
     if (file == files.end() || file->second.empty()) {
       of_material.push_back(-1);
       continue;
@@ -137,13 +170,21 @@ std::vector<std::string> entriesOf(std::string_view text, std::string_view keywo
 }
 } // namespace
 
-ObjWriter::ObjWriter(const std::string& path, int jpeg_quality)
-    : folder_(fs::path(path).parent_path().string()), stem_(fs::path(path).stem().string()),
-      kind_(jpeg_quality > 0 ? ".jpg" : ".png"), quality_(jpeg_quality), object_(path),
-      materials_((fs::path(folder_) / (stem_ + ".mtl")).string())
-{}
+std::string portablePath(std::string name)
+{
+  std::replace(name.begin(), name.end(), '\\', '/');
+  return name;
+}
 
-void ObjWriter::addAtlas(const Image& atlas, const std::string& suffix)
+ImageFilesWriter::ImageFilesWriter(const std::string& path, int jpeg_quality)
+    : folder_(fs::path(path).parent_path().string()), stem_(fs::path(path).stem().string()),
+      kind_(jpeg_quality > 0 ? ".jpg" : ".png"), quality_(jpeg_quality), object_(path)
+{
+  if (extension(path) == ".obj")
+    materials_ = std::make_unique<OutputFile>((fs::path(folder_) / (stem_ + ".mtl")).string());
+}
+
+void ImageFilesWriter::addAtlas(const Image& atlas, const std::string& suffix)
 {
   const std::vector<std::uint8_t> bytes = encodeImage(atlas, kind_, quality_);
   names_.push_back(stem_ + suffix + kind_);
@@ -151,26 +192,31 @@ void ObjWriter::addAtlas(const Image& atlas, const std::string& suffix)
   images_.back()->write(bytes.data(), bytes.size());
 }
 
-void ObjWriter::finish(const TexturedMesh& model)
+void ImageFilesWriter::finish(const TexturedMesh& model)
 {
-  writeMaterials(materials_, model, names_);
-  writeModel(object_, model, stem_ + ".mtl");
+  if (materials_) {
+    writeMaterials(*materials_, model, names_);
+    writeModel(object_, model, stem_ + ".mtl");
+  } else
+    writeTexturedPly(object_, model, names_);
   for (const auto& image : images_)
     image->commit();
-  materials_.commit();
+  if (materials_)
+    materials_->commit();
   object_.commit();
 }
 
-void writeTexturedObj(const std::string& path, const TexturedMesh& model, int jpeg_quality)
+void writeWithImageFiles(const std::string& path, const TexturedMesh& model, int jpeg_quality)
 {
-  ObjWriter writer(path, jpeg_quality);
+  ImageFilesWriter writer(path, jpeg_quality);
   for (std::size_t i = 0; i < model.atlases.size(); ++i)
-    writer.addAtlas(model.atlases[i], model.atlases.size() == 1 ? "" : concat('_', i));
+    writer.addAtlas(model.atlases[i], model.atlases.size() == 1 ? "" : textOf('_', i));
   writer.finish(model);
 }
 
 TexturedMesh readTexturedObj(const std::string& path, bool empty_atlases)
 {
+  const FileInHand in_hand(path);
   const ObjContent obj = parseFile(path, parseObj);
   TexturedMesh model;
   model.mesh = tableToMesh(objVertices(obj));
@@ -206,12 +252,13 @@ std::vector<std::string> fresco::filesNamedBy(const std::string& path)
   if (extension(path) != ".obj")
     return files;
   const io::fs::path folder = io::fs::path(path).parent_path();
-  for (const std::string& library : io::entriesOf(readFile(path), "mtllib ")) {
-    files.push_back((folder / library).string());
-    if (io::fs::is_regular_file(files.back()))
-      for (const auto& [name, entry] : io::parseMtl(readFile(files.back())))
-        if (!entry.empty())
-          files.push_back((io::fs::path(folder / library).parent_path() / io::imageName(entry)).string());
-  }
+  for (const std::string& entry : io::entriesOf(readFile(path), "mtllib "))
+    for (const std::string& library : io::librariesIn(folder.string(), entry)) {
+      files.push_back((folder / library).string());
+      if (io::fs::is_regular_file(files.back()))
+        for (const auto& [name, map] : io::parseMtl(readFile(files.back())))
+          if (!map.empty())
+            files.push_back((io::fs::path(folder / library).parent_path() / io::imageName(map)).string());
+    }
   return files;
 }

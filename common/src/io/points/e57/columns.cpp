@@ -3,6 +3,7 @@
 #include "io/points/scan_reader.h"
 #include <algorithm>
 #include <cmath>
+#include <fresco/core/require.h>
 #include <limits>
 #include <stdexcept>
 namespace fresco::io::e57 {
@@ -41,26 +42,39 @@ std::string columnName(const std::string& field)
   return known ? "e57_" + field : field;
 }
 
-/// What stands for 0 and for 255: the limits of the scan, else those of the field, else 0..1 for floats and 0..255.
-Limits colorLimits(const std::optional<Limits>& of_scan, const Field& field)
+constexpr const char* color_fields[] = {"colorRed", "colorGreen", "colorBlue"};
+
+/// What the file says of the range of a colour: the limits of the scan, else those of the field.
+std::optional<Limits> saidLimits(const std::optional<Limits>& of_scan, const Field& field)
 {
-  if (of_scan)
-    return *of_scan;
-  if (!field.isInteger())
-    return {0, 1};
+  if (of_scan || !field.isInteger())
+    return of_scan;
   const auto value = [&](std::int64_t stored) {
     return field.type == Field::Type::integer ? double(stored) : double(stored) * field.scale + field.offset;
   };
   const Limits own{value(field.minimum), value(field.maximum)};
-  return field.bits() < 64 && own.maximum > own.minimum ? own : Limits{0, 255};
+  return field.bits() < 64 && own.maximum > own.minimum ? std::optional(own) : std::nullopt;
+}
+
+/// Limits of fractions, bytes and 16 bits: writers mix them up, so that the values tell.
+bool isUsual(const std::optional<Limits>& limits)
+{
+  return !limits ||
+         (limits->minimum == 0 && (limits->maximum == 1 || limits->maximum == 255 || limits->maximum == 65535));
+}
+
+/// What stands for 0 and for 255.
+Limits colorLimits(const std::optional<Limits>& said, const Field& field, double largest)
+{
+  if (said && !isUsual(said) && largest <= said->maximum)
+    return *said;
+  return {0, fullColor(field.type == Field::Type::integer ? Scalar::uint16 : Scalar::float64, largest)};
 }
 
 /// Whole numbers of 8 bits and more by their highest 8 bits, as elsewhere; others by their share of the range.
-double colorByte(double value, const Limits& limits, bool whole)
+double byteWithin(double value, const Limits& limits)
 {
-  const double range = limits.maximum - limits.minimum, above = value - limits.minimum;
-  const double byte = whole && range >= 255 ? std::floor(256 * above / (range + 1)) : std::round(255 * above / range);
-  return byte > 0 ? std::min(byte, 255.0) : 0.0; // NaN is black
+  return colorByte(value - limits.minimum, limits.maximum - limits.minimum);
 }
 
 Eigen::Vector3d fromSpherical(double range, double azimuth, double elevation)
@@ -79,14 +93,54 @@ T converted(double value)
 }
 } // namespace
 
-Columns::Columns(const Scan& scan) : scan_(scan), taken_(scan.records.fields.size(), false)
+std::array<double, 3> largestColors(PagedFile& file, const Scan& scan)
+{
+  std::array<double, 3> largest{};
+  std::array<std::size_t, 3> fields{};
+  std::array<std::optional<Limits>, 3> limits;
+  bool plain = true;
+  for (std::size_t channel = 0; channel < 3; ++channel) {
+    const auto field = scan.records.find(color_fields[channel]);
+    if (!field)
+      return largest;
+    fields[channel] = *field;
+    const Field& stored = scan.records.fields[*field];
+    limits[channel] = saidLimits(scan.color[channel], stored);
+    plain = plain && stored.type == Field::Type::integer && limits[channel] && stored.maximum <= 255 &&
+            limits[channel]->maximum == 255;
+    largest[channel] = limits[channel] ? limits[channel]->maximum : 0;
+  }
+  if (plain)
+    return largest;
+  largest.fill(0);
+  constexpr std::uint64_t enough = 1 << 18; // records of a scan that says its limits
+  VectorReader window(file, scan.records);
+  std::uint64_t seen = 0;
+  while (const std::size_t count = scan.color[0] && seen >= enough ? 0 : window.next(rows_per_window)) {
+    seen += count;
+    for (std::size_t channel = 0; channel < 3; ++channel)
+      for (std::size_t i = 0; i < count; ++i)
+        if (const double value = window.real(fields[channel], i); std::isfinite(value))
+          largest[channel] = std::max(largest[channel], value);
+  }
+  const std::array<double, 3> own = largest;
+  for (std::size_t a = 0; a < 3; ++a) // one range for channels of one kind
+    for (std::size_t b = 0; b < 3; ++b)
+      if (scan.records.fields[fields[a]].type == scan.records.fields[fields[b]].type &&
+          limits[a].has_value() == limits[b].has_value() && (!limits[a] || limits[a]->maximum == limits[b]->maximum))
+        largest[a] = std::max(largest[a], own[b]);
+  return largest;
+}
+
+Columns::Columns(const Scan& scan, const std::array<double, 3>& largest_colors)
+    : scan_(scan), taken_(scan.records.fields.size(), false)
 {
   if (scan.records.find("cartesianX"))
     addCartesian();
   else
     addSpherical();
   addNormals();
-  addColors();
+  addColors(largest_colors);
   addIntensity();
   addOthers();
 }
@@ -152,20 +206,18 @@ void Columns::addNormals()
           [f = *field](const VectorReader& window, std::size_t i) { return window.real(f, i); });
 }
 
-void Columns::addColors()
+void Columns::addColors(const std::array<double, 3>& largest)
 {
-  const char* const names[] = {"colorRed", "colorGreen", "colorBlue"};
-  for (const char* name : names)
+  for (const char* name : color_fields)
     if (!scan_.records.find(name))
       return;
   const auto invalid = scan_.records.find("isColorInvalid"); // stays a column: black may be a colour
   for (std::size_t channel = 0; channel < 3; ++channel)
-    if (const auto field = take(names[channel])) {
+    if (const auto field = take(color_fields[channel])) {
       const Field& stored = scan_.records.fields[*field];
-      const Limits limits = colorLimits(scan_.color[channel], stored);
-      const bool whole = stored.type == Field::Type::integer;
+      const Limits limits = colorLimits(saidLimits(scan_.color[channel], stored), stored, largest[channel]);
       add(color_names[channel], Scalar::uint8, [=, f = *field](const VectorReader& window, std::size_t i) {
-        return invalid && window.real(*invalid, i) != 0 ? 0.0 : colorByte(window.real(f, i), limits, whole);
+        return invalid && window.real(*invalid, i) != 0 ? 0.0 : byteWithin(window.real(f, i), limits);
       });
     }
 }
@@ -185,9 +237,11 @@ void Columns::addOthers()
 {
   const std::vector<Field>& fields = scan_.records.fields;
   for (std::size_t f = 0; f < fields.size(); ++f) {
+    if (fields[f].type == Field::Type::string)
+      remark(concat("field ", fields[f].name, " is left out: it holds texts"));
     if (taken_[f] || fields[f].type == Field::Type::string)
       continue;
-    const std::string name = columnName(fields[f].name);
+    const std::string name = fields[f].own ? fields[f].name : columnName(fields[f].name);
     if (layout_.find(name))
       continue;
     const Scalar type = typeFor(fields[f]);

@@ -4,11 +4,16 @@
 #include <fresco/core/point_table.h>
 #include <functional>
 namespace fresco::io::e57 {
+/// The largest values of red, green and blue, of channels of one kind together; those of a scan that says its limits by
+/// the first records.
+std::array<double, 3> largestColors(PagedFile& file, const Scan& scan);
+
 /// How the fields of a scan become columns of a table.
 class Columns {
 public:
+  /// @param largest_colors see largestColors()
   /// @throws std::runtime_error if the scan has no coordinates
-  explicit Columns(const Scan& scan);
+  Columns(const Scan& scan, const std::array<double, 3>& largest_colors);
 
   const PointTable& layout() const { return layout_; } ///< without rows
 
@@ -26,7 +31,7 @@ private:
   void add(const std::string& name, Scalar type, Values value);
   void addCartesian();
   void addSpherical();
-  void addColors();
+  void addColors(const std::array<double, 3>& largest);
   void addIntensity();
   void addNormals();
   void addOthers();

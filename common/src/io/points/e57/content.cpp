@@ -32,10 +32,23 @@ namespace {
 /// A prototype is flat in every file seen; the standard allows structures within.
 constexpr int deepest_structure = 8;
 
+/// Names of the standard; an extension that uses one again means something else.
+bool isStandard(std::string_view name)
+{
+  for (const std::string_view begin : {"cartesian", "spherical", "color", "isColor", "intensity", "isIntensity",
+                                       "return", "timeStamp", "isTimeStamp", "rowIndex", "columnIndex"})
+    if (name.substr(0, begin.size()) == begin)
+      return true;
+  return false;
+}
+
 Field fieldOf(pugi::xml_node node)
 {
   Field field;
   field.name = std::string(localName(node));
+  field.own = prefixOf(node) == "fresco:";
+  if (const std::string_view prefix = prefixOf(node); !prefix.empty() && isStandard(field.name))
+    field.name = std::string(prefix.substr(0, prefix.size() - 1)) + "_" + field.name;
   const std::string_view type = typeOf(node);
   if (type == "Float") {
     const std::string_view precision = node.attribute("precision").as_string("double");
@@ -210,7 +223,8 @@ Image imageOf(pugi::xml_node node, const std::vector<Scan>& scans)
   return image;
 }
 
-std::string readXml(PagedFile& file)
+/// @param errors gets what is wrong with its pages: what they say may be whole all the same
+std::string readXml(PagedFile& file, std::vector<std::string>& errors)
 {
   const Header& header = file.header();
   const std::uint64_t begin = file.logical(header.xml_offset);
@@ -218,13 +232,13 @@ std::string readXml(PagedFile& file)
     throw std::runtime_error(concat("truncated: the XML section has ", header.xml_length, " bytes, ",
                                     file.size() - begin, " are left in the file"));
   std::string text(header.xml_length, '\0');
-  file.read(begin, text.data(), text.size());
+  file.readDamaged(begin, text.data(), text.size(), errors);
   return text;
 }
 
-/// add(child, number) for each child of a vector; errors name what it is and its number.
-template <typename Add>
-void forEachChild(pugi::xml_node vector, const char* what, const Add& add)
+/// add(child) for each child of a vector. What cannot be read is told, and odd(reason, number) stands in for it.
+template <typename Add, typename Odd>
+void forEachChild(pugi::xml_node vector, const char* what, const Add& add, const Odd& odd)
 {
   int number = 0;
   for (const pugi::xml_node child : vector.children()) {
@@ -234,7 +248,7 @@ void forEachChild(pugi::xml_node vector, const char* what, const Add& add)
     try {
       add(child);
     } catch (const std::runtime_error& error) {
-      throw std::runtime_error(concat(what, ' ', number, ": ", error.what()));
+      odd(concat(what, ' ', number, ": ", error.what()));
     }
   }
 }
@@ -242,18 +256,26 @@ void forEachChild(pugi::xml_node vector, const char* what, const Add& add)
 
 Content parseContent(PagedFile& file)
 {
-  std::string text = readXml(file);
+  Content content;
+  std::string text = readXml(file, content.errors);
   pugi::xml_document document;
   const pugi::xml_parse_result parsed = document.load_buffer_inplace(text.data(), text.size());
   if (!parsed)
-    throw std::runtime_error(concat("XML: ", parsed.description(), " at byte ", parsed.offset));
+    throw std::runtime_error(content.errors.empty() ? concat("XML: ", parsed.description(), " at byte ", parsed.offset)
+                                                    : content.errors[0]);
   const pugi::xml_node root = document.document_element();
   if (localName(root) != "e57Root")
     throw std::runtime_error("XML: no e57Root");
-  Content content;
-  forEachChild(childNamed(root, "data3D"), "scan", [&](pugi::xml_node node) { content.scans.push_back(scanOf(node)); });
-  forEachChild(childNamed(root, "images2D"), "picture",
-               [&](pugi::xml_node node) { content.images.push_back(imageOf(node, content.scans)); });
+  forEachChild(
+      childNamed(root, "data3D"), "scan", [&](pugi::xml_node node) { content.scans.push_back(scanOf(node)); },
+      [&](const std::string& reason) {
+        content.scans.emplace_back();
+        content.errors.push_back(reason);
+      });
+  forEachChild(
+      childNamed(root, "images2D"), "picture",
+      [&](pugi::xml_node node) { content.images.push_back(imageOf(node, content.scans)); },
+      [&](const std::string& reason) { content.errors.push_back(reason); });
   return content;
 }
 } // namespace fresco::io::e57

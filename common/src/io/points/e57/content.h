@@ -12,6 +12,7 @@ namespace fresco::io::e57 {
 struct Field {
   enum class Type { integer, scaled_integer, single_float, double_float, string };
   std::string name; ///< without the prefix of an extension
+  bool own = false; ///< of fresco's extension: a column of that name
   Type type = Type::double_float;
   std::int64_t minimum = 0, maximum = 0; ///< of what is stored, for integers
   double scale = 1, offset = 0;          ///< value = stored * scale + offset, for scaled integers
@@ -54,10 +55,11 @@ struct Image {
 
 /// What the XML section says.
 struct Content {
-  std::vector<Scan> scans;
+  std::vector<Scan> scans; ///< one that cannot be read has no points
   std::vector<Image> images;
+  std::vector<std::string> errors; ///< scans and pictures that cannot be read, and pages with a wrong checksum
 };
 
-/// @throws std::runtime_error naming the scan and what is wrong with it
+/// @throws std::runtime_error if there is no such section, or it is no XML
 Content parseContent(PagedFile& file);
 } // namespace fresco::io::e57

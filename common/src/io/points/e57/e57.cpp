@@ -12,14 +12,21 @@ public:
   {
     for (const Scan& scan : content_.scans)
       scans_.push_back(scan.info);
+    settle(content_.errors);
   }
 
   PointTable open(Index scan) override
   {
     const Scan& chosen = content_.scans[scan];
-    columns_.emplace(chosen);
+    columns_.emplace(chosen, largestColors(file_, chosen));
     records_.emplace(file_, chosen.records);
-    return columns_->layout();
+    const PointTable& layout = columns_->layout();
+    // Fields of no bits cost nothing in the file.
+    constexpr std::uint64_t least = std::uint64_t{1} << 26, per_byte = 64;
+    if (chosen.records.count > std::max(least, per_byte * file_.size()) / layout.stride)
+      throw std::runtime_error(concat("truncated: ", chosen.records.count, " points of ", layout.stride,
+                                      " bytes do not fit into a file of ", file_.size()));
+    return layout;
   }
 
   Index read(PointTable& table, Index begin, Index end) override

@@ -107,11 +107,25 @@ void PagedFile::load(std::uint64_t page)
     const char* begin = loaded_.data() + i * page_size;
     if (crc32c(begin, page_payload) == storedChecksum(begin))
       continue;
+    const std::string damage = concat("damaged: wrong checksum of page ", page + i + 1, " of ", pages_);
+    if (errors_) {
+      errors_->push_back(damage);
+      continue;
+    }
     loaded_.resize(i * page_size); // what comes before is good and may be all that is wanted
     if (i == 0)
-      throw std::runtime_error(concat("damaged: wrong checksum of page ", page + 1, " of ", pages_));
+      throw std::runtime_error(damage);
     return;
   }
+}
+
+void PagedFile::readDamaged(std::uint64_t offset, void* to, std::size_t bytes, std::vector<std::string>& errors)
+{
+  loaded_.clear();
+  errors_ = &errors;
+  read(offset, to, bytes);
+  errors_ = nullptr;
+  loaded_.clear(); // they may hold pages that are damaged
 }
 
 void PagedFile::read(std::uint64_t offset, void* to, std::size_t bytes)

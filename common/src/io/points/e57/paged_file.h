@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include "io/points/file_window.h"
+#include <string>
 #include <vector>
 namespace fresco::io::e57 {
 /// Bytes of a page, of which the last four are the CRC32C of the others (ASTM E2807-11, 5.3).
@@ -33,12 +34,16 @@ public:
   /// @throws std::runtime_error if the file does not have these bytes, or naming a page whose checksum is wrong
   void read(std::uint64_t offset, void* to, std::size_t bytes);
 
+  /// The same, but a wrong checksum is told to `errors` alone.
+  void readDamaged(std::uint64_t offset, void* to, std::size_t bytes, std::vector<std::string>& errors);
+
 private:
   void load(std::uint64_t page);
   RandomAccessFile file_;
   Header header_;
   std::uint64_t pages_ = 0;
-  std::uint64_t first_loaded_ = 0; ///< page
-  std::vector<char> loaded_;       ///< verified pages one after the other, with their checksums
+  std::uint64_t first_loaded_ = 0;             ///< page
+  std::vector<char> loaded_;                   ///< verified pages one after the other, with their checksums
+  std::vector<std::string>* errors_ = nullptr; ///< whom to tell of wrong checksums
 };
 } // namespace fresco::io::e57

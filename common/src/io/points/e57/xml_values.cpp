@@ -47,10 +47,16 @@ std::string_view localName(pugi::xml_node node)
   return colon == std::string_view::npos ? name : name.substr(colon + 1);
 }
 
+std::string_view prefixOf(pugi::xml_node node)
+{
+  const std::string_view name = node.name(), local = localName(node);
+  return name.substr(0, name.size() - local.size());
+}
+
 pugi::xml_node childNamed(pugi::xml_node node, std::string_view name)
 {
   for (const pugi::xml_node child : node.children())
-    if (localName(child) == name)
+    if (localName(child) == name && prefixOf(child) == prefixOf(node))
       return child;
   return {};
 }

@@ -10,7 +10,9 @@ namespace fresco::io::e57 {
 
 std::string_view localName(pugi::xml_node node); ///< without the prefix of an extension
 
-/// The child of that name, in whatever extension; empty if there is none.
+std::string_view prefixOf(pugi::xml_node node); ///< with the colon; "" = none
+
+/// The child of that name and the prefix of `node`, since extensions may use names again; empty if there is none.
 pugi::xml_node childNamed(pugi::xml_node node, std::string_view name);
 
 /// @throws std::runtime_error naming the element

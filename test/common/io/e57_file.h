@@ -11,7 +11,7 @@
 #include <vector>
 /// Writes E57 files (ASTM E2807) of all that the reader promises to read. Shares no code with it, so that one checks the
 /// other. A file is made in memory.
-namespace fresco::simulation::e57 {
+namespace fresco::test::e57 {
 /// A field of the records and its values: `stored` for whole numbers, `reals` for floats, `texts` for strings.
 struct Field {
   std::string name;
@@ -267,4 +267,4 @@ inline std::string poseXml(double qw, double qz, double x, double y, double z)
 {
   return poseXml(Eigen::Translation3d(x, y, z) * Eigen::Isometry3d(Eigen::Quaterniond(qw, 0, 0, qz)));
 }
-} // namespace fresco::simulation::e57
+} // namespace fresco::test::e57
