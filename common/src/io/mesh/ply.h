@@ -45,7 +45,7 @@ struct PlyContent {
 
 /// What is left out is remarked.
 /// @throws std::runtime_error if malformed or truncated, without vertices, or if a face names a vertex that is not there
-PlyContent parsePly(std::string_view content, bool with_texture = false);
+FRESCO_EXPORT PlyContent parsePly(std::string_view content, bool with_texture = false);
 
 /// Binary little-endian. A sensor pose becomes the element `camera` that PCL reads.
 /// @param faces 0 columns: no element `face`

@@ -8,7 +8,7 @@
 #include <type_traits>
 namespace fresco::io {
 /// Words and numbers of a text, read without copies. Lines end with LF, CR LF or CR.
-class TextScanner {
+class FRESCO_EXPORT TextScanner {
 public:
   explicit TextScanner(std::string_view text) : at_(text.data()), end_(text.data() + text.size()) {}
 
@@ -39,7 +39,7 @@ private:
 /// accepted, too large values become infinite; whole numbers may have decimals: "128.0".
 /// @throws std::runtime_error naming the word
 template <typename T>
-T parseNumber(std::string_view word);
+FRESCO_EXPORT T parseNumber(std::string_view word);
 
 /// The shortest text that is read back as the same value, in any locale.
 template <typename T>
