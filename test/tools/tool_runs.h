@@ -97,8 +97,9 @@ inline void expectRefused(const std::string& folder, const std::string& command,
 
 inline const std::vector<std::string>& tools()
 {
-  static const std::vector<std::string> all = {"scan",    "filter",  "normals",  "register", "reconstruct", "optimize",
-                                               "texture", "compare", "snapshot", "model",    "align",       "track"};
+  static const std::vector<std::string> all = {"scan",     "filter",  "normals", "register", "reconstruct",
+                                               "optimize", "texture", "compare", "snapshot", "model",
+                                               "align",    "track",   "crop",    "simplify"};
   return all;
 }
 

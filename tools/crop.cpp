@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "support/tool.h"
+#include <fresco/core/point_set.h>
+#include <fresco/core/require.h>
+#include <fresco/deliverables/core/crop.h>
+#include <fresco/deliverables/core/model_file.h>
+#include <fresco/io/cloud_file.h>
+#include <fresco/io/file.h>
+#include <fresco/io/formats.h>
+#include <fresco/io/mesh_io.h>
+#include <pcl/common/io.h>
+namespace {
+using namespace fresco;
+
+struct CropOptions {
+  CropRegion region;
+  std::string polygon;
+  int quality = 0;
+
+  void declare(Args& args)
+  {
+    args.values("box", "X0 Y0 Z0 X1 Y1 Z1", "keep what lies in this box: two opposite corners, world coordinates",
+                [this](const std::vector<std::string>& words) {
+                  Eigen::Vector3d a, b;
+                  for (int axis = 0; axis < 3; ++axis) {
+                    a[axis] = Args::number("box", words[axis]);
+                    b[axis] = Args::number("box", words[axis + 3]);
+                  }
+                  if (!((a - b).array().abs() > 0).all())
+                    throw UsageError("-box: a side of the box has no length");
+                  const Eigen::Vector3d low = a.cwiseMin(b), high = a.cwiseMax(b);
+                  Eigen::Matrix2Xd base(2, 4);
+                  base << low.x(), high.x(), high.x(), low.x(), low.y(), low.y(), high.y(), high.y();
+                  region = {{base}, low.z(), high.z()};
+                });
+    args.option(
+        "polygon", polygon,
+        "keep what lies in the polygons of this file, seen from above; .geojson, .json: x y in metres; .svg: one "
+        "unit a metre, y pointing down. One polygon in another is a hole");
+    const auto height = [&](const char* name, double& bound, const char* help) {
+      args.values(name, "Z", help,
+                  [name, &bound](const std::vector<std::string>& words) { bound = Args::number(name, words[0]); });
+    };
+    height("above", region.low, "keep what lies above this height");
+    height("below", region.high, "keep what lies below this height");
+    args.option("quality", quality, "JPEG quality of a texture's pictures, 1..100; 0 = PNG, without loss");
+  }
+};
+
+bool isCloud(const std::string& path)
+{
+  return !isReadable(path, FileKind::mesh) && !isReadable(path, FileKind::textured_mesh);
+}
+
+[[noreturn]] void refuseEmpty(const std::string& path)
+{
+  throw std::runtime_error(path + ": nothing of it lies inside; fresco_crop -h tells what is kept");
+}
+
+void cropCloud(const std::vector<std::string>& files, const CropRegion& region, bool quiet)
+{
+  CloudFile file = readCloud(files[0]);
+  const PointSet set = toPointSet(file);
+  pcl::Indices kept;
+  for (Index i = 0; i < set.size(); ++i)
+    if (isInside(region, set.origin + set.points.col(i).cast<double>()))
+      kept.push_back(i);
+  if (kept.empty())
+    refuseEmpty(files[0]);
+  pcl::PCLPointCloud2 cloud;
+  pcl::copyPointCloud(file.cloud, kept, cloud);
+  cloud.is_dense = 1;
+  file.cloud = std::move(cloud);
+  writeOutputs([&] { writeCloud(files[1], file); });
+  inform(quiet, concat(kept.size(), " of ", set.size(), " points"));
+}
+
+void cropSurface(const std::vector<std::string>& files, const CropOptions& options, bool quiet)
+{
+  TexturedMesh model = readModel(files[0]);
+  const Index before = model.mesh.faceCount();
+  model = cropModel(std::move(model), options.region);
+  const Index faces = model.mesh.faceCount();
+  if (faces == 0)
+    refuseEmpty(files[0]);
+  writeOutputs([&] { writeModel(files[1], std::move(model), options.quality); });
+  inform(quiet, concat(faces, " of ", before, " faces"));
+}
+
+void run(int argc, char** argv)
+{
+  CropOptions options;
+  CommonOptions common;
+  Args args("fresco_crop IN OUT -box X0 Y0 Z0 X1 Y1 Z1 | -polygon FILE | -above Z | -below Z [options]",
+            "Cuts a part out of a cloud, a mesh or a textured model. Faces are cut at the border; textures, colours "
+            "and fields "
+            "stay.\nIN, OUT: clouds " +
+                readableExtensions(FileKind::points) + "; meshes " + readableExtensions(FileKind::mesh) +
+                "; textured\nmodels " + readableExtensions(FileKind::textured_mesh) + ".");
+  options.declare(args);
+  common.declare(args);
+  args.note(
+      "-polygon, -above and -below may stand together. Example: fresco_crop model.glb room.glb -polygon room.geojson "
+      "-below 2.4");
+  const std::vector<std::string> files = args.parse(argc, argv, 2);
+  const bool box = args.given("box"), others = args.given("polygon") || args.given("above") || args.given("below");
+  if (box == others)
+    throw UsageError(box ? "-box goes with none of -polygon, -above, -below"
+                         : "one of -box, -polygon, -above, -below is needed");
+  requireDistinct({files[1]}, {files[0], options.polygon});
+  const bool cloud = isCloud(files[0]) || (extension(files[0]) == ".ply" && readMesh(files[0]).faceCount() == 0);
+  if (!isWritable(files[1], cloud ? FileKind::points : FileKind::mesh) &&
+      (cloud || !isWritable(files[1], FileKind::textured_mesh)))
+    throw UsageError(
+        files[1] + ": the output's extension must be " +
+        (cloud ? writableExtensions(FileKind::points)
+               : writableExtensions(FileKind::mesh) + ", or " + writableExtensions(FileKind::textured_mesh)));
+  if (!options.polygon.empty())
+    options.region.outlines = readOutlines(options.polygon);
+  try {
+    validateCropRegion(options.region);
+  } catch (const std::invalid_argument& error) {
+    throw std::runtime_error(options.polygon.empty() ? error.what() : options.polygon + ": " + error.what());
+  }
+  cloud ? cropCloud(files, options.region, common.quiet) : cropSurface(files, options, common.quiet);
+}
+} // namespace
+
+int main(int argc, char** argv)
+{
+  return fresco::runTool("fresco_crop", [&] { run(argc, argv); });
+}
