@@ -40,9 +40,10 @@ int main(int argc, char** argv)
                 "for RGB-D");
     args.option("fuse", options.fuse, "RGB-D: cell in which the frames are fused, metres; 0 = as -cell");
     args.option("bilateral", options.bilateral, "rounds of bilateral smoothing of the normals of scans, >= 0");
-    args.option("trim_levels", options.trim_levels,
-                "octree levels that the data may sustain less than they do elsewhere, else surface is cut off; 0 = "
-                "keep it closed");
+    args.option(
+        "trim_levels", options.trim_levels,
+        "surface that no scan saw is cut off, but gaps of 4 x 4 cells so many octree levels coarser stay closed; of "
+        "RGB-D what data sustain so many levels less than elsewhere is cut, at most 0.75; 0 = all stays closed");
     args.flag("no_optimize", options.optimize,
               "leave the vertices where the reconstruction puts them: rounded edges; always so for RGB-D", false);
     args.option("texel", options.texel, "side of a texel, metres; 0 = as fine as photographs, panoramas or points");

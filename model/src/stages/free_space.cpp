@@ -144,6 +144,6 @@ TriangleMesh withoutVertices(const TriangleMesh& mesh, std::vector<char> removed
       removed[v] = votes[v] != 0 ? votes[v] > 0 : removed[v];
   }
   const auto marks = Eigen::Map<const Eigen::Matrix<char, Eigen::Dynamic, 1>>(removed.data(), mesh.vertexCount());
-  return trimMesh(mesh, 1.f - marks.cast<float>().array(), {least_kept, 0.0, smoothing_rounds});
+  return trimMesh(mesh, 1.f - marks.cast<float>().array(), {least_kept, 0.0, 0.0, smoothing_rounds});
 }
 } // namespace fresco::model

@@ -3,6 +3,7 @@
 #include "stages/placed_points.h"
 #include "stages/stages.h"
 #include <algorithm>
+#include <cmath>
 #include <fresco/core/parallel.h>
 #include <fresco/core/require.h>
 #include <fresco/io/image_io.h>
@@ -10,6 +11,8 @@
 #include <fresco/io/point_io.h>
 #include <fresco/io/pose_file.h>
 #include <fresco/search/neighbors.h>
+#include <fresco/surface/core/mesh_trimming.h>
+#include <fresco/surface/core/seen_surface.h>
 #include <fresco/surface/core/volumetric_reconstruction.h>
 #include <functional>
 namespace fresco::model {
@@ -116,6 +119,23 @@ std::vector<char> inFreeSpace(const TriangleMesh& mesh, const PlacedPoints& plac
     removed[asked[i]] = empty[i];
   return removed;
 }
+/// As many as there are stations, if each scan has one of its own.
+Index placedScans(const Job& job)
+{
+  const std::vector<Pose> poses = readPoses(job.files.poses);
+  return std::count_if(poses.begin(), poses.end(), [](const Pose& pose) { return pose.has_value(); });
+}
+
+/// The part of a mesh that scans saw, cut along its border. Gaps in it stay closed up to four cells as much coarser as
+/// `trim_levels` says.
+TriangleMesh seenPart(const TriangleMesh& mesh, const Job& job, double cell)
+{
+  constexpr double patch = 4; // cells a side
+  constexpr int rounds = 3;   // smooth the border within the distance between beams
+  const double island = patch * cell, gap = island * std::exp2(job.options.trim_levels);
+  const Eigen::VectorXf seen = seenSurface(mesh, Beams(job), cell, job.options.threads);
+  return trimMesh(mesh, seen, {0.f, gap * gap, island * island, rounds, job.options.threads});
+}
 } // namespace
 
 Figures makeSurface(const Job& job, const Progress& progress)
@@ -127,11 +147,18 @@ Figures makeSurface(const Job& job, const Progress& progress)
   volumetric.cell_size = finestCell(job);
   volumetric.threads = options.threads;
   volumetric.trim_levels = input.rgbd ? std::min(options.trim_levels, most_trim_of_frames) : options.trim_levels;
-  if (!input.scans.empty())
+  bool has_beams = false;
+  if (!input.scans.empty()) {
     volumetric.free_space = std::make_shared<FreeSpaceMap>(Beams(job));
+    has_beams = volumetric.free_space->stations() == placedScans(job);
+  }
+  if (has_beams)
+    volumetric.trim_levels = 0; // it is cut where nobody saw it
   VolumetricResult result = reconstructVolumetric(placed.stream(), volumetric, subProgress(progress, 0.0, 0.7));
   Index carved = 0;
   if (options.trim_levels > 0) {
+    if (has_beams)
+      result.mesh = seenPart(result.mesh, job, volumetric.cell_size);
     report(progress, "free space", 0.7);
     std::vector<char> removed = inFreeSpace(result.mesh, placed, job, volumetric.cell_size);
     carved = std::count(removed.begin(), removed.end(), 1);

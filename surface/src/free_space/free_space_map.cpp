@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <fresco/surface/core/free_space_map.h>
+
+#include "free_space/direction_bins.h"
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <fresco/core/require.h>
-#include <fresco/surface/core/free_space_map.h>
 #include <limits>
 #include <map>
 namespace fresco {
@@ -12,29 +14,6 @@ constexpr int finest_side = 256; ///< bins of 0.35 degrees: 3 MB a station
 constexpr float none = std::numeric_limits<float>::infinity();
 
 std::array<double, 3> keyOf(const Eigen::Vector3d& place) { return {place.x(), place.y(), place.z()}; }
-
-/// Bin of a direction on a cube around the station: its largest coordinate names the face, the others the place there.
-Index binOf(const Eigen::Vector3d& direction, int side)
-{
-  int axis;
-  const double largest = direction.cwiseAbs().maxCoeff(&axis);
-  const auto on = [&](int other) {
-    return std::clamp<Index>((direction[other] / largest + 1) * 0.5 * side, 0, side - 1);
-  };
-  const Index face = 2 * axis + (direction[axis] < 0);
-  return (face * side + on((axis + 1) % 3)) * side + on((axis + 2) % 3);
-}
-
-/// Direction of a place on a face, in bins; places beside it belong to the next face.
-Eigen::Vector3d directionOf(Index face, double row, double column, int side)
-{
-  const int axis = face / 2;
-  Eigen::Vector3d direction;
-  direction[axis] = face % 2 ? -1 : 1;
-  direction[(axis + 1) % 3] = 2 * row / side - 1;
-  direction[(axis + 2) % 3] = 2 * column / side - 1;
-  return direction;
-}
 
 template <typename Lengths>
 Index countFilled(const std::vector<Lengths>& bins)
@@ -70,14 +49,13 @@ FreeSpaceMap::Station FreeSpaceMap::stationOf(const Eigen::Vector3d& viewpoint, 
   }
   station.bins.resize(bins.size());
   for (Index i = 0; i < Index(bins.size()); ++i) {
-    const Index face = i / (side * side), row = i / side % side, column = i % side;
     Lengths around{none, 0.f};
     int filled = 0;
-    for (int k = 0; k < 9; ++k) {
-      const Lengths& bin = bins[binOf(directionOf(face, row + k / 3 - 0.5, column + k % 3 - 0.5, side), side)];
+    forEachBinAround<double>(i, side, [&](Index k) {
+      const Lengths& bin = bins[k];
       filled += bin.shortest < none;
       around = {std::min(around.shortest, bin.shortest), std::max(around.longest, bin.longest)};
-    }
+    });
     station.bins[i] = filled < least_filled ? Lengths{none, 0.f} : around;
   }
   return station;

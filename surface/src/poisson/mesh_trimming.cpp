@@ -42,7 +42,7 @@ void flipPatches(const TriangleMesh& mesh, const CornersByVertex& corners, const
     if (const Index root = patches.root(v); root != v)
       area[root] += area[v];
   parallelFor(n, options.threads, [&](Index v) {
-    if (area[patches.root(v)] < options.patch_area)
+    if (area[patches.root(v)] < (above(v) ? options.island_area : options.gap_area))
       values[v] = above(v) ? options.least - flipped_margin : options.least + flipped_margin;
   });
 }
@@ -199,7 +199,7 @@ TriangleMesh trimMesh(const TriangleMesh& mesh, Eigen::VectorXf values, const Tr
   const CornersByVertex corners(mesh.faces, mesh.vertexCount(), options.threads);
   for (int i = 0; i < options.rounds; ++i)
     values = smoothed(mesh, corners, values);
-  if (options.patch_area > 0)
+  if (options.gap_area > 0 || options.island_area > 0)
     flipPatches(mesh, corners, options, values);
   std::vector<char> in_faces(mesh.vertexCount(), 0);
   corners.forEach([&](Index v, Index, int) { in_faces[v] = 1; });

@@ -189,7 +189,7 @@ TEST(VolumetricInput, TrimmedMeshEndsAtTheLevelLineForAnyNumberOfThreads)
   mesh.fields["height"] = height;
   TriangleMesh trimmed[2];
   for (const int threads : {1, 3})
-    trimmed[threads / 3] = trimMesh(mesh, height, {0.25f, 0.01, 0, threads});
+    trimmed[threads / 3] = trimMesh(mesh, height, {0.25f, 0.01, 0.01, 0, threads});
   const TriangleMesh& cap = trimmed[0];
   EXPECT_EQ(cap.vertices, trimmed[1].vertices);
   EXPECT_EQ(cap.faces, trimmed[1].faces);

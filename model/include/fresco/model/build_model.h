@@ -17,8 +17,9 @@ struct ModelOptions {
   double fuse = 0;                ///< RGB-D: cell in which the frames are fused, >= 0; 0 = as `cell`
   int bilateral = 2;              ///< rounds of bilateral smoothing of the normals of scans, >= 0
   bool optimize = true;           ///< move the vertices so that edges become sharp; scans only
-  double trim_levels = 2.0;       ///< see VolumetricOptions::trim_levels, >= 0; 0 = keep the surface closed; RGB-D:
-                                  ///< at most 0.75
+  double trim_levels = 2.0;       ///< >= 0; 0 = keep the surface closed. Scans: it is cut where none saw it, but gaps of
+                                  ///< 4 x 4 cells so many octree levels coarser stay closed. RGB-D: see
+                                  ///< VolumetricOptions::trim_levels, at most 0.75
   double texel = 0.0;             ///< side of a texel, >= 0; 0 = as fine as photographs, panoramas or points
   int atlas = 0;                  ///< largest side of a picture of the texture, 128..16384 pixels, more of them beyond;
                                   ///< 0 = 8192
