@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "job/stage_log.h"
 #include "photographs/structure_from_motion.h"
+#include "plan.h"
 #include "report/report.h"
 #include "stages/stages.h"
+#include "stages/video.h"
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <fresco/core/require.h>
 #include <fresco/io/file.h>
+#include <fresco/io/files_read.h>
 #include <fresco/io/shared_files.h>
 namespace fresco {
 namespace {
@@ -24,41 +28,55 @@ void validate(const ModelInput& input, const ModelOptions& options)
           " pixels are too small");
   if (options.use_poses && input.poses.empty())
     throw std::runtime_error(input.folder + "/poses.txt: no such file, but its poses are asked for");
-  if (!input.unplaced.empty())
-    requireStructureFromMotion(input.images);
   require(std::abs(options.panorama_direction) <= 360, "model: a panorama's direction of ", options.panorama_direction,
           " degrees");
+}
+
+/// @throws std::runtime_error naming the program that is not installed
+void requirePrograms(const ModelInput& input)
+{
+  if (input.findsCameras())
+    requireStructureFromMotion(input.images.empty() ? input.folder : input.images);
+  if (!input.video.empty())
+    requireVideoProgram(input.video);
 }
 
 /// The steps of the chain, each with the options that its outputs depend on besides the steps before it.
 std::vector<Stage> stagesOf(const Job& job)
 {
-  const auto& [input, files, options, ranks] = job;
+  const auto& [input, files, options, stage_options, ranks] = job;
   const auto step = [&job](Figures (*make)(const Job&, const Progress&)) {
     return [&job, make](const Progress& progress) { return make(job, progress); };
   };
   std::vector<Stage> stages;
   const StructureFromMotion motion(input.images, input.unplaced, files.photographs, options.threads);
-  if (!input.unplaced.empty())
+  if (input.findsCameras())
     stages = {{"features", "", {motion.database()}, step(findFeatures)},
               {"matches", "", {motion.database()}, step(matchFeatures)},
               {"cameras", "", {motion.model() + "/points3D.txt"}, step(findCameras)}};
-  const auto add = [&](Stage stage) { stages.push_back(std::move(stage)); };
+  const auto add = [&](Stage stage, const std::vector<std::string>& tools) {
+    for (const auto& [name, value] : options.stage_options)
+      if (std::find(tools.begin(), tools.end(), name.substr(0, name.find('.'))) != tools.end())
+        stage.options += concat(" ", name, " ", value);
+    stages.push_back(std::move(stage));
+  };
   add({"points",
        concat(options.use_poses, " ", options.fuse, " ", options.fuse > 0 ? 0.0 : options.cell, " ", options.bilateral),
-       {files.points, files.poses},
-       step(makePoints),
-       !input.rgbd});
+       input.is_cloud ? std::vector<std::string>{files.points, files.poses, files.cell}
+                      : std::vector<std::string>{files.points, files.poses},
+       step(makePoints), !input.rgbd && !input.is_cloud},
+      {"register", "filter", "normals", "fuse", "track"});
   if (input.alignsCameras())
-    add({"alignment", "", {files.cameras + "/images.txt"}, step(model::alignCameras)});
-  add({"surface", concat(options.cell, " ", options.trim_levels), {files.surface}, step(makeSurface)});
-  add({"optimization", concat(options.optimize), {files.mesh}, step(makeOptimizedSurface)});
+    add({"alignment", "", {files.cameras + "/images.txt"}, step(model::alignCameras)}, {"align"});
+  add({"surface", concat(options.cell, " ", options.trim_levels), {files.surface}, step(makeSurface)}, {"reconstruct"});
+  add({"optimization", concat(options.optimize), {files.mesh}, step(makeOptimizedSurface)}, {"optimize"});
   add({"texture",
        concat(options.texel, " ", options.atlas, " ", options.quality, " ", options.panorama_direction, " ",
               options.panorama_mirrored, " ", options.tile_faces),
        {files.model_obj, files.model_glb, files.viewer_glb},
-       step(makeTexture)});
-  add({"pictures", concat(options.width, "x", options.height), pictureFiles(job), step(makePictures)});
+       step(makeTexture)},
+      {"texture"});
+  add({"pictures", concat(options.width, "x", options.height), pictureFiles(job), step(makePictures)}, {});
   return stages;
 }
 } // namespace
@@ -73,21 +91,31 @@ ModelReport buildModel(const std::string& input_folder, const std::string& outpu
 ModelReport buildModel(const ModelFolders& folders, const ModelOptions& options, const Progress& progress,
                        Exchange& ranks)
 {
-  const Job job{readModelInput(folders.input), ModelFiles{folders.output}, options, ranks};
+  Job job{readModelInput(folders.input, options.taken_as), ModelFiles{folders.output}, options,
+          StageOptions(options.threads, options.stage_options), ranks};
   requireSameFiles(job.input.files(), folders.input, ranks);
   if (ranks.rank() > 0) {
     followStages(stagesOf(job), ranks, progress);
     return {};
   }
   validate(job.input, options);
+  requirePrograms(job.input);
+  requireRoom(estimate(job), job);
   const auto start = std::chrono::steady_clock::now();
   report(progress, "photographs", 0.0);
   checkPhotographs(job.input, options.threads);
   makeFolder(job.files.work);
   const FolderLock lock(job.files.work, "fresco_model");
   makeFolder(job.files.snapshots);
-  StageLog log(job.files.work, fingerprint(job.input.files()) + fingerprint(programFiles()), options.resume, progress);
+  std::vector<std::string> inputs = job.input.files();
+  for (const std::string& file : filesRead())
+    inputs.push_back(file);
+  StageLog log(job.files.work, inputs, options.resume, progress);
   log.shareWith(ranks);
+  if (!job.input.video.empty()) {
+    log.run({"video", "", {job.files.video}, [&](const Progress& step) { return takeVideoFrames(job, step); }});
+    useVideoFrames(job.input, job.files.video);
+  }
   for (const Stage& stage : stagesOf(job))
     log.run(stage);
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -95,6 +123,26 @@ ModelReport buildModel(const ModelFolders& folders, const ModelOptions& options,
   report.kind = describe(job.input);
   writeReport(report, job.files);
   return publicReport(report);
+}
+
+ModelPlan planModel(const ModelFolders& folders, const ModelOptions& options)
+{
+  Exchange alone;
+  const Job job{readModelInput(folders.input, options.taken_as), ModelFiles{folders.output}, options,
+                StageOptions(options.threads, options.stage_options), alone};
+  validate(job.input, options);
+  ModelPlan plan = estimate(job);
+  requireRoom(plan, job);
+  try {
+    requirePrograms(job.input);
+  } catch (const std::runtime_error& error) {
+    plan.warnings.emplace_back(error.what());
+  }
+  if (!job.input.video.empty())
+    plan.stages = {"video"};
+  for (const Stage& stage : stagesOf(job))
+    plan.stages.push_back(stage.name);
+  return plan;
 }
 
 std::string describeInput(const std::string& input_folder) { return describe(readModelInput(input_folder)); }

@@ -6,10 +6,11 @@
 #include <cstring>
 #include <filesystem>
 #include <fresco/io/file.h>
+#include <fresco/io/files_read.h>
 #include <fstream>
+#include <map>
 #include <mutex>
 #include <optional>
-#include <set>
 #include <sys/stat.h>
 namespace fresco {
 namespace {
@@ -20,10 +21,10 @@ constexpr std::size_t piece_size = std::size_t{8} << 20;
 {
   throw std::runtime_error(path + ": " + reason);
 }
-/// Files that were read, by device and number.
+/// Files that were read, by device and number, with the name that was used first.
 struct Inputs {
   std::mutex mutex;
-  std::set<std::pair<dev_t, ino_t>> known;
+  std::map<std::pair<dev_t, ino_t>, std::string> known;
 };
 
 Inputs& inputs()
@@ -45,8 +46,18 @@ void io::rememberInput(const std::string& path)
 {
   if (const auto identity = identityOf(path)) {
     const std::lock_guard<std::mutex> lock(inputs().mutex);
-    inputs().known.insert(*identity);
+    inputs().known.emplace(*identity, path);
   }
+}
+
+std::vector<std::string> filesRead()
+{
+  const std::lock_guard<std::mutex> lock(inputs().mutex);
+  std::vector<std::string> paths;
+  for (const auto& [identity, path] : inputs().known)
+    paths.push_back(path);
+  std::sort(paths.begin(), paths.end());
+  return paths;
 }
 
 bool io::wasRead(const std::string& path)

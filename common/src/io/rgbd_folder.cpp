@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "io/points/text_numbers.h"
 #include <algorithm>
-#include <cctype>
 #include <filesystem>
 #include <fresco/core/poses.h>
 #include <fresco/core/require.h>
 #include <fresco/io/file.h>
 #include <fresco/io/image_io.h>
+#include <fresco/io/natural_order.h>
 #include <fresco/io/rgbd_folder.h>
-#include <tuple>
 namespace fresco {
 namespace {
 namespace fs = std::filesystem;
@@ -40,24 +39,6 @@ CameraModel depthCamera(const std::string& path, const std::string& depth)
   }
   return camera;
 }
-
-/// Digits become their count (without leading zeros) and themselves: longer numbers are larger.
-std::string sortKey(const std::string& name)
-{
-  std::string key;
-  for (std::size_t i = 0; i < name.size();) {
-    if (!std::isdigit(static_cast<unsigned char>(name[i]))) {
-      key += name[i++];
-      continue;
-    }
-    const std::size_t end = std::min(name.find_first_not_of("0123456789", i), name.size());
-    const std::size_t first = std::min(name.find_first_not_of('0', i), end);
-    key += static_cast<char>('0' + std::min<std::size_t>(end - first, 70));
-    key += name.substr(first, end - first);
-    i = end;
-  }
-  return key;
-}
 } // namespace
 
 bool isRgbdFolder(const std::string& folder) { return fs::exists(folder + "/camera-intrinsics.txt"); }
@@ -81,9 +62,8 @@ RgbdFolderFiles listRgbdFolder(const std::string& folder)
   }
   if (result.frames.empty())
     throw std::runtime_error(folder + ": no frame-*.depth.png in it");
-  std::sort(result.frames.begin(), result.frames.end(), [](const auto& a, const auto& b) {
-    return std::tuple(sortKey(a.name), a.name) < std::tuple(sortKey(b.name), b.name);
-  });
+  std::sort(result.frames.begin(), result.frames.end(),
+            [](const auto& a, const auto& b) { return isNaturallyBefore(a.name, b.name); });
   result.camera = depthCamera(folder + "/camera-intrinsics.txt", result.frames.front().depth);
   return result;
 }

@@ -22,15 +22,25 @@ struct PictureFile {
   bool panorama = false;
 };
 
-/// What a model is made from: a folder of scans and photographs, or a folder of RGB-D frames.
+/// What a model is made from, however it was laid out: scans or one cloud, or RGB-D frames, with or without photographs.
 struct ModelInput {
-  std::string folder;
+  std::string folder;                ///< as given: a folder or a file
+  std::string layout;                ///< what it was taken for, see Layout::name
+  std::vector<std::string> found;    ///< a line for each thing in it and what it is taken for
+  std::vector<std::string> warnings; ///< what was left out, a sentence each
   std::vector<ScanPath> scans;       ///< in the order of the names of their files; empty for RGB-D
-  std::vector<Pose> poses;           ///< world from scan; empty where neither folder nor scans have any
-  CameraSet cameras;                 ///< photographs; no view where the folder has none
-  SparsePoints sparse;               ///< points of the model that `cameras` are of; none where it has none
-  std::string images;                ///< folder of the photographs
-  std::vector<std::string> unplaced; ///< names of photographs that have no cameras, which are still to be found
+  /// The scans are parts of one cloud in the frame of the world, seen from places that are not known or that the points
+  /// themselves tell: nothing is registered, and no scanner stands at the origin. Without scans: the points that structure
+  /// from motion finds are the cloud.
+  bool is_cloud = false;
+  std::vector<Eigen::Vector3d> sensor_path; ///< of a cloud: where the sensor was, world; may be empty
+  std::vector<Pose> poses;                  ///< world from scan; empty where neither folder nor scans have any
+  CameraSet cameras;                        ///< photographs; no view where the folder has none
+  SparsePoints sparse;                      ///< points of the model that `cameras` are of; none where it has none
+  std::string camera_folder;                ///< of the model that `cameras` and `sparse` are of
+  std::string images;                       ///< folder of the photographs
+  std::vector<std::string> unplaced;        ///< names of photographs that have no cameras, which are still to be found
+  std::string video; ///< file whose frames are the photographs, or the colours of the RGB-D frames
   std::vector<Panorama> panoramas;
   ScanPictures inside; ///< pictures in the files of the scans
   std::optional<RgbdFolder> rgbd;
@@ -40,19 +50,18 @@ struct ModelInput {
     return rgbd || !cameras.views.empty() || !unplaced.empty() || !panoramas.empty() || !inside.pictures.empty();
   }
   /// Whether cameras are yet to be brought into the frame of the scans, or to be found there.
-  bool alignsCameras() const { return !unplaced.empty() || !sparse.empty(); }
-  std::vector<std::string> files() const;    ///< everything that the model depends on
+  bool alignsCameras() const { return !scans.empty() && (!unplaced.empty() || !sparse.empty()); }
+  /// Whether cameras are yet to be found, of photographs or of frames of a video.
+  bool findsCameras() const { return !unplaced.empty() || (!video.empty() && !rgbd); }
+  std::vector<std::string> files() const;    ///< all that later stages read
   std::vector<PictureFile> pictures() const; ///< photographs or colour images of the frames, then panoramas
 };
 
-/// Looks at a folder and reads everything small (poses, cameras). Folder of scans: `scans/*.pcd` (or another format; each
-/// scan of a file of several is one), `panoramas/` (named as their scans), `poses.txt` (else the poses that the scans themselves have), `cameras/`,
-/// `images/` (without `cameras/`: photographs whose cameras are to be found).
-/// RGB-D: see readRgbdFolder(). In place of a folder: a file of scans (.e57, .ptx). Pictures
-/// inside of an .e57 are taken too.
-/// @throws std::runtime_error naming what is missing or does not fit together: neither kind, no scan, more or fewer
-///         poses than scans, a photograph that is missing
-ModelInput readModelInput(const std::string& folder);
+/// Looks at a folder or file, tells its layout (docs/inputs.md) and reads everything small (poses, cameras).
+/// @param as what it is taken for: scans, cloud, rgbd or photographs; "" = what it looks like
+/// @throws std::runtime_error naming what is missing or does not fit together, what two layouts claim, or, where no layout
+///         fits, what was found
+ModelInput readModelInput(const std::string& path, const std::string& as = "");
 
 /// "6 scans, 60 photographs".
 std::string describe(const ModelInput& input);

@@ -7,6 +7,8 @@ struct ModelFiles {
   std::string folder;
   std::string work = folder + "/work", snapshots = folder + "/snapshots";
   std::string points = work + "/points"; ///< a folder: PlacedPoints
+  std::string cell = work + "/cell.txt"; ///< finest cell of a cloud, as its points ask for
+  std::string video = work + "/video";   ///< frames of a video
   std::string surface = work + "/surface.ply", viewer_glb = work + "/viewer.glb";
   std::string pictures = work + "/pictures";       ///< unpacked from files of scans while they are needed
   std::string photographs = work + "/photographs"; ///< what the program colmap finds

@@ -4,17 +4,22 @@
 #include <chrono>
 #include <cmath>
 #include <cstdint>
+#include <cstring>
 #include <filesystem>
 #include <fresco/core/require.h>
 #include <fresco/io/file.h>
+#include <fresco/io/files_read.h>
 #include <fresco/io/json_text.h>
 #include <fstream>
 #include <iomanip>
 #include <link.h>
+#include <map>
 #include <sstream>
 #include <sys/resource.h>
+#include <sys/stat.h>
 namespace fresco::model {
 namespace {
+namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 /// FNV-1a (Fowler, Noll, Vo), 64 bits, as hexadecimal text.
@@ -28,15 +33,49 @@ std::string hashed(const std::string& text)
   return out.str();
 }
 
-/// Those in folders too: where one is lost, the stage is not done.
-std::ptrdiff_t fileCount(const std::vector<std::string>& outputs)
+/// What a file is known by without reading it: size, times and number. The time of its last change of any kind cannot be set.
+std::string identityOf(const std::string& file)
 {
-  std::ptrdiff_t count = 0;
-  for (const std::string& path : outputs)
-    count += std::filesystem::is_directory(path)
-                 ? std::distance(std::filesystem::directory_iterator(path), std::filesystem::directory_iterator())
-                 : std::ptrdiff_t{std::filesystem::exists(path)};
-  return count;
+  struct stat found = {};
+  if (::stat(file.c_str(), &found) != 0)
+    return "none";
+  return concat(found.st_size, " ", found.st_mtim.tv_sec, ".", found.st_mtim.tv_nsec, " ", found.st_ctim.tv_sec, ".",
+                found.st_ctim.tv_nsec);
+}
+
+/// Regular files below a folder with what they are known by; hidden ones are nobody's output.
+std::map<std::string, std::string> filesBelow(const std::string& folder)
+{
+  std::map<std::string, std::string> files;
+  std::error_code error;
+  for (fs::recursive_directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
+    if (entry->path().filename().string()[0] == '.')
+      entry.disable_recursion_pending();
+    else if (entry->is_regular_file())
+      files[entry->path().lexically_relative(folder).string()] = identityOf(entry->path());
+  return files;
+}
+
+/// Size and hash of the content, eight bytes at a time; "" where the file cannot be read.
+std::string contentOf(const std::string& file)
+{
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream)
+    return "";
+  std::vector<char> block(1 << 20);
+  std::uint64_t hash = 0xcbf29ce484222325ULL, size = 0;
+  while (stream.read(block.data(), std::streamsize(block.size())) || stream.gcount() > 0) {
+    const std::size_t read = stream.gcount();
+    size += read;
+    std::fill(block.begin() + read, block.begin() + (read + 7) / 8 * 8, 0);
+    for (std::size_t i = 0; i < read; i += 8) {
+      std::uint64_t word = 0;
+      std::memcpy(&word, block.data() + i, 8);
+      hash = (hash ^ word) * 0x9e3779b97f4a7c15ULL; // odd, so that no word is lost
+      hash ^= hash >> 32;
+    }
+  }
+  return concat(size, " ", std::hex, hash);
 }
 
 /// Restarts the kernel's count of the highest resident memory.
@@ -96,13 +135,10 @@ bool tellRanks(bool known, Exchange& ranks)
 
 std::string fingerprint(const std::vector<std::string>& files)
 {
-  std::ostringstream text;
-  for (const std::string& file : files) {
-    std::error_code error;
-    text << file << " " << std::filesystem::file_size(file, error) << " "
-         << std::filesystem::last_write_time(file, error).time_since_epoch().count() << "\n";
-  }
-  return text.str();
+  std::string text;
+  for (const std::string& file : files)
+    text += concat(file, " ", identityOf(file), "\n");
+  return text;
 }
 
 std::vector<std::string> programFiles()
@@ -119,26 +155,68 @@ std::vector<std::string> programFiles()
   return files;
 }
 
-StageLog::StageLog(std::string folder, const std::string& key, bool resume, Progress progress)
-    : folder_(std::move(folder)), key_(hashed(key)), resume_(resume), progress_(std::move(progress))
+StageLog::StageLog(std::string folder, const std::vector<std::string>& inputs, bool resume, Progress progress)
+    : folder_(std::move(folder)), root_(fs::path(folder_).parent_path()), known_(inputs.begin(), inputs.end()),
+      resume_(resume), progress_(std::move(progress))
 {
+  const std::vector<std::string> all(known_.begin(), known_.end());
+  key_ = hashed(fingerprint(all) + fingerprint(programFiles()));
   makeFolder(folder_);
+}
+
+Json StageLog::readSince() const
+{
+  Json read = Json::object();
+  for (const std::string& file : filesRead())
+    if (known_.count(file) == 0 && file.rfind(root_ + "/", 0) != 0) // what lies there is an output
+      read[file] = identityOf(file);
+  return read;
 }
 
 bool StageLog::takeOver(const Stage& stage, const std::string& file)
 try {
-  const auto exists = [](const std::string& path) { return std::filesystem::exists(path); };
-  if (!resume_ || !exists(file) || !std::all_of(stage.outputs.begin(), stage.outputs.end(), exists))
+  if (!resume_ || !fs::exists(file))
     return false;
   const Json stored = Json::parse(readFile(file), nullptr, false);
-  if (stored.is_discarded() || !stored.is_object() || stored.value("key", "") != key_ || !stored.contains("figures") ||
-      stored.value("files", std::ptrdiff_t{0}) != fileCount(stage.outputs))
+  if (stored.is_discarded() || !stored.is_object() || stored.value("key", "") != key_ || !stored.contains("figures"))
     return false;
+  const Json outputs = stored.at("outputs"), inputs = stored.at("inputs");
+  for (const auto& [name, content] : outputs.items())
+    if (contentOf(root_ + "/" + name) != content)
+      return false;
+  for (const auto& [name, identity] : inputs.items())
+    if (identityOf(name) != identity)
+      return false;
+  for (const std::string& path : stage.outputs) // nothing has come into its folders
+    if (fs::is_directory(path))
+      for (const auto& [name, identity] : filesBelow(path))
+        if (!outputs.contains(fs::path(path + "/" + name).lexically_relative(root_).string()))
+          return false;
+  for (const auto& [name, content] : outputs.items())
+    known_.insert(root_ + "/" + name);
   records_.push_back({stage.name, stored.value("seconds", 0.0), stored.value("cpu_seconds", 0.0),
                       stored.value("peak_megabytes", 0.0), true, stored["figures"]});
   return true;
 } catch (const Json::exception&) { // a value of another type: not a record of ours
   return false;
+}
+
+void StageLog::renewReplaced(const Json& outputs) const
+{
+  for (const StageRecord& earlier : records_) {
+    const std::string file = folder_ + "/" + earlier.name + ".json";
+    Json record = Json::parse(readFile(file), nullptr, false);
+    if (record.is_discarded() || !record.contains("outputs"))
+      continue;
+    const Json before = record["outputs"];
+    for (const auto& [name, content] : before.items())
+      if (outputs.contains(name))
+        record["outputs"][name] = outputs[name];
+      else if (!fs::exists(root_ + "/" + name))
+        record["outputs"].erase(name);
+    if (record["outputs"] != before)
+      writeFile(file, jsonText(record, 2));
+  }
 }
 
 void StageLog::run(const Stage& stage)
@@ -156,18 +234,28 @@ void StageLog::run(const Stage& stage)
   resume_ = false; // what follows depends on what is made anew here
   std::error_code error;
   std::filesystem::remove(file, error);
+  const auto before = filesBelow(root_);
   StageRecord record = runMeasured(stage, [&](std::string_view step, double fraction) {
     return !progress_ || progress_(stage.name + ": " + std::string(step), std::min(fraction, 0.999));
   });
   if (stage.shared)
     addCosts(record, *ranks_);
+  Json outputs = Json::object();
+  for (const auto& [name, identity] : filesBelow(root_))
+    if (const auto old = before.find(name);
+        fs::path(name).filename() != "log.txt" && (old == before.end() || old->second != identity)) {
+      outputs[name] = contentOf(root_ + "/" + name);
+      known_.insert(root_ + "/" + name);
+    }
   writeFile(file, jsonText(Json{{"key", key_},
-                                {"files", fileCount(stage.outputs)},
+                                {"outputs", outputs},
+                                {"inputs", readSince()},
                                 {"seconds", record.seconds},
                                 {"cpu_seconds", record.cpu_seconds},
                                 {"peak_megabytes", record.peak_megabytes},
                                 {"figures", record.figures}},
                            2));
+  renewReplaced(outputs);
   records_.push_back(std::move(record));
   report(progress_, stage.name + ": done", 1.0);
 }

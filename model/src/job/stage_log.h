@@ -4,6 +4,7 @@
 #include <fresco/core/progress.h>
 #include <functional>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <string>
 #include <vector>
 namespace fresco::model {
@@ -21,18 +22,20 @@ struct StageRecord {
 struct Stage {
   std::string name;
   std::string options;              ///< everything besides the stages before that the outputs depend on
-  std::vector<std::string> outputs; ///< files; the stage is done when all are there
+  std::vector<std::string> outputs; ///< files and folders that it must leave; others that it writes are found
   std::function<nlohmann::ordered_json(const Progress&)> body; ///< returns its figures
   bool shared = false;                                         ///< all ranks take part; else rank 0 alone
 };
 
 /// Runs stages one after the other and keeps a record of each in `folder`, so that a later run can go on after the last
-/// one that was finished with the same input and options.
+/// one that was finished with the same input and options. Nothing is believed because it exists: a record holds every file below
+/// the folder's parent that the stage wrote, with size and hash, and every other file that was read until then, and is good only
+/// while all of them are as they were.
 class StageLog {
 public:
-  /// @param key      what the whole job depends on: the input
+  /// @param inputs   files that the whole job depends on, besides those that its stages read
   /// @param progress hears of each stage from 0 to 1, steps as "STAGE: STEP"
-  StageLog(std::string folder, const std::string& key, bool resume, Progress progress);
+  StageLog(std::string folder, const std::vector<std::string>& inputs, bool resume, Progress progress);
 
   /// This is the log of rank 0; the others call followStages().
   void shareWith(Exchange& ranks) { ranks_ = &ranks; }
@@ -44,7 +47,13 @@ public:
 
 private:
   bool takeOver(const Stage& stage, const std::string& file);
+  /// Outputs of earlier stages that a later one has changed, such as a database that grows, or taken away: all of these stages
+  /// are to be done again where they are not as that one left them.
+  void renewReplaced(const nlohmann::ordered_json& outputs) const;
+  nlohmann::ordered_json readSince() const; ///< files that were read besides the outputs of stages
   std::string folder_, key_;
+  std::string root_;            ///< below which outputs lie
+  std::set<std::string> known_; ///< files that the key stands for, and outputs so far
   bool resume_;
   Progress progress_;
   std::vector<StageRecord> records_;
@@ -55,7 +64,7 @@ private:
 /// Takes part in the shared stages among those that rank 0 runs. @throws what they throw
 void followStages(const std::vector<Stage>& stages, Exchange& ranks, const Progress& progress);
 
-/// Name, size and time of change of each file: changes when one of them does.
+/// Name, size and times of each file: changes when one of them does, also where its time of change is set back.
 std::string fingerprint(const std::vector<std::string>& files);
 
 /// The files that this program consists of: itself and the fresco libraries that it has loaded.

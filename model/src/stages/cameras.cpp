@@ -39,7 +39,7 @@ Figures findCameras(const Job& job, const Progress& progress)
 Figures alignCameras(const Job& job, const Progress& progress)
 {
   const bool found = !job.input.unplaced.empty();
-  const std::string folder = found ? structureFromMotion(job).model() : job.input.folder + "/cameras";
+  const std::string folder = found ? structureFromMotion(job).model() : job.input.camera_folder;
   CameraSet set = found ? readColmap(folder) : job.input.cameras;
   SparsePoints points = found ? readColmapPoints(folder) : job.input.sparse;
   Figures figures;
@@ -51,8 +51,7 @@ Figures alignCameras(const Job& job, const Progress& progress)
     return figures;
   }
   constexpr Index most_points = 5000000; // the search takes far fewer, and drawings of 24 places hardly show more
-  CameraAlignmentOptions options;
-  options.threads = job.options.threads;
+  CameraAlignmentOptions options = job.stages.alignment;
   options.photograph = [&](Index view) {
     return readImage(job.input.images + "/" + set.views[view].image, set.cameras[set.views[view].camera]);
   };
@@ -78,8 +77,15 @@ Figures alignCameras(const Job& job, const Progress& progress)
           {"rms", result.rms}};
 }
 
+SparsePoints foundPoints(const Job& job)
+{
+  return job.input.findsCameras() ? readColmapPoints(structureFromMotion(job).model()) : job.input.sparse;
+}
+
 CameraSet placedCameras(const Job& job)
 {
-  return job.input.alignsCameras() ? readColmap(job.files.cameras) : job.input.cameras;
+  if (job.input.alignsCameras())
+    return readColmap(job.files.cameras);
+  return job.input.findsCameras() ? readColmap(structureFromMotion(job).model()) : job.input.cameras;
 }
 } // namespace fresco::model

@@ -27,9 +27,9 @@ std::vector<Pose> trackFrames(const Job& job, Figures& figures, const Progress& 
   RgbdVideo video;
   video.camera = rgbd.camera;
   video.count = rgbd.frames.size();
-  video.read = [&](Index f) { return RgbdImage{readImage(rgbd.frames[f].color), readImage16(rgbd.frames[f].depth)}; };
-  RgbdTrackingOptions options;
-  options.threads = job.options.threads;
+  video.depth_unit = rgbd.depth_unit;
+  video.read = [&](Index f) { return RgbdImage{readImage(rgbd.frames[f].color), readDepthUnits(rgbd, f)}; };
+  RgbdTrackingOptions options = job.stages.tracking;
   for (const RgbdFrame& frame : rgbd.frames)
     options.names.push_back(frame.name);
   const RgbdTrackingResult result = trackRgbd(video, options, progress);

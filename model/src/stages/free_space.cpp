@@ -21,9 +21,10 @@ struct Range {
 };
 
 /// Depths in the 5x5 pixels around a place; not known where a third of them has no depth.
-Range depthAround(const Image16& image, int x, int y)
+Range depthAround(const Image16& image, float unit, const Eigen::Vector2d& pixel)
 {
   constexpr int reach = 2;
+  const int x = static_cast<int>(pixel.x()), y = static_cast<int>(pixel.y());
   Range range{1e30f, 0.f};
   int known = 0;
   for (int v = y - reach; v <= y + reach; ++v)
@@ -33,8 +34,8 @@ Range depthAround(const Image16& image, int x, int y)
       const std::uint16_t raw = image.data[Index(v) * image.width + u];
       if (raw == 0 || raw == 65535)
         continue;
-      range.least = std::min(range.least, 1e-3f * raw);
-      range.most = std::max(range.most, 1e-3f * raw);
+      range.least = std::min(range.least, unit * raw);
+      range.most = std::max(range.most, unit * raw);
       ++known;
     }
   return 3 * known < 2 * (2 * reach + 1) * (2 * reach + 1) ? Range{} : range;
@@ -70,7 +71,8 @@ void FreeSpace::count(const Judge& judge)
   });
 }
 
-void FreeSpace::ask(const Image16& depth, const CameraModel& camera, const Eigen::Isometry3d& T_world_camera)
+void FreeSpace::ask(const Image16& depth, const CameraModel& camera, const Eigen::Isometry3d& T_world_camera,
+                    double unit)
 {
   const Eigen::Isometry3d T_camera_world = T_world_camera.inverse();
   count([&](const Eigen::Vector3f& place) {
@@ -80,7 +82,7 @@ void FreeSpace::ask(const Image16& depth, const CameraModel& camera, const Eigen
     const Eigen::Vector2d pixel = project(camera, p);
     if (!(pixel.x() >= 0 && pixel.y() >= 0 && pixel.x() < depth.width && pixel.y() < depth.height))
       return Answer::Unknown;
-    const Range range = depthAround(depth, static_cast<int>(pixel.x()), static_cast<int>(pixel.y()));
+    const Range range = depthAround(depth, unit, pixel);
     const double slack = tolerance_ + depth_noise * p.z();
     if (range.most == 0.f || p.z() > range.most + slack)
       return Answer::Unknown;

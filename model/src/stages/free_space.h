@@ -15,8 +15,9 @@ public:
   FreeSpace(const Points& places, double tolerance, int threads);
 
   /// Asks one depth image. Its noise and that of its pose count: the tolerance grows by 2 % of the depth.
-  /// @param depth millimetres; 0 and 65535 = none
-  void ask(const Image16& depth, const CameraModel& camera, const Eigen::Isometry3d& T_world_camera);
+  /// @param depth in `unit` (metres); 0 and 65535 = none
+  void ask(const Image16& depth, const CameraModel& camera, const Eigen::Isometry3d& T_world_camera,
+           double unit = 1e-3);
 
   /// Asks one laser scan.
   /// @param scan 3xM in the frame of the scanner, which stands at the origin; non-finite points are ignored

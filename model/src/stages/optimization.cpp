@@ -7,7 +7,7 @@
 namespace fresco::model {
 Figures makeOptimizedSurface(const Job& job, const Progress& progress)
 {
-  const auto& [input, files, options, ranks] = job;
+  const auto& [input, files, options, stages, ranks] = job;
   report(progress, "read", 0.0);
   const TriangleMesh surface = readMesh(files.surface);
   // Fused depth images gain less than a per cent by it, for half of the time that the surface takes:
@@ -16,12 +16,9 @@ Figures makeOptimizedSurface(const Job& job, const Progress& progress)
     writeMesh(files.mesh, surface);
     return {{"optimized", false}};
   }
-  NormalFilteringOptions filtering;
-  filtering.flip = true;
-  filtering.threads = options.threads;
   const PointSet points =
       pointsForVertices(*PlacedPoints(files.points).stream(), surface.vertexCount(), finestCell(job));
-  const NormalFilteringResult result = filterSurface(surface, points, filtering, progress);
+  const NormalFilteringResult result = filterSurface(surface, points, stages.optimization, progress);
   writeMesh(files.mesh, result.mesh);
   return {{"optimized", true},
           {"iterations", result.iterations},

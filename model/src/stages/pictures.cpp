@@ -23,8 +23,7 @@ struct Shot {
 
 std::vector<Shot> shots(const ModelInput& input)
 {
-  const std::string what =
-                        input.rgbd || !input.cameras.views.empty() || !input.unplaced.empty() ? "photograph" : "scan",
+  const std::string what = input.rgbd || !input.cameras.views.empty() || input.findsCameras() ? "photograph" : "scan",
                     taken = what + " was taken";
   return {{"inside_texture", "From inside, textured", Shading::Texture, From::inside},
           {what + "_1_texture", "From where a " + taken + ", textured", Shading::Texture, From::place, 0},
@@ -37,6 +36,8 @@ std::vector<Shot> shots(const ModelInput& input)
           {"above_gouraud", "From above, surface alone", Shading::Gouraud, From::above}};
 }
 
+constexpr double looking_angle = 62; ///< degrees, of a person looking around
+
 /// Where a photograph was taken, with its opening angle.
 Viewpoint viewOf(const CameraModel& camera, const Eigen::Isometry3d& T_world_camera)
 {
@@ -44,26 +45,29 @@ Viewpoint viewOf(const CameraModel& camera, const Eigen::Isometry3d& T_world_cam
   view.eye = T_world_camera.translation();
   view.look = view.eye + T_world_camera.linear().col(2);
   view.up = -T_world_camera.linear().col(1);
-  view.angle = 2 * std::atan(0.5 * camera.height / camera.fy) * 180.0 / pi;
+  view.angle = camera.projection == CameraProjection::spherical
+                   ? looking_angle
+                   : 2 * std::atan(0.5 * camera.height / camera.fy) * 180.0 / pi;
   return view;
 }
 
 /// From where each scan was taken, level to the middle of the model.
 std::vector<Viewpoint> viewsFromScans(const Job& job, const TriangleMesh& mesh, const Eigen::Vector3d& up)
 {
-  constexpr double angle = 62; // degrees, of a person looking around
   const Eigen::Vector3d middle =
       mesh.origin + 0.5 * (mesh.vertices.rowwise().minCoeff() + mesh.vertices.rowwise().maxCoeff()).cast<double>();
   std::vector<Viewpoint> views;
-  for (const Pose& pose : readPoses(job.files.poses)) {
-    if (!pose)
-      continue;
-    const Eigen::Vector3d eye = pose->topRightCorner<3, 1>();
+  std::vector<Eigen::Vector3d> places = job.input.sensor_path;
+  if (!job.input.is_cloud)
+    for (const Pose& pose : readPoses(job.files.poses))
+      if (pose)
+        places.emplace_back(pose->topRightCorner<3, 1>());
+  for (const Eigen::Vector3d& eye : places) {
     Eigen::Vector3d ahead = middle - eye;
     ahead -= ahead.dot(up) * up;
     if (ahead.norm() < 1e-3)
       ahead = up.unitOrthogonal();
-    views.push_back({eye, eye + ahead.normalized(), up, angle});
+    views.push_back({eye, eye + ahead.normalized(), up, looking_angle});
   }
   return views;
 }
@@ -104,13 +108,17 @@ std::vector<Viewpoint> variedViews(const std::vector<Viewpoint>& views, std::siz
   return chosen;
 }
 
-/// Upright direction: that of the frame for scans; for RGB-D frames, whose world may be tilted,
+/// Upright direction: that of the frame for scans; for RGB-D frames and projects of photographs, whose world may be tilted,
 /// the mean of the cameras'.
 std::optional<Eigen::Vector3d> uprightOf(const Job& job)
 {
-  if (!job.input.rgbd)
-    return Eigen::Vector3d::UnitZ();
   Eigen::Vector3d up = Eigen::Vector3d::Zero();
+  if (!job.input.rgbd) {
+    if (job.input.is_cloud && job.input.sensor_path.empty())
+      for (const View& view : placedCameras(job).views)
+        up -= view.T_camera_world.linear().row(1).transpose();
+    return up.norm() > 0 ? up.normalized().eval() : Eigen::Vector3d::UnitZ();
+  }
   for (const RgbdFrame& frame : placedFrames(job))
     up -= frame.T_world_camera.linear().col(1);
   return up.norm() > 0 ? std::optional<Eigen::Vector3d>(up.normalized()) : std::nullopt;
@@ -153,7 +161,7 @@ PictureOptions optionsFor(Shading shading, const ModelOptions& options, const Te
 
 Figures makePictures(const Job& job, const Progress& progress)
 {
-  const auto& [input, files, options, ranks] = job;
+  const auto& [input, files, options, stages, ranks] = job;
   const TexturedMesh model = readTexturedMesh(files.model_obj);
   const Eigen::Vector3d up = uprightOf(job).value_or(Eigen::Vector3d::UnitZ());
   const IndoorOptions indoor{uprightOf(job), static_cast<double>(options.width) / options.height, options.threads};
@@ -162,6 +170,8 @@ Figures makePictures(const Job& job, const Progress& progress)
   std::vector<Viewpoint> places = levelViews(job, up);
   if (places.empty())
     places = viewsFromScans(job, model.mesh, up);
+  if (places.empty()) // a cloud that does not tell where it was seen from
+    places = {inside};
   places = variedViews(places, 3);
   const std::vector<Shot> all = shots(input);
   Figures list = Figures::array();

@@ -11,19 +11,18 @@
 #include <fresco/filters/core/mixed_pixels.h>
 #include <fresco/filters/core/oriented_normals.h>
 #include <fresco/filters/core/outliers.h>
+#include <fresco/io/file.h>
 #include <fresco/io/packing.h>
 #include <fresco/io/point_io.h>
 #include <fresco/io/pose_file.h>
 #include <fresco/registration/core/scan_registration.h>
 #include <utility>
 namespace fresco::model {
-namespace {
 /// `set` without points that are not finite or have no normal; normals smoothed.
-PointSet smoothed(const PointSet& set, const ModelOptions& options, const Progress& progress)
+PointSet smoothed(const PointSet& set, const Job& job, const Progress& progress)
 {
-  BilateralOptions smoothing;
-  smoothing.rounds = options.bilateral;
-  smoothing.threads = options.threads;
+  BilateralOptions smoothing = job.stages.smoothing;
+  smoothing.rounds = job.options.bilateral;
   PointSet result = set;
   result.normals = smoothNormals(set, set.normals, smoothing, progress).normals;
   std::vector<Index> kept;
@@ -33,36 +32,30 @@ PointSet smoothed(const PointSet& set, const ModelOptions& options, const Progre
   return selectPoints(result, kept);
 }
 
+namespace {
 /// Beams of a sparser scan stand too far apart to tell a mixed pixel from an edge: see docs/mixed_pixels.md.
 constexpr Index least_points_for_mixed_pixels = 100000;
 
 /// Without mixed pixels at depth jumps and isolated points.
-PointSet cleaned(const PointSet& scan, int threads)
+PointSet cleaned(const PointSet& scan, const StageOptions& options)
 {
-  MixedPixelOptions mixed_pixels;
-  mixed_pixels.threads = threads;
-  const PointSet solid = scan.size() < least_points_for_mixed_pixels
-                             ? scan
-                             : selectPoints(scan, withoutMixedPixels(scan.points, scan.viewpoints, mixed_pixels));
-  OutlierOptions outliers;
-  outliers.relative = true; // density falls with the distance from the scanner
-  outliers.sigma = 3;
-  outliers.threads = threads;
-  return selectPoints(solid, withoutOutliers(solid.points, outliers));
+  const PointSet solid =
+      scan.size() < least_points_for_mixed_pixels
+          ? scan
+          : selectPoints(scan, withoutMixedPixels(scan.points, scan.viewpoints, options.mixed_pixels));
+  return selectPoints(solid, withoutOutliers(solid.points, options.outliers));
 }
 
 /// A scan in its own frame, cleaned, with normals that point to the scanner.
-PointSet preparedScan(PointSet read, const ModelOptions& options, const Progress& progress)
+PointSet preparedScan(PointSet read, const Job& job, const Progress& progress)
 {
   if (read.viewpoints.cols() == 0)
     read.viewpoints = (-read.origin).cast<float>(); // the scanner stands at the origin of its scan's frame
-  PointSet scan = cleaned(read, options.threads);
-  NormalOptions normals;
-  normals.threads = options.threads;
-  const NormalField field = estimateNormals(scan, normals, subProgress(progress, 0.3, 0.6));
+  PointSet scan = cleaned(read, job.stages);
+  const NormalField field = estimateNormals(scan, job.stages.normals, subProgress(progress, 0.3, 0.6));
   scan.normals = field.normals;
   scan.confidences = field.confidences;
-  return smoothed(scan, options, subProgress(progress, 0.6, 1.0));
+  return smoothed(scan, job, subProgress(progress, 0.6, 1.0));
 }
 
 /// World from scan. Without -use_poses all scans are registered from scratch, as they were measured: what cleaning takes
@@ -70,13 +63,12 @@ PointSet preparedScan(PointSet read, const ModelOptions& options, const Progress
 /// frame of the photographs.
 std::vector<Pose> placeScans(const Job& job, const Progress& progress, Figures& figures)
 {
-  const auto& [input, files, options, ranks] = job;
+  const auto& [input, files, options, stages, ranks] = job;
   if (options.use_poses) {
     figures["registration"] = "given poses";
     return input.poses;
   }
-  ScanRegistrationOptions registration;
-  registration.threads = options.threads;
+  ScanRegistrationOptions registration = stages.registration;
   for (const ScanPath& scan : input.scans)
     registration.names.push_back(scan.name());
   const Index count = input.scans.size();
@@ -119,7 +111,7 @@ ScanCounts writeScans(const Job& job, const std::vector<Pose>& poses, const Prog
     ++counts.read;
     counts.colored += scan.colors.cols() > 0;
     counts.with_intensities += scan.intensities.size() > 0;
-    return preparedScan(std::move(scan), job.options, subProgress(progress, step * s, step * (s + 1)));
+    return preparedScan(std::move(scan), job, subProgress(progress, step * s, step * (s + 1)));
   };
   const PlacedPoints placed(job.files.points);
   if (job.ranks.rank() == 0)
@@ -174,7 +166,7 @@ std::pair<double, double> rmsMoves(const std::vector<Eigen::Isometry3d>& from, c
 
 Figures pointsFromFrames(const Job& job, const Progress& progress)
 {
-  const auto& [input, files, options, ranks] = job;
+  const auto& [input, files, options, stages, ranks] = job;
   Figures figures;
   std::vector<Pose> poses = input.poses; // of all frames; those of `rgbd` have one
   RgbdFolder rgbd = *input.rgbd;
@@ -183,18 +175,15 @@ Figures pointsFromFrames(const Job& job, const Progress& progress)
     writePoses(files.poses, poses);
     rgbd.frames = placedFrames(job);
   }
-  if (rgbd.without_pose > 0)
-    figures["warnings"].push_back(concat(rgbd.without_pose, " frames without pose.txt are left out: others have one"));
   DepthFrames frames;
   frames.camera = rgbd.camera;
   for (const RgbdFrame& frame : rgbd.frames)
     frames.T_world_camera.push_back(frame.T_world_camera);
   DepthReader reader(rgbd, options.threads);
   frames.depth = [&](Index f) { return reader(f); };
-  DepthFusionOptions fusion;
+  DepthFusionOptions fusion = stages.fusion;
   fusion.cell = options.fuse > 0 ? options.fuse : finestCell(job);
   fusion.refine_poses = !options.use_poses;
-  fusion.threads = options.threads;
   const DepthFusionResult fused =
       fuseDepthImages(frames, fusion, subProgress(progress, rgbd.has_poses ? 0.0 : 0.3, 1.0));
   if (fused.points.size() < 100)
@@ -229,11 +218,18 @@ double finestCell(const Job& job)
   constexpr double scans = 0.02; // metres: rooms from a few stations, some 1 to 10 mm between points
   if (job.options.cell > 0)
     return job.options.cell;
+  if (job.input.is_cloud)
+    return std::stod(readFile(job.files.cell));
   return job.input.rgbd ? pixels_per_cell * pixelFootprint(*job.input.rgbd) : scans;
 }
 
 Figures makePoints(const Job& job, const Progress& progress)
 {
-  return job.input.rgbd ? pointsFromFrames(job, progress) : pointsFromScans(job, progress);
+  Figures figures = job.input.rgbd       ? pointsFromFrames(job, progress)
+                    : job.input.is_cloud ? pointsFromCloud(job, progress)
+                                         : pointsFromScans(job, progress);
+  for (const std::string& warning : job.input.warnings)
+    figures["warnings"].push_back(warning);
+  return figures;
 }
 } // namespace fresco::model

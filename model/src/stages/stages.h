@@ -2,6 +2,7 @@
 #pragma once
 #include "input/model_input.h"
 #include "job/files.h"
+#include "stages/stage_options.h"
 #include <fresco/core/progress.h>
 #include <fresco/model/build_model.h>
 #include <nlohmann/json.hpp>
@@ -14,14 +15,18 @@ struct Job {
   ModelInput input;
   ModelFiles files;
   ModelOptions options;
+  StageOptions stages;
   Exchange& ranks; ///< that make the points of scans together
 };
 
-/// Finest cell of the surface, metres: ModelOptions::cell, or what the data sustain.
+/// Finest cell of the surface, metres: ModelOptions::cell, or what the data sustain. Of a cloud: reads `files.cell`.
 double finestCell(const Job& job);
 
 /// All scans or frames in one frame with normals: reads the input, writes `files.points` and `files.poses`.
 Figures makePoints(const Job& job, const Progress& progress);
+
+/// The points of a cloud with normals to the free side, in its own frame: writes `files.points`, `files.poses`, `files.cell`.
+Figures pointsFromCloud(const Job& job, const Progress& progress);
 
 /// Cameras of photographs that have none, by the program colmap, in three steps that leave their files in
 /// `files.photographs`.
@@ -31,6 +36,9 @@ Figures findCameras(const Job& job, const Progress& progress);
 
 /// Brings the cameras of photographs into the frame of `files.points`, unless they stand in it: writes `files.cameras`.
 Figures alignCameras(const Job& job, const Progress& progress);
+
+/// What structure from motion found of the photographs, in the frame of placedCameras() where there are no scans.
+SparsePoints foundPoints(const Job& job);
 
 /// The photographs' cameras in the frame of the points.
 CameraSet placedCameras(const Job& job);

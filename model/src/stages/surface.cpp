@@ -6,7 +6,6 @@
 #include <cmath>
 #include <fresco/core/parallel.h>
 #include <fresco/core/require.h>
-#include <fresco/io/image_io.h>
 #include <fresco/io/mesh_io.h>
 #include <fresco/io/point_io.h>
 #include <fresco/io/pose_file.h>
@@ -83,22 +82,23 @@ void askFrames(const RgbdFolder& rgbd, const std::vector<Pose>& poses, int threa
   std::vector<Image16> images(at_once);
   for (Index begin = 0; begin < count; begin += at_once) {
     const Index end = std::min(count, begin + at_once);
-    const auto read = [&](Index i) { images[i] = readImage16(rgbd.frames[placed[begin + i]].depth); };
+    const auto read = [&](Index i) { images[i] = readDepthUnits(rgbd, placed[begin + i]); };
     parallelFor(end - begin, threads, read, 1);
     for (Index k = begin; k < end; ++k)
-      space.ask(images[k - begin], rgbd.camera, Eigen::Isometry3d(*poses[placed[k]]));
+      space.ask(images[k - begin], rgbd.camera, Eigen::Isometry3d(*poses[placed[k]]), rgbd.depth_unit);
   }
 }
 
 FreeSpace askAllViews(const Points& places, const Job& job, double cell)
 {
-  const auto& [input, files, options, ranks] = job;
+  const auto& [input, files, options, stages, ranks] = job;
   FreeSpace space(places, cell, options.threads);
   const std::vector<Pose> poses = readPoses(files.poses);
   if (input.rgbd)
     askFrames(*input.rgbd, poses, options.threads, space);
-  forEachScan(job,
-              [&](const Points& scan, const Eigen::Isometry3d& T_world_scanner) { space.ask(scan, T_world_scanner); });
+  if (!input.is_cloud)
+    forEachScan(
+        job, [&](const Points& scan, const Eigen::Isometry3d& T_world_scanner) { space.ask(scan, T_world_scanner); });
   return space;
 }
 
@@ -140,15 +140,17 @@ TriangleMesh seenPart(const TriangleMesh& mesh, const Job& job, double cell)
 
 Figures makeSurface(const Job& job, const Progress& progress)
 {
-  const auto& [input, files, options, ranks] = job;
+  const auto& [input, files, options, stages, ranks] = job;
   report(progress, "read", 0.0);
   const PlacedPoints placed(files.points);
-  VolumetricOptions volumetric;
-  volumetric.cell_size = finestCell(job);
-  volumetric.threads = options.threads;
+  VolumetricOptions volumetric = stages.reconstruction;
+  if (volumetric.depth == 0) {
+    volumetric.depth = VolumetricOptions{}.depth;
+    volumetric.cell_size = finestCell(job);
+  }
   volumetric.trim_levels = input.rgbd ? std::min(options.trim_levels, most_trim_of_frames) : options.trim_levels;
   bool has_beams = false;
-  if (!input.scans.empty()) {
+  if (!input.scans.empty() && !input.is_cloud) {
     volumetric.free_space = std::make_shared<FreeSpaceMap>(Beams(job));
     has_beams = volumetric.free_space->stations() == placedScans(job);
   }
@@ -158,9 +160,9 @@ Figures makeSurface(const Job& job, const Progress& progress)
   Index carved = 0;
   if (options.trim_levels > 0) {
     if (has_beams)
-      result.mesh = seenPart(result.mesh, job, volumetric.cell_size);
+      result.mesh = seenPart(result.mesh, job, result.cell_size);
     report(progress, "free space", 0.7);
-    std::vector<char> removed = inFreeSpace(result.mesh, placed, job, volumetric.cell_size);
+    std::vector<char> removed = inFreeSpace(result.mesh, placed, job, result.cell_size);
     carved = std::count(removed.begin(), removed.end(), 1);
     result.mesh = withoutVertices(result.mesh, std::move(removed));
   }

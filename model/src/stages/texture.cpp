@@ -100,7 +100,7 @@ std::vector<TextureView> viewsOf(const Job& job, const std::vector<Pose>& poses)
       if (!poses.at(f))
         continue;
       TextureView next;
-      next.camera = input.rgbd->camera;
+      next.camera = input.rgbd->frames[f].color_camera;
       next.T_camera_world = Eigen::Isometry3d(*poses.at(f)).inverse();
       next.path = input.rgbd->frames[f].color;
       views.push_back(std::move(next));
@@ -186,10 +186,9 @@ Figures textureFromViews(const Job& job, TriangleMesh mesh, const std::vector<Te
                          const Progress& progress)
 {
   const ModelInput& input = job.input;
-  TextureOptions texture;
+  TextureOptions texture = job.stages.texture;
   texture.texel = job.options.texel;
   texture.atlas = job.options.atlas;
-  texture.threads = job.options.threads;
   texture.tile_faces = job.options.tile_faces;
   TexturedModelWriter output = writerOf(job);
   TextureResult result = reconstructTexture(std::move(mesh), views, texture, progress, sinkOf(output));

@@ -11,6 +11,7 @@ class Exchange;
 /// Options of buildModel(). Lengths in metres.
 struct ModelOptions {
   bool resume = false;            ///< go on after the last stage that an earlier run finished
+  std::string taken_as;           ///< what the input is taken for: scans, cloud, rgbd, photographs; "" = what it looks like
   bool use_poses = false;         ///< take the poses of scans (poses.txt) or of RGB-D frames as they are
   double cell = 0;                ///< finest cell of the surface reconstruction, >= 0; 0 = 0.02 for scans, three pixels
                                   ///< at the median depth for RGB-D
@@ -28,7 +29,10 @@ struct ModelOptions {
   double panorama_direction = 0;  ///< degrees counter-clockwise from the scan's x axis to the middle of its panorama
   bool panorama_mirrored = false; ///< panoramas go around counter-clockwise from left to right
   int width = 1280, height = 960; ///< of the pictures, pixels, at least 160 x 120
-  int threads = 0;                ///< 0 = all cores; the result does not depend on it
+  /// Options of the stages' own tools: {"reconstruct.depth", "10"}, {"texture.refine", "0"}; see StageOptions. What the others
+  /// here set comes from these.
+  std::vector<std::pair<std::string, std::string>> stage_options;
+  int threads = 0; ///< 0 = all cores; the result does not depend on it
 };
 
 /// What one stage cost and what it found.
@@ -56,8 +60,7 @@ struct ModelReport {
 /// Stages hand over files, so a resumed run gives the same bytes as an undisturbed one. Every file is written whole or
 /// not at all. Written are model.obj with .mtl and .png, model.glb, model_mask.png, mesh.ply, poses.txt,
 /// snapshots/*.png, report.html, report.json, and in work/ what `resume` needs.
-/// @param input_folder  scans with or without photographs (scans/*.pcd, poses.txt, cameras/ as COLMAP model, in a frame of its own if it has points, images/,
-///                      panoramas/ named as the scans) or RGB-D frames (camera-intrinsics.txt, frame-*.{color.jpg,depth.png,pose.txt}); see docs/model.md
+/// @param input_folder  scans or a cloud, with or without photographs, or RGB-D frames, in any of the layouts of docs/inputs.md; or a file
 /// @param output_folder made where it is missing
 /// @param progress      hears "STAGE: STEP" and the share of the stage
 /// @throws std::invalid_argument if an option is out of range
@@ -82,6 +85,23 @@ FRESCO_EXPORT ModelReport buildModel(const ModelFolders& folders, const ModelOpt
 /// What kind of input a folder or file is: "6 scans, 60 photographs".
 /// @throws std::runtime_error as buildModel()
 FRESCO_EXPORT std::string describeInput(const std::string& input_folder);
+
+/// What buildModel() would do. Numbers are true to a factor of about three.
+struct ModelPlan {
+  std::string input;                 ///< see describeInput()
+  std::vector<std::string> found;    ///< a line for each thing in the input and what it is taken for
+  std::vector<std::string> warnings; ///< what is left out, a sentence each
+  std::vector<std::string> stages;   ///< in their order
+  double points = 0;                 ///< raw, as the files announce
+  double seconds = 0;                ///< wall clock
+  double memory = 0, disk = 0;       ///< bytes
+};
+
+/// Looks at the input and writes nothing. @throws as buildModel() for what it finds before its first stage
+FRESCO_EXPORT ModelPlan planModel(const ModelFolders& folders, const ModelOptions& options = {});
+
+/// "points, surface, texture; 876,000 points; about 3 min, 900 MB of memory, 120 MB of disk".
+FRESCO_EXPORT std::string planSummary(const ModelPlan& plan);
 
 /// One line with time, memory and figures of a stage.
 FRESCO_EXPORT std::string stageSummary(const ModelStage& stage);

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include "input/model_input.h"
+#include "input/survey.h"
+#include <optional>
+#include <string>
+#include <vector>
+namespace fresco::model {
+/// What the things in a folder are taken for.
+enum class Reading {
+  scans,       ///< each from one place, in a frame of its own
+  cloud,       ///< points in one frame, seen from many places
+  rgbd,        ///< colour and depth images of a camera
+  photographs, ///< alone
+};
+constexpr const char* reading_names[] = {"scans", "cloud", "rgbd", "photographs"};
+
+/// How a program or device lays out what it exports. Each has a file in layouts/ and a row in the table of recognise.cpp.
+struct Layout {
+  const char* name;                  ///< "TUM RGB-D"
+  std::vector<Reading> readings;     ///< the first is the usual one
+  std::vector<const char*> marks;    ///< patterns of Survey::match() that tell it: all must be there
+  std::vector<const char*> optional; ///< what it takes besides
+  /// @param asked what the user wants it taken for, where that is said
+  /// @throws std::runtime_error naming the file that is wrong, and the cure
+  ModelInput (*read)(const Survey&, std::optional<Reading> asked);
+};
+
+ModelInput readScansFolder(const Survey& found, std::optional<Reading> asked);
+ModelInput readFlatPoints(const Survey& found, std::optional<Reading> asked);
+ModelInput readPhotographsAlone(const Survey& found, std::optional<Reading> asked);
+ModelInput readVideo(const Survey& found, std::optional<Reading> asked);
+ModelInput readColmapProject(const Survey& found, std::optional<Reading> asked);
+ModelInput readScannerExport(const Survey& found, std::optional<Reading> asked);
+ModelInput readSevenScenes(const Survey& found, std::optional<Reading> asked);
+ModelInput readTum(const Survey& found, std::optional<Reading> asked);
+ModelInput readOpen3d(const Survey& found, std::optional<Reading> asked);
+ModelInput readRedwood(const Survey& found, std::optional<Reading> asked);
+ModelInput readScanNet(const Survey& found, std::optional<Reading> asked);
+ModelInput readStrayScanner(const Survey& found, std::optional<Reading> asked);
+ModelInput readPolycam(const Survey& found, std::optional<Reading> asked);
+ModelInput readMatterport(const Survey& found, std::optional<Reading> asked);
+} // namespace fresco::model

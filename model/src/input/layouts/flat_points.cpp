@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// One file of points or a folder of them: scans, each from one place, or parts of one cloud. The files tell, else the points.
+#include "input/parts.h"
+#include "input/standpoint.h"
+#include <algorithm>
+#include <fresco/core/require.h>
+namespace fresco::model {
+namespace {
+/// Whether the files are parts of a cloud rather than scans.
+bool isCloud(const Survey& found, const ModelInput& input)
+{
+  std::string scan, cloud;
+  const std::size_t count = input.scans.size(), step = std::max<std::size_t>(1, count / 3);
+  for (std::size_t s = 0; s < count; s += step) {
+    const Standpoint from = standpointOf(input.scans[s]);
+    if (from == Standpoint::origin ||
+        (from == Standpoint::unknown && count > 1)) // what is in many files was scanned so
+      scan = input.scans[s].name();
+    else
+      cloud = input.scans[s].name();
+  }
+  if (!scan.empty() && !cloud.empty())
+    throw std::runtime_error(concat(found.path(), ": ", scan, " was seen from its origin, ", cloud,
+                                    " was not: say -as scans or -as cloud, or move one sort elsewhere"));
+  return !cloud.empty();
+}
+} // namespace
+
+ModelInput readFlatPoints(const Survey& found, std::optional<Reading> asked)
+{
+  if (const auto packed = found.match("*.laz"); !packed.empty())
+    throw std::runtime_error(
+        concat(found.at(packed[0]), packed.size() > 1 ? concat(" and ", packed.size() - 1, " more") : "",
+               ": compressed LAS is not read: unpack all at once (laszip -i \"", found.path(),
+               found.isFile() ? "" : "/*.laz", "\", or pdal translate) and move the .laz elsewhere"));
+  ModelInput input;
+  input.folder = found.path();
+  takeScans(input, found, found.match("<points>"));
+  takePoses(input, found);
+  const bool by_files = input.scans.size() > 1 && !input.poses.empty();
+  if (asked == Reading::cloud || (!asked && !by_files && isCloud(found, input)))
+    takeAsCloud(input, found);
+  else if (input.poses.empty())
+    input.found.push_back(
+        "each was seen from the origin of its frame (-as cloud: they are parts of one cloud in one frame)");
+  if (found.isFile())
+    return input;
+  takePhotographs(input, found, "cameras", "images");
+  takePanoramas(input, found, "panoramas/<pictures>");
+  if (input.cameras.views.empty() && input.unplaced.empty() && input.panoramas.empty())
+    takePicturesBeside(input, found);
+  return input;
+}
+} // namespace fresco::model

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Cloud of a mobile scanner with panoramas and a table of their poses, as pano-poses.csv of NavVis: a header that names the
+// columns, then a line per panorama. World from panorama: z is up, x looks to the middle of the picture.
+#include "input/parts.h"
+#include "input/text_table.h"
+#include <algorithm>
+#include <fresco/core/require.h>
+#include <fresco/io/image_io.h>
+#include <fstream>
+namespace fresco::model {
+namespace {
+/// Columns of file, x y z, qx qy qz qw, by the words of the header.
+std::vector<int> columnsOf(const std::string& path)
+{
+  std::ifstream file(path);
+  std::string line;
+  std::getline(file, line);
+  if (const std::size_t colon = line.find(':'); line[0] == '#' && colon != std::string::npos)
+    line.erase(0, colon + 1); // "# pano poses v1.0: ID; filename; ..."
+  std::vector<std::string> names;
+  for (char& c : line)
+    c = c == ';' || c == ',' || c == '#' || c == '\t' || c == '\r' ? ' '
+                                                                   : char(std::tolower(static_cast<unsigned char>(c)));
+  std::istringstream words(line);
+  for (std::string word; words >> word;)
+    names.push_back(word);
+  std::vector<int> columns;
+  for (const auto& wanted : std::vector<std::vector<std::string>>{{"filename", "file", "image", "name"},
+                                                                  {"pano_pos_x", "x", "tx"},
+                                                                  {"pano_pos_y", "y", "ty"},
+                                                                  {"pano_pos_z", "z", "tz"},
+                                                                  {"pano_ori_x", "qx"},
+                                                                  {"pano_ori_y", "qy"},
+                                                                  {"pano_ori_z", "qz"},
+                                                                  {"pano_ori_w", "qw"}}) {
+    const auto at = std::find_first_of(names.begin(), names.end(), wanted.begin(), wanted.end());
+    if (at == names.end())
+      throw std::runtime_error(path + ": its first line names no column " + wanted[0] +
+                               "; wants filename, pano_pos_x y z, pano_ori_w x y z");
+    columns.push_back(int(at - names.begin()));
+  }
+  return columns;
+}
+} // namespace
+
+ModelInput readScannerExport(const Survey& found, std::optional<Reading>)
+{
+  ModelInput input;
+  input.folder = found.path();
+  takeScans(input, found, found.match("<points>"));
+  takeAsCloud(input, found);
+  const std::string table = found.match("*pano*.csv|pano*/*pano*.csv|info/*pano*.csv|*pano*.txt")[0],
+                    path = found.at(table);
+  const std::vector<int> columns = columnsOf(path);
+  Eigen::Matrix4d T_pano_camera = Eigen::Matrix4d::Identity();
+  T_pano_camera.topLeftCorner<3, 3>() << 0, 0, 1, -1, 0, 0, 0, -1, 0;
+  input.images = found.path();
+  for (const auto& row : readTable(path)) {
+    if (int(row.size()) <= *std::max_element(columns.begin(), columns.end()))
+      throw std::runtime_error(path + ": a line of fewer words than its first one names");
+    if (row[columns[0]] == "filename" || row[columns[0]] == "file")
+      continue;
+    const auto number = [&](int k) { return numberIn(path, row[columns[k]]); };
+    const std::string& file = row[columns[0]];
+    const std::vector<std::string> place =
+        found.match(file + "|pano/" + file + "|panos/" + file + "|panorama/" + file + "|panoramas/" + file);
+    if (place.empty())
+      throw std::runtime_error(found.at(file) + ": no such panorama, but " + table + " names it");
+    const Pose pose = poseOf(path, {number(1), number(2), number(3)}, {number(4), number(5), number(6), number(7)});
+    if (!pose)
+      continue;
+    if (input.cameras.cameras.empty()) {
+      const ImageSize first = readImageSize(found.at(place[0]));
+      if (first.width != 2 * first.height)
+        throw std::runtime_error(concat(found.at(place[0]), ": a panorama of ", first.width, "x", first.height,
+                                        " pixels is not twice as wide as high"));
+      input.cameras.cameras.push_back(sphericalCamera(first.width, first.height));
+    }
+    View view;
+    view.image = place[0];
+    view.T_camera_world = Eigen::Isometry3d(*pose * T_pano_camera).inverse();
+    input.sensor_path.push_back(pose->topRightCorner<3, 1>());
+    input.cameras.views.push_back(view);
+  }
+  input.found.push_back(concat(table, ": poses of ", counted(input.cameras.views.size(), "panorama")));
+  return input;
+}
+} // namespace fresco::model

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Sturm et al. 2012, "A benchmark for the evaluation of RGB-D SLAM systems": lists of times and files, poses by time.
+#include "input/frame_files.h"
+#include "input/text_table.h"
+#include <cmath>
+#include <fresco/core/require.h>
+namespace fresco::model {
+namespace {
+constexpr double same_moment = 0.02; // seconds, as the benchmark's tool associates: less than half a frame
+
+using Table = std::vector<std::vector<std::string>>;
+
+/// The row whose time, its first number, is nearest; nullptr if that is not the same moment. @param rows by time
+const std::vector<std::string>* rowAt(const std::map<double, const std::vector<std::string>*>& rows, double time)
+{
+  auto after = rows.lower_bound(time);
+  auto best = after;
+  if (after != rows.begin() && (after == rows.end() || time - std::prev(after)->first < after->first - time))
+    best = std::prev(after);
+  return best != rows.end() && std::abs(best->first - time) <= same_moment ? best->second : nullptr;
+}
+
+std::map<double, const std::vector<std::string>*> byTime(const std::string& path, const Table& table, std::size_t words)
+{
+  std::map<double, const std::vector<std::string>*> rows;
+  for (const auto& row : table) {
+    if (row.size() < words)
+      throw std::runtime_error(concat(path, ": a line of ", row.size(), " words, ", words, " are wanted: time and ",
+                                      words == 2 ? "file" : "tx ty tz qx qy qz qw"));
+    rows[numberIn(path, row[0])] = &row;
+  }
+  return rows;
+}
+
+/// Times and the files of both images.
+std::map<double, std::pair<std::string, std::string>> associated(const Survey& found)
+{
+  std::map<double, std::pair<std::string, std::string>> pairs;
+  if (found.has("associations.txt")) {
+    const std::string path = found.at("associations.txt");
+    for (const auto& row : readTable(path)) {
+      if (row.size() < 4)
+        throw std::runtime_error(path + ": wants lines of time, colour image, time, depth image");
+      const bool color_first = row[1].find("depth") == std::string::npos;
+      pairs[numberIn(path, row[0])] = {row[color_first ? 1 : 3], row[color_first ? 3 : 1]};
+    }
+    return pairs;
+  }
+  const Table colors = readTable(found.at("rgb.txt")), depths = readTable(found.at("depth.txt"));
+  const auto depth_at = byTime(found.at("depth.txt"), depths, 2);
+  for (const auto& [time, row] : byTime(found.at("rgb.txt"), colors, 2))
+    if (const auto* depth = rowAt(depth_at, time))
+      pairs[time] = {(*row)[1], (*depth)[1]};
+  return pairs;
+}
+} // namespace
+
+ModelInput readTum(const Survey& found, std::optional<Reading>)
+{
+  ModelInput input;
+  input.folder = found.path();
+  RgbdParts parts;
+  parts.folder.depth_unit = 1.0 / 5000;
+  parts.camera_file = found.at("camera-intrinsics.txt");
+  const std::string truth = found.at("groundtruth.txt");
+  const Table poses = found.has("groundtruth.txt") ? readTable(truth) : Table();
+  const auto pose_at = byTime(truth, poses, 8);
+  for (const auto& [time, files] : associated(found)) {
+    RgbdFrame frame;
+    frame.name = files.second;
+    frame.color = found.at(files.first), frame.depth = found.at(files.second);
+    for (const std::string& name : {files.first, files.second})
+      if (!found.has(name))
+        throw std::runtime_error(found.at(name) + ": no such file, but the lists of this TUM folder name it");
+    parts.folder.frames.push_back(frame);
+    const auto* row = rowAt(pose_at, time);
+    const auto number = [&](int k) { return numberIn(truth, (*row)[k]); };
+    parts.poses.push_back(
+        row ? poseOf(truth, {number(1), number(2), number(3)}, {number(4), number(5), number(6), number(7)})
+            : std::nullopt);
+  }
+  if (parts.folder.frames.empty())
+    throw std::runtime_error(found.path() +
+                             ": no colour and depth image within 0.02 s of each other: do the times of rgb.txt and "
+                             "depth.txt (or associations.txt) count from the same moment?");
+  if (!poses.empty() &&
+      std::none_of(parts.poses.begin(), parts.poses.end(), [](const Pose& pose) { return bool(pose); }))
+    throw std::runtime_error(
+        truth + ": no pose within 0.02 s of a frame: its times count from another moment; without the file "
+                "the frames are tracked");
+  if (found.has("camera-intrinsics.txt")) {
+    parts.folder.camera = readCameraMatrix(parts.camera_file, 3);
+  } else {
+    parts.folder.camera = usualCamera(parts.folder.frames[0].depth, parts.camera_file);
+    input.warnings.push_back(
+        "no camera-intrinsics.txt (3x3): the camera is taken as the one that TUM recommends, fx = fy = 525");
+  }
+  return rgbdInput(std::move(parts), std::move(input));
+}
+} // namespace fresco::model

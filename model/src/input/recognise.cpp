@@ -1,0 +1,235 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "input/layout.h"
+#include <algorithm>
+#include <fresco/io/file.h>
+#include <fresco/io/listed.h>
+#include <set>
+namespace fresco::model {
+namespace {
+const std::vector<Layout>& layouts()
+{
+  using R = Reading;
+  static const std::vector<Layout> table = {
+      {"scans in scans/",
+       {R::scans, R::cloud},
+       {"scans/"},
+       {"poses.txt", "trajectory.txt", "cameras/", "images/", "panoramas/", "masks/"},
+       readScansFolder},
+      {"scans or a cloud",
+       {R::scans, R::cloud},
+       {"<points>|*.laz"},
+       {"*.laz", "poses.txt", "trajectory.txt", "<pictures>", "images/", "panoramas/", "masks/"},
+       readFlatPoints},
+      {"photographs in images/", {R::photographs}, {"images/"}, {"masks/"}, readPhotographsAlone},
+      {"photographs", {R::photographs}, {"<pictures>"}, {"masks/"}, readPhotographsAlone},
+      {"a video", {R::photographs}, {"<videos>"}, {}, readVideo},
+      {"COLMAP project",
+       {R::cloud, R::photographs},
+       {"images/|dense/images/|dense/0/images/", "sparse/|dense/sparse/|dense/0/sparse/"},
+       {"dense/", "*.ply", "*.db", "stereo/", "*.sh", "masks/"},
+       readColmapProject},
+      {"scanner export with a table of panoramas",
+       {R::cloud},
+       {"*pano*.csv|pano*/*pano*.csv|info/*pano*.csv|*pano*.txt", "<points>"},
+       {"<pictures>", "pano/", "panos/", "panorama/", "panoramas/", "info/"},
+       readScannerExport},
+      {"7-Scenes RGB-D",
+       {R::rgbd},
+       {"frame-*.depth.png"},
+       {"camera-intrinsics.txt", "frame-*", "poses.txt", "masks/"},
+       readSevenScenes},
+      {"TUM RGB-D",
+       {R::rgbd},
+       {"rgb/", "depth/", "rgb.txt|associations.txt", "depth.txt|associations.txt"},
+       {"associations.txt", "groundtruth.txt", "camera-intrinsics.txt", "accelerometer.txt"},
+       readTum},
+      {"Open3D RGB-D",
+       {R::rgbd},
+       {"color/|image/|rgb/", "depth/", "camera_intrinsic.json|intrinsic.json|camera.json"},
+       {"trajectory.log", "trajectory.txt", "*.json"},
+       readOpen3d},
+      {"Redwood RGB-D", {R::rgbd}, {"rgb/|image/|color/", "depth/", "depth/*-*.png|*.log|*-traj.txt"}, {}, readRedwood},
+      {"ScanNet", {R::rgbd}, {"color/", "depth/", "pose/", "intrinsic/"}, {"*.txt"}, readScanNet},
+      {"Stray Scanner",
+       {R::rgbd},
+       {"rgb.mp4|rgb/", "depth/", "odometry.csv", "camera_matrix.csv"},
+       {"confidence/", "imu.csv"},
+       readStrayScanner},
+      {"Polycam raw data",
+       {R::rgbd},
+       {"keyframes/corrected_images/|keyframes/images/", "keyframes/corrected_cameras/|keyframes/cameras/",
+        "keyframes/depth/"},
+       {"keyframes/", "*.glb", "thumbnail.jpg", "polycam.mp4", "mesh_info.json"},
+       readPolycam},
+      {"Matterport3D",
+       {R::rgbd},
+       {"undistorted_color_images/", "undistorted_depth_images/", "undistorted_camera_parameters/*.conf"},
+       {"*/"},
+       readMatterport},
+  };
+  return table;
+}
+
+/// A layout that fits.
+struct Candidate {
+  const Layout* layout;
+  std::set<std::string> takes; ///< names at the top of the folder
+};
+
+std::vector<Candidate> candidates(const Survey& found, std::optional<Reading> asked)
+{
+  std::vector<Candidate> all;
+  for (const Layout& layout : layouts()) {
+    const auto& readings = layout.readings;
+    if (asked && std::find(readings.begin(), readings.end(), *asked) == readings.end())
+      continue;
+    const auto has = [&](const char* mark) { return found.has(mark); };
+    if (!std::all_of(layout.marks.begin(), layout.marks.end(), has))
+      continue;
+    Candidate next{&layout, {}};
+    for (const auto* list : {&layout.marks, &layout.optional})
+      for (const char* pattern : *list)
+        for (const std::string& name : found.match(pattern))
+          next.takes.insert(name.substr(0, name.find('/')));
+    all.push_back(std::move(next));
+  }
+  return all;
+}
+
+/// Any files of a sort: what lies beside the parts of another layout may be whatever else was made of them.
+bool isPlain(const Candidate& one) { return one.layout->marks.size() == 1 && one.layout->marks[0][0] == '<'; }
+
+/// Whether all that `less` takes is taken by `more`, too, and more of it; of two that take the same, the one that asks for more.
+bool isPartOf(const Candidate& less, const Candidate& more)
+{
+  if (isPlain(less) != isPlain(more))
+    return isPlain(less);
+  const bool within = std::includes(more.takes.begin(), more.takes.end(), less.takes.begin(), less.takes.end());
+  return within && (more.takes.size() > less.takes.size() || more.layout->marks.size() > less.layout->marks.size());
+}
+
+std::string quoted(const char* pattern)
+{
+  std::string text = pattern;
+  for (std::size_t at; (at = text.find('|')) != std::string::npos;)
+    text.replace(at, 1, " or ");
+  return text;
+}
+
+/// The layout of which most is there, and what it misses.
+std::string nearest(const Survey& found)
+{
+  double best = 0.49; // less than half of a layout is another one
+  std::string text;
+  for (const Layout& layout : layouts()) {
+    std::vector<std::string> there, missing;
+    for (const char* mark : layout.marks)
+      (found.has(mark) ? there : missing).push_back(quoted(mark));
+    if (const double share = double(there.size()) / layout.marks.size(); share > best) {
+      best = share;
+      text = concat("; nearest is ", layout.name, ": ", listed(there, 4), there.size() == 1 ? " is" : " are",
+                    " there, ", listed(missing, 4), missing.size() == 1 ? " is" : " are", " missing");
+    }
+  }
+  return text;
+}
+
+/// A folder inside that would be understood.
+std::string understoodBelow(const Survey& found)
+{
+  constexpr int most_asked = 20;
+  int asked = 0;
+  for (const std::string& folder : found.folders())
+    if (folder.find('/') == std::string::npos && ++asked <= most_asked &&
+        !candidates(Survey(found.at(folder)), {}).empty())
+      return concat("; ", found.at(folder), " would be understood");
+  return "";
+}
+
+[[noreturn]] void throwUnknown(const Survey& found, std::optional<Reading> asked)
+{
+  std::vector<std::string> kinds;
+  for (const auto& [kind, count] : found.kinds())
+    kinds.push_back(concat(count, " ", kind.empty() ? "without extension" : kind));
+  if (kinds.empty())
+    throw std::runtime_error(found.path() + ": an empty folder; docs/inputs.md lists what is understood");
+  const std::string closest = nearest(found), near = closest.empty() ? understoodBelow(found) : closest;
+  throw std::runtime_error(
+      concat(found.path(), ": nothing ", asked ? concat("for -as ", reading_names[int(*asked)], " ") : "",
+             "in it is understood (", listed(kinds, 5), ")", near, "; docs/inputs.md lists the layouts"));
+}
+
+/// A layout of which one mark of several is missing, while what is there makes another layout fit: rather that than the other.
+void requireNoNearMiss(const Survey& found, const Candidate& chosen)
+{
+  for (const Layout& layout : layouts()) {
+    std::vector<std::string> missing;
+    std::set<std::string> takes;
+    for (const char* mark : layout.marks) {
+      const std::vector<std::string> names = found.match(mark);
+      if (names.empty())
+        missing.push_back(quoted(mark));
+      for (const std::string& name : names)
+        takes.insert(name.substr(0, name.find('/')));
+    }
+    if (missing.size() == 1 && layout.marks.size() > chosen.layout->marks.size() + 1 &&
+        std::includes(takes.begin(), takes.end(), chosen.takes.begin(), chosen.takes.end()))
+      throw std::runtime_error(concat(found.path(), "/", missing[0], ": is missing; all else is there of ", layout.name,
+                                      ". Add it, or say -as ", reading_names[int(chosen.layout->readings[0])], " for ",
+                                      chosen.layout->name));
+  }
+}
+
+Candidate theLayout(const Survey& found, std::optional<Reading> asked)
+{
+  const std::vector<Candidate> all = candidates(found, asked);
+  std::vector<const Candidate*> kept;
+  for (const Candidate& one : all)
+    if (std::none_of(all.begin(), all.end(), [&](const Candidate& other) { return isPartOf(one, other); }))
+      kept.push_back(&one);
+  if (kept.empty())
+    throwUnknown(found, asked);
+  if (kept.size() > 1) {
+    const Layout &a = *kept[0]->layout, &b = *kept[1]->layout;
+    throw std::runtime_error(concat(found.path(), ": may be ", a.name, " (-as ", reading_names[int(a.readings[0])],
+                                    ") or ", b.name, " (-as ", reading_names[int(b.readings[0])],
+                                    "): say which, or move one of them elsewhere"));
+  }
+  if (!asked)
+    requireNoNearMiss(found, *kept[0]);
+  return *kept[0];
+}
+
+/// What lies at the top of the folder and no part of the layout is.
+std::string unused(const Survey& found, const Candidate& chosen)
+{
+  std::set<std::string> others;
+  for (const std::string& file : found.files())
+    if (const std::string top = file.substr(0, file.find('/')); chosen.takes.count(top) == 0)
+      others.insert(top);
+  return listed({others.begin(), others.end()}, 6);
+}
+
+std::optional<Reading> readingOf(const std::string& name)
+{
+  for (int k = 0; k < 4; ++k)
+    if (name == reading_names[k])
+      return Reading(k);
+  require(name.empty(), "model: -as ", name, " is none of scans, cloud, rgbd, photographs");
+  return {};
+}
+} // namespace
+
+ModelInput readModelInput(const std::string& path, const std::string& as)
+{
+  const std::optional<Reading> asked = readingOf(as);
+  const Survey found(path);
+  const Candidate chosen = theLayout(found, asked);
+  ModelInput input = chosen.layout->read(found, asked);
+  input.folder = path;
+  input.layout = chosen.layout->name;
+  if (const std::string others = unused(found, chosen); !others.empty() && !found.isFile())
+    input.found.push_back("not used: " + others);
+  return input;
+}
+} // namespace fresco::model

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include <fresco/core/point_set.h>
+#include <fresco/io/scan_file.h>
+#include <string>
+namespace fresco::model {
+/// From where the points of a scan were seen.
+enum class Standpoint { origin, many, unknown };
+
+/// What the file says of the sensor, else the points: almost nothing is hidden behind something else for one who stands where a
+/// scan was taken. Points farther from the origin than they extend were not measured from there. Up to four million are read.
+/// @throws std::runtime_error as readPoints()
+Standpoint standpointOf(const ScanPath& scan);
+
+/// Whether a file holds a surface, whose points are to be spread over its faces: of PLY its header tells; OBJ always, since a
+/// scanner exports it only so.
+bool holdsFaces(const std::string& file);
+
+/// Share of the points that have about the same direction from the origin as their neighbour in direction, and a range that is
+/// different by a tenth, 0..1.
+/// @param points 3xN, finite, N >= 2
+double hiddenShare(const Points& points);
+} // namespace fresco::model
