@@ -2,7 +2,9 @@
 #include "support/args.h"
 #include "support/ranks.h"
 #include "support/tool.h"
+#include <fresco/io/file.h>
 #include <fresco/model/build_model.h>
+#include <iostream>
 namespace {
 void print(const fresco::ModelReport& report, bool quiet)
 {
@@ -11,6 +13,23 @@ void print(const fresco::ModelReport& report, bool quiet)
     for (const std::string& warning : stage.warnings)
       fresco::inform(quiet, "warning: " + warning);
   }
+}
+
+void print(const fresco::ModelPlan& plan, bool quiet, bool dry_run)
+{
+  const auto say = [&](const std::string& line) {
+    if (dry_run)
+      std::cout << fresco::oneLine(line) << "\n"; // it is what was asked for
+    else
+      fresco::inform(quiet, line);
+  };
+  say("input: " + plan.input);
+  for (const std::string& line : plan.found)
+    say("  " + line);
+  if (dry_run)
+    for (const std::string& warning : plan.warnings)
+      say("warning: " + warning);
+  say((dry_run ? "would do: " : "to do: ") + fresco::planSummary(plan));
 }
 } // namespace
 
@@ -22,18 +41,21 @@ int main(int argc, char** argv)
     fresco::Args args(
         program + " INPUT OUT_DIR [options]",
         "Makes a textured model of a room: points and normals, poses, surface, texture, pictures, report.\n"
-        "INPUT is a folder of scans (scans/*.pcd), alone, with panoramas named as the scans (panoramas/*.jpg) or\n"
-        "with photographs (cameras/ as COLMAP model, images/, and poses.txt, of which only the first pose is used\n"
-        "unless -use_poses is given: it ties the scans to the photographs; cameras with points3D may have a frame and "
-        "scale\n"
-        "of their own; without cameras/ the program colmap finds them), an RGB-D folder (camera-intrinsics.txt, "
-        "frame-*.{color.jpg,depth.png,pose.txt}), or a file\n"
-        "of scans (.e57 with the pictures inside, .ptx).\n"
+        "INPUT is a folder or file in any of the layouts of docs/inputs.md: scans, one cloud of points, RGB-D frames "
+        "of\n"
+        "datasets and phones, a COLMAP project, photographs, a video. -dry_run tells what it is taken for. Of scans "
+        "with\n"
+        "photographs, poses.txt ties them to each other; only its first pose is used unless -use_poses is given.\n"
         "Writes model.obj/.mtl/.png, model.glb, mesh.ply, poses.txt, snapshots/*.png, report.html and\n"
         "report.json to OUT_DIR; OUT_DIR/work holds what -resume needs.");
     args.flag("use_poses", options.use_poses,
               "take the poses of the scans (poses.txt) or of RGB-D frames as they are: neither found nor refined");
     args.flag("poses", options.use_poses, "the same as -use_poses");
+    bool dry_run = false;
+    args.flag("dry_run", dry_run,
+              "tell what INPUT is taken for and what would be done, and how long it takes; write nothing");
+    args.option("as", options.taken_as,
+                "what INPUT is taken for: scans, cloud, rgbd or photographs; empty = what it looks like");
     args.flag("resume", options.resume, "go on after the last stage that an earlier run into OUT_DIR finished");
     args.option("cell", options.cell,
                 "finest cell of the surface reconstruction, metres; 0 = 0.02 for scans, 3 pixels at the median depth "
@@ -60,6 +82,13 @@ int main(int argc, char** argv)
     args.flag("panorama_mirrored", options.panorama_mirrored,
               "panoramas go around counter-clockwise from left to right");
     args.size("size", options.width, options.height, "size of the pictures, pixels");
+    args.settingsFile("settings",
+                      "options from a file: lines \"NAME VALUE\"; OUT_DIR/settings.txt holds those of the last run");
+    args.dotted(
+        "-STAGE.OPTION VALUE sets an option of a stage's own tool: -reconstruct.depth 10, -texture.refine 0. A stage "
+        "or\n"
+        "option that is none is answered with those that there are.",
+        [&](const std::string& name, const std::string& value) { options.stage_options.emplace_back(name, value); });
     common.declare(args);
     const auto words = args.parse(argc, argv, 2);
     if (options.width < 160 || options.height < 120)
@@ -68,7 +97,14 @@ int main(int argc, char** argv)
       fresco::requireDistinct({words[1]}, {words[0] + part});
     options.threads = common.threads;
     common.quiet |= ranks.rank() > 0;
-    fresco::inform(common.quiet, "input: " + fresco::describeInput(words[0]));
+    const fresco::ModelPlan plan = fresco::planModel({words[0], words[1]}, options);
+    print(plan, common.quiet, dry_run);
+    if (dry_run)
+      return;
     print(fresco::buildModel({words[0], words[1]}, options, fresco::printProgress(common.quiet), ranks), common.quiet);
+    if (ranks.rank() == 0)
+      fresco::writeFile(words[1] + "/settings.txt",
+                        "# fresco_model " + words[0] + "\n" +
+                            args.settings({"settings", "resume", "dry_run", "quiet", "threads"}));
   });
 }

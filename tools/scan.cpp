@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "support/tool.h"
+#include <algorithm>
+#include <filesystem>
 #include <fresco/io/formats.h>
+#include <fresco/io/listed.h>
 #include <fresco/simulation/sensors/dataset.h>
+#include <fresco/simulation/sensors/layouts.h>
 using namespace fresco;
 using namespace fresco::simulation;
 
@@ -73,15 +77,29 @@ int main(int argc, char** argv)
     CommonOptions common;
     Args args("fresco_scan SCENE OUT_DIR [options]", "Virtual laser scanner and camera with known truth.");
     declare(args, options, seed);
+    std::string layout;
+    args.option("layout", layout,
+                "writes the same data as another program or device lays it out, instead: " +
+                    listed(layoutNames(), 100) + "; some want -panoramas, -sparse, -e57 or -rgbd");
     common.declare(args);
     const auto files = args.parse(argc, argv, 2);
     requireDistinct({files[1] + "/truth.ply"}, {files[0]});
     if (seed < 0)
       throw UsageError("-seed: " + std::to_string(seed) + " is negative");
+    const std::vector<std::string> layouts = simulation::layoutNames();
+    if (!layout.empty() && std::find(layouts.begin(), layouts.end(), layout) == layouts.end())
+      throw UsageError("-layout: " + layout + " is none of " + listed(layouts, layouts.size()));
     options.seed = seed;
     options.threads = common.threads;
     if (args.given("no_images"))
       options.views = 0;
-    writeDataset(files[0], files[1], options, printProgress(common.quiet));
+    if (layout.empty()) {
+      writeDataset(files[0], files[1], options, printProgress(common.quiet));
+      return;
+    }
+    const std::string source = files[1] + "/.source"; // what the layout is made of
+    writeDataset(files[0], source, options, printProgress(common.quiet));
+    writeLayout(layout, source, files[1]);
+    std::filesystem::remove_all(source);
   });
 }

@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fresco/core/require.h>
+#include <fresco/io/file.h>
 #include <iomanip>
 #include <iostream>
 #include <limits>
@@ -219,9 +220,58 @@ std::size_t Args::readOption(const std::vector<std::string>& words, std::size_t 
         throw UsageError("option -" + name + " wants " + option.placeholders + ", not '" + word + "'");
     option.apply(given);
     option.given = true;
+    option.words.clear();
+    for (const std::string& word : given)
+      option.words += " " + word;
     return at + 1 + option.count;
   }
+  if (apply_dotted_ && name.find('.') != std::string::npos) {
+    if (at + 1 >= words.size() || looksLikeOption(words[at + 1]))
+      throw UsageError("option -" + name + " wants a value");
+    apply_dotted_(name, words[at + 1]);
+    given_dotted_.emplace_back(name, words[at + 1]);
+    return at + 2;
+  }
   throw UsageError("unknown option " + words[at]);
+}
+
+void Args::dotted(const std::string& help, std::function<void(const std::string&, const std::string&)> apply)
+{
+  apply_dotted_ = std::move(apply);
+  notes_ += help + "\n";
+}
+
+void Args::settingsFile(const std::string& name, const std::string& help)
+{
+  values(name, "FILE", help, [this](const auto& words) { readSettings(words[0]); });
+}
+
+void Args::readSettings(const std::string& path)
+{
+  std::istringstream lines(readFile(path));
+  for (std::string line; std::getline(lines, line);) {
+    std::istringstream text(line.substr(0, line.find('#')));
+    std::vector<std::string> words;
+    for (std::string word; text >> word;)
+      words.push_back(words.empty() ? "-" + word : word);
+    try {
+      if (!words.empty() && readOption(words, 0) != words.size())
+        throw UsageError("too many values: " + line);
+    } catch (const UsageError& error) {
+      throw UsageError(path + ": " + error.what());
+    }
+  }
+}
+
+std::string Args::settings(const std::vector<std::string>& without) const
+{
+  std::string text;
+  for (const Option& option : options_)
+    if (option.given && std::find(without.begin(), without.end(), option.name) == without.end())
+      text += option.name + option.words + "\n";
+  for (const auto& [name, value] : given_dotted_)
+    text += name + " " + value + "\n";
+  return text;
 }
 
 std::vector<std::string> Args::parse(int argc, char** argv, std::size_t least, std::size_t most)

@@ -38,6 +38,14 @@ public:
   void values(const std::string& name, const std::string& placeholders, const std::string& help,
               std::function<void(const std::vector<std::string>&)> apply);
 
+  /// `-STAGE.NAME VALUE` for names that are not declared: `apply` gets name and value.
+  void dotted(const std::string& help, std::function<void(const std::string& name, const std::string& value)> apply);
+  /// `-name FILE` reads options from a file: lines "NAME VALUE...", '#' begins a comment. What stands behind it on the command
+  /// line comes after it.
+  void settingsFile(const std::string& name, const std::string& help);
+  /// The options that were given, as such a file has them, but for those named.
+  std::string settings(const std::vector<std::string>& without) const;
+
   /// Text printed at the end of the help (examples).
   void note(const std::string& text) { notes_ += text + "\n"; }
 
@@ -59,8 +67,12 @@ private:
     std::size_t count;
     std::function<void(const std::vector<std::string>&)> apply;
     bool given = false;
+    std::string words = {}; ///< that were given last
   };
   std::size_t readOption(const std::vector<std::string>& words, std::size_t at);
+  void readSettings(const std::string& path);
+  std::function<void(const std::string&, const std::string&)> apply_dotted_;
+  std::vector<std::pair<std::string, std::string>> given_dotted_;
   std::string synopsis_, description_, notes_;
   std::vector<Option> options_;
 };

@@ -26,6 +26,18 @@
 extern "C" void __sanitizer_set_report_fd(void* descriptor) __attribute__((weak)); // NOLINT: not our name
 
 namespace fresco {
+std::string oneLine(std::string text)
+{
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const auto byte = [&](std::size_t at) { return at < text.size() ? static_cast<unsigned char>(text[at]) : 0U; };
+    if (byte(i) < 0x20 || byte(i) == 0x7f)
+      text[i] = text[i] == '\n' || text[i] == '\r' || text[i] == '\t' ? ' ' : '?';
+    else if (byte(i) == 0xc2 && byte(i + 1) >= 0x80 && byte(i + 1) < 0xa0)
+      text.replace(i, 2, "?");
+  }
+  return text;
+}
+
 namespace {
 std::atomic<int> own_stderr{STDERR_FILENO}; ///< where fresco prints; libraries know the other one only
 
@@ -55,19 +67,6 @@ void askToStop(int signal)
 {
   if (++stops_asked > 1)
     std::signal(signal, SIG_DFL);
-}
-
-/// Names and messages may come from files: a terminal obeys control characters (C0, DEL, and C1 as UTF-8 has them).
-std::string oneLine(std::string text)
-{
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const auto byte = [&](std::size_t at) { return at < text.size() ? static_cast<unsigned char>(text[at]) : 0U; };
-    if (byte(i) < 0x20 || byte(i) == 0x7f)
-      text[i] = text[i] == '\n' || text[i] == '\r' || text[i] == '\t' ? ' ' : '?';
-    else if (byte(i) == 0xc2 && byte(i + 1) >= 0x80 && byte(i + 1) < 0xa0)
-      text.replace(i, 2, "?");
-  }
-  return text;
 }
 
 std::atomic<bool> bar_stands{false}; ///< the cursor is behind a bar, not at the start of a line

@@ -16,6 +16,10 @@ struct CommonOptions {
 /// once the process has been asked to stop (SIGINT, SIGTERM). Silent where `quiet` is set.
 Progress printProgress(bool quiet);
 
+/// `text` as a line may show it: names and messages may come from files, and a terminal obeys control characters (C0, DEL,
+/// and C1 as UTF-8 has them).
+std::string oneLine(std::string text);
+
 /// One line on stderr, unless `quiet`.
 void inform(bool quiet, const std::string& line);
 

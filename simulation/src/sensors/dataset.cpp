@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sensors/rgbd_walk.h"
 #include "sensors/sparse.h"
-#include "sensors/survey.h"
 #include <filesystem>
 #include <fresco/core/parallel.h>
 #include <fresco/core/require.h>
@@ -14,6 +13,7 @@
 #include <fresco/simulation/scene/labels.h>
 #include <fresco/simulation/sensors/dataset.h>
 #include <fresco/simulation/sensors/random.h>
+#include <fresco/simulation/sensors/survey.h>
 #include <fresco/simulation/sensors/views.h>
 #include <iomanip>
 #include <optional>

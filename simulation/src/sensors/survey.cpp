@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "sensors/survey.h"
 #include <filesystem>
 #include <fresco/core/constants.h>
 #include <fresco/core/require.h>
