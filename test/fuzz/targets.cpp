@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "targets.h"
 #include "common/io/e57_file.h"
-#include "input/rgbd.h"
+#include "input/model_input.h"
 #include "job/stage_log.h"
 #include "support/args.h"
 #include <filesystem>
@@ -184,10 +184,10 @@ void readRgbd(Bytes bytes, const std::string& folder)
 {
   store(folder + "/camera-intrinsics.txt", takePart(bytes));
   store(folder + "/frame-000000.pose.txt", takePart(bytes));
-  store(folder + "/frame-000000.color.jpg", "stands for a photograph");
+  writeImage(folder + "/frame-000000.color.jpg", Image(64, 48));
   store(folder + "/frame-000000.depth.png", bytes);
   readChecked(folder, [&] {
-    const RgbdFolder room = readRgbdFolder(folder);
+    const RgbdFolder room = *readModelInput(folder).rgbd;
     expect(room.camera.fx > 0 && room.camera.fy > 0 && !room.frames.empty(), "no camera or no frame");
     readDepth(room, 0);
   });
@@ -196,9 +196,10 @@ void readRgbd(Bytes bytes, const std::string& folder)
 /// The record of a stage that an earlier run left.
 void readStageLog(Bytes bytes, const std::string& folder)
 {
-  store(folder + "/stage.json", bytes);
+  makeFolder(folder + "/work");
+  store(folder + "/work/stage.json", bytes);
   readChecked(folder, [&] {
-    StageLog log(folder, "input", true, {});
+    StageLog log(folder + "/work", {"input"}, true, {});
     log.run({"stage", "options", {}, [](const Progress&) { return nlohmann::ordered_json{{"answer", 42}}; }});
     expect(log.records().size() == 1, "a stage without a record");
     log.records()[0].figures.dump();

@@ -113,7 +113,7 @@ struct TwoStages {
 
   std::vector<StageRecord> run(const std::string& key, const std::string& option, bool resume)
   {
-    StageLog log(folder + "/work", key, resume, {});
+    StageLog log(folder + "/work", {key}, resume, {});
     const auto write = [](const std::string& path, int& count) {
       ++count;
       OutputFile file(path);
@@ -164,7 +164,7 @@ TEST(Stages, AStageThatLostAFileOfItsFolderIsMadeAnew)
 {
   const std::string folder = test::scratchFolder(), points = folder + "/points";
   const auto isResumed = [&] {
-    StageLog log(folder + "/work", "input", true, {});
+    StageLog log(folder + "/work", {"input"}, true, {});
     log.run({"a", "", {points}, [&](const Progress&) {
                fs::create_directories(points);
                std::ofstream(points + "/1") << "one";
@@ -229,7 +229,7 @@ TEST(Report, IsWholeAndEscaped)
 TEST(RgbdFolder, RealRoomIsRead)
 {
   FRESCO_NEED_DATA("room7");
-  const RgbdFolder room = readRgbdFolder(test::dataFolder() + "/room7");
+  const RgbdFolder room = *readModelInput(test::dataFolder() + "/room7").rgbd;
   EXPECT_EQ(room.frames.size(), 100U);
   EXPECT_EQ(room.camera.width, 640);
   EXPECT_EQ(room.camera.fx, 585.0);
@@ -245,9 +245,9 @@ TEST(RgbdFolder, RealRoomIsRead)
 TEST(StageLog, NamesOfAnyBytes)
 {
   const std::string folder = test::scratchFolder(), name = "scan\xff\xfe.pcd";
-  StageLog log(folder, name, false, {});
+  StageLog log(folder + "/work", {name}, false, {});
   log.run({"stage", name, {}, [&](const Progress&) { return Json{{"warnings", {name + ": dark"}}}; }});
-  EXPECT_TRUE(Json::parse(readFile(folder + "/stage.json"), nullptr, false).contains("figures"));
+  EXPECT_TRUE(Json::parse(readFile(folder + "/work/stage.json"), nullptr, false).contains("figures"));
   const std::string html = escapedHtml(name + "<&\"");
   EXPECT_EQ(html, "scan\xef\xbf\xbd\xef\xbf\xbd.pcd&lt;&amp;&quot;");
 }

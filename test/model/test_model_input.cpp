@@ -46,7 +46,10 @@ TEST(ModelInput, ScansWithoutPosesBringNone)
   makeFolder(folder + "/scans");
   writeFile(folder + "/scans/a.xyz", "1 2 3\n");
   EXPECT_TRUE(readModelInput(folder).poses.empty());
-  EXPECT_THROW(readModelInput(folder + "/scans/a.xyz"), std::runtime_error); // neither a folder nor several scans
+  const ModelInput alone = readModelInput(folder + "/scans/a.xyz");
+  EXPECT_EQ(alone.scans.size(), 1u);
+  EXPECT_TRUE(alone.is_cloud); // a point does not tell where it was seen from
+  EXPECT_FALSE(readModelInput(folder + "/scans/a.xyz", "scans").is_cloud);
 }
 } // namespace
 } // namespace fresco::model

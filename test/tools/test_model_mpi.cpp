@@ -59,8 +59,9 @@ TEST(ModelMpi, SameFilesAsOneProcess)
 TEST(ModelMpi, OneLineForWhatNoRankCanDo)
 {
   const std::string folder = scratchFolder();
-  for (const auto& [arguments, status, text] :
-       {std::tuple{"room out", 1, "no such folder"}, {"room out -nonsense", 2, "nonsense"}, {"room", 2, "OUT_DIR"}}) {
+  for (const auto& [arguments, status, text] : {std::tuple{"room out", 1, "no such file or folder"},
+                                                {"room out -nonsense", 2, "nonsense"},
+                                                {"room", 2, "OUT_DIR"}}) {
     const Outcome outcome = runJob(folder, ranks(3, std::string("model_mpi ") + arguments));
     EXPECT_EQ(outcome.status, status) << outcome.err;
     ASSERT_EQ(linesOf(outcome.err).size(), 1U) << outcome.err;

@@ -6,6 +6,7 @@
 #include <fresco/io/image_io.h>
 #include <fresco/io/scan_file.h>
 #include <fresco/io/scan_writer.h>
+#include <fresco/simulation/sensors/survey.h>
 #include <iomanip>
 namespace fresco::simulation {
 namespace {

@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// fresco_model with every layout that docs/inputs.md lists, sound and with one thing wrong.
+#include "test_data.h"
+#include "tools/layout_source.h"
+#include <fresco/simulation/sensors/layouts.h>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <random>
+namespace fresco::test {
+namespace {
+/// What the first line says of a layout; each of those that can be written has a line here.
+const std::map<std::string, std::string>& expected()
+{
+  static const std::map<std::string, std::string> lines = {
+      {"flat_pcd", "input: 2 scans, no pictures"},
+      {"flat_ply", "input: 2 scans, no pictures"},
+      {"flat_las", "input: 2 scans, no pictures"},
+      {"flat_xyz", "input: 2 scans, no pictures"},
+      {"one_scan", "input: 1 scan, no pictures"},
+      {"one_cloud", "input: 1 file of one cloud, no pictures"},
+      {"cloud_normals", "input: 1 file of one cloud, no pictures"},
+      {"cloud_utm", "input: 2 files of one cloud, no pictures"},
+      {"cloud_trajectory", "input: 1 file of one cloud, no pictures"},
+      {"e57", "input: 2 scans, 2 panoramas"},
+      {"photographs", "input: 4 photographs and no scans"},
+      {"images", "input: 4 photographs and no scans"},
+      {"colmap", "input: 1 file of one cloud, 4 photographs"},
+      {"colmap_sparse", "input: 4 photographs and no scans"},
+      {"scanner_export", "input: 1 file of one cloud, 2 photographs"},
+      {"seven_scenes", "input: 12 RGB-D frames\n"},
+      {"tum", "input: 12 RGB-D frames (TUM RGB-D)"},
+      {"open3d", "input: 12 RGB-D frames (Open3D RGB-D)"},
+      {"redwood", "input: 12 RGB-D frames (Redwood RGB-D)"},
+      {"scannet", "input: 12 RGB-D frames (ScanNet)"},
+      {"stray", "input: 12 RGB-D frames (Stray Scanner)"},
+      {"polycam", "input: 12 RGB-D frames (Polycam raw data)"},
+      {"matterport", "input: 12 RGB-D frames (Matterport3D)"},
+  };
+  return lines;
+}
+
+class EachLayout : public Inputs, public testing::WithParamInterface<std::string> {};
+
+TEST_P(EachLayout, IsRecognisedBeforeAnyWork)
+{
+  const std::string folder = laidOut(GetParam());
+  const Outcome outcome = run(folder, "model x out -dry_run");
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  ASSERT_EQ(expected().count(GetParam()), 1u) << "no line is expected of this layout";
+  EXPECT_EQ(outcome.out.rfind(expected().at(GetParam()), 0), 0u) << outcome.out;
+  EXPECT_NE(outcome.out.find("\nwould do: "), std::string::npos) << outcome.out;
+  EXPECT_FALSE(fs::exists(folder + "/out"));
+}
+
+INSTANTIATE_TEST_SUITE_P(All, EachLayout, testing::ValuesIn(simulation::layoutNames()),
+                         [](const auto& info) { return info.param; });
+
+/// Mean distance of the mesh's vertices from the walls of the room, and of these from the mesh's box.
+void expectRoom(const std::string& file, const Eigen::Vector3d& corner, double tolerance)
+{
+  const TriangleMesh mesh = readMesh(file);
+  ASSERT_GT(mesh.faceCount(), 100) << file;
+  double sum = 0;
+  Eigen::AlignedBox3d box;
+  for (Index v = 0; v < mesh.vertexCount(); ++v) {
+    const Eigen::Vector3d p = mesh.origin + mesh.vertices.col(v).cast<double>() - corner;
+    box.extend(p);
+    sum += std::min(p.cwiseAbs().minCoeff(), (roomSize() - p).cwiseAbs().minCoeff());
+  }
+  EXPECT_LT(sum / mesh.vertexCount(), tolerance) << file;
+  EXPECT_LT((box.sizes() - roomSize()).cwiseAbs().maxCoeff(), 10 * tolerance)
+      << file << ": " << box.sizes().transpose();
+}
+
+/// Share of the faces that look into the room.
+double facingInside(const std::string& file, const Eigen::Vector3d& corner)
+{
+  const TriangleMesh mesh = readMesh(file);
+  const Eigen::Vector3d middle = corner + 0.5 * roomSize() - mesh.origin;
+  const Points normals = faceNormals(mesh);
+  double inside = 0;
+  for (Index f = 0; f < mesh.faceCount(); ++f)
+    inside += normals.col(f).dot(middle.cast<float>() - mesh.vertices.col(mesh.faces(0, f))) > 0;
+  return inside / mesh.faceCount();
+}
+
+class WholeChain : public Inputs, public testing::WithParamInterface<std::string> {};
+
+TEST_P(WholeChain, MakesTheRoom)
+{
+  const std::string folder = laidOut(GetParam());
+  const Outcome outcome = run(folder, "model x out -cell 0.1 -size 160x120");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const Eigen::Vector3d corner =
+      GetParam() == "cloud_utm" ? Eigen::Vector3d(691000, 5334000, 520) : Eigen::Vector3d(0, 0, 0);
+  expectRoom(folder + "/out/mesh.ply", corner, 0.03);
+  EXPECT_GT(facingInside(folder + "/out/mesh.ply", corner), 0.98);
+  EXPECT_TRUE(fs::exists(folder + "/out/model.glb"));
+}
+
+INSTANTIATE_TEST_SUITE_P(Some, WholeChain,
+                         testing::Values("one_cloud", "cloud_utm", "cloud_normals", "cloud_trajectory", "colmap",
+                                         "scanner_export"),
+                         [](const auto& info) { return info.param; });
+
+/// Frames show the walls to some height only.
+class FramesChain : public Inputs, public testing::WithParamInterface<std::string> {};
+
+TEST_P(FramesChain, GivesTheSameSurfaceWhateverTheLayout)
+{
+  const std::string folder = laidOut(GetParam());
+  const Outcome outcome = run(folder, "model x out -use_poses -cell 0.1 -size 160x120");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const TriangleMesh mesh = readMesh(folder + "/out/mesh.ply");
+  ASSERT_GT(mesh.faceCount(), 100);
+  const bool turned = GetParam() == "polycam"; // its world has another x and y, but z is up
+  double sum = 0;
+  for (Index v = 0; v < mesh.vertexCount(); ++v) {
+    const Eigen::Vector3d p = mesh.origin + mesh.vertices.col(v).cast<double>();
+    sum += std::min(p.cwiseAbs().minCoeff(), (roomSize() - p).cwiseAbs().minCoeff());
+  }
+  EXPECT_LT(sum / mesh.vertexCount(), 0.03) << turned;
+}
+
+INSTANTIATE_TEST_SUITE_P(Some, FramesChain, testing::Values("tum", "scannet", "stray", "polycam", "matterport"),
+                         [](const auto& info) { return info.param; });
+
+TEST_F(Inputs, OneFileStandsForItsFolder)
+{
+  const std::string folder = laidOut("one_cloud");
+  EXPECT_EQ(run(folder, "model x/cloud.pcd out -dry_run").out, run(folder, "model x out -dry_run").out);
+  EXPECT_EQ(run(folder, "model x/cloud.pcd out -as scans -dry_run").out.rfind("input: 1 scan,", 0), 0u);
+  EXPECT_EQ(run(folder, "model x/cloud.pcd out -as rgbd -dry_run").status, 1);
+  EXPECT_EQ(run(folder, "model x/cloud.pcd out -as nothing -dry_run").status, 1);
+}
+
+/// A plane, seen from nowhere that is known: a facade, or a floor from above.
+TEST_F(Inputs, APlaneIsAModel)
+{
+  const std::string folder = scratchFolder();
+  std::mt19937 random(1);
+  std::uniform_real_distribution<float> uniform(0, 1);
+  std::normal_distribution<float> noise(0, 0.003f);
+  for (const int axis : {0, 2}) {
+    PointSet plane;
+    plane.points.resize(3, 20000);
+    for (Index i = 0; i < plane.size(); ++i) {
+      plane.points.col(i) << 4 * uniform(random), 4 * uniform(random), 4 * uniform(random);
+      plane.points(axis, i) = 12 + noise(random);
+    }
+    writePoints(folder + "/plane.ply", plane);
+    const Outcome outcome = run(folder, "model plane.ply out -as cloud -size 160x120");
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_NEAR(surfaceArea(readMesh(folder + "/out/mesh.ply")), 16, 1.6);
+  }
+}
+
+TEST_F(Inputs, AThingSeenFromAroundIsClosedAndFacesOutwards)
+{
+  const std::string folder = scratchFolder();
+  PointSet ball;
+  ball.points = 0.2f * test::sphere(1.f, 5).vertices;
+  writePoints(folder + "/ball.ply", ball);
+  const Outcome outcome = run(folder, "model ball.ply out -as cloud -size 160x120");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const double volume = 4.0 / 3 * pi * 0.008;
+  EXPECT_NEAR(signedVolume(readMesh(folder + "/out/mesh.ply")), volume, 0.05 * volume);
+}
+
+/// One of them has no place: the model is of the other, and the message says so.
+TEST_F(Inputs, ScansWithoutOverlap)
+{
+  const std::string folder = scratchFolder();
+  makeFolder(folder + "/scans");
+  PointSet room = scanRoom({1.2, 1.1, 1.3}, 20000), front = room;
+  std::vector<Index> wall;
+  for (Index i = 0; i < front.size(); ++i)
+    if (front.points.col(i).normalized().x() > 0.8f)
+      wall.push_back(i);
+  front = selectPoints(front, wall);
+  front.points.row(0).array() += 40.f + (front.points.row(1).array() * 7).sin(); // another place, of another shape
+  writePoints(folder + "/scans/room.pcd", room);
+  writePoints(folder + "/scans/front.pcd", front);
+  const Outcome outcome = run(folder, "model scans out -as scans -cell 0.1 -size 160x120");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_NE(outcome.err.find("\nwarning: "), std::string::npos) << outcome.err;
+  EXPECT_NE(get(folder + "/out/poses.txt").find("none"), std::string::npos);
+}
+
+TEST_F(Inputs, StageOptionsAndSettingsReachTheStages)
+{
+  const std::string folder = laidOut("one_scan");
+  const std::string command = "model x out -cell 0.1 -size 160x120 ";
+  ASSERT_EQ(run(folder, command + "-reconstruct.depth 5 -texture.rounds 0").status, 0);
+  const auto depthOf = [&] {
+    return nlohmann::json::parse(get(folder + "/out/report.json"))["stages"][1]["figures"]["octree_depth"].get<int>();
+  };
+  EXPECT_EQ(depthOf(), 5);
+  const std::string settings = get(folder + "/out/settings.txt");
+  EXPECT_NE(settings.find("\nreconstruct.depth 5\n"), std::string::npos) << settings;
+  fs::rename(folder + "/out/settings.txt", folder + "/mine.txt");
+  ASSERT_EQ(run(folder, "model x out -settings mine.txt -reconstruct.depth 4").status, 0);
+  EXPECT_EQ(depthOf(), 4);
+  const Outcome unknown = run(folder, command + "-reconstruct.depht 5 -quiet");
+  EXPECT_EQ(unknown.status, 1);
+  EXPECT_NE(unknown.err.find("reconstruct.depth"), std::string::npos) << unknown.err;
+  put(folder + "/bad.txt", "cell abc\n");
+  EXPECT_EQ(run(folder, "model x out -settings bad.txt").status, 2);
+}
+} // namespace
+} // namespace fresco::test
