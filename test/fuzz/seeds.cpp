@@ -159,7 +159,7 @@ std::string depthImage()
 std::string stageLog(const std::string& scratch)
 {
   std::filesystem::remove(scratch + "/stage.json");
-  StageLog log(scratch, "input", false, {});
+  StageLog log(scratch, {"input"}, false, {});
   log.run({"stage", "options", {}, [](const Progress&) { return nlohmann::ordered_json{{"answer", 42}}; }});
   return readFile(scratch + "/stage.json");
 }
