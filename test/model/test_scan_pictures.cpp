@@ -128,7 +128,7 @@ TEST(ScanPictures, OfNoUseAreNamedAndDamagedOnesRefused)
   ASSERT_EQ(input.inside.pictures.size(), 4u);
   ASSERT_EQ(input.inside.warnings.size(), 1u);
   EXPECT_NE(input.inside.warnings[0].find("1 of 5 pictures"), std::string::npos);
-  const char* reasons[] = {"picture 2: covers 0 radians", "picture 3: the image is truncated",
+  const char* reasons[] = {"picture 2: covers 0 radians", "picture 3: the image is damaged",
                            "picture 4: covers 20 radians", "picture 5: its mask is 20x11"};
   for (int k = 0; k < 4; ++k)
     try {

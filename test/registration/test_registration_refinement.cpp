@@ -41,7 +41,7 @@ TEST(ScanRefinement, RightPlacesDoNotSlide)
                                             registration::narrowness(first));
       std::vector<registration::PreparedScan> scans;
       registration::Placement placement;
-      registration::IsometryVector truth;
+      IsometryVector truth;
       for (const Index i : {0, 1}) {
         scans.push_back(registration::prepareScan(row.scans[i], thinning, 0));
         placement.members.push_back(i);

@@ -197,7 +197,7 @@ try {
   records_.push_back({stage.name, stored.value("seconds", 0.0), stored.value("cpu_seconds", 0.0),
                       stored.value("peak_megabytes", 0.0), true, stored["figures"]});
   return true;
-} catch (const Json::exception&) { // a value of another type: not a record of ours
+} catch (const std::exception&) { // empty, or a value of another type: not a record of ours
   return false;
 }
 

@@ -143,8 +143,8 @@ void trim(const Cube& cube, const VolumetricOptions& options, VolumetricResult& 
   constexpr double trim_patch = 16; // faces of such cells: smaller gaps and islands are below what the depth resolves
   const double trim_cell = cube.side / std::exp2(result.trim_depth);
   const double patch_area = trim_patch * trim_cell * trim_cell;
-  result.mesh = trimMesh(result.mesh, support,
-                         {depth, patch_area, patch_area, TrimmingOptions{}.rounds, options.threads});
+  result.mesh =
+      trimMesh(result.mesh, support, {depth, patch_area, patch_area, TrimmingOptions{}.rounds, options.threads});
 }
 
 /// @param partition nullptr: there is one rank

@@ -10,22 +10,22 @@ class Exchange;
 
 /// Options of buildModel(). Lengths in metres.
 struct ModelOptions {
-  bool resume = false;            ///< go on after the last stage that an earlier run finished
-  std::string taken_as;           ///< what the input is taken for: scans, cloud, rgbd, photographs; "" = what it looks like
-  bool use_poses = false;         ///< take the poses of scans (poses.txt) or of RGB-D frames as they are
-  double cell = 0;                ///< finest cell of the surface reconstruction, >= 0; 0 = 0.02 for scans, three pixels
-                                  ///< at the median depth for RGB-D
-  double fuse = 0;                ///< RGB-D: cell in which the frames are fused, >= 0; 0 = as `cell`
-  int bilateral = 2;              ///< rounds of bilateral smoothing of the normals of scans, >= 0
-  bool optimize = true;           ///< move the vertices so that edges become sharp; scans only
-  double trim_levels = 2.0;       ///< >= 0; 0 = keep the surface closed. Scans: it is cut where none saw it, but gaps of
-                                  ///< 4 x 4 cells so many octree levels coarser stay closed. RGB-D: see
-                                  ///< VolumetricOptions::trim_levels, at most 0.75
-  double texel = 0.0;             ///< side of a texel, >= 0; 0 = as fine as photographs, panoramas or points
-  int atlas = 0;                  ///< largest side of a picture of the texture, 128..16384 pixels, more of them beyond;
-                                  ///< 0 = 8192
-  int tile_faces = 0;             ///< most faces that are textured at a time; 0 = all, or as many as memory holds
-  int quality = 0;                ///< JPEG quality of the texture's pictures, 1..100; 0 = PNG
+  bool resume = false;      ///< go on after the last stage that an earlier run finished
+  std::string taken_as;     ///< what the input is taken for: scans, cloud, rgbd, photographs; "" = what it looks like
+  bool use_poses = false;   ///< take the poses of scans (poses.txt) or of RGB-D frames as they are
+  double cell = 0;          ///< finest cell of the surface reconstruction, >= 0; 0 = 0.02 for scans, three pixels
+                            ///< at the median depth for RGB-D
+  double fuse = 0;          ///< RGB-D: cell in which the frames are fused, >= 0; 0 = as `cell`
+  int bilateral = 2;        ///< rounds of bilateral smoothing of the normals of scans, >= 0
+  bool optimize = true;     ///< move the vertices so that edges become sharp; scans only
+  double trim_levels = 2.0; ///< >= 0; 0 = keep the surface closed. Scans: it is cut where none saw it, but gaps of
+                            ///< 4 x 4 cells so many octree levels coarser stay closed. RGB-D: see
+                            ///< VolumetricOptions::trim_levels, at most 0.75
+  double texel = 0.0;       ///< side of a texel, >= 0; 0 = as fine as photographs, panoramas or points
+  int atlas = 0;            ///< largest side of a picture of the texture, 128..16384 pixels, more of them beyond;
+                            ///< 0 = 8192
+  int tile_faces = 0;       ///< most faces that are textured at a time; 0 = all, or as many as memory holds
+  int quality = 0;          ///< JPEG quality of the texture's pictures, 1..100; 0 = PNG
   double panorama_direction = 0;  ///< degrees counter-clockwise from the scan's x axis to the middle of its panorama
   bool panorama_mirrored = false; ///< panoramas go around counter-clockwise from left to right
   int width = 1280, height = 960; ///< of the pictures, pixels, at least 160 x 120
