@@ -39,7 +39,7 @@ std::shared_ptr<const Image> loadGiven(const TextureView& v, Index view)
   if (v.image.empty())
     return std::make_shared<const Image>(readImage(v.path, v.camera));
   const std::shared_ptr<const Image> image(std::shared_ptr<void>(), &v.image);
-  requireSize(*image, v.camera, concat("photograph ", view));
+  requireSize(*image, v.camera, v.path.empty() ? concat("photograph ", view) : v.path);
   return image->channels == 3 ? image : std::make_shared<const Image>(asRgb(*image));
 }
 } // namespace
@@ -91,7 +91,7 @@ Image PhotoStore::mask(Index view)
   Image rgb;
   if (!v.mask.empty() || !v.mask_path.empty()) {
     rgb = v.mask.empty() ? readImage(v.mask_path, v.camera) : asRgb(v.mask);
-    requireSize(rgb, v.camera, concat("mask of photograph ", part.view));
+    requireSize(rgb, v.camera, v.mask_path.empty() ? concat("mask of photograph ", part.view) : v.mask_path);
   }
   if (part.ofPanorama()) {
     const Image ends = blackEnds(*panoramaOf(view));
