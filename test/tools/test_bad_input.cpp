@@ -170,7 +170,7 @@ TEST(Tools, ModelInputThatDoesNotFit)
   expectRefused(folder, "model missing out", "missing");
   expectRefused(folder, "model images out", "images");
   fs::create_directories(folder + "/in/scans");
-  expectRefused(folder, "model in out", "scans");
+  expectRefused(folder, "model in out", "in: an empty folder");
   fs::copy(folder + "/cloud.pcd", folder + "/in/scans/scan_00.pcd");
   expectRefused(folder, "model in out -use_poses", "poses.txt");
   fs::create_directory(folder + "/in/panoramas");

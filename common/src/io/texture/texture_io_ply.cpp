@@ -49,17 +49,17 @@ TexturedMesh readTexturedPly(const std::string& path)
 {
   TexturedMesh model = parseFile(path, [&](std::string_view content) {
     PlyContent ply = parsePly(content, true);
-    if (ply.textures.empty())
-      throw std::runtime_error("it names no texture (comment TextureFile)");
     TexturedMesh read;
     read.mesh = tableToMesh(ply.vertices);
     read.mesh.faces = std::move(ply.faces);
-    read.texcoord_faces.resize(3, read.mesh.faceCount());
+    read.texcoord_faces.setConstant(3, read.mesh.faceCount(), -1);
+    read.face_atlas = Eigen::VectorXi::Constant(read.mesh.faceCount(), -1);
+    if (ply.textures.empty()) // no comment TextureFile: a mesh
+      return read;
     if (const auto columns = texcoordColumns(ply.vertices))
       takeVertexTexcoords(ply.vertices, *columns, read);
     else
       takeFaceTexcoords(ply, read);
-    read.face_atlas = Eigen::VectorXi::Zero(read.mesh.faceCount());
     for (Index f = 0; f < read.mesh.faceCount(); ++f) {
       const int number = std::size_t(f) < ply.texnumbers.size() ? ply.texnumbers[f] : 0;
       bool textured = number >= 0 && std::size_t(number) < ply.textures.size();
