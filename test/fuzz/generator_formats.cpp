@@ -233,7 +233,8 @@ GeneratedFile xyz(Dice& dice)
   const std::vector<std::string> names{"x", "y", "\"z\"", "Intensity", "r [8 bit]", "G", "blue", "nx", "ny", "nz"};
   const std::string separator = dice.of<std::string>({" ", ",", ";", "\t", ", ", " | "});
   const bool decimal_comma = separator != "," && separator != ", " && dice.chance(), whole = dice.chance();
-  const int columns = dice.of<int>({3, 4, 6, 7, 9, 10});
+  const bool header = dice.chance(); // without it, what more columns mean may be refused
+  const int columns = header ? dice.of<int>({3, 4, 6, 7, 9, 10}) : dice.of<int>({3, 4});
   const auto row = [&](const auto& cell) {
     std::string line;
     for (int c = 0; c < columns; ++c)
@@ -241,7 +242,7 @@ GeneratedFile xyz(Dice& dice)
     return line + dice.of<std::string>({"\n", "\r\n", " # comment\n", separator + "\n"});
   };
   Parts parts;
-  if (dice.chance())
+  if (header)
     parts.push_back(dice.of<std::string>({"", "# ", "//"}) + row([&](int c) { return names[std::size_t(c)]; }));
   for (int r = dice.between(1, 6); r > 0; --r)
     parts.push_back(row([&](int c) {
