@@ -135,6 +135,8 @@ std::string unpack(std::string_view packed, std::uint32_t compression, std::size
   return out;
 }
 
+constexpr std::size_t best_ratio = 1400; // of any of the compressions: LZW packs 8 MB of one value into 6 kB
+
 /// How the samples of an image lie in its file: in strips or tiles.
 struct Layout {
   std::uint32_t width, height, bits, samples, photometric, compression, predictor;
@@ -167,7 +169,8 @@ Layout layoutOf(const Table& table)
   constexpr std::uint32_t longest = 1 << 20; // pixels
   const auto is_possible = [](std::uint32_t length) { return length > 0 && length <= longest; };
   if (!is_possible(out.width) || !is_possible(out.height) || !is_possible(out.part_width) ||
-      !is_possible(out.part_height) || out.samples < (out.photometric == rgb ? 3U : 1U) || out.samples > 16)
+      !is_possible(out.part_height) || out.samples < (out.photometric == rgb ? 3U : 1U) || out.samples > 16 ||
+      std::uint64_t{out.width} * out.height * out.samples * (out.bits / 8) > best_ratio * table.file().bytes.size())
     failDamaged();
   return out;
 }
@@ -179,7 +182,6 @@ std::vector<std::uint16_t> samplesOf(const Table& table, const Layout& layout, s
   const std::size_t begin = table.value(layout.tiled ? tile_offsets_tag : strip_offsets_tag, 0, index);
   const std::size_t size = table.value(layout.tiled ? tile_bytes_tag : strip_bytes_tag, 0, index);
   const std::string_view file = table.file().bytes;
-  constexpr std::size_t best_ratio = 4096; // of any of the compressions
   if (begin >= file.size() || size > file.size() - begin || row * rows * bytes > best_ratio * size)
     failDamaged();
   const std::string raw = unpack(file.substr(begin, size), layout.compression, row * rows * bytes);
