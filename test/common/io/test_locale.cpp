@@ -3,6 +3,7 @@
 #include "common/io/test_io_data.h"
 #include <clocale>
 #include <cstdlib>
+#include <fresco/core/require.h>
 #include <fresco/io/colmap.h>
 #include <fresco/io/image_io.h>
 #include <fresco/io/mesh_io.h>
@@ -98,6 +99,7 @@ TEST(Locale, FilesAreTheSameInAnyLocale)
   const std::vector<std::string> classic = written();
   setHostileLocale();
   const std::vector<std::string> hostile = written();
+  EXPECT_EQ(concat("line ", 1234567, ": ", 0.5), "line 1234567: 0.5"); // what messages say
   ASSERT_EQ(classic.size(), hostile.size());
   for (std::size_t i = 0; i < classic.size(); ++i)
     EXPECT_TRUE(classic[i] == hostile[i]) << classic[i].substr(0, 400) << "\n" << hostile[i].substr(0, 400);

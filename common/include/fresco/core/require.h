@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+#include <locale>
 #include <sstream>
 #include <stdexcept>
 #include <string>
 namespace fresco {
-/// All parts printed one after the other.
+/// All parts printed one after the other, numbers alike in any locale.
 template <typename... Parts>
 std::string concat(const Parts&... parts)
 {
   std::ostringstream text;
+  text.imbue(std::locale::classic());
   (text << ... << parts);
   return text.str();
 }
