@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "support/scan_option.h"
 #include "support/tool.h"
 #include <fresco/alignment/core/camera_alignment.h>
 #include <fresco/core/constants.h>
@@ -50,6 +51,7 @@ void run(int argc, char** argv)
   args.option(
       "max_alias", options.max_alias,
       "most that a second place may reach of the score of the best, else it is ambiguous; above 0 and at most 1");
+  declareColumns(args);
   common.declare(args);
   args.note("Example: fresco_align room/cameras mesh.ply aligned");
   const auto files = args.parse(argc, argv, 3);

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "support/scan_option.h"
 #include "support/tool.h"
 #include <fresco/core/point_set.h>
 #include <fresco/core/require.h>
@@ -98,6 +99,7 @@ void run(int argc, char** argv)
                 readableExtensions(FileKind::points) + "; meshes " + readableExtensions(FileKind::mesh) +
                 "; textured\nmodels " + readableExtensions(FileKind::textured_mesh) + ".");
   options.declare(args);
+  declareColumns(args);
   common.declare(args);
   args.note(
       "-polygon, -above and -below may stand together. Example: fresco_crop model.glb room.glb -polygon room.geojson "

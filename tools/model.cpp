@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "support/args.h"
 #include "support/ranks.h"
+#include "support/scan_option.h"
 #include "support/tool.h"
 #include <fresco/io/file.h>
 #include <fresco/model/build_model.h>
@@ -82,6 +83,7 @@ int main(int argc, char** argv)
     args.flag("panorama_mirrored", options.panorama_mirrored,
               "panoramas go around counter-clockwise from left to right");
     args.size("size", options.width, options.height, "size of the pictures, pixels");
+    fresco::declareColumns(args);
     args.settingsFile("settings",
                       "options from a file: lines \"NAME VALUE\"; OUT_DIR/settings.txt holds those of the last run");
     args.dotted(

@@ -11,6 +11,7 @@
 #include <fresco/core/require.h>
 #include <fresco/io/file.h>
 #include <fresco/io/files_read.h>
+#include <fresco/io/reading.h>
 #include <fresco/io/shared_files.h>
 namespace fresco {
 namespace {
@@ -60,8 +61,12 @@ std::vector<Stage> stagesOf(const Job& job)
         stage.options += concat(" ", name, " ", value);
     stages.push_back(std::move(stage));
   };
+  std::string columns; // of clouds that are text
+  for (const std::string& name : textColumns())
+    columns += " " + (name.empty() ? "-" : name);
   add({"points",
-       concat(options.use_poses, " ", options.fuse, " ", options.fuse > 0 ? 0.0 : options.cell, " ", options.bilateral),
+       concat(options.use_poses, " ", options.fuse, " ", options.fuse > 0 ? 0.0 : options.cell, " ", options.bilateral,
+              columns),
        input.is_cloud ? std::vector<std::string>{files.points, files.poses, files.cell}
                       : std::vector<std::string>{files.points, files.poses},
        step(makePoints), !input.rgbd && !input.is_cloud},

@@ -51,7 +51,7 @@ void io::remark(const std::string& text)
     listener(in_hand ? *in_hand + ": " + text : text);
 }
 
-std::vector<std::string> io::textColumns()
+std::vector<std::string> textColumns()
 {
   const std::lock_guard<std::mutex> lock(reading().mutex);
   return reading().columns;

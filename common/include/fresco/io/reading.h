@@ -18,4 +18,7 @@ FRESCO_EXPORT void listenToReaders(ReadingListener listener);
 /// @param names empty: as the files say, as at the start
 /// @throws std::invalid_argument unless x y z are among them once
 FRESCO_EXPORT void setTextColumns(const std::vector<std::string>& names);
+
+/// What setTextColumns() said, by standard names: "normal_x" for "nx"; "" = left out.
+FRESCO_EXPORT std::vector<std::string> textColumns();
 } // namespace fresco

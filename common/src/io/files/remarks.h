@@ -17,7 +17,4 @@ private:
 
 /// Tells the listener "PATH: text", with the file in hand.
 FRESCO_EXPORT void remark(const std::string& text);
-
-/// What setTextColumns() said, by standard names; "" = left out.
-std::vector<std::string> textColumns();
 } // namespace fresco::io
