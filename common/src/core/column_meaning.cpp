@@ -2,6 +2,7 @@
 // What columns mean: their names, the range of colours, the width of coordinates. Readers of all formats follow it.
 #include <cctype>
 #include <fresco/core/point_table.h>
+#include <functional>
 #include <limits>
 #include <utility>
 namespace fresco::core {
@@ -31,32 +32,35 @@ bool isFloat(Scalar type) { return type == Scalar::float32 || type == Scalar::fl
 bool isIn(const std::string& name, NameTriple names) { return std::count(names, names + 3, name) > 0; }
 bool isPosition(const std::string& name) { return isIn(name, xyz_names) || isIn(name, viewpoint_names); }
 
-void storeAs(Scalar type, double value, std::uint8_t* at)
-{
-  visitScalar(type, [&](auto zero) {
-    const auto stored = static_cast<decltype(zero)>(value);
-    std::memcpy(at, &stored, sizeof(stored));
-  });
-}
+/// What becomes of a column: values of another type.
+struct Change {
+  Scalar type;
+  std::function<double(double)> value; ///< empty: the same
+};
 
-/// Columns of other types; converted(row, column of `table`, where it goes) fills those whose type changes.
-template <typename Convert>
-void retype(PointTable& table, const std::vector<Scalar>& types, const Convert& converted)
+/// Columns for which change(column) gives something get other types or values.
+template <typename ChangeOf>
+void retype(PointTable& table, const ChangeOf& change)
 {
   PointTable other;
-  for (std::size_t c = 0; c < types.size(); ++c)
-    other.addColumn(table.columns[c].name, types[c], table.columns[c].count);
+  std::vector<std::optional<Change>> changes;
+  for (const Column& column : table.columns) {
+    changes.push_back(change(column));
+    other.addColumn(column.name, changes.back() ? changes.back()->type : column.type, column.count);
+  }
   const bool in_place = !table.view && other.stride <= table.stride; // no row is overwritten before it was read
   if (!in_place)
     other.data.resize(table.rows * other.stride);
   std::vector<std::uint8_t> row(other.stride);
   for (Index i = 0; i < table.rows; ++i) {
-    for (std::size_t c = 0; c < types.size(); ++c) {
+    for (std::size_t c = 0; c < changes.size(); ++c) {
       const Column &from = table.columns[c], &to = other.columns[c];
-      if (from.type == to.type)
+      if (!changes[c]) {
         std::memcpy(row.data() + to.offset, std::as_const(table).cell(i, from), to.bytes());
-      else
-        converted(i, from, row.data() + to.offset);
+        continue;
+      }
+      const double value = valueAt(table, i, from);
+      storeValue(to.type, changes[c]->value ? changes[c]->value(value) : value, row.data() + to.offset);
     }
     std::copy(row.begin(), row.end(), (in_place ? table : other).data.data() + i * other.stride);
   }
@@ -66,12 +70,6 @@ void retype(PointTable& table, const std::vector<Scalar>& types, const Convert& 
   table.columns = other.columns;
   table.stride = other.stride;
   table.data.resize(table.rows * table.stride);
-}
-
-double valueAt(const PointTable& table, Index row, const Column& column)
-{
-  return visitScalar(column.type,
-                     [&](auto zero) { return double(loadScalar<decltype(zero)>(table.cell(row, column))); });
 }
 } // namespace
 
@@ -105,7 +103,7 @@ double largestValue(const PointTable& table, const std::array<Column, 3>& column
       largest = double(value);
   };
   for (const Column& column : columns)
-    forEachValue(table, column, 0, look, 0, table.rows);
+    eachValue(table, column, look);
   return largest;
 }
 
@@ -120,20 +118,16 @@ double fullColor(const PointTable& table, const std::array<Column, 3>& rgb)
 void normalizeColors(PointTable& table)
 {
   const auto rgb = findTriple(table, color_names);
-  if (!rgb)
-    return;
-  std::vector<Scalar> types;
-  bool changes = false;
-  for (const Column& column : table.columns) {
-    types.push_back(isIn(column.name, color_names) ? Scalar::uint8 : column.type);
-    changes = changes || types.back() != column.type;
-  }
-  if (!changes)
+  const auto is_byte = [](const Column& column) { return column.type == Scalar::uint8; };
+  if (!rgb || std::all_of(rgb->begin(), rgb->end(), is_byte))
     return;
   const double full = fullColor(table, *rgb);
-  retype(table, types, [&](Index row, const Column& from, std::uint8_t* to) {
-    *to =
-        scalarSize(from.type) == 1 ? *std::as_const(table).cell(row, from) : colorByte(valueAt(table, row, from), full);
+  retype(table, [&](const Column& column) -> std::optional<Change> {
+    if (!isIn(column.name, color_names) || is_byte(column))
+      return {};
+    const bool is_signed_byte = column.type == Scalar::int8;
+    return Change{Scalar::uint8,
+                  [=](double v) { return is_signed_byte ? std::uint8_t(std::int8_t(v)) : colorByte(v, full); }};
   });
 }
 
@@ -144,28 +138,19 @@ void narrowCoordinates(PointTable& table)
   if (!xyz || !std::all_of(xyz->begin(), xyz->end(), is_wide) ||
       (table.rows > 0 && coordinateBounds(table, *xyz).exceedsFloat()))
     return;
-  std::vector<Scalar> types;
-  for (const Column& column : table.columns)
-    types.push_back(is_wide(column) && isPosition(column.name) ? Scalar::float32 : column.type);
-  retype(table, types, [&](Index row, const Column& from, std::uint8_t* to) {
-    storeAs(Scalar::float32, valueAt(table, row, from), to);
+  retype(table, [&](const Column& column) {
+    return is_wide(column) && isPosition(column.name) ? std::optional(Change{Scalar::float32, {}}) : std::nullopt;
   });
 }
 
 void moveOrigin(PointTable& table, const Eigen::Vector3d& origin)
 {
-  std::vector<Scalar> types;
-  for (const Column& column : table.columns)
-    types.push_back(isIn(column.name, xyz_names) ? Scalar::float64 : column.type);
-  retype(table, types, [&](Index row, const Column& from, std::uint8_t* to) {
-    storeAs(Scalar::float64, valueAt(table, row, from), to);
+  retype(table, [&](const Column& column) -> std::optional<Change> {
+    for (int axis = 0; axis < 3; ++axis)
+      if (column.name == xyz_names[axis])
+        return Change{Scalar::float64, [=](double value) { return value - origin[axis]; }};
+    return {};
   });
-  for (int axis = 0; axis < 3; ++axis)
-    if (const Column* column = table.find(xyz_names[axis]))
-      for (Index row = 0; row < table.rows; ++row) {
-        std::uint8_t* const at = table.cell(row, *column);
-        storeAs(Scalar::float64, loadScalar<double>(at) - origin[axis], at);
-      }
 }
 
 PointTable tableOfRows(const std::vector<std::string>& names, const std::vector<double>& values)
@@ -181,7 +166,7 @@ PointTable tableOfRows(const std::vector<std::string>& names, const std::vector<
   table.allocate(values.size() / names.size());
   for (std::size_t c = 0; c < sources.size(); ++c)
     for (Index row = 0; row < table.rows; ++row)
-      storeAs(table.columns[c].type, values[row * names.size() + sources[c]], table.cell(row, table.columns[c]));
+      storeValue(table.columns[c].type, values[row * names.size() + sources[c]], table.cell(row, table.columns[c]));
   normalizeColors(table);
   narrowCoordinates(table);
   return table;

@@ -4,7 +4,6 @@
 #include <fresco/core/mesh.h>
 #include <fresco/core/require.h>
 #include <fresco/core/union_find.h>
-#include <numeric>
 namespace fresco {
 namespace {
 /// One side of a face: the edge from `low` to `high`, or the other way round.

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
-#include <cmath>
 #include <cstring>
 #include <fresco/core/pcl_cloud_table.h>
 #include <fresco/core/require.h>
@@ -21,16 +20,6 @@ std::uint8_t fieldType(Scalar scalar)
   return std::find_if(std::begin(field_types), std::end(field_types),
                       [&](auto& entry) { return entry.second == scalar; })
       ->first;
-}
-
-bool isDense(const PointTable& table)
-{
-  bool finite = true;
-  const auto check = [&](Index, auto value) { finite &= std::isfinite(static_cast<double>(value)); };
-  for (const char* name : xyz_names)
-    if (const Column* column = table.find(name))
-      forEachValue(table, *column, 0, check, 0, table.rows);
-  return finite;
 }
 
 /// Copies the kept columns of every row; `sources` holds their offsets in the cloud.
@@ -105,7 +94,8 @@ pcl::PCLPointCloud2 cloudOfTable(PointTable table)
   cloud.point_step = table.stride;
   cloud.row_step = cloud.width * cloud.point_step;
   cloud.is_bigendian = false;
-  cloud.is_dense = isDense(table);
+  const std::vector<bool> finite = finiteRows(table);
+  cloud.is_dense = std::find(finite.begin(), finite.end(), false) == finite.end();
   cloud.data = std::move(table.data);
   return cloud;
 }

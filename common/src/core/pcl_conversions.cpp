@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <cmath>
 #include <fresco/core/pcl_cloud_table.h>
 #include <fresco/core/pcl_conversions.h>
 #include <fresco/core/polygon_fans.h>
 #include <fresco/core/require.h>
-#include <limits>
 namespace fresco {
 namespace core {
 namespace {
@@ -29,18 +27,7 @@ void convertCell(const PointTable& table, Index row, const Column& from, const p
     std::memcpy(at, &opaque, sizeof(opaque));
     return;
   }
-  const float value = loadScalar<float>(table.cell(row, from));
-  visitScalar(scalarOfField(to.datatype), [&](auto zero) {
-    using T = decltype(zero);
-    T stored{};
-    if constexpr (std::is_floating_point_v<T>)
-      stored = value;
-    else if (value >= float(std::numeric_limits<T>::max()))
-      stored = std::numeric_limits<T>::max();
-    else if (value > float(std::numeric_limits<T>::min())) // false for NaN
-      stored = std::round(value);
-    std::memcpy(at, &stored, sizeof(stored));
-  });
+  storeValue(scalarOfField(to.datatype), loadScalar<float>(table.cell(row, from)), at);
 }
 } // namespace
 

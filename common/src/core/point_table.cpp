@@ -6,31 +6,6 @@
 #include <limits>
 namespace fresco::core {
 namespace {
-struct ByteRun {
-  std::size_t from, to, bytes; ///< offsets in a row
-};
-
-/// Copies the columns that both tables have; neighbours that stay neighbours in one go.
-void copyShared(const PointTable& from, PointTable& to)
-{
-  std::vector<ByteRun> runs;
-  for (const Column& column : to.columns) {
-    const Column* source = from.find(column.name);
-    if (!source)
-      continue;
-    if (!runs.empty() && runs.back().from + runs.back().bytes == source->offset &&
-        runs.back().to + runs.back().bytes == column.offset)
-      runs.back().bytes += column.bytes();
-    else
-      runs.push_back({source->offset, column.offset, column.bytes()});
-  }
-  const std::uint8_t* source = from.rowsBegin();
-  std::uint8_t* target = to.data.data();
-  for (Index row = 0; row < from.rows; ++row, source += from.stride, target += to.stride)
-    for (const ByteRun& run : runs)
-      std::memcpy(target + run.to, source + run.from, run.bytes);
-}
-
 PointTable withoutColumns(const PointTable& table)
 {
   PointTable empty;
@@ -40,9 +15,16 @@ PointTable withoutColumns(const PointTable& table)
   return empty;
 }
 
-bool isColorName(const std::string& name)
+template <typename T>
+T saturated(double value)
 {
-  return name == "red" || name == "green" || name == "blue" || name == "alpha";
+  using Limits = std::numeric_limits<T>;
+  if constexpr (std::is_floating_point_v<T>)
+    return value;
+  else if (!(value > double(Limits::min()))) // NaN, too
+    return std::isnan(value) ? 0 : Limits::min();
+  else
+    return value < double(Limits::max()) ? T(std::round(value)) : Limits::max();
 }
 
 bool isByte(const Column* column) { return column && column->type == Scalar::uint8 && column->count == 1; }
@@ -111,6 +93,43 @@ Eigen::VectorXf columnValues(const PointTable& table, const Column& column, std:
   return values;
 }
 
+double valueAt(const PointTable& table, Index row, const Column& column)
+{
+  return visitScalar(column.type,
+                     [at = table.cell(row, column)](auto zero) { return double(loadScalar<decltype(zero)>(at)); });
+}
+
+void storeValue(Scalar type, double value, void* at)
+{
+  visitScalar(type, [&](auto zero) {
+    const auto stored = saturated<decltype(zero)>(value);
+    std::memcpy(at, &stored, sizeof(stored));
+  });
+}
+
+void copyRows(const PointTable& from, PointTable& to, Index begin)
+{
+  std::vector<std::pair<const Column*, const Column*>> shared;
+  for (const Column& column : to.columns)
+    if (const Column* source = from.find(column.name))
+      shared.emplace_back(source, &column);
+  for (Index row = 0; row < from.rows; ++row)
+    for (const auto& [source, column] : shared)
+      if (source->type == column->type)
+        std::memcpy(to.cell(begin + row, *column), from.cell(row, *source), column->bytes());
+      else
+        storeValue(column->type, valueAt(from, row, *source), to.cell(begin + row, *column));
+}
+
+std::vector<bool> finiteRows(const PointTable& table)
+{
+  std::vector<bool> finite(table.rows, true);
+  for (const char* name : xyz_names)
+    if (const Column* column = table.find(name))
+      eachValue(table, *column, [&](Index row, auto v) { finite[row] = finite[row] && std::isfinite(double(v)); });
+  return finite;
+}
+
 void packColors(PointTable& table)
 {
   const Column* alpha = table.find("alpha");
@@ -120,19 +139,18 @@ void packColors(PointTable& table)
     return;
   const bool has_alpha = isByte(alpha);
   PointTable packed = withoutColumns(table);
-  for (const Column& column : table.columns) {
+  for (const Column& column : table.columns)
     if (column.name == "red")
       packed.addColumn(has_alpha ? "rgba" : "rgb", has_alpha ? Scalar::uint32 : Scalar::float32);
-    else if (!isColorName(column.name) || (column.name == "alpha" && !has_alpha))
+    else if (column.name != "green" && column.name != "blue" && !(has_alpha && &column == alpha))
       packed.addColumn(column.name, column.type, column.count);
-  }
   packed.allocate(table.rows);
-  copyShared(table, packed);
+  copyRows(table, packed);
   const Column target = *packedColor(packed);
   for (Index row = 0; row < table.rows; ++row) {
-    const auto byte = [&](const Column& column) { return std::uint32_t(*table.cell(row, column)); };
-    const std::uint32_t value =
-        (has_alpha ? byte(*alpha) << 24 : 0U) | byte((*color)[0]) << 16 | byte((*color)[1]) << 8 | byte((*color)[2]);
+    std::uint32_t value = has_alpha ? *table.cell(row, *alpha) : 0;
+    for (const Column& channel : *color)
+      value = value << 8 | *table.cell(row, channel);
     std::memcpy(packed.cell(row, target), &value, sizeof(value));
   }
   table = std::move(packed);
@@ -144,7 +162,7 @@ void unpackColors(PointTable& table)
   if (!color)
     return;
   const bool has_alpha = color->name == "rgba";
-  for (const char* name : {"red", "green", "blue"})
+  for (const char* name : color_names)
     if (table.find(name))
       return;
   if (has_alpha && table.find("alpha"))
@@ -161,7 +179,7 @@ void unpackColors(PointTable& table)
       bytes.addColumn("alpha", Scalar::uint8);
   }
   bytes.allocate(table.rows);
-  copyShared(table, bytes);
+  copyRows(table, bytes);
   const Column first = *bytes.find("red");
   for (Index row = 0; row < table.rows; ++row) {
     const auto value = loadScalar<std::uint32_t>(table.cell(row, *color));
@@ -187,22 +205,17 @@ Eigen::Vector3d CoordinateBounds::origin() const
 
 CoordinateBounds coordinateBounds(const PointTable& table, const std::array<Column, 3>& xyz)
 {
-  constexpr double infinity = std::numeric_limits<double>::infinity();
-  CoordinateBounds bounds{Eigen::Array3d::Constant(infinity), Eigen::Array3d::Constant(-infinity),
-                          Eigen::Array3d::Zero()};
+  CoordinateBounds bounds;
   for (int axis = 0; axis < 3; ++axis) {
-    double low = infinity, high = -infinity, loss = 0;
-    forEachValue(
-        table, xyz[axis], 0,
-        [&](Index, auto raw) {
-          const double value = raw;
-          if (!std::isfinite(value))
-            return;
-          low = std::min(low, value);
-          high = std::max(high, value);
-          loss = std::max(loss, std::abs(value - float(value)));
-        },
-        0, table.rows);
+    double low = bounds.low[axis], high = bounds.high[axis], loss = 0;
+    eachValue(table, xyz[axis], [&](Index, auto raw) {
+      const double value = raw;
+      if (!std::isfinite(value))
+        return;
+      low = std::min(low, value);
+      high = std::max(high, value);
+      loss = std::max(loss, std::abs(value - float(value)));
+    });
     bounds.low[axis] = low;
     bounds.high[axis] = high;
     bounds.loss[axis] = loss;

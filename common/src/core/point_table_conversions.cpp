@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
-#include <cmath>
 #include <fresco/core/point_table.h>
 #include <fresco/core/require.h>
 #include <functional>
@@ -179,9 +178,10 @@ PointTable pointsToTable(const PointSet& set)
   return table;
 }
 
-TriangleMesh tableToMesh(const PointTable& table)
+TriangleMesh tableToMesh(const PointTable& table, Faces faces)
 {
   TriangleMesh mesh;
+  mesh.faces = std::move(faces);
   mesh.origin = originOf(table);
   mesh.vertices = tripleValues(table, xyz_names, mesh.origin);
   mesh.normals = tripleValues(table, normal_names);

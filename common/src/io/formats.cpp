@@ -20,33 +20,45 @@
 namespace fresco {
 namespace io {
 namespace {
-TriangleMesh joinMesh(const PointTable& vertices, Faces faces)
+template <auto parse>
+auto read(const std::string& path)
 {
-  TriangleMesh mesh = tableToMesh(vertices);
-  mesh.faces = std::move(faces);
-  return mesh;
+  return parseFile(path, parse);
 }
 
-PointTable readPcd(const std::string& path) { return parseFile(path, parsePcd); }
-
-PointTable readPlyPoints(const std::string& path)
+template <auto parse>
+PointTable readVertices(const std::string& path)
 {
   return parseFile(path, [](std::string_view content) {
-    PointTable vertices = parsePly(content).vertices;
+    PointTable vertices = parse(content).vertices;
     vertices.own();
     return vertices;
   });
 }
 
-void writePlyPoints(const std::string& path, const PointTable& points, bool) { writePly(path, points, Faces()); }
-
-TriangleMesh readPlyMesh(const std::string& path)
+template <auto parse>
+TriangleMesh readSurface(const std::string& path)
 {
   return parseFile(path, [](std::string_view content) {
-    PlyContent ply = parsePly(content);
-    return joinMesh(ply.vertices, std::move(ply.faces));
+    auto file = parse(content);
+    return tableToMesh(file.vertices, std::move(file.faces));
   });
 }
+
+/// For formats that are not compressed.
+template <auto write>
+void writeRows(const std::string& path, const PointTable& points, bool)
+{
+  write(path, points);
+}
+
+template <auto write>
+void writeSurface(const std::string& path, const TriangleMesh& mesh)
+{
+  write(path, meshToTable(mesh), mesh.faces);
+}
+
+void writePlyPoints(const std::string& path, const PointTable& points, bool) { writePly(path, points, Faces()); }
 
 void writePlyMesh(const std::string& path, const TriangleMesh& mesh)
 {
@@ -55,41 +67,7 @@ void writePlyMesh(const std::string& path, const TriangleMesh& mesh)
       path, mesh.vertexCount(), [&](Index begin, Index end) { return verticesToTable(mesh, begin, end); }, mesh.faces);
 }
 
-PointTable readVtkPoints(const std::string& path)
-{
-  return parseFile(path, [](std::string_view content) { return parseVtk(content).vertices; });
-}
-
-TriangleMesh readVtkMesh(const std::string& path)
-{
-  return parseFile(path, [](std::string_view content) {
-    VtkContent vtk = parseVtk(content);
-    return joinMesh(vtk.vertices, std::move(vtk.faces));
-  });
-}
-
-void writeVtkMesh(const std::string& path, const TriangleMesh& mesh) { writeVtk(path, meshToTable(mesh), mesh.faces); }
-
-void writeVtpMesh(const std::string& path, const TriangleMesh& mesh) { writeVtp(path, meshToTable(mesh), mesh.faces); }
-
-TriangleMesh readStlMesh(const std::string& path) { return parseFile(path, parseStl); }
-PointTable readStlPoints(const std::string& path) { return meshToTable(readStlMesh(path)); }
-
-PointTable readObjPoints(const std::string& path)
-{
-  return parseFile(path, [](std::string_view content) { return objVertices(parseObj(content)); });
-}
-
-TriangleMesh readObjMesh(const std::string& path)
-{
-  return parseFile(path, [](std::string_view content) {
-    const ObjContent obj = parseObj(content);
-    return joinMesh(objVertices(obj), objFaces(obj));
-  });
-}
-
-PointTable readXyz(const std::string& path) { return parseFile(path, parseXyz); }
-void writeXyzPoints(const std::string& path, const PointTable& points, bool) { writeXyz(path, points); }
+PointTable readStlPoints(const std::string& path) { return meshToTable(read<parseStl>(path)); }
 
 Format withRows(Format format, std::optional<RowLayout> (*row_layout)(std::string_view))
 {
@@ -113,9 +91,6 @@ Format scansFormat(const char* name, const char* extension,
   return format;
 }
 
-void writeLasPoints(const std::string& path, const PointTable& points, bool) { writeLas(path, points); }
-void writeLazPoints(const std::string& path, const PointTable& points, bool) { writeLaz(path, points); }
-
 /// One scan, in the frame of its sensor where that is known.
 void writeE57Points(const std::string& path, const PointTable& points, bool)
 {
@@ -134,18 +109,19 @@ const std::vector<Format>& formats()
 {
   static const std::vector<Format> all = {
       // name, extensions, points: reads, writes; mesh: reads, writes; with texture
-      withRows({"PCD", {".pcd"}, readPcd, writePcd}, pcdRows),
-      withRows({"PLY", {".ply"}, readPlyPoints, writePlyPoints, readPlyMesh, writePlyMesh, true}, plyRows),
-      {"legacy VTK", {".vtk"}, readVtkPoints, nullptr, readVtkMesh, writeVtkMesh},
-      {"VTK XML", {".vtp"}, nullptr, nullptr, nullptr, writeVtpMesh},
-      {"STL", {".stl"}, readStlPoints, nullptr, readStlMesh, writeStl},
-      {"OBJ", {".obj"}, readObjPoints, nullptr, readObjMesh, writeObj, true},
-      {"XYZ", {".xyz", ".txt", ".asc", ".csv"}, readXyz, writeXyzPoints},
+      withRows({"PCD", {".pcd"}, read<parsePcd>, writePcd}, pcdRows),
+      withRows({"PLY", {".ply"}, readVertices<parsePly>, writePlyPoints, readSurface<parsePly>, writePlyMesh, true},
+               plyRows),
+      {"legacy VTK", {".vtk"}, readVertices<parseVtk>, nullptr, readSurface<parseVtk>, writeSurface<writeVtk>},
+      {"VTK XML", {".vtp"}, nullptr, nullptr, nullptr, writeSurface<writeVtp>},
+      {"STL", {".stl"}, readStlPoints, nullptr, read<parseStl>, writeStl},
+      {"OBJ", {".obj"}, readVertices<parseObjMesh>, nullptr, readSurface<parseObjMesh>, writeObj, true},
+      {"XYZ", {".xyz", ".txt", ".asc", ".csv"}, read<parseXyz>, writeRows<writeXyz>},
       scansFormat<openE57>("E57", ".e57", writeE57Points),
       scansFormat<openPtx>("PTX", ".ptx"),
       scansFormat<openPts>("PTS", ".pts"),
-      scansFormat<openLas>("LAS", ".las", writeLasPoints),
-      scansFormat<openLaz>("LAZ", ".laz", writeLazPoints),
+      scansFormat<openLas>("LAS", ".las", writeRows<writeLas>),
+      scansFormat<openLaz>("LAZ", ".laz", writeRows<writeLaz>),
       {"binary glTF", {".glb"}, nullptr, nullptr, nullptr, nullptr, true},
   };
   return all;

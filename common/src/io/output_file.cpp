@@ -9,7 +9,6 @@
 #include <fresco/core/require.h>
 #include <fresco/io/file.h>
 #include <fresco/io/unfinished_files.h>
-#include <map>
 #include <mutex>
 #include <optional>
 #include <random>

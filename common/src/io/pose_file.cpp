@@ -44,15 +44,13 @@ std::vector<Pose> readPoses(const std::string& path)
 void writePoses(const std::string& path, const std::vector<Pose>& poses)
 {
   OutputFile file(path);
-  io::TextWriter text(file);
   for (const Pose& pose : poses) {
     if (!pose)
-      text.text("none");
+      file.write("none");
     for (int i = 0; pose && i < 16; ++i)
-      text.text(i > 0 ? " " : "").number((*pose)(i / 4, i % 4));
-    text.text("\n");
+      file.write(io::textOf(i > 0 ? " " : "", (*pose)(i / 4, i % 4)));
+    file.write("\n");
   }
-  text.flush();
   file.commit();
 }
 } // namespace fresco

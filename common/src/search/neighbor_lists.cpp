@@ -8,7 +8,6 @@
 #include <fresco/search/neighbors.h>
 #include <functional>
 #include <iterator>
-#include <limits>
 #include <utility>
 namespace fresco {
 namespace {

@@ -12,21 +12,8 @@
 #include <fresco/io/scan_images.h>
 namespace {
 using namespace fresco;
-
-std::string testFolder()
-{
-  static std::string known, folder;
-  if (const std::string name = testing::UnitTest::GetInstance()->current_test_info()->name(); name != known)
-    known = name, folder = test::scratchFolder();
-  return folder;
-}
-
-std::string stored(const std::string& name, const std::string& content)
-{
-  const std::string path = testFolder() + "/" + name;
-  test::writeText(path, content);
-  return path;
-}
+using test::stored;
+using test::testFolder;
 
 /// What readers remark while it lives.
 class Remarks {

@@ -43,12 +43,7 @@ Field whole(const std::string& name, std::int64_t minimum, std::int64_t maximum,
   return field;
 }
 
-std::string stored(const std::string& bytes)
-{
-  const std::string path = test::scratchFolder() + "/scan.e57";
-  test::writeText(path, bytes);
-  return path;
-}
+std::string stored(const std::string& bytes) { return test::stored("scan.e57", bytes); }
 
 /// All rows of a scan as the reader gives them, `window` at a time.
 io::PointTable rowsOf(const std::string& path, Index window, Index scan = 0)

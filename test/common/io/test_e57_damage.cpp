@@ -100,6 +100,20 @@ TEST(E57Damage, WhatTheXmlAsksForMustBeThere)
   EXPECT_TRUE(says(error("</e57Root>", "</e57Roof>"), "XML"));
 }
 
+TEST(E57Damage, PointsMustFitAnXmlThatIsDamaged)
+{
+  const auto error = [](const std::string& what, const std::string& by) { // with the checksum as it was
+    std::string bytes = smallFile();
+    const std::size_t at = bytes.find(what);
+    if (at == std::string::npos)
+      return "no " + what;
+    return errorOf(bytes.replace(at, by.size(), by));
+  };
+  EXPECT_TRUE(says(error("Vector\"></codecs", "Vectos\"></codecs"), "may be wrong")); // and read
+  EXPECT_TRUE(says(error("recordCount=\"100\"", "recordCount=\"050\""), "than its 50 records"));
+  EXPECT_TRUE(says(error("maximum=\"5000\"", "maximum=\"0000\""), "than its 100 records"));
+}
+
 TEST(E57Damage, SectionsEndWithTheFile)
 {
   const std::string good = smallFile();

@@ -12,22 +12,8 @@
 #include <fresco/io/scan_file.h>
 namespace {
 using namespace fresco;
-
-/// Emptied by the first call of each test.
-std::string testFolder()
-{
-  static std::string known, folder;
-  if (const std::string name = testing::UnitTest::GetInstance()->current_test_info()->name(); name != known)
-    known = name, folder = test::scratchFolder();
-  return folder;
-}
-
-std::string stored(const std::string& name, const std::string& content)
-{
-  const std::string path = testFolder() + "/" + name;
-  test::writeText(path, content);
-  return path;
-}
+using test::stored;
+using test::testFolder;
 
 const std::string ply_head =
     "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\nproperty float z\n";
@@ -98,6 +84,11 @@ const Report reports[] = {
     {"meshlab#226", "a.asc", "0 0 0 0 0 1\n1 2 3 0.6 0 -0.8\n", {1, 2, 3}, {0.6f, 0, -0.8f}},
     {"pyntcloud#305", "a.pts", "x y z\n0 0 0\n1 2 3\n", {1, 2, 3}},
     {"pyntcloud#305", "a.pts", "2\n0 0 0 -5 0 0 0\n1 2 3 17 255 51 0\n", {1, 2, 3}, none, {255, 51, 0}, 17},
+    {"more points than announced", "a.pts", "1\n0 0 0\n1 2 3\n", {1, 2, 3}},
+    {"a comment without its word",
+     "a.ply",
+     "ply\nformat ascii 1.0\nCreated by hand\n" + ply_head.substr(21) + "end_header\n0 0 0\n1 2 3\n",
+     {1, 2, 3}},
     {"PotreeConverter#85", "a.obj", "v 0 0 0 0 0 0\nv 1 2 3 255 51 0\n", {1, 2, 3}, none, {255, 51, 0}},
     {"exports in other locales",
      "a.pcd",
@@ -210,6 +201,63 @@ TEST(FormatReports, E57Fields)
       test::e57::edited(whole, " minimum=\"-9223372036854775808\" maximum=\"9223372036854775807\"", "");
   ASSERT_FALSE(bare.empty());
   EXPECT_EQ(readCloud(stored("b.e57", bare)).cloud.data, readCloud(stored("c.e57", whole)).cloud.data);
+  writeCloud(testFolder() + "/long.ply", readCloud(stored("c.e57", whole))); // which PLY has only double for
+  EXPECT_EQ(readMesh(testFolder() + "/long.ply").fields.at("label"), Eigen::Vector2f(5, -7));
+}
+
+TEST(FormatReports, PtxStationsStandInTheirPlaces)
+{
+  const std::string scanner = "1\n2\n", axes = "1 0 0\n0 1 0\n0 0 1\n", beams = "1 0 0 0.5\n0 2 0 0.25\n";
+  const std::string path =
+      stored("a.ptx", scanner + "0 0 0\n" + axes + "1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n" + beams + scanner +
+                          "10 0 3\n" + axes + "0 1 0 0\n-1 0 0 0\n0 0 1 0\n10 0 3 1\n" + beams); // meshlab#640
+  const PointSet all = readPoints(path);
+  ASSERT_EQ(all.size(), 4);
+  EXPECT_EQ(all.points.col(0), Eigen::Vector3f(1, 0, 0));
+  EXPECT_LT((all.points.col(2) - Eigen::Vector3f(10, 1, 3)).norm(), 1e-6f);
+  EXPECT_LT((all.viewpoints.col(3) - Eigen::Vector3f(10, 0, 3)).norm(), 1e-6f);
+  EXPECT_EQ(readPoints(ScanPath{path, 1}).points.col(1), Eigen::Vector3f(0, 2, 0));
+}
+
+/// A scan of points (x, 0, 0).
+test::e57::Scan scanOnAxis(const std::string& name, const std::vector<double>& x)
+{
+  test::e57::Scan scan{name, {}, x.size()};
+  for (const char* axis : {"cartesianX", "cartesianY", "cartesianZ"}) {
+    test::e57::Field field{axis};
+    field.reals = axis[9] == 'X' ? x : std::vector<double>(x.size(), 0.0);
+    scan.fields.push_back(field);
+  }
+  return scan;
+}
+
+TEST(FormatReports, E57PointsThatAreOdd)
+{
+  test::e57::Scan scan = scanOnAxis("a", {0, 1, 7}), packed = scan;
+  packed.fields[0] = {"cartesianX", "Integer"};
+  packed.fields[0].maximum = 5; // PCD-E57#8: 7 is above
+  packed.fields[0].stored = {0, 1, 7};
+  for (const test::e57::Scan& each : {scan, packed}) {
+    const PointSet set = readPoints(stored("a.e57", test::e57::fileOf({each})));
+    ASSERT_EQ(set.size(), 3);
+    EXPECT_EQ(set.points.col(0), Eigen::Vector3f(0, 0, 0)); // CloudCompare#1374: nothing says that it is none
+    EXPECT_EQ(set.points.col(2), Eigen::Vector3f(7, 0, 0));
+  }
+}
+
+TEST(FormatReports, FieldsThatSomeScansLackAreSaid)
+{
+  test::e57::Scan bright = scanOnAxis("b", {3, 4});
+  test::e57::Field intensity{"intensity"};
+  intensity.reals = {0.25, 0.75};
+  bright.fields.push_back(intensity); // ifc-lite#608
+  const std::string path = stored("a.e57", test::e57::fileOf({bright, scanOnAxis("a", {1, 2})}));
+  std::string remarks;
+  listenToReaders([&](const std::string& line) { remarks += line; });
+  EXPECT_EQ(readPoints(path).intensities.size(), 0);
+  listenToReaders({});
+  EXPECT_NE(remarks.find("field intensity is not in all scans"), std::string::npos) << remarks;
+  EXPECT_EQ(readPoints(ScanPath{path, 0}).intensities, Eigen::Vector2f(0.25f, 0.75f));
 }
 
 TEST(FormatReports, ObjNames)
@@ -224,6 +272,19 @@ TEST(FormatReports, ObjNames)
   TexturedMesh full = test::fullTexturedMesh(4, 2);
   writeTexturedMesh(folder + "/name with blanks.obj", full);
   EXPECT_EQ(readTexturedMesh(folder + "/name with blanks.obj").face_atlas, full.face_atlas);
+}
+
+TEST(FormatReports, ObjFacesThatAreOdd)
+{
+  const std::string corners = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+  std::string remarks;
+  listenToReaders([&](const std::string& line) { remarks += line; });
+  for (const char* face : {"f 1/1/1 2/2/1 3/3/1\n", "f 1// 2//\nf 1// 2// 3//\n"})
+    EXPECT_EQ(readMesh(stored("a.obj", corners + face)).faceCount(), 1) << face;
+  listenToReaders({});
+  EXPECT_NE(remarks.find("of which there are none"), std::string::npos);
+  EXPECT_NE(remarks.find("fewer than 3 corners"), std::string::npos);
+  EXPECT_THROW(readMesh(stored("b.obj", corners + "vn 0 0 1\nf 1//1 2//2 3//1\n")), std::runtime_error);
 }
 
 TEST(FormatReports, HiddenFilesInFoldersDoNotCount)

@@ -118,6 +118,23 @@ inline void writeText(const std::string& path, std::string_view text)
   file.commit();
 }
 
+/// The folder of the running test, emptied by its first call.
+inline std::string testFolder()
+{
+  static std::string known, folder;
+  if (const std::string name = testing::UnitTest::GetInstance()->current_test_info()->name(); name != known)
+    known = name, folder = scratchFolder();
+  return folder;
+}
+
+/// Path of a file with that content in the folder of the running test.
+inline std::string stored(const std::string& name, std::string_view content)
+{
+  const std::string path = testFolder() + "/" + name;
+  writeText(path, content);
+  return path;
+}
+
 /// Text of the exception that `run` throws, "" if it throws none.
 inline std::string errorOf(const std::function<void()>& run)
 {

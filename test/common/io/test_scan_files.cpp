@@ -7,14 +7,8 @@
 #include <sstream>
 namespace {
 using namespace fresco;
+using test::stored;
 using test::e57::exact;
-
-std::string stored(const std::string& name, const std::string& content)
-{
-  const std::string path = test::scratchFolder() + "/" + name;
-  test::writeText(path, content);
-  return path;
-}
 
 Eigen::Isometry3d somePose(double angle, const Eigen::Vector3d& place)
 {

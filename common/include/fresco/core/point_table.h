@@ -10,8 +10,8 @@
 #include <fresco/core/mesh.h>
 #include <fresco/core/parallel.h>
 #include <fresco/core/point_set.h>
+#include <limits>
 #include <optional>
-#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -21,31 +21,18 @@ enum class Scalar : std::uint8_t { int8, uint8, int16, uint16, int32, uint32, in
 
 /// f(T{}) with the C++ type of `type`.
 template <typename Function>
-decltype(auto) visitScalar(Scalar type, Function&& f)
+auto visitScalar(Scalar type, const Function& f)
 {
-  switch (type) {
-  case Scalar::int8:
-    return f(std::int8_t{});
-  case Scalar::uint8:
-    return f(std::uint8_t{});
-  case Scalar::int16:
-    return f(std::int16_t{});
-  case Scalar::uint16:
-    return f(std::uint16_t{});
-  case Scalar::int32:
-    return f(std::int32_t{});
-  case Scalar::uint32:
-    return f(std::uint32_t{});
-  case Scalar::int64:
-    return f(std::int64_t{});
-  case Scalar::uint64:
-    return f(std::uint64_t{});
-  case Scalar::float32:
-    return f(float{});
-  case Scalar::float64:
-    return f(double{});
-  }
-  throw std::logic_error("unknown scalar type");
+  return type == Scalar::int8      ? f(std::int8_t{})
+         : type == Scalar::uint8   ? f(std::uint8_t{})
+         : type == Scalar::int16   ? f(std::int16_t{})
+         : type == Scalar::uint16  ? f(std::uint16_t{})
+         : type == Scalar::int32   ? f(std::int32_t{})
+         : type == Scalar::uint32  ? f(std::uint32_t{})
+         : type == Scalar::int64   ? f(std::int64_t{})
+         : type == Scalar::uint64  ? f(std::uint64_t{})
+         : type == Scalar::float32 ? f(float{})
+                                   : f(double{});
 }
 
 /// Bytes of one value.
@@ -103,6 +90,12 @@ struct FRESCO_EXPORT PointTable {
   void own();                     ///< copies what `view` shows into `data`
 };
 
+/// A mesh as files hold it.
+struct MeshTable {
+  PointTable vertices; ///< columns by standardName()
+  Faces faces;         ///< polygons as fans, strips as triangles
+};
+
 /// body(row, T value) with component `component` of `column` of the rows begin .. end - 1.
 template <typename Body>
 void forEachValue(const PointTable& table, const Column& column, std::size_t component, const Body& body, Index begin,
@@ -126,6 +119,33 @@ void forEachValue(const PointTable& table, const Column& column, std::size_t com
   const auto part = [&](Index begin, Index end) { forEachValue(table, column, component, body, begin, end); };
   parallelRanges(table.rows, 0, part, rows_per_task);
 }
+
+/// body(row, T value) of every row, one after the other.
+template <typename Body>
+void eachValue(const PointTable& table, const Column& column, const Body& body)
+{
+  forEachValue(table, column, 0, body, 0, table.rows);
+}
+
+FRESCO_EXPORT double valueAt(const PointTable& table, Index row, const Column& column);
+
+/// Whole numbers are rounded and kept within their range, NaN is 0 there.
+FRESCO_EXPORT void storeValue(Scalar type, double value, void* at);
+
+/// Adds the columns of another table that `wanted(column)`, without rows.
+template <typename Wanted>
+void addColumns(const PointTable& from, PointTable& to, const Wanted& wanted)
+{
+  for (const Column& column : from.columns)
+    if (wanted(column))
+      to.addColumn(column.name, column.type, column.count);
+}
+
+/// Copies the rows of `from` into those of `to` from `begin` on: the columns that both have. Types may differ.
+FRESCO_EXPORT void copyRows(const PointTable& from, PointTable& to, Index begin = 0);
+
+/// Of each row, whether x y z are finite.
+FRESCO_EXPORT std::vector<bool> finiteRows(const PointTable& table);
 
 /// Value `component` of every row as float, N.
 FRESCO_EXPORT Eigen::VectorXf columnValues(const PointTable& table, const Column& column, std::size_t component = 0);
@@ -174,7 +194,8 @@ FRESCO_EXPORT void unpackColors(PointTable& table);
 
 /// Bounds of finite coordinates and what rounding them to float loses.
 struct FRESCO_EXPORT CoordinateBounds {
-  Eigen::Array3d low, high, loss;
+  Eigen::Array3d low = Eigen::Array3d::Constant(std::numeric_limits<double>::infinity()), high = -low;
+  Eigen::Array3d loss = Eigen::Array3d::Zero();
 
   double extent() const;     ///< longest side, >= 0
   bool exceedsFloat() const; ///< float loses more than 1e-6 of the extent
@@ -199,8 +220,8 @@ FRESCO_EXPORT PointSet tableToPoints(const PointTable& table);
 FRESCO_EXPORT PointSet tableToPoints(const PointTable& table, const Eigen::Vector3d& origin);
 FRESCO_EXPORT PointTable pointsToTable(const PointSet& set);
 
-/// Vertices and their attributes; faces stay empty. @throws std::runtime_error if x y z are missing
-FRESCO_EXPORT TriangleMesh tableToMesh(const PointTable& table);
+/// Vertices with their attributes, and faces. @throws std::runtime_error if x y z are missing
+FRESCO_EXPORT TriangleMesh tableToMesh(const PointTable& table, Faces faces = {});
 /// Vertices and their attributes.
 FRESCO_EXPORT PointTable meshToTable(const TriangleMesh& mesh);
 

@@ -28,7 +28,8 @@ FRESCO_EXPORT void writeTexturedMesh(const std::string& path, const TexturedMesh
 /// `NAME_0.png` ..., even one alone; those of a .glb are kept as they are stored.
 class FRESCO_EXPORT TexturedMeshWriter {
 public:
-  TexturedMeshWriter(const std::string& path, int jpeg_quality = 0);
+  /// @param several as several atlases are named; otherwise as one alone
+  TexturedMeshWriter(const std::string& path, int jpeg_quality = 0, bool several = true);
   ~TexturedMeshWriter();
   void addAtlas(const Image& atlas);
   /// @param model with as many atlases, whose pixels are not looked at

@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "io/colmap/colmap_model.h"
-#include "io/colmap/lens_models.h"
 #include <filesystem>
-#include <fresco/core/require.h>
 #include <fresco/io/colmap.h>
-#include <fresco/io/file.h>
 namespace fresco {
 namespace {
 using io::CameraEntry;
+using io::LensModel;
 
 std::vector<CameraEntry> readCamerasText(const std::string& path)
 {
@@ -18,13 +16,13 @@ std::vector<CameraEntry> readCamerasText(const std::string& path)
       return;
     io::TextScanner words(line);
     const auto id = io::nextNumber<std::uint64_t>(words, where, wanted);
-    const std::string model(words.word());
+    const LensModel& lens = io::lensModelNamed(std::string(words.word()), where);
     const auto width = io::nextNumber<std::uint64_t>(words, where, wanted);
     const auto height = io::nextNumber<std::uint64_t>(words, where, wanted);
     std::vector<double> parameters;
     while (!words.atLineEnd())
       parameters.push_back(io::nextNumber<double>(words, where, wanted));
-    cameras.push_back({id, io::makeCamera(model, width, height, parameters, where)});
+    cameras.push_back({id, io::makeCamera(lens, width, height, parameters, where)});
   });
   return cameras;
 }

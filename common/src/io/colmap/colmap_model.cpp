@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "io/colmap/colmap_model.h"
 #include "io/colmap/byte_reader.h"
-#include "io/colmap/lens_models.h"
 #include <algorithm>
 #include <cmath>
 #include <fresco/core/poses.h>
@@ -9,40 +8,15 @@
 #include <fresco/io/file.h>
 #include <map>
 namespace fresco::io {
-namespace {
-template <typename Test>
-const LensModel* findModel(const Test& test)
+CameraModel makeCamera(const LensModel& lens, std::uint64_t width, std::uint64_t height, const std::vector<double>& p,
+                       const std::string& where)
 {
-  const auto found = std::find_if(lensModels().begin(), lensModels().end(), test);
-  return found == lensModels().end() ? nullptr : &*found;
-}
-} // namespace
-
-int parameterCount(const std::string& model)
-{
-  const LensModel* const lens = findModel([&](const LensModel& m) { return m.name == model; });
-  return lens ? static_cast<int>(lens->parameters.size()) : -1;
-}
-
-std::string modelName(int id)
-{
-  const LensModel* const lens = findModel([&](const LensModel& m) { return m.number == id; });
-  return lens ? lens->name : "";
-}
-
-CameraModel makeCamera(const std::string& model, std::uint64_t width, std::uint64_t height,
-                       const std::vector<double>& p, const std::string& where)
-{
-  const int wanted = parameterCount(model);
-  if (wanted < 0)
-    fail(where, "camera model " + model + " is none of " + lensModelNames());
-  if (static_cast<int>(p.size()) != wanted)
-    fail(where, concat("camera model ", model, " has ", wanted, " parameters, not ", p.size()));
+  if (p.size() != lens.parameters.size())
+    fail(where, concat("camera model ", lens.name, " has ", lens.parameters.size(), " parameters, not ", p.size()));
   if (!std::all_of(p.begin(), p.end(), [](double value) { return std::isfinite(value); }))
     fail(where, "a camera parameter is not finite");
   if (width < 1 || height < 1 || width > 1000000 || height > 1000000)
     fail(where, concat("an image of ", width, "x", height, " pixels"));
-  const LensModel& lens = *findModel([&](const LensModel& m) { return m.name == model; });
   CameraModel camera;
   camera.projection = lens.projection;
   camera.width = static_cast<int>(width);
@@ -101,15 +75,12 @@ std::vector<CameraEntry> readCamerasBinary(const std::string& path)
   std::vector<CameraEntry> cameras;
   for (auto left = bytes.next<std::uint64_t>(); left > 0; --left) {
     const auto id = bytes.next<std::uint32_t>();
-    const auto model = bytes.next<std::int32_t>();
+    const LensModel& lens = lensModelNumbered(bytes.next<std::int32_t>(), path);
     const auto width = bytes.next<std::uint64_t>(), height = bytes.next<std::uint64_t>();
-    const std::string name = modelName(model);
-    if (name.empty())
-      fail(path, concat("camera model number ", model, " is none of ", lensModelNames()));
-    std::vector<double> parameters(parameterCount(name));
+    std::vector<double> parameters(lens.parameters.size());
     for (double& value : parameters)
       value = bytes.next<double>();
-    cameras.push_back({id, makeCamera(name, width, height, parameters, path)});
+    cameras.push_back({id, makeCamera(lens, width, height, parameters, path)});
   }
   return cameras;
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+#include "io/colmap/lens_models.h"
 #include "io/points/text_numbers.h"
 #include <cstdint>
 #include <fresco/core/camera.h>
@@ -45,14 +46,8 @@ T nextNumber(TextScanner& words, const std::string& where, const char* what)
   }
 }
 
-/// Number of parameters of a camera model by COLMAP's name; -1 if fresco does not read that model.
-int parameterCount(const std::string& model);
-
-/// COLMAP's name of the model with this number in binary files; "" if fresco does not read it.
-std::string modelName(int id);
-
 /// @throws std::runtime_error naming `where`
-CameraModel makeCamera(const std::string& model, std::uint64_t width, std::uint64_t height,
+CameraModel makeCamera(const LensModel& lens, std::uint64_t width, std::uint64_t height,
                        const std::vector<double>& parameters, const std::string& where);
 
 /// @param q quaternion w x y z, normalised here

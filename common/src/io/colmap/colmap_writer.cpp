@@ -8,34 +8,22 @@ namespace {
 /// A text file of numbers that blanks part.
 class ListFile {
 public:
-  ListFile(const std::string& path, const std::string& head) : file_(path), text_(file_) { text_.text(head); }
+  ListFile(const std::string& path, const std::string& head) : file_(path) { file_.write(head); }
 
   template <typename... Values>
   void add(const Values&... values)
   {
-    ((text_.text(first_ ? "" : " "), put(values), first_ = false), ...);
+    ((file_.write(io::textOf(first_ ? "" : " ", values)), first_ = false), ...);
   }
   void endLine()
   {
-    text_.text("\n");
+    file_.write("\n");
     first_ = true;
   }
-  void commit()
-  {
-    text_.flush();
-    file_.commit();
-  }
+  void commit() { file_.commit(); }
 
 private:
-  void put(const std::string& word) { text_.text(word); }
-  template <typename T>
-  void put(T number)
-  {
-    text_.number(number);
-  }
-
   OutputFile file_;
-  io::TextWriter text_;
   bool first_ = true;
 };
 

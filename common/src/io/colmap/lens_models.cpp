@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "io/colmap/lens_models.h"
 #include <algorithm>
-#include <stdexcept>
+#include <fresco/core/require.h>
 namespace fresco::io {
+namespace {
+/// Those that are read: all but FOV.
 const std::vector<LensModel>& lensModels()
 {
   using M = CameraModel;
@@ -27,6 +29,30 @@ const std::vector<LensModel>& lensModels()
   return all;
 }
 
+template <typename Test>
+const LensModel& findModel(const std::string& failure, const Test& test)
+{
+  const auto found = std::find_if(lensModels().begin(), lensModels().end(), test);
+  if (found != lensModels().end())
+    return *found;
+  std::string names;
+  for (const LensModel& model : lensModels())
+    names += (names.empty() ? "" : ", ") + std::string(model.name);
+  throw std::runtime_error(failure + " is none of " + names);
+}
+} // namespace
+
+const LensModel& lensModelNamed(const std::string& name, const std::string& where)
+{
+  return findModel(where + ": camera model " + name, [&](const LensModel& model) { return model.name == name; });
+}
+
+const LensModel& lensModelNumbered(int number, const std::string& where)
+{
+  return findModel(concat(where, ": camera model number ", number),
+                   [&](const LensModel& model) { return model.number == number; });
+}
+
 const LensModel& lensModelOf(const CameraModel& camera)
 {
   const auto has_all = [&](const LensModel& model) {
@@ -40,13 +66,5 @@ const LensModel& lensModelOf(const CameraModel& camera)
   if (found == lensModels().end())
     throw std::invalid_argument("camera: COLMAP has no model for it");
   return *found;
-}
-
-std::string lensModelNames()
-{
-  std::string names;
-  for (const LensModel& model : lensModels())
-    names += (names.empty() ? "" : ", ") + std::string(model.name);
-  return names;
 }
 } // namespace fresco::io

@@ -13,13 +13,12 @@ struct LensModel {
   std::vector<double CameraModel::*> parameters;
 };
 
-/// Those that are read: all but FOV.
-const std::vector<LensModel>& lensModels();
+/// By COLMAP's name, and by its number in binary files. @throws std::runtime_error "`where`: ..." if fresco does not read
+/// that model
+const LensModel& lensModelNamed(const std::string& name, const std::string& where);
+const LensModel& lensModelNumbered(int number, const std::string& where);
 
 /// The simplest model with two focal lengths that has all parameters of the camera.
 /// @throws std::invalid_argument for a spherical camera, which COLMAP does not have
 const LensModel& lensModelOf(const CameraModel& camera);
-
-/// ", "-separated names.
-std::string lensModelNames();
 } // namespace fresco::io

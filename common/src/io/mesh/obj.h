@@ -3,6 +3,7 @@
 #include <array>
 #include <fresco/core/export.h>
 #include <fresco/core/point_table.h>
+#include <fresco/io/file.h>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -31,16 +32,14 @@ struct ObjContent {
 FRESCO_EXPORT ObjContent parseObj(std::string_view content);
 
 /// Vertices with colours and one normal each: the normals of a vertex's corners, added up where they differ.
-FRESCO_EXPORT PointTable objVertices(const ObjContent& content);
-FRESCO_EXPORT Faces objFaces(const ObjContent& content);
+FRESCO_EXPORT MeshTable objMesh(const ObjContent& content);
+MeshTable parseObjMesh(std::string_view content);
 
 /// Image that each material of a .mtl file names by map_Kd, material by material.
 FRESCO_EXPORT std::vector<std::pair<std::string, std::string>> parseMtl(std::string_view content);
 
-class TextWriter;
-
 /// `v` lines (with colours) and `vn` lines.
-FRESCO_EXPORT void writeObjVertices(TextWriter& writer, const TriangleMesh& mesh);
+FRESCO_EXPORT void writeObjVertices(OutputFile& file, const TriangleMesh& mesh);
 
 /// Vertices and faces.
 void writeObj(const std::string& path, const TriangleMesh& mesh);

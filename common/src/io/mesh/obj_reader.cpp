@@ -40,8 +40,9 @@ public:
     if (content_.vertices.empty())
       throw std::runtime_error("no vertices");
     if (has_lines_)
-      remark("lines and points are left out");
+      remark("lines, points and faces of fewer than 3 corners are left out");
     finishColors();
+    forgetMissing();
     checkIndices();
     return std::move(content_);
   }
@@ -124,8 +125,7 @@ private:
     corners_.clear();
     for (std::string_view word = nextWord(scanner_); !word.empty(); word = nextWord(scanner_))
       corners_.push_back(parseCorner(word));
-    if (corners_.size() < 3)
-      throw std::runtime_error("a face has fewer than 3 corners");
+    has_lines_ = has_lines_ || corners_.size() < 3;
     triangulate(corners_.size(), [&](std::size_t i, std::size_t k, std::size_t l) {
       const Corner &a = corners_[i], &b = corners_[k], &c = corners_[l];
       content_.triangles.push_back({{a.vertex, b.vertex, c.vertex},
@@ -180,6 +180,23 @@ private:
     }
     content_.vertices = std::move(joined);
     content_.has_colors = true;
+  }
+
+  /// Faces that name texture coordinates or normals of a file that has none.
+  void forgetMissing()
+  {
+    bool any = false;
+    const auto forget = [&](std::array<int, 3>& indices, bool missing) {
+      any = any || (missing && indices != std::array{-1, -1, -1});
+      if (missing)
+        indices.fill(-1);
+    };
+    for (ObjTriangle& triangle : content_.triangles) {
+      forget(triangle.texcoords, content_.texcoords.empty());
+      forget(triangle.normals, content_.normals.empty());
+    }
+    if (any)
+      remark("faces name texture coordinates or normals, of which there are none");
   }
 
   void checkIndices() const
@@ -238,34 +255,28 @@ std::vector<double> normalsPerVertex(const ObjContent& content)
 
 ObjContent parseObj(std::string_view content) { return ObjParser(content).parse(); }
 
-PointTable objVertices(const ObjContent& content)
+MeshTable objMesh(const ObjContent& content)
 {
   std::vector<std::string> names(std::begin(xyz_names), std::end(xyz_names));
   if (content.has_colors)
     names.insert(names.end(), std::begin(color_names), std::end(color_names));
   const std::vector<double> normals = normalsPerVertex(content);
-  if (normals.empty())
-    return tableOfRows(names, content.vertices);
   const std::size_t width = content.valuesPerVertex();
-  names.insert(names.end(), std::begin(normal_names), std::end(normal_names));
+  if (!normals.empty())
+    names.insert(names.end(), std::begin(normal_names), std::end(normal_names));
   std::vector<double> rows;
-  rows.reserve(content.vertices.size() + normals.size());
   for (std::size_t i = 0; i < normals.size() / 3; ++i) {
     rows.insert(rows.end(), content.vertices.data() + width * i, content.vertices.data() + width * (i + 1));
     rows.insert(rows.end(), normals.data() + 3 * i, normals.data() + 3 * (i + 1));
   }
-  return tableOfRows(names, rows);
+  MeshTable mesh{tableOfRows(names, normals.empty() ? content.vertices : rows), {}};
+  mesh.faces.resize(3, content.triangles.size());
+  for (Index f = 0; f < mesh.faces.cols(); ++f)
+    mesh.faces.col(f) = Eigen::Vector3i::Map(content.triangles[f].vertices.data());
+  return mesh;
 }
 
-Faces objFaces(const ObjContent& content)
-{
-  Faces faces(3, content.triangles.size());
-  for (Index f = 0; f < faces.cols(); ++f) {
-    const auto& corners = content.triangles[f].vertices;
-    faces.col(f) << corners[0], corners[1], corners[2];
-  }
-  return faces;
-}
+MeshTable parseObjMesh(std::string_view content) { return objMesh(parseObj(content)); }
 
 std::vector<std::pair<std::string, std::string>> parseMtl(std::string_view content)
 {

@@ -3,26 +3,22 @@
 #include "io/mesh/obj.h"
 #include "io/points/text_numbers.h"
 namespace fresco::io {
-void writeObjVertices(TextWriter& writer, const TriangleMesh& mesh)
+void writeObjVertices(OutputFile& file, const TriangleMesh& mesh)
 {
   const bool has_origin = !mesh.origin.isZero(0);
   for (Index v = 0; v < mesh.vertexCount(); ++v) {
-    writer.text("v");
+    file.write("v");
     for (int k = 0; k < 3; ++k)
       if (has_origin)
-        writer.text(" ").number(mesh.origin[k] + static_cast<double>(mesh.vertices(k, v)));
+        file.write(textOf(' ', mesh.origin[k] + static_cast<double>(mesh.vertices(k, v))));
       else
-        writer.text(" ").number(mesh.vertices(k, v));
+        file.write(textOf(' ', mesh.vertices(k, v)));
     for (int k = 0; k < 3 && mesh.colors.cols() > 0; ++k)
-      writer.text(" ").number(static_cast<float>(mesh.colors(k, v)) / 255.f);
-    writer.text("\n");
+      file.write(textOf(' ', static_cast<float>(mesh.colors(k, v)) / 255.f));
+    file.write("\n");
   }
-  for (Index v = 0; v < mesh.normals.cols(); ++v) {
-    writer.text("vn");
-    for (int k = 0; k < 3; ++k)
-      writer.text(" ").number(mesh.normals(k, v));
-    writer.text("\n");
-  }
+  for (Index v = 0; v < mesh.normals.cols(); ++v)
+    file.write(textOf("vn ", mesh.normals(0, v), ' ', mesh.normals(1, v), ' ', mesh.normals(2, v), '\n'));
 }
 
 void writeObj(const std::string& path, const TriangleMesh& mesh)
@@ -32,18 +28,15 @@ void writeObj(const std::string& path, const TriangleMesh& mesh)
     remark(concat(path, ": fields have no place in OBJ: ", mesh.fields.begin()->first,
                   mesh.fields.size() > 1 ? " ..." : ""));
   OutputFile file(path);
-  TextWriter writer(file);
-  writeObjVertices(writer, mesh);
+  writeObjVertices(file, mesh);
   for (Index f = 0; f < mesh.faceCount(); ++f) {
-    writer.text("f");
+    file.write("f");
     for (int k = 0; k < 3; ++k) {
-      writer.text(" ").number(mesh.faces(k, f) + 1);
-      if (mesh.normals.cols() > 0)
-        writer.text("//").number(mesh.faces(k, f) + 1);
+      const int vertex = mesh.faces(k, f) + 1;
+      file.write(mesh.normals.cols() > 0 ? textOf(' ', vertex, "//", vertex) : textOf(' ', vertex));
     }
-    writer.text("\n");
+    file.write("\n");
   }
-  writer.flush();
   file.commit();
 }
 } // namespace fresco::io

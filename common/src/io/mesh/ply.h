@@ -31,12 +31,14 @@ struct PlyHeader {
   std::size_t size = 0;              ///< bytes up to the first data
 };
 
+/// @throws std::runtime_error for 64-bit integers, which PLY does not have
+const char* plyTypeName(Scalar type);
+
 /// @throws std::runtime_error if malformed
 PlyHeader parsePlyHeader(std::string_view content);
 
-struct PlyContent {
-  PointTable vertices; ///< columns by standardName(); may view `content`
-  Faces faces;         ///< polygons as fans, strips as triangles
+/// Vertices may view the content of the file.
+struct PlyContent : MeshTable {
   // With texture only: comments TextureFile as MeshLab, OpenMVS and Metashape write them.
   std::vector<std::string> textures;
   std::vector<float> texcoords; ///< u v of each corner of `faces`, NaN where there is none
@@ -45,7 +47,8 @@ struct PlyContent {
 
 /// What is left out is remarked.
 /// @throws std::runtime_error if malformed or truncated, without vertices, or if a face names a vertex that is not there
-FRESCO_EXPORT PlyContent parsePly(std::string_view content, bool with_texture = false);
+PlyContent parsePly(std::string_view content);
+FRESCO_EXPORT PlyContent parseTexturedPly(std::string_view content);
 
 /// Binary little-endian. A sensor pose becomes the element `camera` that PCL reads.
 /// @param faces 0 columns: no element `face`

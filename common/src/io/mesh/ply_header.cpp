@@ -1,22 +1,24 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "io/files/remarks.h"
 #include "io/mesh/ply.h"
 #include "io/points/text_numbers.h"
 #include <algorithm>
 #include <fresco/core/require.h>
 namespace fresco::io {
 namespace {
+constexpr struct {
+  const char *name, *other;
+  Scalar type;
+} types[] = {{"char", "int8", Scalar::int8},        {"uchar", "uint8", Scalar::uint8},
+             {"short", "int16", Scalar::int16},     {"ushort", "uint16", Scalar::uint16},
+             {"int", "int32", Scalar::int32},       {"uint", "uint32", Scalar::uint32},
+             {"float", "float32", Scalar::float32}, {"double", "float64", Scalar::float64}};
+
 Scalar parseType(std::string_view word)
 {
-  static constexpr std::pair<std::string_view, Scalar> types[] = {
-      {"char", Scalar::int8},      {"int8", Scalar::int8},       {"uchar", Scalar::uint8},
-      {"uint8", Scalar::uint8},    {"short", Scalar::int16},     {"int16", Scalar::int16},
-      {"ushort", Scalar::uint16},  {"uint16", Scalar::uint16},   {"int", Scalar::int32},
-      {"int32", Scalar::int32},    {"uint", Scalar::uint32},     {"uint32", Scalar::uint32},
-      {"float", Scalar::float32},  {"float32", Scalar::float32}, {"double", Scalar::float64},
-      {"float64", Scalar::float64}};
-  for (const auto& [name, type] : types)
-    if (name == word)
-      return type;
+  for (const auto& known : types)
+    if (word == known.name || word == known.other)
+      return known.type;
   throw std::runtime_error(concat("PLY header: unknown type '", word.substr(0, 40), "'"));
 }
 
@@ -77,11 +79,19 @@ bool parseLine(TextScanner& scanner, PlyHeader& header, bool& has_format)
     if (scanner.word() == "TextureFile")
       header.textures.emplace_back(scanner.restOfLineInPlace());
   } else if (keyword != "obj_info" && !keyword.empty()) {
-    throw std::runtime_error(concat("PLY header: unknown keyword '", keyword.substr(0, 40), "'"));
+    remark(concat("PLY header: a line is left out: '", keyword.substr(0, 40), "'"));
   }
   return true;
 }
 } // namespace
+
+const char* plyTypeName(Scalar type)
+{
+  for (const auto& known : types)
+    if (known.type == type)
+      return known.name;
+  throw std::runtime_error("PLY has no 64-bit integers");
+}
 
 bool PlyElement::hasList() const
 {

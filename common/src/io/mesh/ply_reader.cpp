@@ -334,21 +334,21 @@ PlyContent readElements(Source source, const PlyHeader& header, bool textured)
 }
 } // namespace
 
-PlyContent parsePly(std::string_view content, bool with_texture)
+namespace {
+PlyContent parse(std::string_view content, bool textured)
 {
   const PlyHeader header = parsePlyHeader(content);
   remarkOnOmissions(header);
   const std::string_view data = content.substr(header.size);
-  switch (header.format) {
-  case PlyFormat::ascii:
-    return readElements(TextSource(data), header, with_texture);
-  case PlyFormat::little_endian:
-    return readElements(BinarySource<false>(data), header, with_texture);
-  case PlyFormat::big_endian:
-    return readElements(BinarySource<true>(data), header, with_texture);
-  }
-  throw std::logic_error("unknown PLY format");
+  if (header.format == PlyFormat::ascii)
+    return readElements(TextSource(data), header, textured);
+  return header.format == PlyFormat::little_endian ? readElements(BinarySource<false>(data), header, textured)
+                                                   : readElements(BinarySource<true>(data), header, textured);
 }
+} // namespace
+
+PlyContent parsePly(std::string_view content) { return parse(content, false); }
+PlyContent parseTexturedPly(std::string_view content) { return parse(content, true); }
 
 std::optional<RowLayout> plyRows(std::string_view begin)
 {

@@ -1,52 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "io/files/remarks.h"
 #include "io/mesh/ply.h"
 #include "io/points/text_numbers.h"
 #include <algorithm>
-#include <array>
 #include <cstring>
 #include <fresco/core/require.h>
 #include <fresco/io/file.h>
 #include <fresco/io/ply_rows.h>
 namespace fresco::io {
 namespace {
-const char* typeName(Scalar type)
-{
-  switch (type) {
-  case Scalar::int8:
-    return "char";
-  case Scalar::uint8:
-    return "uchar";
-  case Scalar::int16:
-    return "short";
-  case Scalar::uint16:
-    return "ushort";
-  case Scalar::int32:
-    return "int";
-  case Scalar::uint32:
-    return "uint";
-  case Scalar::float32:
-    return "float";
-  case Scalar::float64:
-    return "double";
-  default:
-    throw std::runtime_error("PLY has no 64-bit integers");
-  }
-}
-
-std::string propertyName(const std::string& column)
-{
-  for (const char axis : {'x', 'y', 'z'})
-    if (column == std::string("normal_") + axis)
-      return std::string("n") + axis;
-  return singleWord(column);
-}
-
 std::string propertyLines(const PointTable& table)
 {
   std::string lines;
   for (const Column& column : table.columns)
     for (std::size_t k = 0; k < column.count; ++k)
-      lines += textOf("property ", typeName(column.type), ' ', propertyName(column.name),
+      lines += textOf("property ", plyTypeName(column.type), ' ', plainName(column.name),
                       column.count > 1 ? textOf('_', k) : "", '\n');
   return lines;
 }
@@ -87,12 +55,26 @@ void writeFaces(OutputFile& file, const Faces& faces)
 }
 
 /// Colours as bytes, and only what PLY has types for.
-void prepare(const std::string& path, PointTable& table)
+void prepare(PointTable& table)
 {
   unpackColors(table);
-  for (const Column& column : table.columns)
-    if (column.type == Scalar::int64 || column.type == Scalar::uint64)
-      throw std::runtime_error(concat(path, ": PLY has no 64-bit integers for the field ", column.name));
+  PointTable known;
+  known.sensor = table.sensor;
+  known.width = table.width;
+  known.height = table.height;
+  bool any_long = false;
+  for (const Column& column : table.columns) {
+    const bool is_long = column.count == 1 && (column.type == Scalar::int64 || column.type == Scalar::uint64);
+    if (is_long)
+      remark("PLY has no 64-bit integers: double for the field " + column.name);
+    known.addColumn(column.name, is_long ? Scalar::float64 : column.type, column.count);
+    any_long = any_long || is_long;
+  }
+  if (!any_long)
+    return;
+  known.allocate(table.rows);
+  copyRows(table, known);
+  table = std::move(known);
 }
 
 /// Everything before the first vertex of `rows`, and what comes after faces.
@@ -119,7 +101,7 @@ std::string plyHeader(const PointTable& rows, Index vertices, Index faces)
 
 PointTable plyRows(PointTable vertices)
 {
-  prepare("mesh", vertices);
+  prepare(vertices);
   return vertices;
 }
 
@@ -143,7 +125,7 @@ std::string plyFaceRows(const Faces& faces, Index begin, Index end)
 
 void writePly(const std::string& path, PointTable vertices, const Faces& faces)
 {
-  prepare(path, vertices);
+  prepare(vertices);
   OutputFile file(path);
   const auto [header, end] = headerAndEnd(vertices, vertices.rows, faces.cols());
   file.write(header);
@@ -159,14 +141,14 @@ void writePly(const std::string& path, Index rows, const std::function<PointTabl
   constexpr Index at_most = Index{1} << 19;
   const Index parts = std::max<Index>(1, (rows + at_most - 1) / at_most); // of about the same size
   PointTable table = part(0, rows / parts);
-  prepare(path, table);
+  prepare(table);
   OutputFile file(path);
   const auto [header, end] = headerAndEnd(table, rows, faces.cols());
   file.write(header);
   file.write(table.data.data(), table.data.size());
   for (Index i = 1; i < parts; ++i) {
     table = part(rows * i / parts, rows * (i + 1) / parts);
-    prepare(path, table);
+    prepare(table);
     file.write(table.data.data(), table.data.size());
   }
   writeFaces(file, faces);

@@ -6,6 +6,19 @@
 #include <string_view>
 #include <vector>
 namespace fresco::io {
+/// What VTK calls a type, in its old files and in XML.
+struct VtkType {
+  Scalar type;
+  const char *legacy, *xml;
+};
+inline constexpr VtkType vtk_types[] = {
+    {Scalar::int8, "char", "Int8"},           {Scalar::uint8, "unsigned_char", "UInt8"},
+    {Scalar::int16, "short", "Int16"},        {Scalar::uint16, "unsigned_short", "UInt16"},
+    {Scalar::int32, "int", "Int32"},          {Scalar::uint32, "unsigned_int", "UInt32"},
+    {Scalar::int64, "vtktypeint64", "Int64"}, {Scalar::uint64, "vtktypeuint64", "UInt64"},
+    {Scalar::float32, "float", "Float32"},    {Scalar::float64, "double", "Float64"},
+};
+
 /// Values of one array of a VTK file, tuple by tuple, little-endian.
 struct VtkArray {
   std::string name;

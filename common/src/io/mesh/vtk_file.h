@@ -4,14 +4,9 @@
 #include <string>
 #include <string_view>
 namespace fresco::io {
-struct VtkContent {
-  PointTable vertices; ///< colours as byte columns red green blue
-  Faces faces;         ///< polygons as fans, strips as triangles
-};
-
 /// Legacy VTK polydata, ASCII or binary; point data arrays become columns.
 /// @throws std::runtime_error if malformed, truncated, of another kind of dataset or without points
-VtkContent parseVtk(std::string_view content);
+MeshTable parseVtk(std::string_view content);
 
 /// Legacy VTK polydata, binary. Normals become NORMALS, colours COLOR_SCALARS, the rest arrays of a FIELD.
 void writeVtk(const std::string& path, PointTable vertices, const Faces& faces);

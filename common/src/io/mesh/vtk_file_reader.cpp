@@ -9,22 +9,15 @@ namespace fresco::io {
 namespace {
 Scalar parseType(std::string_view word)
 {
-  static constexpr std::pair<const char*, Scalar> types[] = {{"char", Scalar::int8},
-                                                             {"signed_char", Scalar::int8},
-                                                             {"unsigned_char", Scalar::uint8},
-                                                             {"short", Scalar::int16},
-                                                             {"unsigned_short", Scalar::uint16},
-                                                             {"int", Scalar::int32},
-                                                             {"unsigned_int", Scalar::uint32},
-                                                             {"long", Scalar::int64},
-                                                             {"unsigned_long", Scalar::uint64},
-                                                             {"vtkidtype", Scalar::int32},
-                                                             {"vtktypeint64", Scalar::int64},
-                                                             {"vtktypeuint64", Scalar::uint64},
-                                                             {"float", Scalar::float32},
-                                                             {"double", Scalar::float64}};
+  static constexpr std::pair<const char*, Scalar> others[] = {{"signed_char", Scalar::int8},
+                                                              {"long", Scalar::int64},
+                                                              {"unsigned_long", Scalar::uint64},
+                                                              {"vtkidtype", Scalar::int32}};
   const std::string name = lowerCase(word);
-  for (const auto& [known, type] : types)
+  for (const VtkType& known : vtk_types)
+    if (name == known.legacy)
+      return known.type;
+  for (const auto& [known, type] : others)
     if (name == known)
       return type;
   throw std::runtime_error(concat("VTK: values of type '", word.substr(0, 40), "' are not supported"));
@@ -51,17 +44,16 @@ class VtkParser {
 public:
   explicit VtkParser(std::string_view text) : scanner_(text) {}
 
-  VtkContent parse()
+  MeshTable parse()
   {
     parseHeader();
     for (std::string_view word = nextKeyword(); !word.empty(); word = nextKeyword())
       parseSection(lowerCase(word));
     if (points_.bytes.empty())
       throw std::runtime_error("no points");
-    VtkContent content;
-    content.vertices = tableOfArrays(points_, arrays_);
-    content.faces = collector_.faces(content.vertices.rows);
-    return content;
+    MeshTable mesh{tableOfArrays(points_, arrays_), {}};
+    mesh.faces = collector_.faces(mesh.vertices.rows);
+    return mesh;
   }
 
 private:
@@ -260,5 +252,5 @@ private:
 };
 } // namespace
 
-VtkContent parseVtk(std::string_view content) { return VtkParser(content).parse(); }
+MeshTable parseVtk(std::string_view content) { return VtkParser(content).parse(); }
 } // namespace fresco::io

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "io/mesh/vtk_arrays.h"
 #include "io/mesh/vtk_file.h"
 #include "io/points/text_numbers.h"
 #include <algorithm>
@@ -6,21 +7,9 @@
 #include <fresco/io/file.h>
 namespace fresco::io {
 namespace {
-struct TypeNames {
-  Scalar type;
-  const char *legacy, *xml;
-};
-constexpr TypeNames type_names[] = {
-    {Scalar::int8, "char", "Int8"},           {Scalar::uint8, "unsigned_char", "UInt8"},
-    {Scalar::int16, "short", "Int16"},        {Scalar::uint16, "unsigned_short", "UInt16"},
-    {Scalar::int32, "int", "Int32"},          {Scalar::uint32, "unsigned_int", "UInt32"},
-    {Scalar::int64, "vtktypeint64", "Int64"}, {Scalar::uint64, "vtktypeuint64", "UInt64"},
-    {Scalar::float32, "float", "Float32"},    {Scalar::float64, "double", "Float64"},
-};
-
-const TypeNames& namesOf(Scalar type)
+const VtkType& namesOf(Scalar type)
 {
-  return *std::find_if(std::begin(type_names), std::end(type_names), [&](const auto& n) { return n.type == type; });
+  return *std::find_if(std::begin(vtk_types), std::end(vtk_types), [&](const auto& n) { return n.type == type; });
 }
 
 /// Columns of equal type that are one array for VTK.

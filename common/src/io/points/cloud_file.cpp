@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "io/points/parse_file.h"
 #include "io/points/scan_reader.h"
-#include <algorithm>
-#include <cmath>
 #include <fresco/core/pcl_cloud_table.h>
-#include <fresco/core/require.h>
 #include <fresco/io/cloud_file.h>
 #include <fresco/io/scan_file.h>
 namespace fresco {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "io/points/file_window.h"
 #include "io/files/inputs.h"
+#include "io/points/text_numbers.h"
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
@@ -12,16 +13,6 @@
 namespace fresco::io {
 namespace {
 constexpr std::size_t window_size = std::size_t{1} << 20; // a line of a scan has some 100 bytes
-
-std::string_view trimmed(std::string_view text)
-{
-  const auto blank = [](char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\0'; };
-  while (!text.empty() && blank(text.front()))
-    text.remove_prefix(1);
-  while (!text.empty() && blank(text.back()))
-    text.remove_suffix(1);
-  return text;
-}
 } // namespace
 
 RandomAccessFile::RandomAccessFile(const std::string& path)
@@ -91,7 +82,8 @@ bool LineReader::next(std::string_view& text)
   if (at_ == window_.size())
     return false;
   const std::size_t last = std::min(end, window_.size());
-  text = trimmed(std::string_view(window_).substr(at_, last - at_));
+  constexpr std::string_view blanks(" \t\r\0", 4);
+  text = trimmed(std::string_view(window_).substr(at_, last - at_), blanks);
   last_ = at_;
   at_ = std::min(last + 1, window_.size());
   ++line_;

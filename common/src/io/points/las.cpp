@@ -18,12 +18,6 @@ struct LasHeader {
   Eigen::Array3d scale, offset;
 };
 
-template <typename T>
-T loadAt(const std::uint8_t* bytes, std::size_t offset)
-{
-  return loadScalar<T>(bytes + offset);
-}
-
 LasHeader readHeader(const RandomAccessFile& file)
 {
   constexpr std::size_t oldest = 227, newest = 375;
@@ -41,18 +35,18 @@ LasHeader readHeader(const RandomAccessFile& file)
   if ((bytes[104] & compressed) != 0)
     throw std::runtime_error("compressed (LAZ): name it .laz");
   header.format = bytes[104];
-  header.record = loadAt<std::uint16_t>(bytes, 105);
+  header.record = loadScalar<std::uint16_t>(bytes + 105);
   if (header.format > 10 || header.record < lasRecordBytes(header.format))
     throw std::runtime_error(concat("points of format ", header.format, " in ", header.record, " bytes"));
-  header.records = loadAt<std::uint16_t>(bytes, 94);
-  header.record_count = loadAt<std::uint32_t>(bytes, 100);
-  header.data = loadAt<std::uint32_t>(bytes, 96);
-  header.points = loadAt<std::uint32_t>(bytes, 107);
-  if (minor == 4 && file.size() >= newest && loadAt<std::uint64_t>(bytes, 247) > 0)
-    header.points = loadAt<std::uint64_t>(bytes, 247);
+  header.records = loadScalar<std::uint16_t>(bytes + 94);
+  header.record_count = loadScalar<std::uint32_t>(bytes + 100);
+  header.data = loadScalar<std::uint32_t>(bytes + 96);
+  header.points = loadScalar<std::uint32_t>(bytes + 107);
+  if (minor == 4 && file.size() >= newest && loadScalar<std::uint64_t>(bytes + 247) > 0)
+    header.points = loadScalar<std::uint64_t>(bytes + 247);
   for (int axis = 0; axis < 3; ++axis) {
-    header.scale[axis] = loadAt<double>(bytes, 131 + 8 * axis);
-    header.offset[axis] = loadAt<double>(bytes, 155 + 8 * axis);
+    header.scale[axis] = loadScalar<double>(bytes + 131 + 8 * axis);
+    header.offset[axis] = loadScalar<double>(bytes + 155 + 8 * axis);
   }
   if (!header.scale.isFinite().all() || !header.offset.isFinite().all())
     throw std::runtime_error("scale or offset of the coordinates is not finite");
@@ -67,8 +61,8 @@ std::string extraDescriptors(const RandomAccessFile& file, const LasHeader& head
   for (std::uint32_t i = 0; i < header.record_count && at + head <= std::min(header.data, file.size()); ++i) {
     std::uint8_t bytes[head];
     file.read(at, bytes, head);
-    const auto length = loadAt<std::uint16_t>(bytes, 20);
-    if (std::memcmp(bytes + 2, "LASF_Spec", 10) == 0 && loadAt<std::uint16_t>(bytes, 18) == 4 &&
+    const auto length = loadScalar<std::uint16_t>(bytes + 20);
+    if (std::memcmp(bytes + 2, "LASF_Spec", 10) == 0 && loadScalar<std::uint16_t>(bytes + 18) == 4 &&
         length <= file.size() - at - head) {
       std::string text(length, '\0');
       file.read(at + head, text.data(), length);
@@ -105,16 +99,6 @@ std::vector<LasField> fieldsOf(const RandomAccessFile& file, const LasHeader& he
     fields.push_back(rest);
   }
   return fields;
-}
-
-template <typename T>
-T converted(double value)
-{
-  if constexpr (std::is_integral_v<T>)
-    return std::isnan(value) ? T(0)
-                             : std::clamp<double>(value, std::numeric_limits<T>::min(), std::numeric_limits<T>::max());
-  else
-    return value;
 }
 
 class LasReader : public ScanReader {
@@ -178,7 +162,7 @@ private:
         const Index count = std::min(points_per_place, total - first);
         readRecords(first, count);
         for (Index i = 0; i < count; ++i)
-          largest = std::max<double>(largest, loadAt<std::uint16_t>(record(i), field.offset));
+          largest = std::max<double>(largest, loadScalar<std::uint16_t>(record(i) + field.offset));
       }
     return largest;
   }
@@ -203,10 +187,7 @@ private:
       value = field.no_data && value == *field.no_data ? std::numeric_limits<double>::quiet_NaN()
               : isColor(field)                         ? colorByte(value, full_color_)
                                                        : value * field.scale + field.origin;
-      visitScalar(field.column, [&](auto zero) {
-        const auto stored = converted<decltype(zero)>(value);
-        std::memcpy(to + k * sizeof(stored), &stored, sizeof(stored));
-      });
+      storeValue(field.column, value, to + k * scalarSize(field.column));
     }
   }
 

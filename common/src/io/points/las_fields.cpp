@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "io/points/las_fields.h"
-#include <fresco/core/require.h>
 namespace fresco::io {
 namespace {
 /// Types of extra bytes from 1 on.

@@ -4,10 +4,8 @@
 #include "io/points/las_fields.h"
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <fresco/core/require.h>
 #include <fresco/io/file.h>
-#include <limits>
 namespace fresco::io {
 namespace {
 constexpr std::size_t header_bytes = 375, record_head = 54;
@@ -21,13 +19,10 @@ void put(std::string& bytes, std::size_t at, T value)
 bool isWhole16(const PointTable& table, const Column& column)
 {
   bool whole = true;
-  forEachValue(
-      table, column, 0,
-      [&](Index, auto value) {
-        const auto v = double(value);
-        whole = whole && v >= 0 && v <= 65535 && v == std::floor(v);
-      },
-      0, table.rows);
+  eachValue(table, column, [&](Index, auto value) {
+    const auto v = double(value);
+    whole = whole && v >= 0 && v <= 65535 && v == std::floor(v);
+  });
   return whole;
 }
 
@@ -100,20 +95,19 @@ public:
     return bytes;
   }
 
-  void appendRecord(Index row, std::string& bytes) const
+  std::string record(Index row) const
   {
-    const std::size_t begin = bytes.size();
-    bytes.resize(begin + record_, '\0');
-    char* const record = &bytes[begin];
-    record[14] = 0x11; // one return of one
+    std::string bytes(record_, '\0');
+    bytes[14] = 0x11; // one return of one
     for (const LasField& field : fields_)
       if (const Column* column = table_.find(field.name))
-        storeField(field, *column, row, record);
-    char* at = record + lasRecordBytes(format_);
+        storeField(field, *column, row, bytes.data());
+    std::size_t at = lasRecordBytes(format_);
     for (const Column& column : extra_) {
-      std::memcpy(at, table_.cell(row, column), column.bytes());
+      std::memcpy(&bytes[at], table_.cell(row, column), column.bytes());
       at += column.bytes();
     }
+    return bytes;
   }
 
 private:
@@ -127,8 +121,7 @@ private:
 
   void storeField(const LasField& field, const Column& column, Index row, char* record) const
   {
-    double value = visitScalar(column.type,
-                               [&](auto zero) { return double(loadScalar<decltype(zero)>(table_.cell(row, column))); });
+    double value = valueAt(table_, row, column);
     if (field.name == "intensity" && !extra_.empty() &&
         std::any_of(extra_.begin(), extra_.end(), [](const Column& c) { return c.name == "intensity"; }))
       return;                                                            // its exact values are extra bytes
@@ -140,13 +133,7 @@ private:
       record[field.offset] = char((std::uint8_t(record[field.offset]) & ~(mask << field.shift)) | whole << field.shift);
       return;
     }
-    visitScalar(field.stored, [&](auto zero) {
-      using T = decltype(zero);
-      T stored = T(value);
-      if constexpr (std::is_integral_v<T>)
-        stored = T(std::clamp<double>(std::round(value), std::numeric_limits<T>::min(), std::numeric_limits<T>::max()));
-      std::memcpy(record + field.offset, &stored, sizeof(T));
-    });
+    storeValue(field.stored, value, record + field.offset);
   }
 
   const PointTable& table_;
@@ -159,19 +146,6 @@ private:
   std::size_t record_ = 0;
 };
 
-std::vector<Index> finiteRows(const PointTable& table, const std::array<Column, 3>& xyz)
-{
-  std::vector<bool> finite(table.rows, true);
-  for (const Column& column : xyz)
-    forEachValue(
-        table, column, 0, [&](Index row, auto value) { finite[row] = finite[row] && std::isfinite(double(value)); }, 0,
-        table.rows);
-  std::vector<Index> rows;
-  for (Index row = 0; row < table.rows; ++row)
-    if (finite[row])
-      rows.push_back(row);
-  return rows;
-}
 } // namespace
 
 void writeLas(const std::string& path, PointTable table)
@@ -181,20 +155,16 @@ void writeLas(const std::string& path, PointTable table)
     const auto xyz = findTriple(table, xyz_names);
     if (!xyz)
       throw std::runtime_error("no coordinates x y z");
-    const std::vector<Index> rows = finiteRows(table, *xyz);
-    if (Index(rows.size()) < table.rows)
-      remark(concat(table.rows - Index(rows.size()), " points that are not finite have no place in LAS: left out"));
+    const std::vector<bool> finite = finiteRows(table);
+    const Index count = std::count(finite.begin(), finite.end(), true);
+    if (count < table.rows)
+      remark(concat(table.rows - count, " points that are not finite have no place in LAS: left out"));
     const Layout layout(table, *xyz);
     OutputFile file(path);
-    std::string bytes = layout.header(rows.size());
-    for (const Index row : rows) {
-      layout.appendRecord(row, bytes);
-      if (bytes.size() > std::size_t{1} << 22) {
-        file.write(bytes);
-        bytes.clear();
-      }
-    }
-    file.write(bytes);
+    file.write(layout.header(count));
+    for (Index row = 0; row < table.rows; ++row)
+      if (finite[row])
+        file.write(layout.record(row));
     file.commit();
   });
 }

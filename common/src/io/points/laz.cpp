@@ -6,7 +6,6 @@
 #include <fcntl.h>
 #include <filesystem>
 #include <fresco/core/require.h>
-#include <fresco/core/scratch_space.h>
 #include <fresco/io/file.h>
 #include <spawn.h>
 #include <sys/wait.h>

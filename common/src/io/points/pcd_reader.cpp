@@ -7,6 +7,7 @@
 #include <fresco/core/require.h>
 #include <liblzf/lzf.h>
 #include <limits>
+#include <numeric>
 namespace fresco::io {
 namespace {
 struct PcdHeader {
@@ -20,18 +21,19 @@ struct PcdHeader {
   std::string_view data;
 };
 
-template <typename T>
-std::vector<T> parseNumbers(TextScanner& scanner)
+/// parse(word) of the rest of a line.
+template <typename Parse>
+auto parseWords(TextScanner& scanner, const Parse& parse)
 {
-  std::vector<T> numbers;
+  std::vector<decltype(parse(std::string_view()))> values;
   for (std::string_view word = scanner.word(); !word.empty(); word = scanner.word())
-    numbers.push_back(parseNumber<T>(word));
-  return numbers;
+    values.push_back(parse(word));
+  return values;
 }
 
 SensorPose parseViewpoint(TextScanner& scanner)
 {
-  const std::vector<double> v = parseNumbers<double>(scanner);
+  const std::vector<double> v = parseWords(scanner, parseNumber<double>);
   if (v.size() != 7)
     throw std::runtime_error("PCD header: VIEWPOINT needs 7 numbers");
   SensorPose pose;
@@ -40,28 +42,16 @@ SensorPose parseViewpoint(TextScanner& scanner)
   return pose;
 }
 
-void parseFields(TextScanner& scanner, PcdHeader& header)
-{
-  for (std::string_view word = scanner.word(); !word.empty(); word = scanner.word())
-    header.names.emplace_back(word);
-}
-
-void parseTypes(TextScanner& scanner, PcdHeader& header)
-{
-  for (std::string_view word = scanner.word(); !word.empty(); word = scanner.word())
-    header.types.push_back(word.size() == 1 ? word[0] : '?');
-}
-
 void parseEntry(std::string_view keyword, TextScanner& scanner, PcdHeader& header)
 {
   if (keyword == "FIELDS" || keyword == "COLUMNS")
-    parseFields(scanner, header);
+    header.names = parseWords(scanner, [](std::string_view word) { return std::string(word); });
   else if (keyword == "SIZE")
-    header.sizes = parseNumbers<std::uint64_t>(scanner);
+    header.sizes = parseWords(scanner, parseNumber<std::uint64_t>);
   else if (keyword == "TYPE")
-    parseTypes(scanner, header);
+    header.types = parseWords(scanner, [](std::string_view word) { return word.size() == 1 ? word[0] : '?'; });
   else if (keyword == "COUNT")
-    header.counts = parseNumbers<std::uint64_t>(scanner);
+    header.counts = parseWords(scanner, parseNumber<std::uint64_t>);
   else if (keyword == "WIDTH")
     header.width = parseNumber<std::uint64_t>(scanner.word());
   else if (keyword == "HEIGHT")
@@ -121,16 +111,9 @@ PcdHeader parseHeader(std::string_view content)
 
 Scalar scalarType(char type, std::size_t size)
 {
-  static constexpr struct {
-    char type;
-    std::size_t size;
-    Scalar scalar;
-  } known[] = {{'I', 1, Scalar::int8},    {'I', 2, Scalar::int16},  {'I', 4, Scalar::int32},  {'I', 8, Scalar::int64},
-               {'U', 1, Scalar::uint8},   {'U', 2, Scalar::uint16}, {'U', 4, Scalar::uint32}, {'U', 8, Scalar::uint64},
-               {'F', 4, Scalar::float32}, {'F', 8, Scalar::float64}};
-  for (const auto& entry : known)
-    if (entry.type == type && entry.size == size)
-      return entry.scalar;
+  for (int i = 0; i <= int(Scalar::float64); ++i)
+    if (typeLetter(Scalar(i)) == type && scalarSize(Scalar(i)) == size)
+      return Scalar(i);
   throw std::runtime_error(concat("PCD header: no type '", type, "' of ", size, " bytes"));
 }
 
@@ -159,10 +142,8 @@ std::vector<StoredField> storedFields(const PcdHeader& header, PointTable& table
 
 std::size_t rowBytes(const std::vector<StoredField>& fields)
 {
-  std::size_t bytes = 0;
-  for (const StoredField& field : fields)
-    bytes += field.bytes;
-  return bytes;
+  return std::accumulate(fields.begin(), fields.end(), std::size_t{0},
+                         [](std::size_t sum, const StoredField& field) { return sum + field.bytes; });
 }
 
 void checkRows(std::uint64_t points, std::size_t row_bytes, std::size_t available)

@@ -1,20 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "io/points/pcd.h"
 #include "io/points/text_numbers.h"
-#include <fresco/core/require.h>
 #include <fresco/io/file.h>
 #include <liblzf/lzf.h>
 #include <limits>
 namespace fresco::io {
 namespace {
-char typeLetter(Scalar type)
-{
-  return visitScalar(type, [](auto zero) {
-    using T = decltype(zero);
-    return std::is_floating_point_v<T> ? 'F' : std::is_signed_v<T> ? 'I' : 'U';
-  });
-}
-
 std::string headerText(const PointTable& table, bool compressed)
 {
   std::string fields, sizes, types, counts, viewpoint;

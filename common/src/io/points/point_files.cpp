@@ -8,7 +8,6 @@
 #include <fresco/io/formats.h>
 #include <fresco/io/point_files.h>
 #include <fresco/io/point_io.h>
-#include <limits>
 namespace fresco {
 namespace {
 struct Source {
@@ -59,14 +58,11 @@ io::CoordinateBounds boundsOf(const Source& source)
   const auto ofTable = [](const io::PointTable& table) {
     return coordinateBounds(table, *findTriple(table, io::xyz_names));
   };
-  constexpr double infinity = std::numeric_limits<double>::infinity();
-  const io::CoordinateBounds none{Eigen::Array3d::Constant(infinity), Eigen::Array3d::Constant(-infinity),
-                                  Eigen::Array3d::Zero()};
   if (!source.rows)
     return ofTable(io::readTable(source.path));
   return parallelReduce(
-      source.rows->size(), 0, none, [&](Index begin, Index end) { return ofTable(source.rows->read(begin, end)); },
-      merged, io::rows_per_window);
+      source.rows->size(), 0, io::CoordinateBounds(),
+      [&](Index begin, Index end) { return ofTable(source.rows->read(begin, end)); }, merged, io::rows_per_window);
 }
 
 template <typename Matrix>
@@ -202,19 +198,18 @@ private:
   Eigen::Vector3d origin_ = Eigen::Vector3d::Zero();
 };
 
+/// None for a rank that no window is left for.
 class KeptPoints : public PointStream {
 public:
   explicit KeptPoints(PointSet set) : set_(std::move(set)) {}
-  void read(const std::function<void(const PointSet&)>& receive) const override { receive(set_); }
+  void read(const std::function<void(const PointSet&)>& receive) const override
+  {
+    if (set_.size() > 0)
+      receive(set_);
+  }
 
 private:
   PointSet set_;
-};
-
-/// What a rank has that no window is left for.
-class NoPoints : public PointStream {
-public:
-  void read(const std::function<void(const PointSet&)>&) const override {}
 };
 
 /// In a folder, text files are notes or poses, .stl files hold no normals, and hidden ones are of systems or unfinished.
@@ -231,18 +226,13 @@ std::unique_ptr<PointStream> openPointFiles(const std::vector<ScanPath>& files, 
   require(!files.empty(), "points: no files");
   require(window >= 1, "points: a window of ", window);
   require(share.part >= 0 && share.part < share.parts, "points: part ", share.part, " of ", share.parts);
-  if (files.size() == 1 && (files[0].scan >= 0 || !io::RowFile::open(files[0].file))) {
-    if (share.part > 0)
-      return std::make_unique<NoPoints>();
-    return std::make_unique<KeptPoints>(readPoints(files[0]));
-  }
+  if (files.size() == 1 && (files[0].scan >= 0 || !io::RowFile::open(files[0].file)))
+    return std::make_unique<KeptPoints>(share.part > 0 ? PointSet() : readPoints(files[0]));
   auto stream = std::make_unique<FileStream>(files, window, share);
   if (!stream->fitsWindow())
     return stream;
   PointSet all;
   stream->read([&](const PointSet& part) { all.size() == 0 ? void(all = part) : appendPoints(all, part); });
-  if (share.parts > 1 && all.size() == 0)
-    return std::make_unique<NoPoints>();
   return std::make_unique<KeptPoints>(std::move(all));
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include "io/files/remarks.h"
+#include <algorithm>
 #include <fresco/core/point_table.h>
 #include <fresco/io/scan_file.h>
 #include <memory>
@@ -28,11 +29,16 @@ public:
   virtual Index read(PointTable& table, Index begin, Index end) = 0;
 
 protected:
-  /// Remarks on the parts that cannot be read. @throws std::runtime_error with the first of them if no scan has points
-  void settle(const std::vector<std::string>& errors) const;
+  bool hasPoints() const
+  {
+    return std::any_of(scans_.begin(), scans_.end(), [](const ScanInfo& info) { return info.points > 0; });
+  }
 
   std::vector<ScanInfo> scans_; ///< those that cannot be read have no points
 };
+
+/// Remarks on the parts of a file that cannot be read. @throws std::runtime_error with the first unless there are others
+void tellDamage(const std::vector<std::string>& errors, bool others);
 
 /// use(); every error is a std::runtime_error "PATH: reason".
 template <typename Use>

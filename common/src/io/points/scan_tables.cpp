@@ -12,12 +12,6 @@ void storeAt(std::uint8_t* at, T value)
   std::memcpy(at, &value, sizeof(T));
 }
 
-double valueAt(const PointTable& table, Index row, const Column& column)
-{
-  return visitScalar(column.type,
-                     [&](auto zero) { return double(loadScalar<decltype(zero)>(table.cell(row, column))); });
-}
-
 /// Whole numbers of a column.
 std::vector<Index> wholeNumbers(const PointTable& table, const char* name)
 {
@@ -33,17 +27,14 @@ std::vector<Index> wholeNumbers(const PointTable& table, const char* name)
 void blankCell(PointTable& table, Index row)
 {
   for (const Column& column : table.columns)
-    if (column.type == Scalar::float32)
-      storeAt(table.cell(row, column), std::numeric_limits<float>::quiet_NaN());
-    else if (column.type == Scalar::float64)
-      storeAt(table.cell(row, column), std::numeric_limits<double>::quiet_NaN());
+    if (column.type == Scalar::float32 || column.type == Scalar::float64)
+      storeValue(column.type, std::numeric_limits<double>::quiet_NaN(), table.cell(row, column));
 }
 } // namespace
 
-void ScanReader::settle(const std::vector<std::string>& errors) const
+void tellDamage(const std::vector<std::string>& errors, bool others)
 {
-  const bool any = std::any_of(scans_.begin(), scans_.end(), [](const ScanInfo& info) { return info.points > 0; });
-  if (!any && !errors.empty())
+  if (!others && !errors.empty())
     throw std::runtime_error(errors[0]);
   for (const std::string& error : errors)
     remark("could not be read: " + error);
@@ -70,20 +61,15 @@ void organise(PointTable& table)
   }
   PointTable grid;
   grid.sensor = table.sensor;
-  std::vector<Column> kept;
-  for (const Column& column : table.columns)
-    if (column.name != row_column && column.name != column_column) {
-      kept.push_back(column);
-      grid.addColumn(column.name, column.type, column.count);
-    }
+  addColumns(table, grid, [](const Column& c) { return c.name != row_column && c.name != column_column; });
   grid.allocate(width * height);
   std::tie(grid.width, grid.height) = std::pair(width, height);
   for (Index place = 0; place < grid.rows; ++place)
     if (source[place] < 0)
       blankCell(grid, place);
     else
-      for (std::size_t c = 0; c < kept.size(); ++c)
-        std::memcpy(grid.cell(place, grid.columns[c]), table.cell(source[place], kept[c]), kept[c].bytes());
+      for (const Column& column : grid.columns)
+        std::memcpy(grid.cell(place, column), table.cell(source[place], *table.find(column.name)), column.bytes());
   table = std::move(grid);
 }
 
@@ -129,76 +115,31 @@ PointTable sharedLayout(const std::vector<PointTable>& layouts)
   return shared;
 }
 
-void copyValues(const PointTable& from, PointTable& to, Index begin)
+/// Vectors of rows `begin` .. `end` - 1 become moved(vector).
+template <typename Move>
+void moveRows(PointTable& table, NameTriple names, Index begin, Index end, const Move& moved)
 {
-  for (const Column& column : to.columns) {
-    const Column* source = from.find(column.name);
-    if (!source)
-      continue;
-    for (Index i = 0; i < from.rows; ++i)
-      if (source->type == column.type)
-        std::memcpy(to.cell(begin + i, column), from.cell(i, *source), column.bytes());
-      else
-        storeAt(to.cell(begin + i, column), valueAt(from, i, *source));
+  const auto columns = findTriple(table, names);
+  for (Index row = begin; columns && row < end; ++row) {
+    Eigen::Vector3d v;
+    for (int axis = 0; axis < 3; ++axis)
+      v[axis] = valueAt(table, row, (*columns)[axis]);
+    v = moved(v);
+    for (int axis = 0; axis < 3; ++axis)
+      storeValue((*columns)[axis].type, v[axis], table.cell(row, (*columns)[axis]));
   }
 }
 
-/// Points and normals of rows `begin` .. `end` - 1 to the frame of the file.
-void moveRows(PointTable& table, Index begin, Index end, const Eigen::Isometry3d& T)
+/// read(); what cannot be read of scan `scan` is told later and does not cost the others.
+template <typename Read>
+void attempt(Index scan, std::vector<std::string>& errors, const Read& read)
 {
-  const auto xyz = findTriple(table, xyz_names), normal = findTriple(table, normal_names);
-  const bool turn = normal && std::all_of(normal->begin(), normal->end(),
-                                          [](const Column& column) { return column.type == Scalar::float32; });
-  const Eigen::Matrix3d R = T.linear();
-  for (Index row = begin; row < end; ++row) {
-    Eigen::Vector3d p, n;
-    for (int axis = 0; axis < 3; ++axis)
-      p[axis] = loadScalar<double>(table.cell(row, (*xyz)[axis]));
-    const Eigen::Vector3d moved = T * p;
-    for (int axis = 0; axis < 3; ++axis)
-      storeAt(table.cell(row, (*xyz)[axis]), moved[axis]);
-    if (!turn)
-      continue;
-    for (int axis = 0; axis < 3; ++axis)
-      n[axis] = loadScalar<float>(table.cell(row, (*normal)[axis]));
-    const Eigen::Vector3f turned = (R * n).cast<float>();
-    for (int axis = 0; axis < 3; ++axis)
-      storeAt(table.cell(row, (*normal)[axis]), turned[axis]);
+  try {
+    read();
+  } catch (const std::runtime_error& error) {
+    errors.push_back(concat("scan ", scan + 1, ": ", error.what()));
   }
 }
-
-void storeViewpoints(PointTable& table, Index begin, Index end, const Eigen::Vector3d& viewpoint)
-{
-  const auto columns = findTriple(table, viewpoint_names);
-  for (Index row = begin; columns && row < end; ++row)
-    for (int axis = 0; axis < 3; ++axis)
-      storeAt(table.cell(row, (*columns)[axis]), viewpoint[axis]);
-}
-
-/// Scans of which one that cannot be read does not cost the others.
-class SoundParts {
-public:
-  template <typename Read>
-  void attempt(Index scan, const Read& read)
-  {
-    try {
-      read();
-    } catch (const std::runtime_error& error) {
-      errors_.push_back(concat("scan ", scan + 1, ": ", error.what()));
-    }
-  }
-  /// Remarks on the others. @throws std::runtime_error unless there is any
-  void requireAny(bool any)
-  {
-    if (!any)
-      throw std::runtime_error(errors_.empty() ? "no points" : errors_[0]);
-    for (const std::string& error : std::exchange(errors_, {}))
-      remark("could not be read: " + error);
-  }
-
-private:
-  std::vector<std::string> errors_;
-};
 
 /// One scan into the rows of `merged` from `begin` on. @return the row behind its last
 Index appendScan(ScanReader& reader, Index scan, PointTable& merged, Index begin)
@@ -211,12 +152,17 @@ Index appendScan(ScanReader& reader, Index scan, PointTable& merged, Index begin
     if (count == 0)
       break;
     const Index capacity = std::exchange(window.rows, count);
-    copyValues(window, merged, begin);
+    copyRows(window, merged, begin);
     window.rows = capacity;
-    moveRows(merged, begin, begin + count, info.T_file_scan);
+    const Index end = begin + count;
+    const Eigen::Isometry3d& T = info.T_file_scan;
+    moveRows(merged, xyz_names, begin, end, [&](const Eigen::Vector3d& p) -> Eigen::Vector3d { return T * p; });
+    moveRows(merged, normal_names, begin, end,
+             [&](const Eigen::Vector3d& n) -> Eigen::Vector3d { return T.linear() * n; });
     if (info.sensor)
-      storeViewpoints(merged, begin, begin + count, info.T_file_scan * *info.sensor);
-    begin += count;
+      moveRows(merged, viewpoint_names, begin, end,
+               [&](const Eigen::Vector3d&) -> Eigen::Vector3d { return T * *info.sensor; });
+    begin = end;
   }
   return begin;
 }
@@ -228,15 +174,18 @@ PointTable readMergedTable(ScanReader& reader)
   std::vector<Index> used;
   std::vector<PointTable> layouts;
   Index rows = 0;
-  SoundParts parts;
+  std::vector<std::string> errors;
   for (Index i = 0; i < Index(scans.size()); ++i)
     if (scans[i].points > 0)
-      parts.attempt(i, [&] {
+      attempt(i, errors, [&] {
         layouts.push_back(reader.open(i));
         used.push_back(i);
         rows += scans[i].points;
       });
-  parts.requireAny(!used.empty());
+  tellDamage(errors, !used.empty());
+  errors.clear();
+  if (used.empty())
+    throw std::runtime_error("no points");
   PointTable merged = sharedLayout(layouts);
   const bool sensors = std::all_of(used.begin(), used.end(), [&](Index i) { return scans[i].sensor.has_value(); });
   if (sensors && used.size() > 1)
@@ -246,8 +195,10 @@ PointTable readMergedTable(ScanReader& reader)
   merged.allocate(rows);
   Index done = 0;
   for (const Index scan : used)
-    parts.attempt(scan, [&] { done = appendScan(reader, scan, merged, done); });
-  parts.requireAny(done > 0);
+    attempt(scan, errors, [&] { done = appendScan(reader, scan, merged, done); });
+  tellDamage(errors, done > 0);
+  if (done == 0)
+    throw std::runtime_error("no points");
   merged.rows = done;
   merged.data.resize(done * merged.stride);
   if (sensors && used.size() == 1) {

@@ -9,6 +9,8 @@
 #include <type_traits>
 namespace fresco::io {
 namespace {
+constexpr std::string_view blanks(" \t\v\f\0", 5);
+
 bool isBlank(char c) { return c == ' ' || c == '\t' || c == '\v' || c == '\f' || c == '\0'; }
 bool isLineEnd(char c) { return c == '\n' || c == '\r'; }
 
@@ -110,17 +112,10 @@ std::string_view TextScanner::restOfLine()
 
 std::string_view TextScanner::restOfLineInPlace()
 {
-  const char* begin = at_;
-  if (!atLineEnd())
-    begin = at_;
+  const char* const begin = at_;
   while (at_ != end_ && !isLineEnd(*at_))
     ++at_;
-  const char* last = at_;
-  while (begin != last && isBlank(*begin))
-    ++begin;
-  while (begin != last && isBlank(last[-1]))
-    --last;
-  return {begin, static_cast<std::size_t>(last - begin)};
+  return trimmed({begin, static_cast<std::size_t>(at_ - begin)}, blanks);
 }
 
 std::string_view TextScanner::bytes(std::size_t count)
@@ -183,9 +178,10 @@ std::string singleWord(std::string name)
   return name.empty() ? "_" : name;
 }
 
-void TextWriter::flush()
+std::string plainName(const std::string& column)
 {
-  file_.write(buffer_, used_);
-  used_ = 0;
+  constexpr std::string_view normal = "normal_";
+  const bool is_normal = column == "normal_x" || column == "normal_y" || column == "normal_z";
+  return is_normal ? "n" + column.substr(normal.size()) : singleWord(column);
 }
 } // namespace fresco::io

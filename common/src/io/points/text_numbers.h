@@ -7,6 +7,13 @@
 #include <string_view>
 #include <type_traits>
 namespace fresco::io {
+/// Without the characters of `what` at both ends.
+inline std::string_view trimmed(std::string_view text, std::string_view what = " \t\r\n")
+{
+  const std::size_t begin = text.find_first_not_of(what);
+  return begin == text.npos ? std::string_view() : text.substr(begin, text.find_last_not_of(what) - begin + 1);
+}
+
 /// Words and numbers of a text, read without copies. Lines end with LF, CR LF or CR.
 class FRESCO_EXPORT TextScanner {
 public:
@@ -68,41 +75,7 @@ std::string textOf(const Parts&... parts)
 /// `name` as one word: blanks and control characters become '_'.
 std::string singleWord(std::string name);
 
-/// Text output with the shortest numbers that read back as the same value.
-class FRESCO_EXPORT TextWriter {
-public:
-  explicit TextWriter(OutputFile& file) : file_(file) {}
-  ~TextWriter() = default;
-  TextWriter(const TextWriter&) = delete;
-  TextWriter& operator=(const TextWriter&) = delete;
+/// The same of a column as other programs call it: nx ny nz are the normals.
+std::string plainName(const std::string& column);
 
-  TextWriter& text(std::string_view words)
-  {
-    if (words.size() > sizeof(buffer_) - used_)
-      flush();
-    if (words.size() > sizeof(buffer_)) {
-      file_.write(words);
-      return *this;
-    }
-    words.copy(buffer_ + used_, words.size());
-    used_ += words.size();
-    return *this;
-  }
-  template <typename T>
-  TextWriter& number(T value)
-  {
-    constexpr std::size_t longest = 64;
-    if (sizeof(buffer_) - used_ < longest)
-      flush();
-    used_ = static_cast<std::size_t>(std::to_chars(buffer_ + used_, buffer_ + sizeof(buffer_), value).ptr - buffer_);
-    return *this;
-  }
-  /// Hands what is left to the file; to be called at the end.
-  void flush();
-
-private:
-  OutputFile& file_;
-  char buffer_[1 << 14];
-  std::size_t used_ = 0;
-};
 } // namespace fresco::io

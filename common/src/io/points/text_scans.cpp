@@ -138,18 +138,6 @@ Eigen::Isometry3d poseOf(LineReader& lines, double& scale)
   return T;
 }
 
-/// Values one after the other into a row.
-struct RowWriter {
-  std::uint8_t* at;
-
-  template <typename T>
-  void put(T value)
-  {
-    std::memcpy(at, &value, sizeof(T));
-    at += sizeof(T);
-  }
-};
-
 /// What PTX and PTS have in common: blocks of lines, found by a first pass over the file. A block that cannot be read
 /// has no points and is remarked, unless none can.
 class TextReader : public ScanReader {
@@ -176,6 +164,7 @@ public:
     if (block_.rows > 0)
       for (const char* name : {row_column, column_column})
         layout.addColumn(name, Scalar::int32);
+    columns_ = layout.columns;
     return layout;
   }
 
@@ -184,7 +173,7 @@ public:
     Index at = begin;
     if (at < end)
       forEachPoint(*lines_, [&](std::string_view line) {
-        storeLine(line, table.cell(at, table.columns[0]));
+        storeLine(line, table.data.data() + at * table.stride);
         return ++at < end;
       });
     return at - begin;
@@ -211,7 +200,7 @@ protected:
         skipBlock(lines);
       }
     }
-    settle(errors);
+    tellDamage(errors, hasPoints());
     if (scans_.empty())
       throw std::runtime_error(concat("no ", block_name_));
   }
@@ -220,9 +209,12 @@ protected:
   void addBlock(LineReader& lines, Block block, ScanInfo info, std::optional<Index> announced)
   {
     info.points = measurePoints(lines, block);
-    if (announced && *announced != info.points)
-      throw std::runtime_error(
-          concat(*announced, " points announced, ", info.points, " there (line ", block.line + info.points, ")"));
+    const std::string counts = concat(announced.value_or(0), " points announced, ", info.points, " there (line ",
+                                      block.line + info.points, ")");
+    if (announced && (*announced > info.points || (*announced < info.points && block.rows > 0)))
+      throw std::runtime_error(counts);
+    if (announced && *announced < info.points)
+      remark(counts);
     blocks_.push_back(block);
     scans_.push_back(std::move(info));
   }
@@ -243,23 +235,20 @@ private:
   {
     TableDialect().split(line, words_);
     checkWords(words_.size(), block_);
-    RowWriter out{row};
-    Eigen::Vector3d p(parseNumber<double>(words_[0]), parseNumber<double>(words_[1]), parseNumber<double>(words_[2]));
-    if (block_.rows > 0 && p.isZero(0)) // a beam that nothing returned
-      p.setConstant(std::numeric_limits<double>::quiet_NaN());
-    for (const double value : p)
-      out.put(value * block_.scale);
-    if (block_.hasIntensity())
-      out.put(parseNumber<float>(words_[3]));
-    const std::size_t color = block_.firstColor();
-    for (std::size_t k = color; k < color + 3 && block_.hasColors(); ++k)
-      out.put(colorByte(parseNumber<double>(words_[k]), block_.full_color));
-    for (std::size_t k = color + 3; k < color + 6 && block_.hasNormals(); ++k)
-      out.put(parseNumber<float>(words_[k]));
-    if (block_.rows > 0) {
-      out.put<std::int32_t>(point_ % block_.rows);
-      out.put<std::int32_t>(point_ / block_.rows);
+    values_.clear();
+    for (std::size_t k = 0; k < words_.size(); ++k) {
+      const double value = parseNumber<double>(words_[k]);
+      const bool is_color = block_.hasColors() && k >= block_.firstColor() && k < block_.firstColor() + 3;
+      values_.push_back(k < 3 ? value * block_.scale : is_color ? colorByte(value, block_.full_color) : value);
     }
+    if (block_.rows > 0) {
+      if (values_[0] == 0 && values_[1] == 0 && values_[2] == 0) // a beam that nothing returned
+        std::fill_n(values_.begin(), 3, std::numeric_limits<double>::quiet_NaN());
+      values_.push_back(double(point_ % block_.rows));
+      values_.push_back(double(point_ / block_.rows));
+    }
+    for (std::size_t c = 0; c < values_.size(); ++c)
+      storeValue(columns_[c].type, values_[c], row + columns_[c].offset);
     ++point_;
   }
 
@@ -268,7 +257,9 @@ private:
   std::vector<Block> blocks_;
   Block block_;
   std::unique_ptr<LineReader> lines_;
+  std::vector<Column> columns_; ///< of the table that open() gave
   Words words_;
+  std::vector<double> values_;
   Index point_ = 0; ///< next one of the block
 };
 

@@ -11,13 +11,6 @@ namespace fresco::io {
 namespace {
 constexpr std::string_view blanks = " \t";
 
-std::string_view trimmed(std::string_view text, std::string_view what = blanks)
-{
-  const std::size_t begin = text.find_first_not_of(what);
-  return begin == std::string_view::npos ? std::string_view()
-                                         : text.substr(begin, text.find_last_not_of(what) - begin + 1);
-}
-
 bool hasOnly(std::string_view text, std::string_view characters)
 {
   return text.find_first_not_of(characters) == std::string_view::npos;
@@ -164,7 +157,7 @@ void repackWholeNumbers(PointTable& table)
     whole = whole && v >= 1 && v < largest && v == std::floor(v);
     any = true;
   };
-  forEachValue(table, *packed, 0, look, 0, table.rows);
+  eachValue(table, *packed, look);
   if (!whole || !any)
     return;
   for (Index row = 0; row < table.rows; ++row) {

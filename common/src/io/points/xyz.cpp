@@ -101,26 +101,18 @@ private:
   std::optional<std::uint64_t> announced_;
 };
 
-std::string writtenName(const std::string& column)
-{
-  for (const char axis : {'x', 'y', 'z'})
-    if (column == std::string("normal_") + axis)
-      return std::string("n") + axis;
-  return singleWord(column);
-}
-
-void writeRow(TextWriter& writer, const PointTable& table, Index row, const char* between)
+void writeRow(OutputFile& file, const PointTable& table, Index row, const char* between)
 {
   const char* separator = "";
   for (const Column& column : table.columns)
     visitScalar(column.type, [&](auto zero) {
       using T = decltype(zero);
       for (std::size_t k = 0; k < column.count; ++k) {
-        writer.text(separator).number(loadScalar<T>(table.cell(row, column) + k * sizeof(T)));
+        file.write(textOf(separator, loadScalar<T>(table.cell(row, column) + k * sizeof(T))));
         separator = between;
       }
     });
-  writer.text("\n");
+  file.write("\n");
 }
 } // namespace
 
@@ -136,17 +128,15 @@ void writeXyz(const std::string& path, PointTable table)
   const bool csv = extension(path) == ".csv";
   const char* const between = csv ? "," : " ";
   OutputFile file(path);
-  TextWriter writer(file);
   const char* separator = csv ? "" : "# ";
   for (const Column& column : table.columns)
     for (std::size_t k = 0; k < column.count; ++k) {
-      writer.text(separator).text(writtenName(column.name)).text(column.count > 1 ? textOf('_', k) : std::string());
+      file.write(textOf(separator, plainName(column.name), column.count > 1 ? textOf('_', k) : ""));
       separator = between;
     }
-  writer.text("\n");
+  file.write("\n");
   for (Index row = 0; row < table.rows; ++row)
-    writeRow(writer, table, row, between);
-  writer.flush();
+    writeRow(file, table, row, between);
   file.commit();
 }
 } // namespace fresco::io

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "io/texture/texture_io.h"
+#include <algorithm>
 #include <cmath>
 #include <fresco/core/require.h>
 #include <fresco/io/file.h>
-#include <fresco/io/image_io.h>
 #include <limits>
 #include <streambuf>
 #include <tiny_gltf.h>
 #include <unordered_map>
+#include <utility>
 namespace fresco::io {
 namespace {
 using Color16 = Eigen::Matrix<std::uint16_t, 4, 1>;
@@ -109,7 +110,7 @@ public:
 
   /// @param atlas -1: the faces without texture
   /// @param image of the atlas
-  void addPart(int atlas, const std::vector<std::uint8_t>& image, int jpeg_quality)
+  void addPart(int atlas, const std::vector<std::uint8_t>& image, bool is_jpeg)
   {
     PartBuilder builder(source_, faces_, atlas);
     Part part = builder.next();
@@ -120,7 +121,7 @@ public:
     surface.metallicFactor = 0.0;
     surface.roughnessFactor = 1.0;
     if (atlas >= 0)
-      surface.baseColorTexture.index = addTexture(image, jpeg_quality);
+      surface.baseColorTexture.index = addTexture(image, is_jpeg);
     else if (part.colors.empty())
       surface.baseColorFactor = {0.5, 0.5, 0.5, 1.0};
     if (atlas >= 0 || !part.colors.empty()) { // photographs hold the light already: they are shown as they are
@@ -129,7 +130,7 @@ public:
     }
     gltf_.materials.push_back(material);
     for (; !part.indices.empty(); part = builder.next())
-      addPrimitive(part, jpeg_quality > 0);
+      addPrimitive(part, is_jpeg);
   }
 
   const tinygltf::Model& finish()
@@ -151,10 +152,10 @@ public:
   }
 
 private:
-  int addTexture(const std::vector<std::uint8_t>& bytes, int jpeg_quality)
+  int addTexture(const std::vector<std::uint8_t>& bytes, bool is_jpeg)
   {
     tinygltf::Image image;
-    image.mimeType = jpeg_quality > 0 ? "image/jpeg" : "image/png";
+    image.mimeType = is_jpeg ? "image/jpeg" : "image/png";
     image.bufferView = addView(bytes.data(), bytes.size(), 0);
     gltf_.images.push_back(image);
     if (gltf_.samplers.empty()) {
@@ -269,19 +270,14 @@ private:
 };
 } // namespace
 
-std::vector<std::uint8_t> glbImage(const Image& atlas, int jpeg_quality)
-{
-  return jpeg_quality > 0 ? encodeImage(atlas, ".jpg", jpeg_quality) : encodeImage(atlas, ".png");
-}
-
-void writeGlb(const std::string& path, const TexturedMesh& model, int jpeg_quality,
-              const std::function<std::vector<std::uint8_t>(std::size_t)>& bytesOf)
+void writeGlb(const std::string& path, const TexturedMesh& model, std::vector<std::vector<std::uint8_t>> images,
+              bool are_jpeg)
 {
   OutputFile file(path);
   GltfBuilder builder(model);
-  for (std::size_t i = 0; i < model.atlases.size(); ++i)
-    builder.addPart(i, bytesOf(i), jpeg_quality);
-  builder.addPart(-1, {}, jpeg_quality);
+  for (std::size_t i = 0; i < images.size(); ++i)
+    builder.addPart(i, std::exchange(images[i], {}), are_jpeg);
+  builder.addPart(-1, {}, are_jpeg);
   const tinygltf::Model& gltf = builder.finish();
   // The header of the format counts bytes with 32 bits; one MiB is left for the JSON part.
   if (gltf.buffers[0].data.size() > std::numeric_limits<std::uint32_t>::max() - (std::size_t{1} << 20))

@@ -4,13 +4,12 @@
 #include "io/points/parse_file.h"
 #include <filesystem>
 #include <fresco/core/require.h>
+#include <fresco/io/image_io.h>
 #include <fresco/io/mesh_io.h>
 namespace fresco {
 namespace {
 bool isGlb(const io::Format& format) { return format.extensions[0] == std::string(".glb"); }
-} // namespace
 
-namespace {
 /// All but the images.
 void validateFaces(const TexturedMesh& model)
 {
@@ -31,11 +30,6 @@ void validateFaces(const TexturedMesh& model)
     }
   }
 }
-
-void validateQuality(int quality)
-{
-  require(quality >= 0 && quality <= 100, "textured mesh: JPEG quality ", quality, " is not in 0..100");
-}
 } // namespace
 
 void validateTexturedMesh(const TexturedMesh& model)
@@ -50,27 +44,25 @@ void validateTexturedMesh(const TexturedMesh& model)
 void writeTexturedMesh(const std::string& path, const TexturedMesh& model, int jpeg_quality)
 {
   validateTexturedMesh(model);
-  validateQuality(jpeg_quality);
-  if (isGlb(io::formatToWrite(path, FileKind::textured_mesh)))
-    io::writeGlb(path, model, jpeg_quality,
-                 [&](std::size_t i) { return io::glbImage(model.atlases[i], jpeg_quality); });
-  else
-    io::writeWithImageFiles(path, model, jpeg_quality);
+  TexturedMeshWriter writer(path, jpeg_quality, model.atlases.size() > 1);
+  for (const Image& atlas : model.atlases)
+    writer.addAtlas(atlas);
+  writer.finish(model);
 }
 
 struct TexturedMeshWriter::Parts {
   std::string path;
   int quality;
+  bool several;
   std::unique_ptr<io::ImageFilesWriter> files;   ///< null: .glb
   std::vector<std::vector<std::uint8_t>> images; ///< of a .glb
   std::size_t count = 0;
 };
 
-TexturedMeshWriter::TexturedMeshWriter(const std::string& path, int jpeg_quality) : parts_(std::make_unique<Parts>())
+TexturedMeshWriter::TexturedMeshWriter(const std::string& path, int jpeg_quality, bool several)
+    : parts_(new Parts{path, jpeg_quality, several, nullptr, {}})
 {
-  validateQuality(jpeg_quality);
-  parts_->path = path;
-  parts_->quality = jpeg_quality;
+  require(jpeg_quality >= 0 && jpeg_quality <= 100, "textured mesh: JPEG quality ", jpeg_quality, " is not in 0..100");
   if (!isGlb(io::formatToWrite(path, FileKind::textured_mesh)))
     parts_->files = std::make_unique<io::ImageFilesWriter>(path, jpeg_quality);
 }
@@ -80,9 +72,9 @@ TexturedMeshWriter::~TexturedMeshWriter() = default;
 void TexturedMeshWriter::addAtlas(const Image& atlas)
 {
   if (parts_->files)
-    parts_->files->addAtlas(atlas, concat('_', parts_->count));
+    parts_->files->addAtlas(atlas, parts_->several ? concat('_', parts_->count) : "");
   else
-    parts_->images.push_back(io::glbImage(atlas, parts_->quality));
+    parts_->images.push_back(encodeImage(atlas, parts_->quality > 0 ? ".jpg" : ".png", parts_->quality));
   ++parts_->count;
 }
 
@@ -94,7 +86,7 @@ void TexturedMeshWriter::finish(const TexturedMesh& model)
   if (parts_->files)
     parts_->files->finish(model);
   else
-    io::writeGlb(parts_->path, model, parts_->quality, [&](std::size_t i) { return std::move(parts_->images[i]); });
+    io::writeGlb(parts_->path, model, std::move(parts_->images), parts_->quality > 0);
 }
 
 Groups io::facesByAtlas(const TexturedMesh& model)

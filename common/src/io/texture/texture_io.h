@@ -3,7 +3,6 @@
 #include <fresco/core/grouped.h>
 #include <fresco/core/textured_mesh.h>
 #include <fresco/io/file.h>
-#include <functional>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -29,10 +28,6 @@ private:
   std::vector<std::unique_ptr<OutputFile>> images_;
 };
 
-/// NAME.obj (and NAME.mtl) or NAME.ply and the images; the model appears last.
-/// @param jpeg_quality of the images, 1..100; 0: PNG
-void writeWithImageFiles(const std::string& path, const TexturedMesh& model, int jpeg_quality);
-
 /// The model as MeshLab, OpenMVS and Metashape have it: comments TextureFile, texcoord and texnumber of each face.
 void writeTexturedPly(OutputFile& file, const TexturedMesh& model, const std::vector<std::string>& images);
 
@@ -48,15 +43,10 @@ std::string portablePath(std::string name);
 TexturedMesh readTexturedObj(const std::string& path, bool empty_atlases = false);
 
 /// Binary glTF, primitives of at most 65535 vertices, each of one atlas or of faces without texture. With JPEG, texture
-/// coordinates have 16 bits. glTF is y-up and models
-/// are z-up: the node turns, and its translation is `origin`.
-/// @param jpeg_quality of the images inside, 1..100; 0: PNG
-/// @param bytesOf the image of an atlas as it is stored; asked for each once
-void writeGlb(const std::string& path, const TexturedMesh& model, int jpeg_quality,
-              const std::function<std::vector<std::uint8_t>(std::size_t)>& bytesOf);
-
-/// An image as it is stored in a .glb.
-std::vector<std::uint8_t> glbImage(const Image& atlas, int jpeg_quality);
+/// coordinates have 16 bits. glTF is y-up and models are z-up: the node turns, and its translation is `origin`.
+/// @param images of the atlases as they are stored, PNG or JPEG
+void writeGlb(const std::string& path, const TexturedMesh& model, std::vector<std::vector<std::uint8_t>> images,
+              bool are_jpeg);
 
 /// All triangles of all nodes, turned from y-up to z-up; vertices at the same place become one.
 /// @param folder of the file: buffers and images outside of it are read from there and below only

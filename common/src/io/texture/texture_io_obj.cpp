@@ -16,21 +16,21 @@ namespace fs = std::filesystem;
 
 /// Writes `vt` lines and the faces of each material after another.
 /// @param faces see facesByAtlas()
-void writeFaces(TextWriter& writer, const TexturedMesh& model, const Groups& faces, int atlas)
+void writeFaces(OutputFile& file, const TexturedMesh& model, const Groups& faces, int atlas)
 {
   const bool has_normals = model.mesh.normals.cols() > 0;
   for (Index i = faces.begin[atlas + 1]; i < faces.begin[atlas + 2]; ++i) {
     const int f = faces.list[i];
-    writer.text("f");
+    file.write("f");
     for (int k = 0; k < 3; ++k) {
       const int vertex = model.mesh.faces(k, f) + 1;
-      writer.text(" ").number(vertex);
+      file.write(textOf(' ', vertex));
       if (atlas >= 0)
-        writer.text("/").number(model.texcoord_faces(k, f) + 1);
+        file.write(textOf('/', model.texcoord_faces(k, f) + 1));
       if (has_normals)
-        writer.text(atlas >= 0 ? "/" : "//").number(vertex);
+        file.write(textOf(atlas >= 0 ? "/" : "//", vertex));
     }
-    writer.text("\n");
+    file.write("\n");
   }
 }
 
@@ -47,21 +47,19 @@ void writeMaterials(OutputFile& file, const TexturedMesh& model, const std::vect
 
 void writeModel(OutputFile& file, const TexturedMesh& model, const std::string& library)
 {
-  TextWriter writer(file);
-  writer.text("mtllib ").text(library).text("\n");
-  writeObjVertices(writer, model.mesh);
+  file.write("mtllib " + library + "\n");
+  writeObjVertices(file, model.mesh);
   for (Index i = 0; i < model.texcoords.cols(); ++i)
-    writer.text("vt ").number(model.texcoords(0, i)).text(" ").number(model.texcoords(1, i)).text("\n");
+    file.write(textOf("vt ", model.texcoords(0, i), ' ', model.texcoords(1, i), '\n'));
   const Groups faces = facesByAtlas(model);
   for (std::size_t i = 0; i < model.atlases.size(); ++i) {
-    writer.text(textOf("usemtl material_", i, "\n"));
-    writeFaces(writer, model, faces, i);
+    file.write(textOf("usemtl material_", i, "\n"));
+    writeFaces(file, model, faces, i);
   }
   if (hasUntextured(model)) {
-    writer.text("usemtl untextured\n");
-    writeFaces(writer, model, faces, -1);
+    file.write("usemtl untextured\n");
+    writeFaces(file, model, faces, -1);
   }
-  writer.flush();
 }
 
 /// File name of a map_Kd entry without options and quotes, relative to the .mtl file.
@@ -206,21 +204,13 @@ void ImageFilesWriter::finish(const TexturedMesh& model)
   object_.commit();
 }
 
-void writeWithImageFiles(const std::string& path, const TexturedMesh& model, int jpeg_quality)
-{
-  ImageFilesWriter writer(path, jpeg_quality);
-  for (std::size_t i = 0; i < model.atlases.size(); ++i)
-    writer.addAtlas(model.atlases[i], model.atlases.size() == 1 ? "" : textOf('_', i));
-  writer.finish(model);
-}
-
 TexturedMesh readTexturedObj(const std::string& path, bool empty_atlases)
 {
   const FileInHand in_hand(path);
   const ObjContent obj = parseFile(path, parseObj);
   TexturedMesh model;
-  model.mesh = tableToMesh(objVertices(obj));
-  model.mesh.faces = objFaces(obj);
+  MeshTable mesh = objMesh(obj);
+  model.mesh = tableToMesh(mesh.vertices, std::move(mesh.faces));
   model.texcoords = Eigen::Map<const Eigen::Matrix2Xf>(obj.texcoords.data(), 2, obj.texcoords.size() / 2);
   std::vector<int> atlas_of_material = readAtlases(path, obj, model.atlases);
   atlas_of_material.push_back(-1); // of faces without material

@@ -2,9 +2,7 @@
 #include "io/mesh/ply.h"
 #include "io/points/parse_file.h"
 #include "io/texture/texture_io.h"
-#include <cmath>
 #include <filesystem>
-#include <fresco/core/require.h>
 #include <fresco/io/image_io.h>
 #include <fresco/io/mesh_io.h>
 #include <fresco/io/ply_rows.h>
@@ -47,11 +45,10 @@ void takeFaceTexcoords(const PlyContent& ply, TexturedMesh& model)
 
 TexturedMesh readTexturedPly(const std::string& path)
 {
-  TexturedMesh model = parseFile(path, [&](std::string_view content) {
-    PlyContent ply = parsePly(content, true);
+  return parseFile(path, [&](std::string_view content) {
+    PlyContent ply = parseTexturedPly(content);
     TexturedMesh read;
-    read.mesh = tableToMesh(ply.vertices);
-    read.mesh.faces = std::move(ply.faces);
+    read.mesh = tableToMesh(ply.vertices, std::move(ply.faces));
     read.texcoord_faces.setConstant(3, read.mesh.faceCount(), -1);
     read.face_atlas = Eigen::VectorXi::Constant(read.mesh.faceCount(), -1);
     if (ply.textures.empty()) // no comment TextureFile: a mesh
@@ -75,7 +72,6 @@ TexturedMesh readTexturedPly(const std::string& path)
       read.atlases.push_back(readImage(fileBelow(folder, portablePath(name))));
     return read;
   });
-  return model;
 }
 
 void writeTexturedPly(OutputFile& file, const TexturedMesh& model, const std::vector<std::string>& images)

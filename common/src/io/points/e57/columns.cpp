@@ -5,7 +5,6 @@
 #include <cmath>
 #include <fresco/core/require.h>
 #include <limits>
-#include <stdexcept>
 namespace fresco::io::e57 {
 namespace {
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
@@ -82,15 +81,6 @@ Eigen::Vector3d fromSpherical(double range, double azimuth, double elevation)
   return range * Eigen::Vector3d(std::cos(elevation) * std::cos(azimuth), std::cos(elevation) * std::sin(azimuth),
                                  std::sin(elevation));
 }
-
-template <typename T>
-T converted(double value)
-{
-  if constexpr (std::is_integral_v<T>) // of a field whose limits fit: a damaged value must not be undefined behaviour
-    return std::clamp<double>(value, std::numeric_limits<T>::min(), std::numeric_limits<T>::max());
-  else
-    return value;
-}
 } // namespace
 
 std::array<double, 3> largestColors(PagedFile& file, const Scan& scan)
@@ -133,104 +123,60 @@ std::array<double, 3> largestColors(PagedFile& file, const Scan& scan)
 }
 
 Columns::Columns(const Scan& scan, const std::array<double, 3>& largest_colors)
-    : scan_(scan), taken_(scan.records.fields.size(), false)
+    : scan_(scan), taken_(scan.records.fields.size(), false), spherical_(!scan.records.find("cartesianX"))
 {
-  if (scan.records.find("cartesianX"))
-    addCartesian();
-  else
-    addSpherical();
-  addNormals();
-  addColors(largest_colors);
-  addIntensity();
+  const Names cartesian = {{"cartesianX", "x"}, {"cartesianY", "y"}, {"cartesianZ", "z"}};
+  const Names spherical = {{"sphericalRange", "x"}, {"sphericalAzimuth", "y"}, {"sphericalElevation", "z"}};
+  const bool single = std::all_of(cartesian.begin(), cartesian.end(), [&](const auto& names) {
+    const auto field = scan.records.find(names.first);
+    return field && scan.records.fields[*field].type == Field::Type::single_float;
+  });
+  if (!add(spherical_ ? spherical : cartesian, single ? Scalar::float32 : Scalar::float64,
+           spherical_ ? "sphericalInvalidState" : "cartesianInvalidState"))
+    throw std::runtime_error(concat("no coordinates: no field ", missing(spherical_ ? spherical : cartesian)));
+  add({{"normalX", "normal_x"}, {"normalY", "normal_y"}, {"normalZ", "normal_z"}}, Scalar::float32);
+  if (add({{color_fields[0], "red"}, {color_fields[1], "green"}, {color_fields[2], "blue"}}, Scalar::uint8,
+          "isColorInvalid")) {
+    if (const auto state = scan.records.find("isColorInvalid"))
+      taken_[*state] = false; // a column, too: black may be a colour
+    for (std::size_t channel = 0; channel < 3; ++channel) {
+      Plan& plan = plans_[plans_.size() - 3 + channel];
+      const Field& stored = scan.records.fields[plan.field];
+      plan.color = colorLimits(saidLimits(scan.color[channel], stored), stored, largest_colors[channel]);
+    }
+  }
+  add({{"intensity", "intensity"}}, Scalar::float32, "isIntensityInvalid");
   addOthers();
 }
 
-/// The field of that name; it is not looked at again.
-std::optional<std::size_t> Columns::take(std::string_view name)
+/// Index of a field of numbers.
+std::optional<std::size_t> Columns::find(const char* name) const
 {
   const auto field = scan_.records.find(name);
-  if (field && scan_.records.fields[*field].type == Field::Type::string)
-    return std::nullopt;
-  if (field)
-    taken_[*field] = true;
-  return field;
+  return field && scan_.records.fields[*field].type != Field::Type::string ? field : std::nullopt;
 }
 
-void Columns::add(const std::string& name, Scalar type, Values value)
+/// The first of the fields that is not there; nullptr: all are.
+const char* Columns::missing(const Names& names) const
 {
-  layout_.addColumn(name, type);
-  plans_.push_back({layout_.columns.back(), std::move(value)});
+  const auto found = std::find_if(names.begin(), names.end(), [&](const auto& pair) { return !find(pair.first); });
+  return found == names.end() ? nullptr : found->first;
 }
 
-void Columns::addCartesian()
+/// Adds columns of fields. @param state field that is not 0 where a value is invalid @return false if one is missing
+bool Columns::add(const Names& names, Scalar type, const char* state)
 {
-  const std::vector<Field>& fields = scan_.records.fields;
-  bool single = true;
-  const char* const names[] = {"cartesianX", "cartesianY", "cartesianZ"};
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const auto field = take(names[axis]);
-    if (!field)
-      throw std::runtime_error(std::string("no field ") + names[axis]);
-    position_[axis] = *field;
-    single = single && fields[*field].type == Field::Type::single_float;
+  if (missing(names))
+    return false;
+  const auto invalid = find(state);
+  if (invalid)
+    taken_[*invalid] = true;
+  for (const auto& [field, column] : names) {
+    layout_.addColumn(column, type);
+    plans_.push_back({layout_.columns.back(), *find(field), invalid, {}});
+    taken_[plans_.back().field] = true;
   }
-  invalid_ = take("cartesianInvalidState");
-  for (const char* name : xyz_names)
-    layout_.addColumn(name, single ? Scalar::float32 : Scalar::float64);
-}
-
-void Columns::addSpherical()
-{
-  const char* const names[] = {"sphericalRange", "sphericalAzimuth", "sphericalElevation"};
-  for (std::size_t i = 0; i < 3; ++i) {
-    const auto field = take(names[i]);
-    if (!field)
-      throw std::runtime_error("neither Cartesian nor spherical coordinates");
-    position_[i] = *field;
-  }
-  spherical_ = true;
-  invalid_ = take("sphericalInvalidState");
-  for (const char* name : xyz_names)
-    layout_.addColumn(name, Scalar::float64);
-}
-
-void Columns::addNormals()
-{
-  const char* const names[] = {"normalX", "normalY", "normalZ"};
-  for (const char* name : names)
-    if (const auto field = scan_.records.find(name); !field)
-      return;
-  for (std::size_t axis = 0; axis < 3; ++axis)
-    if (const auto field = take(names[axis]))
-      add(normal_names[axis], Scalar::float32,
-          [f = *field](const VectorReader& window, std::size_t i) { return window.real(f, i); });
-}
-
-void Columns::addColors(const std::array<double, 3>& largest)
-{
-  for (const char* name : color_fields)
-    if (!scan_.records.find(name))
-      return;
-  const auto invalid = scan_.records.find("isColorInvalid"); // stays a column: black may be a colour
-  for (std::size_t channel = 0; channel < 3; ++channel)
-    if (const auto field = take(color_fields[channel])) {
-      const Field& stored = scan_.records.fields[*field];
-      const Limits limits = colorLimits(saidLimits(scan_.color[channel], stored), stored, largest[channel]);
-      add(color_names[channel], Scalar::uint8, [=, f = *field](const VectorReader& window, std::size_t i) {
-        return invalid && window.real(*invalid, i) != 0 ? 0.0 : byteWithin(window.real(f, i), limits);
-      });
-    }
-}
-
-void Columns::addIntensity()
-{
-  const auto field = take("intensity");
-  if (!field)
-    return;
-  const auto invalid = take("isIntensityInvalid");
-  add("intensity", Scalar::float32, [=, f = *field](const VectorReader& window, std::size_t i) {
-    return invalid && window.real(*invalid, i) != 0 ? nan : window.real(f, i);
-  });
+  return true;
 }
 
 void Columns::addOthers()
@@ -239,54 +185,34 @@ void Columns::addOthers()
   for (std::size_t f = 0; f < fields.size(); ++f) {
     if (fields[f].type == Field::Type::string)
       remark(concat("field ", fields[f].name, " is left out: it holds texts"));
-    if (taken_[f] || fields[f].type == Field::Type::string)
-      continue;
     const std::string name = fields[f].own ? fields[f].name : columnName(fields[f].name);
-    if (layout_.find(name))
+    if (taken_[f] || fields[f].type == Field::Type::string || layout_.find(name))
       continue;
-    const Scalar type = typeFor(fields[f]);
-    if (type == Scalar::int64) {
-      layout_.addColumn(name, type);
-      integers_.emplace_back(layout_.columns.back(), f);
-    } else
-      add(name, type, [f](const VectorReader& window, std::size_t i) { return window.real(f, i); });
-  }
-}
-
-void Columns::storePositions(const VectorReader& window, std::size_t count, PointTable& table, Index begin) const
-{
-  const Column& x = layout_.columns[0]; // y and z follow it
-  for (std::size_t i = 0; i < count; ++i) {
-    Eigen::Vector3d point(window.real(position_[0], i), window.real(position_[1], i), window.real(position_[2], i));
-    if (invalid_ && window.real(*invalid_, i) != 0)
-      point.setConstant(nan);
-    else if (spherical_)
-      point = fromSpherical(point[0], point[1], point[2]);
-    std::uint8_t* cell = table.cell(begin + i, x);
-    if (x.type == Scalar::float64) {
-      std::memcpy(cell, point.data(), sizeof(point));
-    } else {
-      const Eigen::Vector3f single = point.cast<float>();
-      std::memcpy(cell, single.data(), sizeof(single));
-    }
+    layout_.addColumn(name, typeFor(fields[f]));
+    plans_.push_back({layout_.columns.back(), f, {}, {}});
   }
 }
 
 void Columns::store(const VectorReader& window, std::size_t count, PointTable& table, Index begin) const
 {
-  storePositions(window, count, table, begin);
-  for (const Plan& plan : plans_)
-    visitScalar(plan.column.type, [&](auto zero) {
-      using T = decltype(zero);
-      for (std::size_t i = 0; i < count; ++i) {
-        const T value = converted<T>(plan.value(window, i));
-        std::memcpy(table.cell(begin + i, plan.column), &value, sizeof(T));
-      }
-    });
-  for (const auto& [column, field] : integers_)
+  for (const auto& [column, field, invalid, color] : plans_)
     for (std::size_t i = 0; i < count; ++i) {
-      const std::int64_t value = window.stored(field, i);
-      std::memcpy(table.cell(begin + i, column), &value, sizeof(value));
+      std::uint8_t* const cell = table.cell(begin + i, column);
+      if (invalid && window.real(*invalid, i) != 0) {
+        storeValue(column.type, nan, cell); // a colour: 0
+      } else if (column.type == Scalar::int64) {
+        const std::int64_t value = window.stored(field, i);
+        std::memcpy(cell, &value, sizeof(value));
+      } else {
+        const double value = window.real(field, i);
+        storeValue(column.type, color ? byteWithin(value, *color) : value, cell);
+      }
     }
+  for (std::size_t i = 0; spherical_ && i < count; ++i) {
+    std::uint8_t* const cell = table.cell(begin + i, layout_.columns[0]); // y and z follow x
+    const auto place = loadScalar<std::array<double, 3>>(cell);
+    const Eigen::Vector3d point = fromSpherical(place[0], place[1], place[2]);
+    std::memcpy(cell, point.data(), sizeof(point));
+  }
 }
 } // namespace fresco::io::e57

@@ -2,7 +2,6 @@
 #pragma once
 #include "io/points/e57/vector_reader.h"
 #include <fresco/core/point_table.h>
-#include <functional>
 namespace fresco::io::e57 {
 /// The largest values of red, green and blue, of channels of one kind together; those of a scan that says its limits by
 /// the first records.
@@ -21,29 +20,22 @@ public:
   void store(const VectorReader& window, std::size_t count, PointTable& table, Index begin) const;
 
 private:
-  /// A part of a row: value(record of the window) goes to a column.
-  using Values = std::function<double(const VectorReader&, std::size_t)>;
+  using Names = std::vector<std::pair<const char*, const char*>>; ///< of fields and their columns
   struct Plan {
     Column column;
-    Values value;
+    std::size_t field;
+    std::optional<std::size_t> invalid; ///< field that is not 0 where there is no value
+    std::optional<Limits> color;        ///< what stands for 0 and 255
   };
-  std::optional<std::size_t> take(std::string_view name);
-  void add(const std::string& name, Scalar type, Values value);
-  void addCartesian();
-  void addSpherical();
-  void addColors(const std::array<double, 3>& largest);
-  void addIntensity();
-  void addNormals();
+  std::optional<std::size_t> find(const char* name) const;
+  const char* missing(const Names& names) const;
+  bool add(const Names& names, Scalar type, const char* state = "");
   void addOthers();
-  void storePositions(const VectorReader& window, std::size_t count, PointTable& table, Index begin) const;
 
   const Scan& scan_;
   PointTable layout_;
   std::vector<bool> taken_; ///< fields that have a column or are used up
-  std::array<std::size_t, 3> position_{};
-  std::optional<std::size_t> invalid_; ///< state of the position: 0 = valid
-  bool spherical_ = false;
-  std::vector<Plan> plans_;                              ///< all but the position
-  std::vector<std::pair<Column, std::size_t>> integers_; ///< columns of 64 bits, with their fields
+  bool spherical_;
+  std::vector<Plan> plans_;
 };
 } // namespace fresco::io::e57

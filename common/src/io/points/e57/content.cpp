@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "io/points/e57/content.h"
-#include "io/points/e57/bit_packing.h"
 #include "io/points/e57/xml_values.h"
 #include <algorithm>
 #include <cmath>
@@ -10,16 +9,12 @@
 namespace fresco::io::e57 {
 int Field::bits() const
 {
-  switch (type) {
-  case Type::single_float:
-    return 32;
-  case Type::double_float:
-    return 64;
-  case Type::string:
-    return 0;
-  default:
-    return bitWidth(minimum, maximum);
-  }
+  if (!isInteger())
+    return type == Type::single_float ? 32 : type == Type::double_float ? 64 : 0;
+  int bits = 0; // each is stored as its distance from the minimum
+  for (std::uint64_t range = std::uint64_t(maximum) - std::uint64_t(minimum); range > 0; range >>= 1)
+    ++bits;
+  return bits;
 }
 
 std::optional<std::size_t> CompressedVector::find(std::string_view name) const
@@ -29,6 +24,8 @@ std::optional<std::size_t> CompressedVector::find(std::string_view name) const
 }
 
 namespace {
+constexpr std::size_t longest_name = 200;
+
 /// A prototype is flat in every file seen; the standard allows structures within.
 constexpr int deepest_structure = 8;
 
@@ -129,19 +126,11 @@ std::optional<Limits> limitsIn(pugi::xml_node limits, const std::string& name)
   return Limits{*low, *high};
 }
 
-/// One line without control characters: names go into messages.
-std::string singleLine(std::string text)
-{
-  std::replace_if(
-      text.begin(), text.end(), [](unsigned char c) { return c < ' ' || c == 0x7f; }, ' ');
-  return text.substr(0, 200);
-}
-
 Scan scanOf(pugi::xml_node node)
 {
   Scan scan;
   scan.guid = textIn(node, "guid");
-  scan.info.name = singleLine(textIn(node, "name"));
+  scan.info.name = singleLine(textIn(node, "name"), longest_name);
   const pugi::xml_node points = childNamed(node, "points");
   if (!points)
     throw std::runtime_error("XML: it has no points");
@@ -196,7 +185,7 @@ Image imageOf(pugi::xml_node node, const std::vector<Scan>& scans)
 {
   Image image;
   ScanImage& said = image.description;
-  said.name = singleLine(textIn(node, "name"));
+  said.name = singleLine(textIn(node, "name"), longest_name);
   const std::string guid = textIn(node, "associatedData3DGuid");
   const auto scan =
       std::find_if(scans.begin(), scans.end(), [&](const Scan& s) { return !guid.empty() && s.guid == guid; });
@@ -258,6 +247,9 @@ Content parseContent(PagedFile& file)
 {
   Content content;
   std::string text = readXml(file, content.errors);
+  content.is_doubtful = !content.errors.empty();
+  for (std::string& error : content.errors)
+    error += ": what the file says of its scans may be wrong";
   pugi::xml_document document;
   const pugi::xml_parse_result parsed = document.load_buffer_inplace(text.data(), text.size());
   if (!parsed)

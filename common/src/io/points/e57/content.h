@@ -58,6 +58,7 @@ struct Content {
   std::vector<Scan> scans; ///< one that cannot be read has no points
   std::vector<Image> images;
   std::vector<std::string> errors; ///< scans and pictures that cannot be read, and pages with a wrong checksum
+  bool is_doubtful = false;        ///< such pages: scans count if their points fit what is said of them, bit by bit
 };
 
 /// @throws std::runtime_error if there is no such section, or it is no XML

@@ -12,12 +12,14 @@ public:
   {
     for (const Scan& scan : content_.scans)
       scans_.push_back(scan.info);
-    settle(content_.errors);
+    tellDamage(content_.errors, hasPoints());
   }
 
   PointTable open(Index scan) override
   {
     const Scan& chosen = content_.scans[scan];
+    scan_ = scan;
+    read_ = 0;
     columns_.emplace(chosen, largestColors(file_, chosen));
     records_.emplace(file_, chosen.records);
     const PointTable& layout = columns_->layout();
@@ -33,6 +35,9 @@ public:
   {
     const std::size_t count = records_->next(std::min(end - begin, rows_per_window));
     columns_->store(*records_, count, table, begin);
+    read_ += count;
+    if (content_.is_doubtful && read_ == content_.scans[scan_].info.points)
+      records_->requireEnd();
     return count;
   }
 
@@ -41,6 +46,7 @@ private:
   const Content content_;
   std::optional<Columns> columns_;
   std::optional<VectorReader> records_;
+  Index scan_ = 0, read_ = 0; ///< that is read, and how many of its records
 };
 } // namespace
 } // namespace e57

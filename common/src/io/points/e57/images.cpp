@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "io/points/e57/content.h"
 #include "io/points/scan_reader.h"
-#include <cstring>
 #include <fresco/core/require.h>
 #include <fresco/io/file.h>
 #include <fresco/io/scan_images.h>
@@ -27,37 +26,18 @@ std::string readBlob(PagedFile& file, const Blob& blob)
   return bytes;
 }
 
-/// use(file, content); errors name the file.
-template <typename Use>
-auto withContent(const std::string& path, const Use& use)
+/// The picture, or its mask.
+std::string imageBytes(const std::string& path, Index image, bool mask)
 {
   return namingFile(path, [&] {
     PagedFile file(path);
     const Content content = parseContent(file);
-    return use(file, content);
-  });
-}
-
-const Image& imageAt(const Content& content, Index image)
-{
-  if (image < 0 || image >= Index(content.images.size()))
-    throw std::runtime_error(concat("no picture ", image, ", the file has ", content.images.size()));
-  return content.images[image];
-}
-
-std::string pictureBytes(const std::string& path, Index image)
-{
-  return withContent(
-      path, [&](PagedFile& file, const Content& content) { return readBlob(file, imageAt(content, image).picture); });
-}
-
-std::string maskBytes(const std::string& path, Index image)
-{
-  return withContent(path, [&](PagedFile& file, const Content& content) {
-    const Image& asked = imageAt(content, image);
-    if (!asked.mask)
+    if (image < 0 || image >= Index(content.images.size()))
+      throw std::runtime_error(concat("no picture ", image, ", the file has ", content.images.size()));
+    const Image& asked = content.images[image];
+    if (mask && !asked.mask)
       throw std::runtime_error(concat("picture ", image, " has no mask"));
-    return readBlob(file, *asked.mask);
+    return readBlob(file, mask ? *asked.mask : asked.picture);
   });
 }
 } // namespace
@@ -67,15 +47,16 @@ std::vector<ScanImage> readScanImages(const std::string& path)
 {
   std::vector<ScanImage> images;
   if (extension(path) == ".e57")
-    io::e57::withContent(path, [&](auto&, const io::e57::Content& content) {
-      for (const io::e57::Image& image : content.images)
+    io::namingFile(path, [&] {
+      io::e57::PagedFile file(path);
+      for (const io::e57::Image& image : parseContent(file).images)
         images.push_back(image.description);
     });
   return images;
 }
 
-std::string readScanImageBytes(const std::string& path, Index image) { return io::e57::pictureBytes(path, image); }
-std::string readScanImageMask(const std::string& path, Index image) { return io::e57::maskBytes(path, image); }
+std::string readScanImageBytes(const std::string& path, Index image) { return io::e57::imageBytes(path, image, false); }
+std::string readScanImageMask(const std::string& path, Index image) { return io::e57::imageBytes(path, image, true); }
 
 Eigen::Isometry3d cameraAxes(ScanImage::Projection projection)
 {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <fresco/core/point_table.h>
 #include <fresco/core/require.h>
 #include <stdexcept>
 namespace fresco::io::e57 {
@@ -29,14 +30,6 @@ constexpr Tables makeTables()
 
 constexpr Tables tables = makeTables();
 
-template <typename T>
-T loadAt(const char* bytes, std::size_t offset)
-{
-  T value;
-  std::memcpy(&value, bytes + offset, sizeof(T));
-  return value;
-}
-
 Header readHeader(const RandomAccessFile& file)
 {
   char bytes[48];
@@ -45,13 +38,14 @@ Header readHeader(const RandomAccessFile& file)
   file.read(0, bytes, sizeof(bytes));
   if (std::memcmp(bytes, "ASTM-E57", 8) != 0)
     throw std::runtime_error("not an E57 file: it does not begin with ASTM-E57");
-  const auto version = loadAt<std::uint32_t>(bytes, 8);
+  const auto version = loadScalar<std::uint32_t>(bytes + 8);
   if (version != 1)
     throw std::runtime_error(concat("version ", version, " of E57 is not known"));
-  const auto stored_page_size = loadAt<std::uint64_t>(bytes, 40);
+  const auto stored_page_size = loadScalar<std::uint64_t>(bytes + 40);
   if (stored_page_size != page_size)
     throw std::runtime_error(concat("pages of ", stored_page_size, " bytes; E57 has ", page_size));
-  return {loadAt<std::uint64_t>(bytes, 16), loadAt<std::uint64_t>(bytes, 24), loadAt<std::uint64_t>(bytes, 32)};
+  return {loadScalar<std::uint64_t>(bytes + 16), loadScalar<std::uint64_t>(bytes + 24),
+          loadScalar<std::uint64_t>(bytes + 32)};
 }
 
 /// The checksum is stored with its highest byte first.

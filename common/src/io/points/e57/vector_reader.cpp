@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "io/points/e57/vector_reader.h"
-#include "io/points/e57/bit_packing.h"
 #include <algorithm>
-#include <cstring>
+#include <fresco/core/point_table.h>
 #include <fresco/core/require.h>
 #include <stdexcept>
 namespace fresco::io::e57 {
@@ -10,12 +9,25 @@ namespace {
 constexpr std::size_t header_bytes = 32; // of a section
 enum PacketType : std::uint8_t { index_packet = 0, data_packet = 1, empty_packet = 2 };
 
-template <typename T>
-T loadAt(const std::uint8_t* bytes, std::size_t offset)
+/// Bytes that must be readable behind the last one of a packed stream.
+constexpr std::size_t unpack_slack = 16;
+
+/// Whole numbers one after the other in a little-endian stream, the lowest bit first.
+void unpackIntegers(const std::uint8_t* stream, std::size_t first_bit, const Field& field,
+                    std::vector<std::int64_t>& numbers)
 {
-  T value;
-  std::memcpy(&value, bytes + offset, sizeof(T));
-  return value;
+  const int bits = field.bits();
+  const std::uint64_t offset = field.minimum, mask = bits == 0 ? 0 : ~std::uint64_t{0} >> (64 - bits);
+  std::size_t bit = first_bit;
+  for (std::int64_t& number : numbers) {
+    const std::uint8_t* const at = stream + bit / 8;
+    const unsigned shift = bit % 8;
+    auto word = loadScalar<std::uint64_t>(at) >> shift;
+    if (shift + bits > 64) // the rest lies in a ninth byte
+      word |= std::uint64_t{at[8]} << (64 - shift);
+    number = (word & mask) + offset; // modulo 2^64
+    bit += bits;
+  }
 }
 
 std::uint64_t bitsPerRecord(const std::vector<Field>& fields)
@@ -36,7 +48,7 @@ std::size_t stringBytes(const std::uint8_t* at, std::size_t available)
   if ((at[0] & 1U) != 0) {
     if (available < 8)
       return 0;
-    length = loadAt<std::uint64_t>(at, 0) >> 1U;
+    length = loadScalar<std::uint64_t>(at) >> 1U;
     prefix = 8;
   }
   return length > available - prefix ? 0 : length + prefix;
@@ -46,7 +58,7 @@ template <typename T>
 void copyReals(const std::uint8_t* from, std::vector<double>& reals)
 {
   for (double& value : reals) {
-    value = loadAt<T>(from, 0);
+    value = loadScalar<T>(from);
     from += sizeof(T);
   }
 }
@@ -75,13 +87,13 @@ VectorReader::VectorReader(PagedFile& file, const CompressedVector& records)
   const std::uint64_t begin = file.logical(records.physical_offset);
   std::uint8_t header[header_bytes];
   file.read(begin, header, header_bytes);
-  const auto length = loadAt<std::uint64_t>(header, 8);
+  const auto length = loadScalar<std::uint64_t>(header + 8);
   if (header[0] != 1)
     throw std::runtime_error(concat("damaged: no compressed vector at offset ", records.physical_offset));
   if (length < header_bytes || length > file.size() - begin)
     throw std::runtime_error(concat("truncated: the section at offset ", records.physical_offset, " has ", length,
                                     " bytes, ", file.size() - begin, " are left in the file"));
-  packet_ = file.logical(loadAt<std::uint64_t>(header, 16));
+  packet_ = file.logical(loadScalar<std::uint64_t>(header + 16));
   end_ = begin + length;
   const std::uint64_t bits = std::max(bitsPerRecord(records.fields), least_bits_per_record);
   if (left_ / 8 > length / bits + 1)
@@ -118,7 +130,7 @@ void VectorReader::readPacket()
         concat("truncated: the points end early, ", left_, " of ", records_.count, " are missing"));
   std::uint8_t head[4];
   file_.read(packet_, head, sizeof(head));
-  const std::size_t length = std::size_t{loadAt<std::uint16_t>(head, 2)} + 1;
+  const std::size_t length = std::size_t{loadScalar<std::uint16_t>(head + 2)} + 1;
   if (head[0] > empty_packet || length % 4 != 0 || length > end_ - packet_)
     throw std::runtime_error(concat("damaged: a packet of type ", int{head[0]}, " and ", length, " bytes"));
   if (head[0] == data_packet) {
@@ -132,12 +144,12 @@ void VectorReader::readPacket()
 /// Hands the pieces of a data packet to their streams.
 void VectorReader::distribute(std::size_t length)
 {
-  const std::size_t count = length < 6 ? 0 : loadAt<std::uint16_t>(buffer_.data(), 4);
+  const std::size_t count = length < 6 ? 0 : loadScalar<std::uint16_t>(buffer_.data() + 4);
   if (count != streams_.size())
     throw std::runtime_error(concat("damaged: a packet of ", count, " streams, expected ", streams_.size()));
   std::size_t at = 6 + 2 * count;
   for (std::size_t f = 0; f < count; ++f) {
-    const std::size_t bytes = 6 + 2 * f + 2 <= length ? loadAt<std::uint16_t>(buffer_.data(), 6 + 2 * f) : length;
+    const std::size_t bytes = 6 + 2 * f + 2 <= length ? loadScalar<std::uint16_t>(buffer_.data() + 6 + 2 * f) : length;
     if (at > length || bytes > length - at)
       throw std::runtime_error("damaged: a packet is shorter than its streams");
     streams_[f].append(buffer_.data() + at, bytes);
@@ -158,7 +170,7 @@ void VectorReader::decode(std::size_t f, std::size_t count)
   Stream& stream = streams_[f];
   if (field.isInteger()) {
     stream.integers.resize(count);
-    unpackIntegers({stream.bytes.data(), stream.bit, field.bits(), field.minimum}, count, stream.integers.data());
+    unpackIntegers(stream.bytes.data(), stream.bit, field, stream.integers);
   } else {
     stream.reals.resize(count);
     const std::uint8_t* from = stream.bytes.data() + stream.bit / 8;
@@ -185,5 +197,16 @@ std::size_t VectorReader::next(std::size_t most)
     decode(f, count);
   left_ -= count;
   return count;
+}
+
+void VectorReader::requireEnd()
+{
+  constexpr std::size_t head = 4; // bytes of a packet
+  while (packet_ + head <= end_)
+    readPacket();
+  for (std::size_t f = 0; f < streams_.size(); ++f)
+    if (8 * streams_[f].size - streams_[f].bit >= 8)
+      throw std::runtime_error(concat("damaged: there is more of field ", records_.fields[f].name, " than its ",
+                                      records_.count, " records"));
 }
 } // namespace fresco::io::e57

@@ -16,6 +16,9 @@ public:
   /// @throws std::runtime_error if a packet is damaged or the section ends early
   std::size_t next(std::size_t most);
 
+  /// After the last record. @throws std::runtime_error if the section holds more
+  void requireEnd();
+
   /// Of record `i` of the window. Strings are 0.
   double real(std::size_t field, std::size_t i) const
   {
@@ -24,11 +27,10 @@ public:
   }
   /// As stored: fields of whole numbers only.
   std::int64_t stored(std::size_t field, std::size_t i) const { return streams_[field].integers[i]; }
-  bool isInteger(std::size_t field) const { return !streams_[field].integers.empty(); }
 
 private:
   struct Stream {
-    std::vector<std::uint8_t> bytes; ///< not decoded yet, and unpack_slack more
+    std::vector<std::uint8_t> bytes; ///< not decoded yet, and some to read beyond
     std::size_t size = 0;            ///< bytes without the slack
     std::size_t bit = 0;             ///< first one not decoded
     double scale = 1, offset = 0;

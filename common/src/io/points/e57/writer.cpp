@@ -93,14 +93,12 @@ void prepare(PointTable& table)
   if (table.height <= 1)
     return;
   PointTable wider;
-  for (const Column& column : table.columns)
-    wider.addColumn(column.name, column.type, column.count);
-  wider.addColumn("row", Scalar::uint32);
-  wider.addColumn("column", Scalar::uint32);
+  addColumns(table, wider, [](const Column&) { return true; });
+  wider.addColumn(row_column, Scalar::uint32);
+  wider.addColumn(column_column, Scalar::uint32);
   wider.allocate(table.rows);
+  copyRows(table, wider);
   for (Index i = 0; i < table.rows; ++i) {
-    for (std::size_t c = 0; c < table.columns.size(); ++c)
-      std::memcpy(wider.cell(i, wider.columns[c]), table.cell(i, table.columns[c]), table.columns[c].bytes());
     const std::uint32_t place[] = {std::uint32_t(i / table.width), std::uint32_t(i % table.width)};
     std::memcpy(wider.cell(i, wider.columns[table.columns.size()]), place, sizeof(place));
   }
@@ -154,17 +152,6 @@ std::string packedStates(const std::vector<bool>& finite, Index begin, Index end
   return bytes;
 }
 
-std::vector<bool> finiteRows(const PointTable& table)
-{
-  std::vector<bool> finite(table.rows, true);
-  const auto xyz = findTriple(table, xyz_names);
-  for (const Column& column : *xyz)
-    forEachValue(
-        table, column, 0, [&](Index row, auto value) { finite[row] = finite[row] && std::isfinite(double(value)); }, 0,
-        table.rows);
-  return finite;
-}
-
 std::string limitsXml(const PointTable& table)
 {
   std::string xml;
@@ -174,7 +161,7 @@ std::string limitsXml(const PointTable& table)
       if (std::isfinite(double(value)))
         low = std::min(low, double(value)), high = std::max(high, double(value));
     };
-    forEachValue(table, *intensity, 0, look, 0, table.rows);
+    eachValue(table, *intensity, look);
     if (low < high)
       xml += structure("intensityLimits", real("intensityMinimum", low) + real("intensityMaximum", high));
   }

@@ -1,42 +1,25 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "io/points/e57/xml_values.h"
 #include "io/points/text_numbers.h"
+#include <algorithm>
 #include <fresco/core/require.h>
 #include <stdexcept>
 namespace fresco::io::e57 {
 namespace {
-std::string_view withoutBlanks(std::string_view text)
-{
-  constexpr std::string_view blanks = " \t\r\n";
-  const std::size_t begin = text.find_first_not_of(blanks);
-  return begin == std::string_view::npos ? std::string_view()
-                                         : text.substr(begin, text.find_last_not_of(blanks) - begin + 1);
-}
-
-/// Without control characters and at most 60 of them: for messages of one line.
-std::string shown(const char* text)
-{
-  std::string word = std::string(text).substr(0, 60);
-  for (char& c : word)
-    if (std::uint8_t(c) < ' ')
-      c = '?';
-  return word;
-}
-
 template <typename T>
 T numberOf(const char* text, const std::string& where)
 try {
-  const std::string_view word = withoutBlanks(text);
+  const std::string_view word = trimmed(text);
   return word.empty() ? T(0) : parseNumber<T>(word);
 } catch (const std::runtime_error&) {
-  throw std::runtime_error(concat("XML: ", where, ": '", shown(text), "' is no ",
+  throw std::runtime_error(concat("XML: ", where, ": '", singleLine(text), "' is no ",
                                   std::is_floating_point_v<T> ? "number" : "whole number of 64 bits"));
 }
 
 template <typename T>
 T attributeOf(pugi::xml_node node, const char* name)
 {
-  return numberOf<T>(node.attribute(name).value(), concat(shown(node.name()), ' ', name));
+  return numberOf<T>(node.attribute(name).value(), concat(singleLine(node.name()), ' ', name));
 }
 } // namespace
 
@@ -65,17 +48,20 @@ std::string_view typeOf(pugi::xml_node node)
 {
   const pugi::xml_attribute type = node.attribute("type");
   if (!type)
-    throw std::runtime_error(concat("XML: ", shown(node.name()), " has no type"));
+    throw std::runtime_error(concat("XML: ", singleLine(node.name()), " has no type"));
   return type.value();
 }
 
-std::int64_t integerOf(pugi::xml_node node) { return numberOf<std::int64_t>(node.child_value(), shown(node.name())); }
+std::int64_t integerOf(pugi::xml_node node)
+{
+  return numberOf<std::int64_t>(node.child_value(), singleLine(node.name()));
+}
 
 double realOf(pugi::xml_node node)
 {
   if (typeOf(node) == "ScaledInteger")
     return double(integerOf(node)) * realAttribute(node, "scale", 1) + realAttribute(node, "offset", 0);
-  return numberOf<double>(node.child_value(), shown(node.name()));
+  return numberOf<double>(node.child_value(), singleLine(node.name()));
 }
 
 double realAttribute(pugi::xml_node node, const char* name, double otherwise)
@@ -91,7 +77,7 @@ std::int64_t integerAttribute(pugi::xml_node node, const char* name, std::int64_
 std::uint64_t sizeAttribute(pugi::xml_node node, const char* name)
 {
   if (!node.attribute(name))
-    throw std::runtime_error(concat("XML: ", shown(node.name()), " has no ", name));
+    throw std::runtime_error(concat("XML: ", singleLine(node.name()), " has no ", name));
   return attributeOf<std::uint64_t>(node, name);
 }
 
@@ -99,6 +85,13 @@ std::optional<double> realIn(pugi::xml_node node, std::string_view name)
 {
   const pugi::xml_node child = childNamed(node, name);
   return child ? std::optional(realOf(child)) : std::nullopt;
+}
+
+std::string singleLine(std::string text, std::size_t most)
+{
+  std::replace_if(
+      text.begin(), text.end(), [](unsigned char c) { return c < ' ' || c == 0x7f; }, ' ');
+  return text.substr(0, most);
 }
 
 std::string textIn(pugi::xml_node node, std::string_view name) { return childNamed(node, name).child_value(); }

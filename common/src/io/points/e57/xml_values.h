@@ -15,6 +15,9 @@ std::string_view prefixOf(pugi::xml_node node); ///< with the colon; "" = none
 /// The child of that name and the prefix of `node`, since extensions may use names again; empty if there is none.
 pugi::xml_node childNamed(pugi::xml_node node, std::string_view name);
 
+/// For messages of one line: without control characters.
+std::string singleLine(std::string text, std::size_t most = 60);
+
 /// @throws std::runtime_error naming the element
 std::string_view typeOf(pugi::xml_node node);
 double realOf(pugi::xml_node node); ///< of a Float, Integer or ScaledInteger
