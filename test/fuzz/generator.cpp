@@ -75,9 +75,11 @@ void overwrite(std::string& bytes, Dice& dice)
 std::string GeneratedFile::packed() const
 {
   std::string text;
-  for (std::size_t i = 0; i + (is_glb ? 1 : 0) < parts.size(); ++i)
+  for (std::size_t i = 0; i + (kind == Kind::glb ? 1 : 0) < parts.size(); ++i)
     text += parts[i];
-  if (!is_glb)
+  if (const std::size_t xml = text.find("<?xml"); kind == Kind::e57 && xml != std::string::npos && xml >= 48)
+    text.replace(24, 16, raw(std::uint64_t{xml / 1020 * 1024 + xml % 1020}) + raw(std::uint64_t{text.size() - xml}));
+  if (kind != Kind::glb)
     return text;
   text.resize((text.size() + 3) / 4 * 4, ' ');
   std::string buffer = parts.empty() ? "" : parts.back();

@@ -8,8 +8,13 @@ namespace fresco::fuzz {
 /// A file in its parts: lines of a header, sections, blocks of data. What keeps them together (lengths, offsets) is
 /// added by packed(), so that a file with a broken part gets as far as that part.
 struct GeneratedFile {
+  enum class Kind {
+    plain,
+    glb, ///< the last part is the buffer, the others are the JSON
+    e57  ///< header and sections, then the lines of the XML
+  };
   std::vector<std::string> parts;
-  bool is_glb = false; ///< the last part is the buffer, the others are the JSON
+  Kind kind = Kind::plain;
 
   std::string packed() const;
 };

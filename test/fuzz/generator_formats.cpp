@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "dice.h"
-#include "generator.h"
+#include "generator_scans.h"
 #include "targets.h"
 #include <algorithm>
 #include <fresco/core/require.h>
@@ -211,7 +210,7 @@ GeneratedFile glb(Dice& dice)
   parts.push_back(concat(R"(,"buffers":[{"byteLength":)", size, "}]"));
   parts.push_back("}");
   parts.push_back(buffer);
-  return {parts, true};
+  return {parts, GeneratedFile::Kind::glb};
 }
 
 GeneratedFile stl(Dice& dice)
@@ -295,6 +294,12 @@ GeneratedFile generated(const std::string& target, std::uint32_t seed)
                                                                                  {"glb", glb},
                                                                                  {"stl", stl},
                                                                                  {"xyz", xyz},
+                                                                                 {"ptx", ptx},
+                                                                                 {"pts", pts},
+                                                                                 {"las", las},
+                                                                                 {"e57", e57},
+                                                                                 {"points3d_text", points3dText},
+                                                                                 {"points3d_binary", points3dBinary},
                                                                                  {"poses", poses},
                                                                                  {"colmap_text", colmapText},
                                                                                  {"colmap_binary", colmapBinary}};

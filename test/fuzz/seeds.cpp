@@ -2,6 +2,7 @@
 #include "seeds.h"
 #include "common/io/e57_file.h"
 #include "common/io/las_writer.h"
+#include "generator.h"
 #include "job/stage_log.h"
 #include "targets.h"
 #include <filesystem>
@@ -9,6 +10,7 @@
 #include <fresco/io/cloud_file.h>
 #include <fresco/io/colmap.h>
 #include <fresco/io/file.h>
+#include <fresco/io/image_io.h>
 #include <fresco/io/mesh_io.h>
 #include <fresco/io/point_io.h>
 #include <fresco/io/pose_file.h>
@@ -156,6 +158,36 @@ std::string depthImage()
   return {reinterpret_cast<const char*>(bytes), sizeof(bytes)};
 }
 
+/// 2 x 2 grey pixels.
+std::string tiff()
+{
+  std::string bytes = std::string("II*\0", 4) + raw(std::uint32_t{12}) + "abcd" + raw(std::uint16_t{8});
+  for (const auto& [tag, value] :
+       {std::pair(256, 2), {257, 2}, {258, 8}, {259, 1}, {262, 1}, {273, 8}, {278, 2}, {279, 4}})
+    bytes += raw(std::uint16_t(tag)) + raw(std::uint16_t{4}) + raw(std::uint32_t{1}) + raw(std::uint32_t(value));
+  return bytes + raw(std::uint32_t{0});
+}
+
+/// 2 x 1 pixels.
+std::string bmp()
+{
+  std::string bytes = "BM" + raw(std::uint32_t{62}) + raw(std::uint32_t{0}) + raw(std::uint32_t{54}) +
+                      raw(std::uint32_t{40}) + raw(std::int32_t{2}) + raw(std::int32_t{1}) + raw(std::uint16_t{1}) +
+                      raw(std::uint16_t{24});
+  bytes.resize(54, '\0');
+  return bytes + "bgrBGR\1\2";
+}
+
+/// 1 x 1 pixel.
+std::string webp()
+{
+  static const unsigned char bytes[] = {0x52, 0x49, 0x46, 0x46, 0x24, 0x00, 0x00, 0x00, 0x57, 0x45, 0x42,
+                                        0x50, 0x56, 0x50, 0x38, 0x20, 0x18, 0x00, 0x00, 0x00, 0x30, 0x01,
+                                        0x00, 0x9d, 0x01, 0x2a, 0x01, 0x00, 0x01, 0x00, 0x03, 0x00, 0x34,
+                                        0x25, 0xa4, 0x00, 0x03, 0x70, 0x00, 0xfe, 0xfb, 0x94, 0x00, 0x00};
+  return {reinterpret_cast<const char*>(bytes), sizeof(bytes)};
+}
+
 std::string stageLog(const std::string& scratch)
 {
   std::filesystem::remove(scratch + "/stage.json");
@@ -204,6 +236,14 @@ void writeSeeds(const std::string& folder)
   put("glb", "model", written("a.glb", model));
   put("colmap_text", "model", textColmap(scratch));
   put("colmap_binary", "model", binaryColmap());
+  for (const std::string target : {"points3d_text", "points3d_binary"})
+    put(target, "points", generated(target, 1).packed());
+  for (const std::string type : {".png", ".jpg"})
+    put("picture", type.substr(1), written("a" + type, [](const std::string& path) { writeImage(path, Image(5, 4)); }));
+  put("picture", "depth", depthImage());
+  put("picture", "tiff", tiff());
+  put("picture", "bmp", bmp());
+  put("picture", "webp", webp());
   put("poses", "poses", written("poses.txt", [](const std::string& path) {
         writePoses(path, {Eigen::Matrix4d::Identity().eval(), Pose()});
       }));

@@ -166,6 +166,47 @@ void readColmapModel(Bytes bytes, const std::string& folder, const std::string& 
   });
 }
 
+/// Part one: images, part two: points3D.
+void readColmapTracks(Bytes bytes, const std::string& folder, const std::string& kind)
+{
+  const std::string camera = test::e57::raw(std::uint64_t{1}) + test::e57::raw(std::uint32_t{1}) +
+                             test::e57::raw(std::int32_t{0}) + test::e57::raw(std::uint64_t{64}) +
+                             test::e57::raw(std::uint64_t{48}) + test::e57::raw(60.) + test::e57::raw(32.) +
+                             test::e57::raw(24.);
+  for (const char* other : {".txt", ".bin"}) // of which only one kind may be there
+    for (const char* name : {"/cameras", "/images", "/points3D"})
+      fs::remove(folder + name + other);
+  store(folder + "/cameras" + kind, kind == ".txt" ? "1 SIMPLE_PINHOLE 64 48 60 32 24\n" : camera);
+  store(folder + "/images" + kind, takePart(bytes));
+  store(folder + "/points3D" + kind, bytes);
+  readChecked(folder, [&] {
+    const std::size_t views = readColmap(folder).views.size();
+    for (const SparsePoint& point : readColmapPoints(folder)) {
+      expect(point.position.allFinite() && std::isfinite(point.error), "a point that is not finite");
+      for (const Observation& seen : point.track)
+        expect(seen.view >= 0 && std::size_t(seen.view) < views, "a view that is not there");
+    }
+  });
+}
+
+/// A photograph, mask or depth image.
+void readPicture(Bytes bytes, const std::string& folder)
+{
+  const std::string path = folder + "/picture";
+  store(path, bytes);
+  readChecked(folder, [&] {
+    const ImageSize size = readImageSize(path);
+    const Image image = readImage(path);
+    expect(image.width == size.width && image.height == size.height && image.channels == 3 &&
+               image.data.size() == std::size_t{3} * image.width * image.height,
+           "a picture of another size than its header tells");
+  });
+  readChecked(folder, [&] {
+    const Image16 image = readImage16(path);
+    expect(image.data.size() == std::size_t{1} * image.width * image.height, "a depth image without some pixels");
+  });
+}
+
 void readPoseFile(Bytes bytes, const std::string& folder)
 {
   const std::string path = folder + "/poses.txt";
@@ -263,6 +304,9 @@ const std::vector<Target>& targets()
       {"obj", readObj},
       {"colmap_text", [](Bytes bytes, const std::string& folder) { readColmapModel(bytes, folder, ".txt"); }},
       {"colmap_binary", [](Bytes bytes, const std::string& folder) { readColmapModel(bytes, folder, ".bin"); }},
+      {"points3d_text", [](Bytes bytes, const std::string& folder) { readColmapTracks(bytes, folder, ".txt"); }},
+      {"points3d_binary", [](Bytes bytes, const std::string& folder) { readColmapTracks(bytes, folder, ".bin"); }},
+      {"picture", readPicture},
       {"poses", readPoseFile},
       {"rgbd", readRgbd},
       {"stage_log", readStageLog},

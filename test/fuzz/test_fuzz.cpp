@@ -89,7 +89,7 @@ TEST(Fuzz, GeneratedFilesAreValid)
       writeFile(path, fuzz::generated(format, seed).packed());
       EXPECT_NO_THROW(readMesh(path)) << format << ' ' << seed;
     }
-  for (const std::string format : {"pcd", "xyz"})
+  for (const std::string format : {"pcd", "xyz", "ptx", "pts", "las"})
     for (std::uint32_t seed = 0; seed < 50; ++seed) {
       const std::string path = folder + "/a." + format;
       writeFile(path, fuzz::generated(format, seed).packed());
