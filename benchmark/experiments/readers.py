@@ -3,14 +3,19 @@
 """Our readers against others, over any folder: readers.py [--bin DIR] FOLDER...
 
 Every file of points is read by fresco_filter (which keeps finite points, in their order) and by a reader of numpy (PLY, PCD,
-text) or Open3D (all that it knows, where python3-open3d is installed). Prints a line per file: same, differs, refused by us,
+LAS, text) or Open3D (all that it knows, where python3-open3d is installed). Prints a line per file: same, differs, refused by us,
 refused by them, no other reader. Ends with 1 if a file differs."""
 import argparse
+import multiprocessing
 import os
 import subprocess
 import sys
 import tempfile
 import numpy as np
+try:
+    import open3d
+except ImportError:
+    open3d = None
 
 KINDS = (".ply", ".pcd", ".xyz", ".txt", ".asc", ".csv", ".pts", ".ptx", ".las", ".e57", ".obj", ".stl", ".vtk")
 PLY = {"char": "i1", "int8": "i1", "uchar": "u1", "uint8": "u1", "short": "i2", "int16": "i2", "ushort": "u2", "uint16": "u2",
@@ -67,8 +72,27 @@ def read_text(path):
     return dict(zip("xyz", values[:, :3].T))
 
 
+def read_las(path):
+    """Offsets as LAS 1.4 R15 has them, tables 3 and 7 to 17."""
+    with open(path, "rb") as file:
+        data = file.read()
+    begin, kind, size = (int.from_bytes(data[at:at + n], "little") for at, n in ((96, 4), (104, 1), (105, 2)))
+    points = int.from_bytes(data[107:111], "little")
+    if data[25] == 4:
+        points = int.from_bytes(data[247:255], "little") or points
+    rows = np.frombuffer(data, np.uint8, points * size, begin).reshape(points, size)
+    scale, offset = np.frombuffer(data, "<f8", 3, 131), np.frombuffer(data, "<f8", 3, 155)
+    xyz = rows[:, :12].copy().view("<i4") * scale + offset
+    columns = dict(zip("xyz", xyz.T))
+    at = {2: 20, 3: 28, 5: 28, 7: 30, 8: 30, 10: 30}.get(kind)
+    if at:
+        colors = rows[:, at:at + 6].copy().view("<u2").astype(int)
+        colors = colors if colors.max(initial=0) < 256 else colors // 256
+        columns.update(zip(("red", "green", "blue"), colors.T))
+    return columns
+
+
 def read_open3d(path):
-    import open3d
     cloud = open3d.io.read_point_cloud(path) if not path.endswith((".obj", ".stl", ".vtk")) else open3d.io.read_triangle_mesh(path)
     points = np.asarray(getattr(cloud, "points", getattr(cloud, "vertices", [])))
     if len(points) == 0:
@@ -83,21 +107,45 @@ def read_open3d(path):
 def others(path):
     """(name, columns or error) of each reader that knows the file."""
     kind = os.path.splitext(path)[1].lower()
-    readers = [("numpy", {".ply": read_ply, ".pcd": read_pcd}.get(kind, read_text))] if kind in KINDS[:6] else []
+    by_numpy = {".ply": read_ply, ".pcd": read_pcd, ".las": read_las}
+    readers = [("numpy", by_numpy.get(kind, read_text))] if kind in by_numpy or kind in KINDS[2:6] else []
     if kind in (".ply", ".pcd", ".xyz", ".pts", ".obj", ".stl"):
         readers.append(("Open3D", read_open3d))
     for name, read in readers:
+        if name != "Open3D" or open3d:
+            yield name, alone(read, path)
+
+
+def alone(read, path):
+    """Columns, or the error, of a reader in a process of its own, which it may crash."""
+    def work():
         try:
-            yield name, read(path)
-        except ImportError:
-            continue
+            answer = read(path)
+            if not set("xyz") <= set(answer):
+                answer = "no columns x y z"
         except Exception as error:  # whatever their reader throws is its refusal
-            yield name, str(error).splitlines()[0][:80] if str(error) else type(error).__name__
+            answer = str(error).splitlines()[0][:80] if str(error) else type(error).__name__
+        sender.send(answer)
+
+    receiver, sender = multiprocessing.Pipe(False)
+    process = multiprocessing.get_context("fork").Process(target=work)
+    process.start()
+    sender.close()
+    try:
+        return receiver.recv()
+    except EOFError:
+        return "crashes"
+    finally:
+        process.join()
 
 
-def difference(ours, theirs):
+def difference(ours, theirs, is_mesh):
     """"" = the same; points that are not finite do not count."""
     finite = np.isfinite(np.stack([theirs[axis] for axis in "xyz"])).all(0)
+    if is_mesh:  # whose corners others keep apart
+        points = [np.sort(np.unique(np.stack([each[axis] for axis in "xyz"]).T[mask].astype(np.float32), axis=0), axis=0)
+                  for each, mask in ((ours, slice(None)), (theirs, finite))]
+        return "" if points[0].shape == points[1].shape and np.allclose(*points, atol=1e-5) else "other vertices"
     if len(ours["x"]) != finite.sum():
         return f"{len(ours['x'])} points, they have {finite.sum()}"
     for name in ("x", "y", "z", "red", "green", "blue", "nx", "ny", "nz"):
@@ -136,10 +184,10 @@ def main():
                     elif ours is None:
                         verdicts.append(f"refused by us, {name} has {len(theirs['x'])} points: {run.stderr.strip()[:120]}")
                     else:
-                        found = difference(ours, theirs)
+                        found = difference(ours, theirs, path.lower().endswith((".obj", ".stl")))
                         verdicts.append(f"differs from {name}: {found}" if found else f"same as {name}")
             for verdict in verdicts or ["no other reader"]:
-                print(f"{path}: {verdict}")
+                print(f"{path}: {verdict}", flush=True)
                 kind = verdict.split(":")[0].split(",")[0]
                 counts[kind] = counts.get(kind, 0) + 1
     for kind, count in sorted(counts.items()):
