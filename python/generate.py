@@ -17,7 +17,9 @@ ScanRegistrationOptions ScanRegistrationResult ScanResult PairResult Alternative
 VolumetricOptions VolumetricResult NormalFilteringOptions NormalFilteringResult NormalFilteringStep
 DepthFusionOptions DepthFusionResult MeshDistanceOptions MeshDistanceResult TwoSidedDistance DistanceStatistics
 NormalDeviation TextureOptions TextureView TextureResult PlacedCamera PhotographFit PointTextureOptions PointTextureResult
-PointLook ModelOptions ModelReport ModelStage PictureOptions Viewpoint""".split()
+PointLook ModelOptions ModelReport ModelStage PictureOptions Viewpoint
+PointToPlaneOptions PointToPlaneResult CameraAlignmentOptions CameraAlignmentResult RgbdTrackingOptions
+RgbdTrackingResult""".split()
 # What a function is called in Python where it is not its name in C++ with underscores.
 RENAMED = {"reconstructVolumetric": "reconstruct", "filterSurface": "optimize",
            "measureMeshDistance": "compare", "withoutMixedPixels": "remove_mixed_pixels", "withoutOutliers": "remove_outliers",
@@ -160,7 +162,7 @@ class Reader:
     @staticmethod
     def names_of(code: str) -> list[str]:
         """Names that a declaration of fields declares; none for a method, nor for what only C++ can make."""
-        if "_ptr<" in code:
+        if re.search(r"_ptr<|std::function<|\bSimilarity\b", code):
             return []
         code = re.sub(r"<[^;=]*>", "", code)
         code = re.sub(r"\{[^}]*\}", "", code)

@@ -9,4 +9,5 @@ folder = pathlib.Path(sys.argv[1])
 bare = types.ModuleType("fresco")
 bare.__path__ = [str(folder)]
 sys.modules["fresco"] = bare
+sys.modules.setdefault("numpy", types.ModuleType("numpy"))  # named, not used: a machine that builds may have none
 (folder / "_fresco.pyi").write_text(importlib.import_module("fresco._fresco")._stubs(), encoding="utf8")

@@ -268,18 +268,24 @@ CameraAlignmentResult placeByShape(const Scene& scene, const Progress& progress)
              std::lround(100 * scene.options.min_support),
              " are wanted); the photographs show something else, or most of their points are wrong"));
 }
+
+void requireEnough(Index sparse_points)
+{
+  if (sparse_points < fewest_sparse_points)
+    throw std::runtime_error(concat(sparse_points, " sparse points are too few, at least ", fewest_sparse_points,
+                                    " are wanted to find where the cameras stand"));
+}
 } // namespace
 
 CameraAlignmentResult alignCameras(const CameraSet& set, const SparsePoints& points, const PointSet& surface_points,
                                    const CameraAlignmentOptions& options, const Progress& progress)
 {
   validate(set, points, options);
+  requireEnough(points.size());
   report(progress, "surface", 0.0);
   const ScanSurface surface(surface_points, options.threads);
   const SparseModel model = makeSparseModel(set, points, options.threads);
-  if (model.points.cols() < fewest_sparse_points)
-    throw std::runtime_error(concat(model.points.cols(), " sparse points are too few, at least ", fewest_sparse_points,
-                                    " are wanted to find where the cameras stand"));
+  requireEnough(model.points.cols());
   const Scene scene{model, surface, options};
   if (const auto given = givenPlace(scene)) {
     CameraAlignmentResult result = resultOf(scene, {*given}, given->T_surface_model);

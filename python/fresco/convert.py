@@ -9,57 +9,16 @@ from numpy.typing import ArrayLike, NDArray
 
 from ._fresco import PointSet, TriangleMesh
 
-# As the readers of fresco do it: what float may lose of coordinates, as a share of their extent.
-MOST_LOST = 1e-6
-
-
-def _shareable(values: ArrayLike, dtype: Any) -> NDArray[Any]:
-    """Of that type, contiguous and not read-only: the array itself, or a copy."""
-    return np.require(values, dtype, ["C", "W"])
-
-
-def _split(points: ArrayLike) -> tuple[NDArray[np.float32], NDArray[np.float64]]:
-    """Coordinates as float32 and the origin that they are relative to: zero where float32 is enough."""
-    given = np.asarray(points)
-    if given.dtype == np.float32:
-        return _shareable(given, np.float32), np.zeros(3)
-    exact = np.asarray(given, np.float64)
-    finite = exact[np.isfinite(exact).all(axis=1)] if exact.ndim == 2 else exact
-    origin = np.zeros(3)
-    if len(finite) > 0:
-        low, high = finite.min(axis=0), finite.max(axis=0)
-        farthest = max(abs(low).max(), abs(high).max())
-        if farthest * np.finfo(np.float32).eps / 2 > MOST_LOST * (high - low).max():
-            origin = np.round((low + high) / 2)
-    return np.ascontiguousarray(exact - origin, np.float32), origin
-
-
-def _bytes(colors: ArrayLike) -> NDArray[np.uint8]:
-    """Colours 0..255 from such, or from 0..1."""
-    given = np.asarray(colors)
-    if given.dtype == np.uint8:
-        return _shareable(given, np.uint8)
-    if given.dtype.kind == "f":
-        return np.clip(np.round(given * 255), 0, 255).astype(np.uint8)
-    return np.ascontiguousarray(given.astype(np.uint8))
-
 
 def from_arrays(points: ArrayLike, faces: ArrayLike | None = None, *, normals: ArrayLike | None = None,
                 colors: ArrayLike | None = None, **others: Any) -> Union[PointSet, TriangleMesh]:
     """A PointSet, or with `faces` a TriangleMesh, of arrays of any type and order; anything with __array_interface__ will do.
 
-    Arrays that fit are kept as they are: float32 (float64 makes a copy), contiguous. Where float32 would lose more than 1e-6
-    of the extent of the points, `origin` is chosen so that it does not. Colours are 0..255, or 0..1 as float.
     `others` are further attributes of the result."""
-    vertices, origin = _split(points)
-    shared: dict[str, Any] = {"origin": origin, **others}
-    if normals is not None:
-        shared["normals"] = _shareable(normals, np.float32)
-    if colors is not None:
-        shared["colors"] = _bytes(colors)
+    shared: dict[str, Any] = {"normals": normals, "colors": colors, **others}
     if faces is None:
-        return PointSet(vertices, **shared)
-    return TriangleMesh(vertices, _shareable(faces, np.int32), **shared)
+        return PointSet(points, **shared)
+    return TriangleMesh(points, faces, **shared)
 
 
 def from_open3d(geometry: Any) -> Union[PointSet, TriangleMesh]:
@@ -76,7 +35,7 @@ def from_open3d(geometry: Any) -> Union[PointSet, TriangleMesh]:
 
 def to_open3d(model: Union[PointSet, TriangleMesh]) -> Any:
     """An open3d.geometry.PointCloud or TriangleMesh, in world coordinates."""
-    import open3d  # only here: it takes seconds
+    import open3d  # type: ignore[import]  # only here: it takes seconds
 
     def vectors(array: NDArray[Any]) -> Any:
         return open3d.utility.Vector3dVector(array.astype(np.float64))

@@ -19,6 +19,36 @@ py::array asArray(py::handle value, const std::string& name)
 }
 
 std::string shapeText(const py::array& array) { return py::str(array.attr("shape")); }
+
+/// `array` in that type, C order and memory that can be written: itself where it is so, or a copy.
+py::array fittingArray(const py::array& array, const std::string& name, const py::dtype& type)
+{
+  const py::module_ numpy = py::module_::import("numpy");
+  const char given = array.dtype().kind(), wanted = type.kind();
+  py::object values = array;
+  if (!array.dtype().equal(type)) {
+    const bool fraction = wanted == 'u' && given == 'f'; // colours of 0..1
+    const bool number = given == 'i' || given == 'u' || given == 'f';
+    if (!number || (wanted == 'i' && given == 'f'))
+      throw py::type_error(concat(name, ": of type ", std::string(py::str(py::handle(array.dtype()))), ", wanted ",
+                                  std::string(py::str(py::handle(type)))));
+    if (wanted != 'f' && array.size() > 0) {
+      constexpr double slack = 1e-3; // rounded away
+      const py::object limits = numpy.attr("iinfo")(type);
+      const py::object least = fraction ? py::object(py::float_(-slack)) : py::object(limits.attr("min"));
+      const py::object most = fraction ? py::object(py::float_(1 + slack)) : py::object(limits.attr("max"));
+      const bool fits = values.attr("min")() >= least && values.attr("max")() <= most;
+      if (!fits)
+        throw py::value_error(
+            concat(name, ": from ", std::string(py::str(values.attr("min")())), " to ",
+                   std::string(py::str(values.attr("max")())), ", wanted ",
+                   fraction ? "0 to 1" : std::string(py::str(least)) + " to " + std::string(py::str(most))));
+    }
+    if (fraction)
+      values = numpy.attr("rint")(values.attr("__mul__")(255));
+  }
+  return numpy.attr("require")(values, type, py::make_tuple("C", "W"));
+}
 } // namespace
 
 Lender::~Lender()
@@ -29,28 +59,17 @@ Lender::~Lender()
 
 py::array checkedArray(py::handle value, const std::string& name, const py::dtype& type, Index width)
 {
+  const py::array none(type, width > 1 ? std::vector<py::ssize_t>{0, width} : std::vector<py::ssize_t>{0});
   if (value.is_none())
-    return py::array(type, width > 1 ? std::vector<py::ssize_t>{0, width} : std::vector<py::ssize_t>{0});
+    return none;
   const py::array array = asArray(value, name);
-  if (!array.dtype().equal(type)) {
-    const std::string wanted = py::str(py::handle(type));
-    throw py::type_error(concat(name, ": of type ", std::string(py::str(py::handle(array.dtype()))), ", wanted ",
-                                wanted, ": numpy.asarray(", name, ", numpy.", wanted, ")"));
-  }
+  if (array.size() == 0 && array.ndim() == 1) // []
+    return none;
   const bool fits = width > 1 ? array.ndim() == 2 && array.shape(1) == width : array.ndim() == 1;
-  if (!fits)
+  if (array.dtype().kind() != 'U' && array.dtype().kind() != 'O' && !fits)
     throw py::value_error(
         concat(name, ": of shape ", shapeText(array), ", wanted ", width > 1 ? concat("(N, ", width, ")") : "(N,)"));
-  if ((array.flags() & py::array::c_style) == 0)
-    throw py::value_error(concat(name, ": not contiguous: numpy.ascontiguousarray(", name, ")"));
-  return array;
-}
-
-py::array sharedArray(const py::array& array, const std::string& name)
-{
-  if (array.size() > 0 && !array.writeable())
-    throw py::value_error(concat(name, ": read-only: numpy.array(", name, ") is a copy that can be written"));
-  return array;
+  return fittingArray(array, name, type);
 }
 
 py::array toArray(std::vector<Index>&& values)

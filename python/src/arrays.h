@@ -39,14 +39,13 @@ private:
   std::vector<std::function<void()>> returns_;
 };
 
-/// `value` as an array without a copy; None is an array without rows.
+/// `value` as an array of that type in C order that can be written: without a copy where it is one. Numbers of other types
+/// are converted where the type holds them; fractions of 0..1 become bytes of 0..255. None is an array without rows.
 /// @param name  of the argument, for messages
 /// @param width values per row; 1 = a flat array
-/// @throws py::type_error if it is no array of that type, py::value_error if its shape is another or it is not contiguous
+/// @throws py::type_error if it holds no numbers, or fractions where whole ones are wanted
+/// @throws py::value_error if its shape is another, or a value is out of range
 py::array checkedArray(py::handle value, const std::string& name, const py::dtype& type, Index width);
-
-/// The array, which a set will share with its caller. @throws py::value_error if it is read-only
-py::array sharedArray(const py::array& array, const std::string& name);
 
 /// An array that owns `matrix`, without a copy: a row per column.
 template <typename Matrix>

@@ -42,9 +42,9 @@ std::string documentText(const Function& function, const std::vector<Option>& op
   std::string text = wrapped(options_text, "");
   if (!text.empty())
     text += "\n";
-  text += wrapped(documentOf(function.core), "");
-  if (*function.note)
-    text += "\n" + wrapped(function.note, "");
+  if (*function.core)
+    text += wrapped(documentOf(function.core), "") + "\n";
+  text += wrapped(function.note, "");
   text += "\nTypes:\n";
   for (const Argument& argument : function.arguments)
     text += concat("    ", argument.name, ": ", argument.type, "\n");

@@ -15,7 +15,7 @@ struct Argument {
 /// What a function of the module is called and takes.
 struct Function {
   const char* name;
-  const char* core; ///< the function of C++ whose comment is the documentation
+  const char* core; ///< the function of C++ whose comment is the documentation; empty = `note` is all of it
   std::vector<Argument> arguments;
   std::string result;
   const char* note = "";    ///< what the comment of C++ does not say

@@ -53,8 +53,9 @@ std::string toString(py::handle value, const std::string& name)
 
 std::vector<py::object> toEntries(py::handle value, const std::string& name, const std::string& of)
 {
-  const bool text = PyUnicode_Check(value.ptr()) || PyBytes_Check(value.ptr());
-  const auto entries = py::reinterpret_steal<py::object>(text ? nullptr : PySequence_Fast(value.ptr(), ""));
+  const bool single = PyUnicode_Check(value.ptr()) || PyBytes_Check(value.ptr()) ||
+                      py::isinstance(value, py::module_::import("fresco._base").attr("Record"));
+  const auto entries = py::reinterpret_steal<py::object>(single ? nullptr : PySequence_Fast(value.ptr(), ""));
   if (!entries) {
     PyErr_Clear();
     throwWrongType(name, value, "a list of " + of);
@@ -70,5 +71,22 @@ py::object newRecord(py::handle cls)
   if (!record)
     throw py::error_already_set();
   return record;
+}
+
+py::object indicesOf(const py::object& value)
+{
+  const py::module_ numpy = py::module_::import("numpy");
+  const auto array = py::array::ensure(value);
+  const bool is_mask = array && array.ndim() == 1 && array.dtype().kind() == 'b';
+  PyErr_Clear();
+  return is_mask ? py::object(numpy.attr("flatnonzero")(array)) : value;
+}
+
+std::string literalText(const std::vector<std::string>& words)
+{
+  std::string text;
+  for (const std::string& word : words)
+    text += concat(text.empty() ? "" : ", ", "'", word, "'");
+  return "Literal[" + text + "]";
 }
 } // namespace fresco::python

@@ -95,6 +95,9 @@ struct Convert<std::string> : CheckedByFilling<std::string> {
   static std::string annotation() { return "str"; }
 };
 
+/// "Literal['a', 'b']"
+std::string literalText(const std::vector<std::string>& words);
+
 /// Enumerators by name.
 template <typename T>
 struct Convert<T, std::enable_if_t<std::is_enum_v<T>>> : CheckedByFilling<T> {
@@ -118,7 +121,13 @@ struct Convert<T, std::enable_if_t<std::is_enum_v<T>>> : CheckedByFilling<T> {
     }
     throw py::value_error(concat(name, ": '", given, "' is none of ", known));
   }
-  static std::string annotation() { return "str"; }
+  static std::string annotation()
+  {
+    std::vector<std::string> words;
+    for (const auto& [enumerator, word] : Enumerators<T>::all)
+      words.emplace_back(word);
+    return literalText(words);
+  }
 };
 
 template <typename T>
@@ -155,11 +164,15 @@ struct Convert<std::vector<T>> : CheckedByFilling<std::vector<T>> {
   static std::string annotation() { return "list[" + Convert<T>::annotation() + "]"; }
 };
 
+/// A mask as the indices of its true entries; all else as it is.
+py::object indicesOf(const py::object& value);
+
 template <>
 struct Convert<std::vector<Index>> : CheckedByFilling<std::vector<Index>> {
   static py::object toPython(std::vector<Index> values) { return toArray(std::move(values)); }
-  static void fill(std::vector<Index>& out, py::handle value, const std::string& name, Lender&)
+  static void fill(std::vector<Index>& out, py::handle given, const std::string& name, Lender&)
   {
+    const py::object value = indicesOf(py::reinterpret_borrow<py::object>(given));
     const py::array array = checkedArray(value, name, py::dtype::of<Index>(), 1);
     const auto* const data = static_cast<const Index*>(array.data());
     out.assign(data, data + array.size());
@@ -186,7 +199,17 @@ struct Convert<std::array<T, n>> : CheckedByFilling<std::array<T, n>> {
 
 /// Names with values: a dictionary.
 template <typename T>
-struct Convert<std::map<std::string, T>> : CheckedByFilling<std::map<std::string, T>> {
+struct Convert<std::map<std::string, T>> {
+  static py::object check(const py::object& value, const std::string& name)
+  {
+    if (!py::isinstance<py::dict>(value))
+      throwWrongType(name, value, "dict");
+    py::dict checked;
+    for (const auto& [key, entry] : py::reinterpret_borrow<py::dict>(value))
+      checked[key] =
+          Convert<T>::check(py::reinterpret_borrow<py::object>(entry), concat(name, "['", toString(key, name), "']"));
+    return std::move(checked);
+  }
   static py::object toPython(std::map<std::string, T> values)
   {
     py::dict entries;
@@ -248,7 +271,7 @@ struct Convert<Eigen::Matrix<Scalar, rows, columns>,
   static py::object toPython(Matrix matrix) { return toArray(std::move(matrix)); }
   static py::object check(const py::object& value, const std::string& name)
   {
-    return sharedArray(checkedArray(value, name, py::dtype::of<Scalar>(), columns == 1 ? 1 : rows), name);
+    return checkedArray(value, name, py::dtype::of<Scalar>(), columns == 1 ? 1 : rows);
   }
   static void fill(Matrix& out, py::handle value, const std::string& name, Lender& lender)
   {

@@ -2,6 +2,27 @@
 #include "bindings.h"
 #include "call.h"
 namespace fresco::python {
+namespace {
+py::object mergeAll(const Call& call)
+{
+  const bool is_one = py::isinstance(call["a"], recordClass<PointSet>());
+  if (is_one == call["b"].is_none())
+    throw py::type_error("merge_points() wants two sets, or a sequence of sets");
+  const Lent<std::vector<PointSet>> sets(is_one ? py::object(py::make_tuple(call["a"], call["b"])) : call["a"],
+                                         is_one ? "points" : "a");
+  if (sets->empty())
+    throw py::value_error("a: no sets");
+  for (const PointSet& set : *sets)
+    validatePointSet(set);
+  return call.run([&](const Progress&) {
+    PointSet merged = sets->front();
+    for (std::size_t i = 1; i < sets->size(); ++i)
+      appendPoints(merged, (*sets)[i]);
+    return merged;
+  });
+}
+} // namespace
+
 void addCore(const py::module_& module)
 {
   addRecord<PointSet>(module);
@@ -11,17 +32,20 @@ void addCore(const py::module_& module)
   addRecord<View>(module);
   addRecord<CameraSet>(module);
   addRecord<MeshTopology>(module);
-  addFunction(module, {"merge_points", "mergePoints", {{"a", "PointSet"}, {"b", "PointSet"}}, "PointSet", "", false},
-              [](const Call& call) {
-                const auto a = lendPoints(call, "a"), b = lendPoints(call, "b");
-                return call.run([&](const Progress&) { return mergePoints(*a, *b); });
-              });
+  addFunction(module,
+              {"merge_points",
+               "mergePoints",
+               {{"a", "Union[PointSet, Sequence[PointSet]]"}, {"b", "Optional[PointSet]", "None"}},
+               "PointSet",
+               "`a` may be a sequence of sets, which are merged in its order.",
+               false},
+              mergeAll);
   addFunction(module,
               {"select_points",
                "selectPoints",
                {{"points", "PointSet"}, {"indices", "Indices"}},
                "PointSet",
-               "`indices` are int64.",
+               "`indices` may be a mask, an entry per point.",
                false},
               [](const Call& call) {
                 const auto set = lendPoints(call);

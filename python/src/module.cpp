@@ -37,10 +37,11 @@ std::string stubText()
   return "# Made from the module by write_stubs.py.\n"
          "import os\n"
          "from collections.abc import Callable, Sequence\n"
-         "from typing import Any, Optional, Union\n\n"
+         "from typing import Any, Literal, Optional, Union\n\n"
          "import numpy as np\n"
          "from numpy.typing import ArrayLike, NDArray\n\n"
-         "from ._base import Record\n\n"
+         "from ._base import Record\n"
+         "from ._geometry import PointSetBase, TexturedMeshBase, TriangleMeshBase\n\n"
          "Floats = NDArray[np.float32]\nDoubles = NDArray[np.float64]\nInts = NDArray[np.int32]\n"
          "Indices = NDArray[np.int64]\nBytes = NDArray[np.uint8]\n"
          "Path = Union[str, bytes, os.PathLike[Any]]\nProgress = Callable[[str, float], Any]\n\n"
@@ -70,7 +71,9 @@ PYBIND11_MODULE(_fresco, module)
   addIo(module);
   addFilters(module);
   addRegistration(module);
+  addPoses(module);
   addSurface(module);
+  addQueries(module);
   addTexture(module);
   addModel(module);
   addRendering(module);

@@ -11,17 +11,22 @@ py::handle makeRecord(const py::module_& module, const std::string& name, const 
     slots[attribute.name.c_str()] = concat(attribute.annotation, attribute.text.empty() ? "" : ": ", attribute.text);
     checks[attribute.name.c_str()] = attribute.check;
     fields += concat("    ", attribute.name, ": ", attribute.annotation, "\n");
-    parameters += concat(", ", attribute.name, ": ", attribute.annotation, " = ...");
+    const bool is_array = attribute.annotation == "Floats" || attribute.annotation == "Ints" ||
+                          attribute.annotation == "Bytes" || attribute.annotation == "Doubles";
+    parameters += concat(", ", attribute.name, ": ", is_array ? "ArrayLike" : attribute.annotation, " = ...");
   }
   body["__slots__"] = slots;
   body["__doc__"] = wrapped(text, "");
   body["__module__"] = "fresco";
   body["_checks"] = checks;
   body["_defaults"] = py::module_::import("builtins").attr("staticmethod")(defaults);
-  const py::object base = py::module_::import("fresco._base").attr("Record");
+  const py::module_ shapes = py::module_::import("fresco._geometry");
+  const std::string of_shape = name + "Base", base_name = py::hasattr(shapes, of_shape.c_str()) ? of_shape : "Record";
+  const py::object base = shapes.attr(base_name.c_str());
   const py::object cls = py::module_::import("builtins").attr("type")(name, py::make_tuple(base), body);
   module.attr(name.c_str()) = cls;
-  stubs() += concat("class ", name, "(Record):\n", fields, "    def __init__(self", parameters, ") -> None: ...\n\n");
+  stubs() +=
+      concat("class ", name, "(", base_name, "):\n", fields, "    def __init__(self", parameters, ") -> None: ...\n\n");
   return py::object(cls).release(); // classes live as long as the process
 }
 

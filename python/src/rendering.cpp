@@ -16,10 +16,18 @@ struct Convert<Shading> : CheckedByFilling<Shading> {
       throw py::value_error(name + ": " + error.what());
     }
   }
-  static std::string annotation() { return "str"; }
+  static std::string annotation() { return literalText({shadingNames().begin(), shadingNames().end()}); }
 };
 
 namespace {
+/// Names that requestedView() knows.
+std::vector<std::string> allViews()
+{
+  std::vector<std::string> names = viewNames();
+  names.insert(names.end(), {"inside", "above"});
+  return names;
+}
+
 ViewRequest viewRequest(const Call& call)
 {
   ViewRequest request;
@@ -81,7 +89,7 @@ void addRendering(const py::module_& module)
 {
   addRecord<Viewpoint>(module);
   const std::vector<Argument> arguments{{"model", "Union[TriangleMesh, TexturedMesh, PointSet]"},
-                                        {"view", "Union[str, Viewpoint]", "'corner'"},
+                                        {"view", "Union[" + literalText(allViews()) + ", Viewpoint]", "'corner'"},
                                         {"eye", "Optional[ArrayLike]", "None"},
                                         {"look", "Optional[ArrayLike]", "None"},
                                         {"up", "Optional[ArrayLike]", "None"},

@@ -11,14 +11,12 @@ FLOATS = np.zeros((4, 3), np.float32)
 
 
 @pytest.mark.parametrize("value, error, said", [
-    (np.zeros((4, 3)), TypeError, "points: of type float64, wanted float32"),
-    (np.zeros((4, 3), ">f4"), TypeError, "points: of type >f4"),
+    (np.zeros((4, 3), complex), TypeError, "points: of type complex128, wanted float32"),
+    (np.zeros((4, 3), bool), TypeError, "points: of type bool"),
     ("abc", TypeError, "points: "),
     (object(), TypeError, "points: "),
     (np.zeros((4, 2), np.float32), ValueError, r"points: of shape \(4, 2\), wanted \(N, 3\)"),
     (np.zeros(12, np.float32), ValueError, r"points: of shape \(12,\)"),
-    (np.zeros((3, 4), np.float32).T, ValueError, "points: not contiguous"),
-    (np.zeros((8, 3), np.float32)[::2], ValueError, "points: not contiguous"),
 ])
 def test_arrays_that_do_not_fit_are_named(value, error, said):
     with pytest.raises(error, match=said):
@@ -30,7 +28,7 @@ def test_arrays_that_do_not_fit_are_named(value, error, said):
 
 
 @pytest.mark.parametrize("attribute, value", [
-    ("normals", np.zeros((4, 3))), ("colors", FLOATS), ("intensities", np.zeros(4)), ("confidences", FLOATS),
+    ("normals", np.zeros((4, 2))), ("colors", FLOATS + 2), ("intensities", ["a"] * 4), ("confidences", FLOATS),
     ("viewpoints", np.zeros(3, np.float32)), ("origin", np.zeros(2)), ("origin", "here")])
 def test_attributes_of_points_are_named(attribute, value):
     with pytest.raises((TypeError, ValueError), match=f"^{attribute}: "):
@@ -38,7 +36,7 @@ def test_attributes_of_points_are_named(attribute, value):
 
 
 @pytest.mark.parametrize("attribute, value", [
-    ("faces", np.zeros((4, 3), np.int64)), ("normals", np.zeros(4)), ("fields", [1]), ("fields", {"height": np.zeros(4)})])
+    ("faces", np.zeros((4, 3))), ("normals", np.zeros(4)), ("fields", [1]), ("fields", {"height": np.zeros((4, 2))})])
 def test_attributes_of_meshes_are_named(attribute, value):
     with pytest.raises((TypeError, ValueError), match=f"^{attribute}"):
         fresco.TriangleMesh(FLOATS, **{attribute: value})

@@ -209,6 +209,7 @@ TEST(CameraAlignment, BadInputIsNamed)
   Photographed photographs = photographed(bareRoom(), 5, 0.2, 9);
   SparsePoints few(photographs.points.begin(), photographs.points.begin() + 20);
   EXPECT_NE(refusal({photographs.set, few}, scans).find("20 sparse points"), std::string::npos);
+  EXPECT_NE(refusal({photographs.set, {}}, scans).find("0 sparse points"), std::string::npos);
   EXPECT_NE(refusal({photographs.set, SparsePoints(100)}, scans), ""); // without tracks
   for (SparsePoint& point : few)
     point.position = Vector3d(1, 2, 3);

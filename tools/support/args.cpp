@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "support/args.h"
+#include "support/option_names.h"
 #include "support/version.h"
 #include <algorithm>
 #include <cmath>
@@ -232,7 +233,10 @@ std::size_t Args::readOption(const std::vector<std::string>& words, std::size_t 
     given_dotted_.emplace_back(name, words[at + 1]);
     return at + 2;
   }
-  throw UsageError("unknown option " + words[at]);
+  std::vector<std::string> known;
+  for (const Option& option : options_)
+    known.push_back(option.name);
+  throw UsageError("unknown option " + words[at] + meantOption(name, known));
 }
 
 void Args::dotted(const std::string& help, std::function<void(const std::string&, const std::string&)> apply)

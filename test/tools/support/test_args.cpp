@@ -86,6 +86,37 @@ TEST(Args, HelpShowsEveryOptionWithItsDefault)
     EXPECT_NE(help.find(part), std::string::npos) << part << "\n" << help;
 }
 
+/// What is said of an option that a tool with -voxel, -outliers and -depth does not have.
+std::string saidOf(const std::string& option)
+{
+  float voxel = 0;
+  int depth = 8;
+  Args args("tool IN OUT", "");
+  args.option("voxel", voxel, "length");
+  args.option("depth", depth, "2..16");
+  args.values("outliers", "K SIGMA", "", [](const auto&) {});
+  std::vector<std::string> words{"tool", "a", "b", option, "1"};
+  std::vector<char*> argv;
+  for (std::string& word : words)
+    argv.push_back(word.data());
+  try {
+    args.parse(static_cast<int>(argv.size()), argv.data(), 2);
+  } catch (const UsageError& error) {
+    return error.what();
+  }
+  return "nothing";
+}
+
+TEST(Tool, UnknownOptionIsAnsweredByWhatIsMeant)
+{
+  EXPECT_EQ(saidOf("-depht"), "unknown option -depht; did you mean -depth?");
+  EXPECT_EQ(saidOf("-Voxel"), "unknown option -Voxel; did you mean -voxel?");
+  EXPECT_EQ(saidOf("-leaf"), "unknown option -leaf; here it is called -voxel"); // pcl_voxel_grid
+  EXPECT_EQ(saidOf("-mean_k"), "unknown option -mean_k; here it is called -outliers");
+  EXPECT_EQ(saidOf("-negative"), "unknown option -negative"); // this tool has no -removed
+  EXPECT_EQ(saidOf("-zzzzzz"), "unknown option -zzzzzz");
+}
+
 TEST(Tool, ExitStatusAndOneLine)
 {
   const auto status = [](const std::function<void()>& body, std::string& said) {

@@ -3,6 +3,7 @@
 #include <fresco/filters/core/bilateral_normals.h>
 #include <optional>
 #include <pcl/filters/filter.h>
+#include <pcl/type_traits.h>
 namespace fresco {
 /// PCL face of smoothNormals(); setters: see BilateralOptions. Honours setIndices(): the output then has those points
 /// alone, and only they count as neighbours. All other fields, the header, the sensor pose and the order of organised
@@ -18,6 +19,7 @@ public:
 
   explicit BilateralNormalFilter(bool extract_removed_indices = false) : pcl::Filter<PointNT>(extract_removed_indices)
   {
+    static_assert(pcl::traits::has_normal<PointNT>::value, "PointNT has no normals; pcl::PointNormal has");
     this->filter_name_ = "BilateralNormalFilter";
   }
 

@@ -4,6 +4,7 @@
 #include <pcl/PolygonMesh.h>
 #include <pcl/Vertices.h>
 #include <pcl/surface/reconstruction.h>
+#include <pcl/type_traits.h>
 #include <vector>
 namespace fresco {
 /// PCL face of reconstructVolumetric(), in place of pcl::Poisson: changing the type's name is all a user does. Beyond
@@ -21,7 +22,11 @@ public:
   using KdTree = pcl::KdTree<PointNT>;
   using KdTreePtr = typename KdTree::Ptr;
 
-  VolumetricReconstruction() { this->check_tree_ = false; } // no neighbour search, so PCL need not build a tree
+  VolumetricReconstruction()
+  {
+    static_assert(pcl::traits::has_normal<PointNT>::value, "PointNT has no normals; pcl::PointNormal has");
+    this->check_tree_ = false; // no neighbour search, so PCL need not build a tree
+  }
 
   void setDepth(int depth) { options_.depth = depth; }
   int getDepth() const { return options_.depth; }
