@@ -20,6 +20,7 @@ using namespace fresco;
 
 struct ToolOptions {
   int keep_out = 0, quality = 0;
+  bool no_examples = false;
   std::string cameras_out, points, uv = "new";
   PointTextureOptions from_points;
 };
@@ -42,7 +43,7 @@ void declare(Args& args, TextureOptions& options, ToolOptions& tool)
 {
   args.option("points", tool.points,
               "cloud whose colours, else intensities, the texture is made of; of the options below it takes "
-              "-no_exposure, -no_examples, -texel, -atlas and -border");
+              "-no_exposure, -texel, -atlas and -border");
   args.option("point_width", tool.from_points.width,
               "with -points: deviation of the Gaussian in distances from one point to the next, 0.3..10");
   args.option("point_rounds", tool.from_points.rounds,
@@ -51,7 +52,7 @@ void declare(Args& args, TextureOptions& options, ToolOptions& tool)
   args.flag("no_exposure", options.exposure, "leave exposure and white balance of the photographs as they are", false);
   args.flag("no_consistency", options.consistency, "do not avoid photographs that differ from what most show", false);
   args.flag("no_level", options.level, "leave the steps of colour at seams", false);
-  args.flag("no_examples", options.examples, "colour unseen parts smoothly, without structure", false);
+  args.flag("no_examples", tool.no_examples, "taken and ignored: unseen parts are always coloured smoothly");
   args.option("blend_width", options.blend_width,
               "pixels over which one photograph passes into the next at a seam, 0..100");
   args.option("strip", options.blend_width, "old name of -blend_width, 0..100");
@@ -167,7 +168,6 @@ void textureFromPoints(const std::vector<std::string>& files, const ToolOptions&
   options.atlas = shared.atlas;
   options.border = shared.border;
   options.exposure = shared.exposure;
-  options.examples = shared.examples;
   options.threads = shared.threads;
   options.tile_faces = shared.tile_faces;
   requireDistinct({files[1]}, {files[0], tool.points});

@@ -90,7 +90,6 @@ TEST(TextureReconstruction, SettersReachTheOptions)
   texture.setMargin(7);
   texture.setDepthTolerance(0.02);
   texture.setBackProjectionRounds(2);
-  texture.setUseExamples(false);
   texture.setMemory(64);
   texture.setNumberOfThreads(2);
   EXPECT_EQ(texture.getTexelSize(), 0.01);
@@ -100,7 +99,6 @@ TEST(TextureReconstruction, SettersReachTheOptions)
   EXPECT_EQ(texture.getMargin(), 7);
   EXPECT_EQ(texture.getDepthTolerance(), 0.02);
   EXPECT_EQ(texture.getBackProjectionRounds(), 2);
-  EXPECT_FALSE(texture.getUseExamples());
   EXPECT_EQ(texture.getMemory(), 64);
   EXPECT_EQ(texture.getNumberOfThreads(), 2);
   texture.setBlendStrip(4); // the old name

@@ -44,7 +44,6 @@ struct Room {
     options.tile_faces = most_faces;
     options.threads = threads;
     options.refine = false;
-    options.examples = false;
     return reconstructTexture(mesh, views, options);
   }
 };
@@ -140,7 +139,6 @@ TEST(TextureTiles, OneTileIsTheWhole)
   EXPECT_EQ(whole.model.texcoord_faces, asked.model.texcoord_faces);
   TextureOptions options;
   options.refine = false;
-  options.examples = false;
   const TextureResult tile = textureInTiles(room.mesh, room.views, options, {}, {room.mesh.faceCount(), {}});
   const auto same = (whole.face_view.array() == tile.face_view.array()).count();
   EXPECT_GT(same, 0.99 * room.mesh.faceCount()); // the typical depth is measured at other places
@@ -174,7 +172,6 @@ TEST(TextureTiles, CoverEachFaceOnce)
   TextureOptions again;
   again.refine = false;
   again.rounds = 0;
-  again.examples = false;
   EXPECT_NO_THROW(
       reconstructTexture(result.model, room.views, again)); // a layout where two faces share a texel is refused
 }
@@ -193,7 +190,6 @@ TEST(TextureTiles, AtlasesAreGivenAwayOneByOne)
   TextureOptions options;
   options.tile_faces = Room::tile_faces;
   options.refine = false;
-  options.examples = false;
   std::vector<Image> taken;
   const TextureResult kept = room.textured(Room::tile_faces),
                       given = reconstructTexture(room.mesh, room.views, options, {},

@@ -62,7 +62,6 @@ std::vector<Row> rowsOf(StageOptions& o)
           {"texture.level", &o.texture.level},
           {"texture.blend_width", &o.texture.blend_width},
           {"texture.rounds", &o.texture.rounds},
-          {"texture.examples", &o.texture.examples},
           {"texture.memory", &o.texture.memory}};
 }
 

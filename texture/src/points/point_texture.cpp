@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "charts/texture_atlas.h"
 #include "filling/color_diffusion.h"
-#include "filling/exemplar_inpainting.h"
 #include "painting/color_growth.h"
 #include "painting/painted_part.h"
 #include "photographs/input_checks.h"
@@ -76,8 +75,6 @@ Points paintModel(const Paint& paint, const PaintedPart& part, SampledPatches& s
   std::vector<Image>& atlases = result.model.atlases;
   paintSamples(scene, {paint.gaussian, paint.values}, view, part.patches, result);
   paintUnseen(scene, diffuseColors(patches, knownColors(scene, part, atlases), options.threads), atlases, result.masks);
-  if (options.examples)
-    inpaintByExample(scene, result.masks, atlases);
   fillGaps(charts, options.threads, atlases);
   return part.fill_colors ? takeOwn(scene, part, result) : Points();
 }

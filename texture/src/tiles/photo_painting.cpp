@@ -3,7 +3,6 @@
 #include "cameras/camera_refinement.h"
 #include "charts/texture_atlas.h"
 #include "filling/color_diffusion.h"
-#include "filling/exemplar_inpainting.h"
 #include "painting/atlas_paint.h"
 #include "painting/back_projection.h"
 #include "painting/color_growth.h"
@@ -159,10 +158,6 @@ Points paintModel(const Job& job, ViewChoice& choice, const PaintedPart& part)
 
   steps.begin("inpainting", 0.9);
   paintUnseen(scene, diffuseColors(patches, knownColors(scene, part, atlases), options.threads), atlases, result.masks);
-
-  steps.begin("examples", 0.93);
-  if (options.examples)
-    inpaintByExample(scene, result.masks, atlases);
 
   steps.begin("gaps", 0.98);
   fillGaps(charts, options.threads, atlases);

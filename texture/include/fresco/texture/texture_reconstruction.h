@@ -76,8 +76,6 @@ public:
   double getBlendStrip() const { return getBlendWidth(); }     ///< old name of getBlendWidth()
   void setBackProjectionRounds(int rounds) { options_.rounds = rounds; }
   int getBackProjectionRounds() const { return options_.rounds; }
-  void setUseExamples(bool use) { options_.examples = use; }
-  bool getUseExamples() const { return options_.examples; }
   void setMemory(int megabytes) { options_.memory = megabytes; }
   int getMemory() const { return options_.memory; }
   void setNumberOfThreads(int threads) { options_.threads = threads; }

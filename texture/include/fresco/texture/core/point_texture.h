@@ -20,7 +20,6 @@ struct PointTextureOptions {
   double width = 0.45;  ///< deviation of the Gaussian in distances from one point to the next, 0.3..10
   int rounds = 2;       ///< corrections by what the points differ from the texture, 0..20: more are sharper and noisier
   bool exposure = true; ///< bring the brightness of scans together; intensities: also range and angle of incidence
-  bool examples = true; ///< give larger unseen parts the fine structure of the seen surface beside them
   int threads = 0;      ///< 0 = all cores; the result does not depend on it
   int tile_faces = 0;   ///< most faces that are textured at a time, see TextureOptions
 };

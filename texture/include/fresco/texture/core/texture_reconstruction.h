@@ -35,7 +35,6 @@ struct TextureOptions {
   /// Rounds of back-projection: texels are made of all photographs together, 0..100. Those that refinement leaves off by more
   /// count less where they differ. Only where `refine` and `exposure` are on.
   int rounds = 2;
-  bool examples = true; ///< give larger unseen parts the fine structure of the seen surface beside them
   int memory = 1024;    ///< MB of photographs kept at a time, decoded or as grey copies, >= 1
   int threads = 0;      ///< 0 = all cores; the result does not depend on it
   /// Most faces that are textured at a time, >= 0. A mesh of more is cut into tiles with atlases of their own. 0: all faces,
