@@ -14,16 +14,62 @@ import resource
 import subprocess
 
 import numpy as np
+from PIL import Image
 
 KEEP_OUT = 7
-FAULTS = [  # name, options of fresco_scan, deviation of the mesh's vertices in metres
-    ("none", "", 0),
-    ("vignetting, corners at 60 %", "-vignetting 0.6", 0),
-    ("exposures x0.5 to x2, clipped", "-exposure 0.75", 0),
-    ("somebody stands in every 10th photograph", "-intruder 10", 0),
-    ("cameras off by 3 mm and 0.2 degrees", "-pose_noise 0.003 -turn_noise 0.2", 0),
-    ("blur of 1 pixel", "-blur 1", 0),
-    ("mesh off by 3 mm", "", 0.003),
+
+
+def beyond_pincushion(height, width):
+    """what is beyond the picture where a barrel lens was undistorted and nothing cropped"""
+    y, x = np.mgrid[-1:1:height * 1j, -1:1:width * 1j]
+    return np.maximum(np.abs(x) + 0.08 * (1 - y * y), np.abs(y) + 0.08 * (1 - x * x)) > 1
+
+
+def grown(mask):
+    out = mask.copy()
+    out[1:] |= mask[:-1]
+    out[:-1] |= mask[1:]
+    out[:, 1:] |= mask[:, :-1]
+    out[:, :-1] |= mask[:, 1:]
+    return out
+
+
+def with_border(picture):
+    """black, and soft by resampling"""
+    out = picture.copy()
+    out[beyond_pincushion(*picture.shape[:2])] = 0
+    out[1:-1, 1:-1] = sum(out[1 + j:out.shape[0] - 1 + j, 1 + i:out.shape[1] - 1 + i]
+                          for j in (-1, 0, 1) for i in (-1, 0, 1)) / 9
+    return out
+
+
+def with_alpha(picture):
+    alpha = np.where(beyond_pincushion(*picture.shape[:2]), 0, 255)
+    return np.dstack([picture * (alpha[..., None] > 0), alpha])
+
+
+def with_fringe(picture):
+    """chromatic aberration beside what is clipped, 5 pixels of 1280"""
+    clipped = picture.min(2) >= 250
+    near = clipped
+    for _ in range(max(2, picture.shape[1] // 256)):
+        near = grown(near)
+    out = picture.copy()
+    out[near & ~clipped] += [60, 0, 60]
+    return np.minimum(out, 255)
+
+
+FAULTS = [  # name, options of fresco_scan, deviation of the mesh's vertices in metres, what is done to the photographs
+    ("none", "", 0, None),
+    ("vignetting, corners at 60 %", "-vignetting 0.6", 0, None),
+    ("exposures x0.5 to x2, clipped", "-exposure 0.75", 0, None),
+    ("somebody stands in every 10th photograph", "-intruder 10", 0, None),
+    ("cameras off by 3 mm and 0.2 degrees", "-pose_noise 0.003 -turn_noise 0.2", 0, None),
+    ("blur of 1 pixel", "-blur 1", 0, None),
+    ("mesh off by 3 mm", "", 0.003, None),
+    ("black borders of undistortion", "", 0, with_border),
+    ("alpha of undistortion", "", 0, with_alpha),
+    ("exposures, violet fringe at what is clipped", "-exposure 0.75", 0, with_fringe),
 ]
 
 
@@ -81,13 +127,26 @@ def write_noisy(mesh, deviation, out):
         f.write(data[:end] + vertices.tobytes() + data[end + vertices.nbytes:])
 
 
+def change_photographs(folder, change):
+    """in place, as PNG files"""
+    for name in os.listdir(f"{folder}/images"):
+        picture = np.array(Image.open(f"{folder}/images/{name}").convert("RGB")).astype(float)
+        os.remove(f"{folder}/images/{name}")
+        Image.fromarray(change(picture).astype(np.uint8)).save(f"{folder}/images/{os.path.splitext(name)[0]}.png",
+                                                               compress_level=1)
+    lines = open(f"{folder}/cameras/images.txt").read()
+    open(f"{folder}/cameras/images.txt", "w").write(lines.replace(".jpg", ".png"))
+
+
 def model_of(args, number):
     """@return what the judge says of the fault's model, seconds"""
-    name, faults, deviation = FAULTS[number]
-    folder = os.path.join(args.work, f"data{number if faults else 0}")
+    name, faults, deviation, change = FAULTS[number]
+    folder = os.path.join(args.work, f"data{number if faults or change else 0}")
     if not os.path.exists(os.path.join(folder, "poses.txt")):
         run(f"{args.bin}/fresco_scan", "conference_room", folder, "-stations", 1, "-points", 100, "-views", args.views,
             "-images", args.images, "-truth_images", "-seed", args.seed, "-threads", args.threads, "-quiet", *faults.split())
+        if change:
+            change_photographs(folder, change)
     mesh = os.path.join(folder, "truth.ply")
     if deviation:
         write_noisy(mesh, deviation, mesh := os.path.join(args.work, "noisy.ply"))

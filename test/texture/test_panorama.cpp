@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "photographs/blank_pixels.h"
 #include "photographs/photo_store.h"
 #include "photographs/view_parts.h"
 #include "texture/texture_scene.h"
@@ -44,7 +45,6 @@ TextureOptions quick()
 {
   TextureOptions options;
   options.rounds = 0;
-  options.examples = false;
   return options;
 }
 
@@ -111,7 +111,7 @@ TEST(Panorama, WhatTheScannerLeavesBlackIsNotPainted)
 {
   const auto bright = [](const Eigen::Vector3d& p) -> Eigen::Vector3d { return waves(p).array().max(60); };
   std::vector<TextureView> views{panorama({0.3, 0.2, 0}, bright)};
-  EXPECT_TRUE(blackEnds(views[0].image).empty());
+  EXPECT_TRUE(blankPixels(views[0].image).empty());
   Image& image = views[0].image;
   for (int y = 220; y < image.height; ++y)
     for (int x = 0; x < image.width; ++x)

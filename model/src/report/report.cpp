@@ -35,7 +35,7 @@ ModelStage publicStage(const StageRecord& record)
   if (record.figures.is_object())
     stage.warnings = record.figures.value("warnings", stage.warnings);
   for (const auto& [name, value] : record.figures.items())
-    if (name != "pictures" && name != "up" && name != "photograph_fits")
+    if (name != "pictures" && name != "up" && name.rfind("photograph_", 0) != 0)
       stage.figures.emplace_back(name, shown(value));
   return stage;
 }

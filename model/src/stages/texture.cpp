@@ -214,6 +214,9 @@ Figures textureFromViews(const Job& job, TriangleMesh mesh, const std::vector<Te
                                           {"places", result.fits[v].matches},
                                           {"median_pixels", result.fits[v].median},
                                           {"nine_tenths_below_pixels", result.fits[v].upper}});
+  for (std::size_t v = 0; v < result.blank.size(); ++v)
+    if (result.blank[v] > 0)
+      figures["photograph_blanks"].push_back({{"photograph", views[v].path}, {"share", result.blank[v]}});
   figures.update(figuresOf(result));
   for (const auto& [phase, seconds] : result.seconds)
     figures["seconds"][phase] = seconds;

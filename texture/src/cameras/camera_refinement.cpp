@@ -79,7 +79,7 @@ std::vector<MatchPhoto> prepare(PhotoStore& photos, const std::vector<ViewPart>&
   const auto prepareOne = [&](Index v) {
     out[v].pyramid = buildPyramid(*photos.get(v), {pixels, levels, fine});
     out[v].corners = findCorners(out[v].pyramid.levels[0], corner_cells);
-    applyMask(photos.mask(v), out[v]);
+    applyMask(withinReach(photos.mask(v)), out[v]);
   };
   parallelFor(count, threads, prepareOne, 1);
   return out;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "photographs/input_checks.h"
+#include "photographs/projector.h"
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -73,6 +74,74 @@ void warnOfRotations(const std::vector<ViewPart>& parts, TextureResult& result)
     result.warnings.push_back(
         concat(first, count > 1 ? concat(" and ", count - 1, " more carry") : " carries",
                " an EXIF rotation, which is ignored: cameras belong to pixels as they are stored"));
+}
+
+/// Places inside of the faces, some thousands.
+Points placesOf(const TriangleMesh& mesh)
+{
+  constexpr Index most = 4000;
+  const Index stride = std::max<Index>(1, mesh.faceCount() / most),
+              rows = std::ceil(std::sqrt(2.0 * most / mesh.faceCount()));
+  std::vector<Eigen::Vector3f> places;
+  for (Index f = 0; f < mesh.faceCount(); f += stride)
+    for (Index i = 0; i < rows; ++i)
+      for (Index j = 0; i + j < rows; ++j) {
+        const Eigen::Vector2f at = Eigen::Vector2f(i + 1 / 3.f, j + 1 / 3.f) / rows;
+        places.push_back((1 - at.sum()) * mesh.vertices.col(mesh.faces(0, f)) +
+                         at[0] * mesh.vertices.col(mesh.faces(1, f)) + at[1] * mesh.vertices.col(mesh.faces(2, f)));
+      }
+  return Eigen::Map<const Points>(places[0].data(), 3, places.size());
+}
+
+/// Of the places that the view has before it, the share where the mask is 0.
+double shareHidden(const Points& places, const Projector& view, const Image& mask)
+{
+  Index all = 0, hidden = 0;
+  for (Index i = 0; i < places.cols(); ++i)
+    if (const Eigen::Vector3f p = view(places.col(i));
+        p.z() > 0 && p.x() >= 0 && p.y() >= 0 && p.x() < mask.width && p.y() < mask.height) {
+      ++all;
+      hidden += *mask.pixel(static_cast<int>(p.x()), static_cast<int>(p.y())) == 0;
+    }
+  return all > 0 ? 1.0 * hidden / all : 0;
+}
+
+std::string nameOf(const ViewPart& part)
+{
+  return part.given->path.empty() ? concat("photograph ", part.view) : part.given->path;
+}
+
+/// Names photographs that have something, the first ones each with what it is.
+/// @param shown shown(view), "" = it has not @return "" if none has
+template <typename Shown>
+std::string namesOf(const std::vector<ViewPart>& parts, const Shown& shown)
+{
+  constexpr Index named = 3; // the others are in the result
+  Index count = 0;
+  std::string names;
+  for (const ViewPart& part : parts)
+    if (const std::string what = shown(part.view); part.R_part_view.isIdentity(0) && !what.empty() && count++ < named)
+      names += concat(count > 1 ? ", " : "", nameOf(part), " (", what, ")");
+  return count == 0 ? ""
+                    : names + (count > named ? concat(" and ", count - named, " more have")
+                               : count > 1   ? " have"
+                                             : " has");
+}
+
+void warnOfPixels(const std::vector<ViewPart>& parts, TextureResult& result)
+{
+  const std::string blank = namesOf(parts, [&](int view) {
+    constexpr double few = 0.01; // outlines that are off by a pixel
+    const double share = result.blank[view];
+    return share > few ? concat(std::fixed, std::setprecision(1), 100 * share, " %") : "";
+  });
+  if (!blank.empty())
+    result.warnings.push_back(
+        blank + " pixels that are no picture before the surface, of a border of one value or transparent: not used");
+  const std::string fringed =
+      namesOf(parts, [&](int view) { return result.fringes[view] > 0 ? concat(result.fringes[view], " pixels") : ""; });
+  if (!fringed.empty())
+    result.warnings.push_back(fringed + " a violet fringe beside what is overexposed: its colour is not used");
 }
 } // namespace
 
@@ -254,11 +323,24 @@ int exifOrientation(const std::string& path)
 void checkPhotos(PhotoStore& photos, const std::vector<ViewPart>& parts, const TextureOptions& options,
                  TextureResult& result)
 {
+  const TriangleMesh& mesh = result.model.mesh;
+  const Points places = placesOf(mesh);
+  std::vector<double> blank(parts.size(), 0);
+  std::vector<int> fringes(parts.size());
   const auto read = [&](Index v) {
     photos.mask(v);
-    photos.get(v);
+    if (const auto used = photos.unblank(v); !used->empty() && !parts[v].ofPanorama())
+      blank[v] = shareHidden(places, {parts[v].camera, parts[v].given->T_camera_world, mesh.origin}, *used);
+    fringes[v] = photos.fringe(v);
   };
   parallelFor(parts.size(), options.threads, read, 1);
+  result.blank.resize(parts.empty() ? 0 : parts.back().view + 1);
+  result.fringes.resize(result.blank.size());
+  for (std::size_t v = 0; v < parts.size(); ++v) {
+    result.blank[parts[v].view] = blank[v];
+    result.fringes[parts[v].view] = fringes[v];
+  }
   warnOfRotations(parts, result);
+  warnOfPixels(parts, result);
 }
 } // namespace fresco::texture

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "photographs/photo_store.h"
+#include "photographs/blank_pixels.h"
+#include "photographs/color_fringe.h"
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -11,6 +13,8 @@ namespace fresco::texture {
 namespace {
 Image asRgb(const Image& in)
 {
+  if (in.channels == 3)
+    return in;
   Image out(in.width, in.height, 3);
   for (int y = 0; y < in.height; ++y)
     for (int x = 0; x < in.width; ++x)
@@ -34,13 +38,22 @@ try {
   throw std::runtime_error(name + ": " + error.what());
 }
 
-std::shared_ptr<const Image> loadGiven(const TextureView& v, Index view)
+PhotoStore::Photo loadGiven(const TextureView& v, Index view)
 {
+  std::shared_ptr<const Image> image(std::shared_ptr<void>(), &v.image);
   if (v.image.empty())
-    return std::make_shared<const Image>(readImage(v.path, v.camera));
-  const std::shared_ptr<const Image> image(std::shared_ptr<void>(), &v.image);
-  requireSize(*image, v.camera, v.path.empty() ? concat("photograph ", view) : v.path);
-  return image->channels == 3 ? image : std::make_shared<const Image>(asRgb(*image));
+    image = std::make_shared<const Image>(readPhotograph(v.path, v.camera));
+  else
+    requireSize(*image, v.camera, v.path.empty() ? concat("photograph ", view) : v.path);
+  if (image->channels == 1)
+    image = std::make_shared<const Image>(asRgb(*image));
+  auto unblank = std::make_shared<const Image>(blankPixels(*image));
+  if (image->channels == 4)
+    image = std::make_shared<const Image>(asRgb(*image));
+  const int fringe = fringeWidth(*image);
+  if (fringe > 0)
+    image = std::make_shared<const Image>(withoutFringe(*image, fringe));
+  return {std::move(image), std::move(unblank), fringe};
 }
 } // namespace
 
@@ -58,18 +71,22 @@ std::shared_ptr<const Image> PhotoStore::get(Index view)
       return slot.image;
     }
   }
-  auto image = load(view);
-  keep(view, image);
+  Photo photo = load(view);
+  auto image = photo.image;
+  keep(view, std::move(photo));
   return image;
 }
 
-std::shared_ptr<const Image> PhotoStore::load(Index view)
+PhotoStore::Photo PhotoStore::load(Index view)
 {
-  return views_[view].ofPanorama() ? std::make_shared<const Image>(cutPanorama(*panoramaOf(view), views_[view]))
-                                   : loadGiven(*views_[view].given, views_[view].view);
+  if (!views_[view].ofPanorama())
+    return loadGiven(*views_[view].given, views_[view].view);
+  Photo photo = panoramaOf(view);
+  photo.image = std::make_shared<const Image>(cutPanorama(*photo.image, views_[view]));
+  return photo;
 }
 
-std::shared_ptr<const Image> PhotoStore::panoramaOf(Index view)
+PhotoStore::Photo PhotoStore::panoramaOf(Index view)
 {
   const int number = views_[view].view;
   {
@@ -77,49 +94,62 @@ std::shared_ptr<const Image> PhotoStore::panoramaOf(Index view)
     if (panorama_view_ == number)
       return panorama_;
   }
-  auto image = std::make_shared<const Image>(wrapPanorama(*loadGiven(*views_[view].given, views_[view].view)));
+  Photo photo = loadGiven(*views_[view].given, number);
+  photo.image = std::make_shared<const Image>(wrapPanorama(*photo.image));
   const std::lock_guard lock(mutex_);
-  panorama_ = image;
+  panorama_ = photo;
   panorama_view_ = number;
-  return image;
+  return photo;
+}
+
+std::shared_ptr<const Image> PhotoStore::unblank(Index view)
+{
+  for (;; get(view)) {
+    const std::lock_guard lock(mutex_);
+    if (slots_[view].unblank)
+      return slots_[view].unblank;
+  }
+}
+
+int PhotoStore::fringe(Index view)
+{
+  unblank(view);
+  const std::lock_guard lock(mutex_);
+  return slots_[view].fringe;
 }
 
 Image PhotoStore::mask(Index view)
 {
   const ViewPart& part = views_[view];
   const TextureView& v = *part.given;
-  Image rgb;
+  constexpr int half = 128; // of 255
+  Image used = *unblank(view);
   if (!v.mask.empty() || !v.mask_path.empty()) {
-    rgb = v.mask.empty() ? readImage(v.mask_path, v.camera) : asRgb(v.mask);
-    requireSize(rgb, v.camera, v.mask_path.empty() ? concat("mask of photograph ", part.view) : v.mask_path);
+    const Image given = asRgb(v.mask.empty() ? readImage(v.mask_path, v.camera) : v.mask);
+    requireSize(given, v.camera, v.mask_path.empty() ? concat("mask of photograph ", part.view) : v.mask_path);
+    if (used.empty())
+      used = Image(given.width, given.height, 1, 255);
+    for (std::size_t i = 0; i < used.data.size(); ++i)
+      used.data[i] = given.data[3 * i + 1] >= half ? used.data[i] : 0;
   }
-  if (part.ofPanorama()) {
-    const Image ends = blackEnds(*panoramaOf(view));
-    rgb = rgb.empty() ? ends : wrapPanorama(rgb);
-    for (std::size_t i = 0; i < ends.data.size(); ++i)
-      rgb.data[i] = std::min(rgb.data[i], ends.data[i]);
-    if (!rgb.empty())
-      rgb = cutPanorama(rgb, part);
-  }
-  if (rgb.empty())
-    return {};
-  constexpr int used = 128, reach = 2; // grey level; pixels, of cubic interpolation
-  Image out(rgb.width, rgb.height, 1);
-  for (std::size_t i = 0; i < out.data.size(); ++i)
-    out.data[i] = rgb.data[3 * i + 1] >= used ? 255 : 0;
-  cv::Mat grey(out.height, out.width, CV_8U, out.data.data());
-  cv::erode(grey, grey, cv::Mat::ones(2 * reach + 1, 2 * reach + 1, CV_8U));
-  return out;
+  if (!part.ofPanorama() || used.empty())
+    return used;
+  const Image cut = cutPanorama(wrapPanorama(asRgb(used)), part);
+  used = Image(cut.width, cut.height, 1);
+  for (std::size_t i = 0; i < used.data.size(); ++i)
+    used.data[i] = cut.data[3 * i] >= half ? 255 : 0;
+  return used;
 }
 
-void PhotoStore::keep(Index view, std::shared_ptr<const Image> image)
+void PhotoStore::keep(Index view, Photo photo)
 {
   const std::lock_guard lock(mutex_);
-  if (slots_[view].image)
+  Slot& slot = slots_[view];
+  if (slot.image)
     return;
-  bytes_ += image->data.size();
+  bytes_ += photo.image->data.size() + photo.unblank->data.size();
   recent_.push_front(view);
-  slots_[view] = {std::move(image), recent_.begin()};
+  slot = {std::move(photo), recent_.begin()};
   drop();
 }
 
@@ -139,8 +169,10 @@ void PhotoStore::drop()
 void PhotoStore::dropOldest()
 {
   Slot& oldest = slots_[recent_.back()];
-  bytes_ -= oldest.image->data.size();
+  bytes_ -= oldest.image->data.size() + oldest.unblank->data.size();
   oldest.image.reset();
+  if (!oldest.unblank->empty())
+    oldest.unblank.reset();
   recent_.pop_back();
 }
 
@@ -149,6 +181,15 @@ void PhotoStore::dropUnlessAll()
   const std::lock_guard lock(mutex_);
   while (recent_.size() < slots_.size() && !recent_.empty())
     dropOldest();
+}
+
+Image withinReach(Image mask)
+{
+  constexpr int reach = 2; // pixels, of cubic interpolation
+  cv::Mat grey(mask.height, mask.width, CV_8U, mask.data.data());
+  if (!mask.empty())
+    cv::erode(grey, grey, cv::Mat::ones(2 * reach + 1, 2 * reach + 1, CV_8U));
+  return mask;
 }
 
 namespace {

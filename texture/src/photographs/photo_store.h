@@ -9,15 +9,26 @@ namespace fresco::texture {
 /// be used by several threads at a time.
 class PhotoStore {
 public:
+  /// What a file holds: RGB without its fringe, and blankPixels().
+  struct Photo {
+    std::shared_ptr<const Image> image, unblank;
+    int fringe = 0; ///< fringeWidth()
+  };
+
   PhotoStore(const std::vector<ViewPart>& views, std::size_t most_bytes);
 
   /// @throws std::runtime_error naming the photograph if it cannot be read or is of another size than its camera
   std::shared_ptr<const Image> get(Index view);
 
-  /// Where the photograph is to be used, one channel: 255, else 0, also where interpolation would reach what is 0. Black
-  /// ends of panoramas are not (blackEnds()). Not kept. Empty: everywhere.
+  /// Where the photograph is to be used, one channel: 255, else 0, as for its blank pixels. Not kept. Empty: everywhere.
   /// @throws std::runtime_error as get(), naming the mask
   Image mask(Index view);
+
+  /// blankPixels() of what was given, a whole panorama.
+  std::shared_ptr<const Image> unblank(Index view);
+
+  /// fringeWidth() of the same.
+  int fringe(Index view);
 
   std::size_t mostBytes() const { return most_bytes_; }
   /// Keeps so much less while something else made of the photographs needs memory.
@@ -28,22 +39,25 @@ public:
 private:
   void drop();
   void dropOldest();
-  std::shared_ptr<const Image> load(Index view);
-  std::shared_ptr<const Image> panoramaOf(Index view);
-  void keep(Index view, std::shared_ptr<const Image> image);
+  Photo load(Index view);
+  Photo panoramaOf(Index view);
+  void keep(Index view, Photo photo);
 
-  struct Slot {
-    std::shared_ptr<const Image> image;
+  /// Null: not read, or no longer kept; that nothing is blank stays known.
+  struct Slot : Photo {
     std::list<Index>::iterator recent;
   };
   const std::vector<ViewPart>& views_;
-  std::shared_ptr<const Image> panorama_; ///< the one cut last, wrapped
+  Photo panorama_; ///< the one cut last, wrapped
   int panorama_view_ = -1;
   std::size_t most_bytes_, aside_ = 0, bytes_ = 0;
   std::vector<Slot> slots_;
   std::list<Index> recent_; ///< kept views, the one asked for last in front
   std::mutex mutex_;
 };
+
+/// 0 also where interpolation would reach what is.
+Image withinReach(Image mask);
 
 /// Colour at a place in pixels, 0..255, by Catmull-Rom interpolation; places outside are moved to the border.
 Eigen::Vector3f samplePhoto(const Image& photo, float x, float y);

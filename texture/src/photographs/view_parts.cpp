@@ -55,31 +55,6 @@ Image wrapPanorama(const Image& panorama)
   return out;
 }
 
-Image blackEnds(const Image& panorama)
-{
-  constexpr int black = 10;      // of 255: what JPEG makes of 0
-  constexpr double whole = 0.99; // share of a row; JPEG bleeds in single blocks
-  const auto isBlack = [&](int x, int y) {
-    const std::uint8_t* color = panorama.pixel(x, y);
-    return std::max({color[0], color[1], color[2]}) <= black;
-  };
-  Image mask;
-  for (const bool lowest : {false, true}) {
-    const auto row = [&](int k) { return lowest ? panorama.height - 1 - k : k; };
-    int count = 0;
-    for (int x = 0; x < panorama.width; ++x)
-      count += isBlack(x, row(0));
-    if (count < whole * panorama.width)
-      continue;
-    if (mask.empty())
-      mask = Image(panorama.width, panorama.height, 3, 255);
-    for (int x = 0; x < panorama.width; ++x)
-      for (int k = 0; k < panorama.height && isBlack(x, row(k)); ++k)
-        std::fill_n(mask.pixel(x, row(k)), 3, 0);
-  }
-  return mask;
-}
-
 Image cutPanorama(const Image& wrapped, const ViewPart& part)
 {
   const CameraModel& panorama = part.given->camera;

@@ -18,10 +18,6 @@ std::vector<ViewPart> partsOf(const std::vector<TextureView>& views);
 /// With columns of the other end on either side, so that it can be interpolated across the ends.
 Image wrapPanorama(const Image& panorama);
 
-/// Scanners leave the directions black that they cannot see: below them, sometimes above. RGB, 0 where the columns begin or
-/// end black, else 255; empty unless the lowest or the highest row is black as a whole.
-Image blackEnds(const Image& panorama);
-
 /// What the camera of the part would have taken.
 /// @param wrapped by wrapPanorama()
 Image cutPanorama(const Image& wrapped, const ViewPart& part);

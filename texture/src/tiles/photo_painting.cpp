@@ -2,6 +2,7 @@
 #include "tiles/photo_painting.h"
 #include "cameras/camera_refinement.h"
 #include "charts/texture_atlas.h"
+#include "filling/clipped_texels.h"
 #include "filling/color_diffusion.h"
 #include "painting/atlas_paint.h"
 #include "painting/back_projection.h"
@@ -157,7 +158,14 @@ Points paintModel(const Job& job, ViewChoice& choice, const PaintedPart& part)
     backProject(scene, sources, {options.rounds, ofParts(registrationErrors(result), views.owner)}, atlases);
 
   steps.begin("inpainting", 0.9);
-  paintUnseen(scene, diffuseColors(patches, knownColors(scene, part, atlases), options.threads), atlases, result.masks);
+  const std::vector<char> clipped = clippedPatches(scene, candidates);
+  Points known = knownColors(scene, part, atlases);
+  for (std::size_t i = 0; i < clipped.size(); ++i)
+    if (clipped[i])
+      known.col(i).setConstant(-1);
+  const Points around = diffuseColors(patches, known, options.threads);
+  paintUnseen(scene, around, atlases, result.masks);
+  continueClipped(scene, sources, clipped, around, atlases);
 
   steps.begin("gaps", 0.98);
   fillGaps(charts, options.threads, atlases);

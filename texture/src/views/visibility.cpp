@@ -240,17 +240,25 @@ DepthMap shownDepth(const VisibilityInput& input, Index view, Index cells)
   return map;
 }
 
-void hideMasked(const Image& mask, DepthMap& map)
+void hideMasked(Image mask, DepthMap& map)
 {
   constexpr float before_lens = 1e-3f; // of the distance of what is nearest
   if (mask.empty())
     return;
+  const auto cellUnder = [&](int x, int y) -> float& {
+    return map.depth[cellAt(std::min<int>(x / map.step, map.width - 1), std::min<int>(y / map.step, map.height - 1),
+                            map.width)];
+  };
+  for (int y = 0; y < mask.height; ++y)
+    for (int x = 0; x < mask.width; ++x)
+      if (std::uint8_t& used = *mask.pixel(x, y); used == 0 && !std::isfinite(cellUnder(x, y)))
+        used = 255;
+  mask = withinReach(std::move(mask));
   const float depth = before_lens * *std::min_element(map.depth.begin(), map.depth.end());
   for (int y = 0; y < mask.height; ++y)
     for (int x = 0; x < mask.width; ++x)
       if (*mask.pixel(x, y) == 0)
-        map.depth[cellAt(std::min<int>(x / map.step, map.width - 1), std::min<int>(y / map.step, map.height - 1),
-                         map.width)] = depth;
+        cellUnder(x, y) = depth;
 }
 
 Candidates findCandidates(const PatchMesh& patches, const VisibilityInput& input, const Progress& progress,

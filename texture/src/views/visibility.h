@@ -91,8 +91,8 @@ struct VisibilityInput {
   const WholeSurface* whole = nullptr; ///< in place of the scene where the patches are a part of the surface
 };
 
-/// Brings what a mask leaves out to before the lens.
-void hideMasked(const Image& mask, DepthMap& map);
+/// Brings what a mask leaves out of the surface to before the lens. Beside the surface it only says what the map does.
+void hideMasked(Image mask, DepthMap& map);
 
 /// Depth of what a view shows in at most `cells` cells. Where its mask says not to use the photograph, something stands before the lens.
 DepthMap shownDepth(const VisibilityInput& input, Index view, Index cells);

@@ -22,6 +22,9 @@ FRESCO_EXPORT Image readImage(const std::string& path);
 /// anything is decoded if it has not the camera's size
 FRESCO_EXPORT Image readImage(const std::string& path, const CameraModel& camera);
 
+/// The same with alpha as a fourth channel where a PNG file has it: photographs of which only parts are to be used.
+FRESCO_EXPORT Image readPhotograph(const std::string& path, const CameraModel& camera);
+
 /// What the header tells; nothing is decoded. @throws std::runtime_error as readImage
 FRESCO_EXPORT ImageSize readImageSize(const std::string& path);
 

@@ -9,6 +9,7 @@
 namespace fresco::io {
 ImageSize pngSize(std::string_view bytes);
 Image decodePng(std::string_view bytes);
+Image decodePngWithAlpha(std::string_view bytes); ///< RGBA if there is alpha
 Image16 decodePng16(std::string_view bytes);
 
 ImageSize jpegSize(std::string_view bytes);

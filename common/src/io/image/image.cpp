@@ -89,6 +89,15 @@ Image readImage(const std::string& path, const CameraModel& camera)
   });
 }
 
+Image readPhotograph(const std::string& path, const CameraModel& camera)
+{
+  return io::parseFile(path, [&](std::string_view bytes) {
+    const ImageFormat& format = formatOf(bytes);
+    requireImageSize(sizeOf(bytes, format), camera);
+    return format.decode == io::decodePng ? io::decodePngWithAlpha(bytes) : format.decode(bytes);
+  });
+}
+
 Image16 readImage16(const std::string& path)
 {
   return io::parseFile(path, [](std::string_view bytes) {

@@ -33,17 +33,17 @@ public:
     return png_get_bit_depth(png_, info_) == 16 && png_get_color_type(png_, info_) == PNG_COLOR_TYPE_GRAY;
   }
 
-  void readRgb(std::uint8_t* rows)
+  bool hasAlpha() const
   {
-    callLibrary(errors_, [&] {
-      png_set_strip_16(png_);
-      png_set_palette_to_rgb(png_);
-      if (png_get_bit_depth(png_, info_) < 8 && png_get_color_type(png_, info_) == PNG_COLOR_TYPE_GRAY)
-        png_set_expand_gray_1_2_4_to_8(png_);
-      png_set_gray_to_rgb(png_);
-      png_set_strip_alpha(png_);
-      readRows(rows);
-    });
+    return png_get_color_type(png_, info_) & PNG_COLOR_MASK_ALPHA || png_get_valid(png_, info_, PNG_INFO_tRNS);
+  }
+
+  /// @param with_alpha RGBA if there is alpha
+  Image read(bool with_alpha)
+  {
+    Image image(size().width, size().height, with_alpha && hasAlpha() ? 4 : 3);
+    readColors(image.data.data(), with_alpha);
+    return image;
   }
   void readGrey16(std::uint16_t* rows)
   {
@@ -54,6 +54,19 @@ public:
   }
 
 private:
+  void readColors(std::uint8_t* rows, bool with_alpha)
+  {
+    callLibrary(errors_, [&] {
+      png_set_strip_16(png_);
+      png_set_palette_to_rgb(png_);
+      if (png_get_bit_depth(png_, info_) < 8 && png_get_color_type(png_, info_) == PNG_COLOR_TYPE_GRAY)
+        png_set_expand_gray_1_2_4_to_8(png_);
+      png_set_gray_to_rgb(png_);
+      if (!with_alpha)
+        png_set_strip_alpha(png_);
+      readRows(rows);
+    });
+  }
   static void fail(png_structp png, png_const_charp reason)
   {
     auto& errors = *static_cast<LibraryErrors*>(png_get_error_ptr(png));
@@ -89,13 +102,9 @@ private:
 
 ImageSize pngSize(std::string_view bytes) { return PngReader(bytes).size(); }
 
-Image decodePng(std::string_view bytes)
-{
-  PngReader reader(bytes);
-  Image image(reader.size().width, reader.size().height, 3);
-  reader.readRgb(image.data.data());
-  return image;
-}
+Image decodePng(std::string_view bytes) { return PngReader(bytes).read(false); }
+
+Image decodePngWithAlpha(std::string_view bytes) { return PngReader(bytes).read(true); }
 
 Image16 decodePng16(std::string_view bytes)
 {

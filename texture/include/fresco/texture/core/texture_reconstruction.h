@@ -35,8 +35,8 @@ struct TextureOptions {
   /// Rounds of back-projection: texels are made of all photographs together, 0..100. Those that refinement leaves off by more
   /// count less where they differ. Only where `refine` and `exposure` are on.
   int rounds = 2;
-  int memory = 1024;    ///< MB of photographs kept at a time, decoded or as grey copies, >= 1
-  int threads = 0;      ///< 0 = all cores; the result does not depend on it
+  int memory = 1024; ///< MB of photographs kept at a time, decoded or as grey copies, >= 1
+  int threads = 0;   ///< 0 = all cores; the result does not depend on it
   /// Most faces that are textured at a time, >= 0. A mesh of more is cut into tiles with atlases of their own. 0: all faces,
   /// or as many as machineMemory() holds.
   int tile_faces = 0;
@@ -93,6 +93,11 @@ struct TextureResult {
   double disagreement_before = 0;  ///< pixels, median, between photographs on the mesh; 0 where it was not measured
   double disagreement_after = 0;   ///< with `cameras`; the same where these were left as given
   std::vector<PhotographFit> fits; ///< of each view, with `cameras`; empty where it was not measured
+  /// Of each view, the share of the surface before it that is hidden by pixels that are no picture, 0..1: a border of one
+  /// value that undistortion or masking has left, or transparent. They are not used.
+  std::vector<double> blank;
+  /// Of each view, the width in pixels of the violet fringe beside what is clipped; 0 = none. Its colour is not used.
+  std::vector<int> fringes;
   /// Whether `cameras` differ from what was given: not where no correction makes the photographs agree
   /// clearly better.
   bool refined = false;

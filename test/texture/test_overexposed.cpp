@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "photographs/color_fringe.h"
+#include "texture/texture_scene.h"
+#include <gtest/gtest.h>
+using namespace fresco::texture;
+namespace fresco::test {
+namespace {
+constexpr int side = 200, edge = 100, fringe = 5;
+
+/// Clipped up to the edge, then of a colour with noise; pixels of the edge are mixed.
+Image backlit(const Eigen::Vector3d& color)
+{
+  std::mt19937 random(5);
+  std::normal_distribution<double> level(0, 2);
+  Image out(side, side, 3, 255);
+  for (int y = 0; y < side; ++y)
+    for (int x = edge; x < side; ++x)
+      for (int c = 0; c < 3; ++c)
+        out.pixel(x, y)[c] =
+            std::clamp(color[c] + level(random) + (x == edge ? 0.5 * (255 - color[c]) : 0), 0.0, 255.0);
+  return out;
+}
+
+void addViolet(Image& photo)
+{
+  for (int y = 0; y < side; ++y)
+    for (int x = edge + 1; x <= edge + fringe; ++x)
+      for (const int c : {0, 2})
+        photo.pixel(x, y)[c] = std::min(255, photo.pixel(x, y)[c] + 90);
+}
+
+int violet(const std::uint8_t* p) { return std::min(p[0], p[2]) - p[1]; }
+
+TEST(ColorFringe, IsFoundAndTakesTheColourBeyond)
+{
+  for (const Eigen::Vector3d& color : {Eigen::Vector3d(40, 45, 50), Eigen::Vector3d(30, 80, 30)}) {
+    Image photo = backlit(color);
+    addViolet(photo);
+    const int width = fringeWidth(photo);
+    EXPECT_NEAR(width, fringe, 2);
+    const Image clean = withoutFringe(photo, width);
+    for (int y = 0; y < side; ++y)
+      for (int x = edge + 1; x < side; ++x) {
+        ASSERT_NEAR(violet(clean.pixel(x, y)), color.minCoeff() - color[1], 30) << x;
+        ASSERT_LT(violet(clean.pixel(x, y)), 14) << x;
+        ASSERT_EQ(clean.pixel(x, y)[1], photo.pixel(x, y)[1]) << "green stays";
+      }
+  }
+}
+
+TEST(ColorFringe, IsNotFoundWhereThereIsNone)
+{
+  EXPECT_EQ(fringeWidth(backlit({40, 45, 50})), 0);
+  EXPECT_EQ(fringeWidth(backlit({30, 90, 30})), 0);
+  EXPECT_EQ(fringeWidth(backlit({120, 40, 110})), 0) << "a violet thing before a lamp";
+  EXPECT_EQ(fringeWidth(Image(side, side, 3, 90)), 0) << "nothing is clipped";
+  EXPECT_EQ(fringeWidth(Image(side, side, 3, 255)), 0);
+}
+
+/// A wall that one photograph shows overexposed, and one of half the light as far as y = 0.2 or so.
+struct OverexposedWall {
+  TriangleMesh mesh;
+  std::vector<TextureView> views;
+
+  static Eigen::Vector3d color(const Eigen::Vector3d& p)
+  {
+    const double wall = 155 + 10 * p.z(), other = 70 + 30 * std::sin(4 * p.x() + 5 * p.y() + 3 * p.z());
+    return Eigen::Vector3d::Constant(p.x() > 0.999 ? wall : other);
+  }
+
+  OverexposedWall()
+  {
+    appendBox({-1, -1, -1}, {1, 1, 1}, true, mesh);
+    const CameraModel wide = camera(side, side, 70);
+    const Eigen::Vector3d twice = Eigen::Vector3d::Constant(2);
+    views.push_back(photograph(mesh, color, wide, lookAt({-0.7, 0, 0}, {1, 0, 0}), twice));
+    views.push_back(photograph(mesh, color, wide, lookAt({-0.7, -0.7, 0}, {0, 1, 0})));
+    views.push_back(photograph(mesh, color, wide, lookAt({0.5, 0.5, 0}, {-1, 0, 0})));
+  }
+};
+
+TEST(Overexposed, WhatOnlyClippedPhotographsShowContinuesItsSurroundings)
+{
+  const OverexposedWall scene;
+  TextureOptions options = withThreads(2);
+  options.refine = false;
+  const TextureResult result = reconstructTexture(scene.mesh, scene.views, options);
+  const double gain = result.gains(1, 0), least = 255 * gain;
+  EXPECT_NEAR(result.gains(1, 1) / gain, 2, 0.1);
+  constexpr int bins = 36;
+  Eigen::ArrayXd sum = Eigen::ArrayXd::Zero(bins), count = sum;
+  forPlaces(scene.mesh, 3000, [&](Index f, const Eigen::Vector3d& weights) {
+    const Eigen::Vector3d p = pointAt(scene.mesh, f, weights);
+    if (p.x() < 0.999 || std::abs(p.y()) > 0.9 || std::abs(p.z()) > 0.9)
+      return;
+    const double value = colorAt(result.model, f, weights).mean();
+    EXPECT_GT(value, least - 2);
+    const int bin = static_cast<int>((p.y() + 0.9) / 1.8 * bins);
+    sum[bin] += value;
+    ++count[bin];
+  });
+  const Eigen::ArrayXd mean = sum / count;
+  double step = 0;
+  for (int b = 1; b < bins; ++b)
+    step = std::max(step, std::abs(mean[b] - mean[b - 1]));
+  EXPECT_LT(step, 4) << mean.transpose();
+  EXPECT_GT(mean.maxCoeff(), least + 10) << "a part is seen as bright as it is";
+}
+} // namespace
+} // namespace fresco::test

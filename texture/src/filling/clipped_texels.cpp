@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "filling/clipped_texels.h"
+#include "painting/patch_frame.h"
+#include <algorithm>
+#include <fresco/core/parallel.h>
+namespace fresco::texture {
+namespace {
+/// Of each channel 0..1, how far what a photograph shows is overexposed.
+Eigen::Array3f clippedShare(const Image& photo, const Eigen::Vector2f& pixel)
+{
+  constexpr float full = 254, width = 8; // grey levels; the ramp keeps noise from showing
+  return ((samplePhotoQuickly(photo, pixel.x(), pixel.y()).array() - (full - width)) / width).max(0.f).min(1.f);
+}
+
+/// @param colors 3x3, of the patch's corners
+void continuePatch(const PaintScene& scene, Index patch, const Projector& view, const Image& photo,
+                   const Eigen::Matrix3f& colors, std::vector<Image>& atlases)
+{
+  PatchFrame frame(scene, patch);
+  if (!frame.map.look(view))
+    return;
+  Image& atlas = atlases[frame.chart.atlas];
+  frame.forTexels([&](const Eigen::Vector2f& center, int x, int y) {
+    const Eigen::Vector3f inside = frame.inside(center);
+    const Eigen::Vector2f at = frame.map.place(inside);
+    const Eigen::Array3f share = clippedShare(photo, frame.map.pixel(at.x(), at.y()));
+    const Eigen::Vector3f around = colors * inside;
+    std::uint8_t* pixel = atlas.pixel(frame.chart.x + x, frame.chart.y + y);
+    for (int c = 0; c < 3; ++c)
+      pixel[c] += share[c] * std::max(0.f, around[c] - pixel[c]) + 0.5f;
+  });
+}
+} // namespace
+
+std::vector<char> clippedPatches(const PaintScene& scene, const Candidates& candidates)
+{
+  std::vector<char> out(scene.patches.size());
+  parallelFor(scene.patches.size(), scene.threads, [&](Index i) {
+    const Candidate* at = scene.isSeen(i) ? candidates.find(i, scene.view[i]) : nullptr;
+    out[i] = at && at->clipped;
+  });
+  return out;
+}
+
+void continueClipped(const PaintScene& scene, const PaintSources& sources, const std::vector<char>& clipped,
+                     const Points& colors, std::vector<Image>& atlases)
+{
+  std::vector<std::vector<Index>> by_view(sources.views.size());
+  for (Index i = 0; i < scene.patches.size(); ++i)
+    if (clipped[i])
+      by_view[scene.view[i]].push_back(i);
+  for (std::size_t v = 0; v < by_view.size(); ++v) {
+    if (by_view[v].empty())
+      continue;
+    const std::shared_ptr<const Image> photo = sources.photos.get(v);
+    parallelFor(by_view[v].size(), scene.threads, [&](Index k) {
+      const Index i = by_view[v][k];
+      continuePatch(scene, i, sources.views[v], *photo, colors.middleCols<3>(3 * i), atlases);
+    });
+  }
+}
+} // namespace fresco::texture

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "photographs/color_fringe.h"
+#include "photographs/distance_field.h"
+#include <algorithm>
+#include <vector>
+namespace fresco::texture {
+namespace {
+using Color = cv::Vec3b;
+
+/// How much more red and blue there are than green.
+int violet(const Color& c) { return std::min(c[0], c[2]) - c[1]; }
+
+/// 255 where all channels are; nothing where it is gloss, which has hardly any fringe.
+cv::Mat clippedOf(const cv::Mat& photo)
+{
+  constexpr int clipped = 250; // grey level
+  cv::Mat out;
+  cv::inRange(photo, cv::Scalar::all(clipped), cv::Scalar::all(255), out);
+  if (cv::countNonZero(out) > 0)
+    cv::morphologyEx(out, out, cv::MORPH_OPEN, cv::Mat::ones(3, 3, CV_8U));
+  return out;
+}
+
+/// Of strong edges, those whose pixels at one distance from what is clipped are violet.
+struct EdgeCount {
+  int all = 0, violet = 0;
+  double share() const { return all < 100 ? 0 : 1.0 * violet / all; } ///< fewer pixels tell nothing
+};
+} // namespace
+
+int fringeWidth(const Image& given)
+{
+  constexpr int dark = 140, fringed = 10; // grey levels of green; of violet
+  constexpr double many = 0.05;           // without a fringe 0.02 of real edges are violet
+  const cv::Mat photo = matOf(given);
+  const cv::Mat clipped = clippedOf(photo);
+  if (cv::countNonZero(clipped) == 0)
+    return 0;
+  const DistanceField around(clipped);
+  const int widest = std::max(4, given.width / 160); // lenses are off by such a share of the image at most
+  std::vector<EdgeCount> at(widest + 1);             // by distance
+  around.forNear(widest, [&](const cv::Point& p, int distance) {
+    const cv::Point q = around.further(p, widest + 2 - distance / 2);
+    if (q.x < 0 || photo.at<Color>(q)[1] >= dark)
+      return;
+    const int here = violet(photo.at<Color>(p)), beyond = violet(photo.at<Color>(q));
+    ++at[distance].all;
+    at[distance].violet += here - std::max(0, beyond) > fringed;
+  });
+  double most = 0;
+  for (const EdgeCount& count : at)
+    most = std::max(most, count.share());
+  int width = 0;
+  for (int k = 1; k <= widest && most > many; ++k)
+    if (at[k].share() > 0.5 * most)
+      width = k;
+  return width;
+}
+
+Image withoutFringe(const Image& given, int width)
+{
+  constexpr int spare = 2; // pixels: its edge is soft
+  Image out = given;
+  const cv::Mat photo = matOf(given);
+  const DistanceField around(clippedOf(photo));
+  around.forNear(width + spare, [&](const cv::Point& p, int distance) {
+    const Color& color = photo.at<Color>(p);
+    const cv::Point q = around.further(p, width + spare + 1 - distance / 2);
+    const Color beyond = q.x >= 0 ? photo.at<Color>(q) : Color(0, 0, 0); // unknown: grey
+    if (violet(color) > std::max(0, violet(beyond)))
+      for (const int c : {0, 2})
+        out.pixel(p.x, p.y)[c] = std::clamp(color[1] + beyond[c] - beyond[1], 0, static_cast<int>(color[c]));
+  });
+  return out;
+}
+} // namespace fresco::texture
