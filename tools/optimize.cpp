@@ -71,6 +71,7 @@ Json toJson(const NormalFilteringResult& r)
                {"point_spacing", r.spacing},
                {"used_points", r.used_points},
                {"left_out_points", r.left_out_points},
+               {"turned_faces", r.turned_faces},
                {"vertices", r.mesh.vertexCount()},
                {"covered_vertices", r.covered_vertices},
                {"restored_vertices", r.restored_vertices},
@@ -93,6 +94,9 @@ void write(const Request& request, const NormalFilteringResult& r)
                                       r.edge_length, "; ", r.covered_vertices, " of ", r.mesh.vertexCount(),
                                       " vertices have data, ", r.restored_vertices, " put back; ", r.left_out_points,
                                       " points left out; noise ", r.noise, "; ", r.flipped_edges, " edges flipped"));
+  if (r.turned_faces > 0)
+    inform(request.common.quiet, concat(r.turned_faces, " of ", r.mesh.faceCount(),
+                                        " faces were inside out, against the normals of the points, and are turned"));
 }
 
 /// Arrays of each iteration use the pages of the last one's: fresh pages from the kernel cost 7 % of the time.

@@ -38,6 +38,21 @@ TEST(Optimize, DoesWhatTheCoreDoes)
   EXPECT_TRUE(report.at("steps")[0].at("tangential").is_number());
 }
 
+TEST(Optimize, SaysThatFacesWereInsideOut)
+{
+  const std::string folder = test::scratchFolder();
+  TriangleMesh mesh = test::roundedCube(10, 0.3);
+  const auto said = [&] {
+    writeMesh(folder + "/mesh.ply", mesh);
+    EXPECT_EQ(runTool(folder + "/mesh.ply " + folder + "/points.ply " + folder + "/out.ply", folder), 0);
+    return readFile(folder + "/stderr.txt").find("inside out") != std::string::npos;
+  };
+  writePoints(folder + "/points.ply", test::cubePoints(3000, 0.01));
+  EXPECT_FALSE(said());
+  mesh.faces.row(1).swap(mesh.faces.row(2));
+  EXPECT_TRUE(said());
+}
+
 TEST(Optimize, OptionsAreNamedAndChecked)
 {
   const std::string folder = test::scratchFolder(), files = "mesh.ply points.ply out.ply ";

@@ -47,6 +47,43 @@ TEST(Optimization, FitsBetterAndStaysWatertight)
   EXPECT_EQ(after.faces, before.faces);
 }
 
+/// The faces that `turn` names are inside out.
+template <typename Turn>
+TriangleMesh turnedWhere(TriangleMesh mesh, const Turn& turn)
+{
+  for (Index f = 0; f < mesh.faceCount(); ++f)
+    if (turn(f))
+      std::swap(mesh.faces(1, f), mesh.faces(2, f));
+  return mesh;
+}
+
+TEST(Optimization, FacesInsideOutAreTurned)
+{
+  const TriangleMesh mesh = rounded();
+  const PointSet points = test::cubePoints(8000, 0.01);
+  const NormalFilteringResult expected = optimized(mesh, points);
+  EXPECT_EQ(expected.turned_faces, 0);
+  const auto is_left = [&](Index f) { return mesh.vertices(0, mesh.faces(0, f)) < 0; };
+  for (const bool all : {true, false}) {
+    const TriangleMesh wrong = turnedWhere(mesh, [&](Index f) { return all || is_left(f); });
+    const NormalFilteringResult result = optimized(wrong, points);
+    EXPECT_GT(result.turned_faces, mesh.faceCount() / 3);
+    EXPECT_EQ(result.mesh.faces, mesh.faces);
+    EXPECT_EQ(result.mesh.vertices, expected.mesh.vertices);
+    EXPECT_EQ(result.left_out_points, expected.left_out_points);
+  }
+}
+
+TEST(Optimization, FewPointsThatOpposeTurnNothing)
+{
+  PointSet points = test::cubePoints(8000, 0.01);
+  for (Index i = 0; i < points.size(); i += 3)
+    points.normals.col(i) *= -1.f;
+  EXPECT_EQ(optimized(rounded(), points).turned_faces, 0);
+  points.normals.resize(3, 0);
+  EXPECT_EQ(optimized(turnedWhere(rounded(), [](Index) { return true; }), points).turned_faces, 0);
+}
+
 TEST(Optimization, SameBitsForAnyNumberOfThreads)
 {
   const PointSet points = test::cubePoints(10000, 0.01);

@@ -45,7 +45,17 @@ void repeatFromOutside(const SearchedMesh& mesh, const Eigen::Matrix3Xd& queries
 struct Assigned {
   std::vector<Index> columns; // of the input
   std::vector<int> faces;
+  std::vector<int> votes; // DataPoints::votes
 };
+
+// Adds DataPoints::votes of points with these normals.
+void addVotes(const SearchedMesh& mesh, const Points& normals, const std::vector<ClosestPoint>& found, double reach,
+              std::vector<int>& votes)
+{
+  for (std::size_t i = 0; i < found.size(); ++i)
+    if (const int f = found[i].face; f >= 0 && found[i].distance <= reach && normals.col(i).allFinite())
+      votes[f] += areaVector(mesh.graph, mesh.x, f).dot(normals.col(i).cast<double>()) < 0.0 ? -1 : 1;
+}
 
 Assigned assignFaces(const MeshGraph& graph, const Positions& x, const PointSet& set, const WorkingFrame& frame,
                      double reach, int threads)
@@ -53,6 +63,7 @@ Assigned assignFaces(const MeshGraph& graph, const Positions& x, const PointSet&
   constexpr Index block_size = 1 << 19; // queries at a time: some tens of MB of answers, work for every core
   const TriangleTree tree(workingMesh(graph, x), threads);
   Assigned assigned;
+  assigned.votes.assign(graph.faceCount(), 0);
   std::vector<Index> columns;
   for (Index begin = 0; begin < set.size(); begin += block_size) {
     columns.clear();
@@ -62,8 +73,11 @@ Assigned assignFaces(const MeshGraph& graph, const Positions& x, const PointSet&
     const Eigen::Matrix3Xd queries =
         (set.points(Eigen::all, columns).cast<double>().colwise() + (set.origin - frame.center)) / frame.unit;
     std::vector<ClosestPoint> found = closestPoints(tree, queries, threads);
-    if (set.hasNormals())
-      repeatFromOutside({graph, x, tree}, queries, set.normals(Eigen::all, columns), found, reach, threads);
+    if (set.hasNormals()) {
+      const Points normals = set.normals(Eigen::all, columns);
+      addVotes({graph, x, tree}, normals, found, reach, assigned.votes);
+      repeatFromOutside({graph, x, tree}, queries, normals, found, reach, threads);
+    }
     for (std::size_t i = 0; i < columns.size(); ++i)
       if (found[i].face >= 0 && found[i].distance <= reach && graph.face_edges(0, found[i].face) >= 0) {
         assigned.columns.push_back(columns[i]);
@@ -186,6 +200,7 @@ DataPoints findCorrespondences(const MeshGraph& graph, const Positions& x, const
   DataPoints data;
   const Index count = order.size();
   data.left_out = set.size() - count;
+  data.votes = std::move(assigned.votes);
   data.points.resize(3, count);
   data.normals.resize(3, set.hasNormals() ? count : 0);
   data.face.resize(count);

@@ -7,6 +7,8 @@
 #include <fresco/core/machine_memory.h>
 #include <fresco/core/parallel.h>
 #include <fresco/core/require.h>
+#include <fresco/core/union_find.h>
+#include <utility>
 namespace fresco::optimization {
 namespace {
 
@@ -41,6 +43,33 @@ Eigen::Vector3d middleOf(const TriangleMesh& mesh, const MeshGraph& graph)
   return count > 0 ? (sum / count).eval() : sum;
 }
 
+// Turns the patches of faces, neighbours oriented alike, that more points look against than with.
+// Returns the number of faces turned.
+Index turnOpposed(const MeshGraph& graph, const std::vector<int>& votes, Faces& faces)
+{
+  if (std::none_of(votes.begin(), votes.end(), [](int vote) { return vote < 0; }))
+    return 0;
+  const auto runs_upwards = [&](Index e, int f) {
+    const int low = graph.edges[e][0], high = graph.edges[e][1];
+    return (faces(0, f) == low && faces(1, f) == high) || (faces(1, f) == low && faces(2, f) == high) ||
+           (faces(2, f) == low && faces(0, f) == high);
+  };
+  UnionFind patches(graph.faceCount());
+  for (Index e = 0; e < graph.edgeCount(); ++e)
+    if (const auto [a, b] = graph.edge_faces[e]; a >= 0 && b >= 0 && runs_upwards(e, a) != runs_upwards(e, b))
+      patches.join(a, b);
+  std::vector<Index> sum(graph.faceCount(), 0);
+  for (Index f = 0; f < graph.faceCount(); ++f)
+    sum[patches.root(f)] += votes[f];
+  Index turned = 0;
+  for (Index f = 0; f < graph.faceCount(); ++f)
+    if (sum[patches.root(f)] < 0) {
+      std::swap(faces(1, f), faces(2, f));
+      ++turned;
+    }
+  return turned;
+}
+
 TriangleMesh movedMesh(const TriangleMesh& mesh, const OptimizationProblem& problem, int threads)
 {
   TriangleMesh moved = mesh;
@@ -71,7 +100,17 @@ OptimizationProblem makeProblem(const TriangleMesh& mesh, const PointSet& points
   require(problem.frame.unit > 0 && surfaceArea(mesh) > 0, "optimisation: the mesh has no area");
   problem.x = x / problem.frame.unit;
   problem.start = problem.x;
-  problem.data = findCorrespondences(problem.graph, problem.x, points, problem.frame, reach, threads);
+  const auto find_data = [&] {
+    problem.data = findCorrespondences(problem.graph, problem.x, points, problem.frame, reach, threads);
+  };
+  find_data();
+  Faces faces = mesh.faces;
+  problem.turned_faces = turnOpposed(problem.graph, problem.data.votes, faces);
+  if (problem.turned_faces > 0) {
+    problem.graph = buildGraph(faces, mesh.vertexCount(), threads);
+    find_data();
+  }
+  problem.data.votes = {};
   require(problem.data.size() > 0, "optimisation: no finite point lies within ", reach * problem.frame.unit, " (",
           reach, " mean edge lengths) of the mesh");
   problem.coverage = findCoverage(problem.graph, problem.x, problem.data,
@@ -87,6 +126,7 @@ void finish(const TriangleMesh& mesh, OptimizationProblem& problem, int threads,
   result.spacing = problem.coverage.spacing * problem.frame.unit;
   result.used_points = problem.data.size();
   result.left_out_points = problem.data.left_out;
+  result.turned_faces = problem.turned_faces;
   result.covered_vertices = std::count(covered.begin(), covered.end(), char{1});
   undoWorsening(problem, threads);
   result.restored_vertices =

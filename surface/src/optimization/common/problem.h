@@ -8,6 +8,7 @@ struct OptimizationProblem {
   MeshGraph graph;
   WorkingFrame frame;
   Positions start, x; ///< at the beginning and now; columns of vertices without faces are not used
+  Index turned_faces = 0; ///< of the input that are oriented the other way in `graph`
   DataPoints data;
   DataCoverage coverage;
   Eigen::VectorXf start_distance; ///< of each datum from its face at the start

@@ -40,6 +40,7 @@ struct NormalFilteringResult {
   double spacing = 0;     ///< between the points, median
   Index used_points = 0;  ///< points with a face
   Index left_out_points = 0;   ///< not finite, too far from the mesh, or seen from the wrong side
+  Index turned_faces = 0;      ///< faces of patches that more points looked against than with; theirs are turned
   Index covered_vertices = 0;  ///< vertices near data; the others stay exactly where they were
   Index restored_vertices = 0; ///< vertices put back by the final check
   std::vector<NormalFilteringStep> steps;
