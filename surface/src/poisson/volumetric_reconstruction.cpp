@@ -173,8 +173,8 @@ VolumetricPart reconstruct(Samples&& samples, const VolumetricOptions& options, 
   releaseMemory(samples.samples);
   releaseMemory(samples.codes);
   ghosts.addTo(finest);
-  Constraints constraints = splatNormals(tree, finest, std::move(normals), options.threads);
-  SampleLevels levels = sampleLevels(std::move(finest), tree, options.threads);
+  SampleLevels levels = sampleLevels(std::move(finest), normals, tree, options.threads);
+  Constraints constraints = splatNormals(tree, levels.back(), std::move(normals), options.threads);
   const FreePlaces free_places{options.free_space.get(), samples.cube, samples.origin};
   Solution solution = solve({tree, free_places, constraints, levels}, options, progress);
   result.residual = solution.residual;

@@ -3,6 +3,7 @@
 #include "poisson/octree/splat.h"
 #include "poisson/samples/density.h"
 #include "poisson/solver/base_solver.h"
+#include "poisson/solver/solve.h"
 #include "surface/poisson/volumetric_shapes.h"
 #include "test_data.h"
 #include <Eigen/Geometry>
@@ -28,10 +29,7 @@ TEST(VolumetricLaws, UnscreenedSolutionIsTheIndicatorFunction)
   const Density density(tree, samples, 1);
   estimateDensity(tree, density, 1.f, samples, 1);
   const Constraints constraints = splatNormals(tree, finestLevel(samples, 1), normalsOf(samples, 1), 1);
-  std::vector<SampleLevel> levels(7);
-  levels[6] = finestLevel(samples, 1);
-  for (std::size_t d = 6; d > 2; --d)
-    levels[d - 1] = coarsen(levels[d], 1);
+  const SampleLevels levels = sampleLevels(finestLevel(samples, 1), normalsOf(samples, 1), tree, 1);
   const NodeField chi = solveBase(tree, constraints.fine, levels, 0.f, 1);
   const double cell = 2.2 / 32;
   for (Index b = 0; b < tree.levels[5].size(); ++b)

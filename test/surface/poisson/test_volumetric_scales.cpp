@@ -245,6 +245,38 @@ TEST(VolumetricScales, FilterLeavesWhatComesFromTheCoarserDepth)
       }
 }
 
+/// Distance from the nearest of two sheets of 1.4 x 1 a quarter apart, which are 0.01 and 0.005 thick.
+double sheetsDistance(const Eigen::Vector3d& p)
+{
+  double least = 1e9;
+  for (const auto& [x, thickness] : {std::pair(0.0, 0.01), std::pair(0.25, 0.005)}) {
+    const Eigen::Array3d middle(x, 0, 0), half(thickness / 2, 0.5, 0.7);
+    least = std::min(least, ((p.array() - middle).abs() - half).max(0).matrix().norm());
+  }
+  return least;
+}
+
+/// Coarse depths, whose cells hold both sides of a sheet, leave the space between the sheets empty.
+TEST(VolumetricScales, NothingGrowsBetweenThinSheets)
+{
+  const PointSet sides = box(400000, 3);
+  PointSet points;
+  for (const auto& [x, thickness] : {std::pair(0.f, 0.01f), std::pair(0.25f, 0.005f)}) {
+    std::vector<Index> kept;
+    for (Index i = 0; i < sides.size(); ++i)
+      if (std::abs(sides.normals(0, i)) > 0)
+        kept.push_back(i);
+    PointSet sheet = selectPoints(sides, kept);
+    sheet.points = Eigen::Vector3f(thickness / 2, 0.5f, 0.7f).asDiagonal() * sheet.points;
+    sheet.points.row(0).array() += x;
+    appendPoints(points, sheet);
+  }
+  for (const int depth : {7, 8, 9}) {
+    const VolumetricResult result = reconstructVolumetric(points, atDepth(depth));
+    EXPECT_LT(maxDistance(result.mesh, sheetsDistance), 3 * result.cell_size) << depth;
+  }
+}
+
 /// Cells finer than the noise add faces, not roughness. Without the filter it is 4.2 and 12.3 degrees.
 TEST(VolumetricScales, NormalsOfNoisyPointsDoNotCollapseAtFinerDepths)
 {

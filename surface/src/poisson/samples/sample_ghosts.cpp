@@ -18,15 +18,17 @@ SampleGhosts::SampleGhosts(const Octree& tree, const Array<std::uint64_t>& codes
   }
 }
 
-SampleLevel coarsen(const SampleLevel& fine, const Octree& tree, int threads)
+SampleLevel coarsen(const SampleLevel& fine, const Octree& tree, int threads, const Array<Eigen::Vector3f>* normals)
 {
-  SampleLevel coarse = coarsen(fine, threads);
+  SampleLevel coarse = coarsen(fine, threads, normals);
   if (!tree.partition || coarse.depth != tree.partition->sharedDepth() + 1)
     return coarse;
   const auto [begin, end] = tree.partition->ownRange(coarse.depth, coarse.codes);
   Exchange& exchange = tree.partition->exchange();
   coarse.codes = gatherAll(exchange, coarse.codes.data() + begin, end - begin);
   coarse.samples = gatherAll(exchange, coarse.samples.data() + begin, end - begin);
+  const bool has_fluxes = !coarse.fluxes.empty(); // else others may have some
+  coarse.fluxes = gatherAll(exchange, coarse.fluxes.data() + (has_fluxes ? begin : 0), has_fluxes ? end - begin : 0);
   return coarse;
 }
 } // namespace fresco::poisson

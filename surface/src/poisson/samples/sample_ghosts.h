@@ -43,5 +43,6 @@ private:
 };
 
 /// One depth coarser. From the deepest level that only shared depths use on, all ranks get the samples of all.
-SampleLevel coarsen(const SampleLevel& fine, const Octree& tree, int threads);
+SampleLevel coarsen(const SampleLevel& fine, const Octree& tree, int threads,
+                    const Array<Eigen::Vector3f>* normals = nullptr);
 } // namespace fresco::poisson

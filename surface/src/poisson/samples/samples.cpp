@@ -46,14 +46,33 @@ Array<Eigen::Vector3f> normalsOf(const Samples& samples, int threads)
   return normals;
 }
 
-SampleLevel coarsen(const SampleLevel& fine, int threads)
+namespace {
+/// SampleLevel::fluxes of a sample in which those of a run are joined.
+Eigen::Vector4f joinedFlux(const SampleLevel& fine, SampleRun run, const CoarseSample& joined,
+                           const Array<Eigen::Vector3f>* normals)
 {
+  Eigen::Vector4f sum = Eigen::Vector4f::Zero();
+  for (const std::uint32_t i : run) {
+    const CoarseSample& s = fine.samples[i];
+    Eigen::Vector4f flux =
+        normals ? Eigen::Vector4f((*normals)[i].homogeneous() - Eigen::Vector4f::UnitW()) : fine.fluxes[i];
+    flux[3] += flux.head<3>().dot(s.position - joined.position);
+    sum += s.area * flux;
+  }
+  return sum / joined.area;
+}
+} // namespace
+
+SampleLevel coarsen(const SampleLevel& fine, int threads, const Array<Eigen::Vector3f>* normals)
+{
+  const bool has_fluxes = normals || !fine.fluxes.empty();
   const auto parentOf = [&](Index i) { return fine.codes[i] >> 3; };
   const Array<std::uint32_t> runs = runBegins(fine.codes.size(), threads, parentOf);
   SampleLevel coarse;
   coarse.depth = fine.depth - 1;
   coarse.codes.resize(runs.size() - 1);
   coarse.samples.resize(runs.size() - 1);
+  coarse.fluxes.resize(has_fluxes ? runs.size() - 1 : 0);
   parallelFor(coarse.codes.size(), threads, [&](Index c) {
     Eigen::Vector3d position = Eigen::Vector3d::Zero();
     double area = 0, variance = 0, depth = 0;
@@ -70,6 +89,8 @@ SampleLevel coarsen(const SampleLevel& fine, int threads)
     joined.area = area;
     joined.noise = std::sqrt(variance) / area;
     joined.depth = depth / area;
+    if (has_fluxes)
+      coarse.fluxes[c] = joinedFlux(fine, {runs[c], runs[c + 1]}, joined, normals);
   });
   return coarse;
 }

@@ -69,12 +69,16 @@ struct CoarseSample {
 struct SampleLevel {
   Array<std::uint64_t> codes; ///< of cells of `depth`
   Array<CoarseSample> samples;
+  /// By sample, of those that were joined in it: mean normal, and mean of n . (p - mean p) in cells of the finest depth;
+  /// empty at the finest depth and where nobody asks.
+  Array<Eigen::Vector4f> fluxes;
   int depth = 0;
 };
 
 SampleLevel finestLevel(const Samples& samples, int threads);
 Array<Eigen::Vector3f> normalsOf(const Samples& samples, int threads);
-SampleLevel coarsen(const SampleLevel& fine, int threads);
+/// @param normals of the samples of the finest depth: their fluxes are wanted
+SampleLevel coarsen(const SampleLevel& fine, int threads, const Array<Eigen::Vector3f>* normals = nullptr);
 
 /// Samples of each brick of `level` among sorted codes of a depth no coarser than the level's.
 SampleRanges sampleRanges(const BrickLevel& level, const Array<std::uint64_t>& codes, int depth, int threads);

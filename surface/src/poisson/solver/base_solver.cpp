@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "poisson/solver/base_solver.h"
 #include "poisson/solver/dense_solver.h"
+#include "poisson/solver/expected_values.h"
 #include <algorithm>
 #include <cmath>
 #include <fresco/core/parallel.h>
@@ -36,11 +37,13 @@ NodeField scatter(const BrickLevel& level, const DenseGrid& grid)
   return field;
 }
 
-double meanAtSamples(const DenseGrid& grid, const SampleLevel& level, double scale)
+/// Mean over the samples of what chi is above what they expect.
+double meanAtSamples(const DenseGrid& grid, const SampleLevel& level, const Array<float>& expected, double scale)
 {
   double sum = 0, area = 0;
-  for (const CoarseSample& s : level.samples) {
-    sum += s.area * interpolate(grid, s.position.cast<double>() * scale);
+  for (std::size_t i = 0; i < level.samples.size(); ++i) {
+    const CoarseSample& s = level.samples[i];
+    sum += s.area * (interpolate(grid, s.position.cast<double>() * scale) - expectedOf(expected, i));
     area += s.area;
   }
   return sum / area;
@@ -75,11 +78,13 @@ NodeField solveBase(const Octree& tree, const std::vector<NodeField>& right, con
   DenseGrid x(2);
   for (int d = 2; d <= tree.full_depth; ++d) {
     const double scale = std::ldexp(1.0, d - tree.depth);
+    const Array<float> expected = expectedValues(tree.levels[d], levels[d], samplesFor(d), tree.depth, threads);
     x = refine(x);
-    DenseSystem(x.cells, samplesFor(d), scale, point_weight)
+    DenseSystem(x.cells, samplesFor(d), expected, scale, point_weight)
         .solve(gather(tree.levels[d], right[d], x), tolerance, threads, x);
+    if (d == tree.full_depth)
+      x.values.array() -= meanAtSamples(x, samplesFor(d), expected, scale);
   }
-  x.values.array() -= meanAtSamples(x, samplesFor(tree.full_depth), std::ldexp(1.0, tree.full_depth - tree.depth));
   closeBoundary(x);
   return scatter(tree.levels[tree.full_depth], x);
 }

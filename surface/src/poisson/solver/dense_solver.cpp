@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "poisson/solver/dense_solver.h"
+#include "poisson/solver/expected_values.h"
 #include "poisson/solver/screening.h"
 #include <algorithm>
 #include <cmath>
@@ -115,12 +116,14 @@ double interpolate(const DenseGrid& grid, const Eigen::Vector3d& position)
   return sum;
 }
 
-DenseSystem::DenseSystem(int cells, const SampleLevel& samples, double scale, double point_weight) : shape_(cells)
+DenseSystem::DenseSystem(int cells, const SampleLevel& samples, const Array<float>& expected, double scale,
+                         double point_weight)
+    : shape_(cells)
 {
   block_of_cell_.assign(Index(cells) * cells * cells, -1);
   if (point_weight > 0)
-    for (const CoarseSample& sample : samples.samples)
-      addSample(sample, scale, point_weight);
+    for (std::size_t i = 0; i < samples.samples.size(); ++i)
+      addSample(samples.samples[i], expectedOf(expected, i), scale, point_weight);
   diagonal_ = Eigen::VectorXd::Constant(shape_.count(), regularization);
   const Block base = stiffness();
   forEachCell(cells, [&](const Eigen::Vector3i& cell, Index index) {
@@ -130,7 +133,7 @@ DenseSystem::DenseSystem(int cells, const SampleLevel& samples, double scale, do
   });
 }
 
-void DenseSystem::addSample(const CoarseSample& sample, double scale, double point_weight)
+void DenseSystem::addSample(const CoarseSample& sample, float expected, double scale, double point_weight)
 {
   const Eigen::Vector3d position = sample.position.cast<double>() * scale;
   const Eigen::Vector3i cell = cellOf(position, shape_.cells);
@@ -140,7 +143,11 @@ void DenseSystem::addSample(const CoarseSample& sample, double scale, double poi
     blocks_.push_back(stiffness());
   }
   const Corners weights = cornerWeights(position - cell.cast<double>());
-  blocks_[block] += screeningFactor(sample, scale, point_weight) * weights * weights.transpose();
+  const Corners factors = screeningFactor(sample, scale, point_weight) * weights;
+  blocks_[block] += factors * weights.transpose();
+  const std::array<Index, 8> nodes = cornerNodes(shape_, cell);
+  for (int i = 0; i < 8; ++i)
+    shape_.values[nodes[i]] += expected * factors[i];
 }
 
 /// Slices of cells in two colours: those of one colour share no node.
@@ -170,8 +177,9 @@ void DenseSystem::multiplySlice(int z, const Eigen::VectorXd& x, Eigen::VectorXd
     }
 }
 
-void DenseSystem::solve(const Eigen::VectorXd& b, double tolerance, int threads, DenseGrid& x) const
+void DenseSystem::solve(Eigen::VectorXd b, double tolerance, int threads, DenseGrid& x) const
 {
+  b += shape_.values;
   constexpr int most_iterations = 300; // ends a system that rounding keeps from converging
   const Index count = shape_.count();
   Eigen::VectorXd product(count);

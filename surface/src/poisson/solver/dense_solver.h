@@ -26,16 +26,18 @@ double interpolate(const DenseGrid& grid, const Eigen::Vector3d& position);
 class DenseSystem {
 public:
   /// @param samples of any depth; `scale` turns their positions into cells of the grid, and scale^2 their areas
-  DenseSystem(int cells, const SampleLevel& samples, double scale, double point_weight);
+  /// @param expected of the samples, see expectedValues()
+  DenseSystem(int cells, const SampleLevel& samples, const Array<float>& expected, double scale, double point_weight);
 
   /// Conjugate gradients with diagonal preconditioning, from the values that `x` has, until |r| < tolerance |b|.
-  void solve(const Eigen::VectorXd& b, double tolerance, int threads, DenseGrid& x) const;
+  /// @param b without what the samples expect
+  void solve(Eigen::VectorXd b, double tolerance, int threads, DenseGrid& x) const;
 
 private:
-  void addSample(const CoarseSample& sample, double scale, double point_weight);
+  void addSample(const CoarseSample& sample, float expected, double scale, double point_weight);
   void multiply(const Eigen::VectorXd& x, Eigen::VectorXd& y, int threads) const;
   void multiplySlice(int z, const Eigen::VectorXd& x, Eigen::VectorXd& y) const;
-  DenseGrid shape_;
+  DenseGrid shape_;                                 ///< values: right-hand side of the screening term
   std::vector<Eigen::Matrix<double, 8, 8>> blocks_; ///< of cells that hold samples
   std::vector<int> block_of_cell_;                  ///< -1 where there is none
   Eigen::VectorXd diagonal_;

@@ -2,6 +2,7 @@
 #include "poisson/solver/level_system.h"
 #include "poisson/octree/splat.h"
 #include "poisson/samples/exact_sum.h"
+#include "poisson/solver/expected_values.h"
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -54,11 +55,11 @@ struct LevelSystem::Block {
   Norms residual() const;
 };
 
-LevelSystem::LevelSystem(const BrickLevel& level, const SampleLevel& samples, int finest, float point_weight,
-                         int threads)
+LevelSystem::LevelSystem(const BrickLevel& level, const SampleLevel& samples, Array<float>&& expected, int finest,
+                         float point_weight, int threads)
     : level_(level), ranges_(sampleRanges(level, samples.codes, samples.depth, threads)), samples_(samples),
       scale_(std::ldexp(1.f, level.depth - finest)), weights_(screeningWeights(samples, scale_, point_weight, threads)),
-      threads_(threads)
+      expected_(std::move(expected)), threads_(threads)
 {
   for (int k = 0; k < 27; ++k)
     std::fill_n(laplacian_rows_[k], own_nodes, laplacian[axesOf(k)]);
@@ -75,8 +76,12 @@ void LevelSystem::assemble(Index brick, const Neighbors& neighbors, Block& block
       continue;
     const std::uint64_t last_cells = (o | o << 3) << finer; // of the neighbour, on the axes where it is below
     for (const std::uint32_t i : ranges_[n])
-      if ((samples_.codes[i] & last_cells) == last_cells && weights_[i] > 0.f)
-        addScreening(HatWeights(samples_.samples[i].position * scale_ - origin), weights_[i], block.rows);
+      if ((samples_.codes[i] & last_cells) == last_cells && weights_[i] > 0.f) {
+        const HatWeights hat(samples_.samples[i].position * scale_ - origin);
+        addScreening(hat, weights_[i], block.rows);
+        if (const float expected = expectedOf(expected_, i); expected != 0.f)
+          addExpected(hat, weights_[i] * expected, block.right);
+      }
   }
   for (int i = 0; i < own_nodes; ++i)
     block.inverse[i] = 1.f / block.rows[offset_self][i];
@@ -85,8 +90,8 @@ void LevelSystem::assemble(Index brick, const Neighbors& neighbors, Block& block
 void LevelSystem::load(Index brick, const NodeField& b, const NodeField& x, Block& block) const
 {
   const Neighbors neighbors = level_.neighborsOf(brick);
-  assemble(brick, neighbors, block);
   std::copy_n(b.own(brick), own_nodes, block.right);
+  assemble(brick, neighbors, block);
   loadHalo(level_, neighbors, x, block.x);
   block.fixed = fixedNodes(neighbors);
   block.bounded = bounded_.empty() ? 0 : bounded_[brick];
@@ -237,7 +242,7 @@ void LevelSystem::addMultiplierUpdate(const NodeField& x, NodeField& right) cons
       if (isolated * weights_[i] <= 0.f)
         continue;
       const HatWeights hat = HatWeights::inBrick(s.position * scale_ - origin);
-      const float multiplier = -isolated * weights_[i] * hat.interpolate(nodes);
+      const float multiplier = isolated * weights_[i] * (expectedOf(expected_, i) - hat.interpolate(nodes));
       for (int k = 0; k < 8; ++k)
         block.at(hat.x + (k & 1), hat.y + (k >> 1 & 1), hat.z + (k >> 2)) += multiplier * hat.value[k];
     }

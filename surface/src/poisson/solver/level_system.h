@@ -10,9 +10,11 @@ namespace fresco::poisson {
 /// them are no unknowns: they keep the value interpolated from the coarser depth.
 class LevelSystem {
 public:
-  /// @param samples of the level's depth or finer
-  /// @param finest  depth whose cells are the unit of the samples' positions
-  LevelSystem(const BrickLevel& level, const SampleLevel& samples, int finest, float point_weight, int threads);
+  /// @param samples  of the level's depth or finer
+  /// @param expected of the samples, see expectedValues()
+  /// @param finest   depth whose cells are the unit of the samples' positions
+  LevelSystem(const BrickLevel& level, const SampleLevel& samples, Array<float>&& expected, int finest,
+              float point_weight, int threads);
 
   /// Gauss-Seidel sweeps. The bricks of one colour are independent of each other, so the result does not depend on the
   /// number of threads.
@@ -29,9 +31,10 @@ public:
   };
   Norms residual(const NodeField& b, const NodeField& x) const;
 
-  /// A step of the method of multipliers (Hestenes 1969, Powell 1969) for the constraints chi(p_i) = 0: adds -weight
-  /// chi(p_i) B_j(p_i) at the nodes j around each sample that is isolated at this depth. The finer depths do not see
-  /// such a sample between their own, so what it still lacks goes into their right-hand sides.
+  /// A step of the method of multipliers (Hestenes 1969, Powell 1969) for the constraints chi(p_i) = e_i, what sample i
+  /// expects: adds weight (e_i - chi(p_i)) B_j(p_i) at the nodes j around each sample that is isolated at this depth.
+  /// The finer depths do not see such a sample between their own, so what it still lacks goes into their right-hand
+  /// sides.
   void addMultiplierUpdate(const NodeField& x, NodeField& right) const;
 
 private:
@@ -47,6 +50,7 @@ private:
   const SampleLevel& samples_;
   float scale_;          ///< cells of the level per finest cell
   Array<float> weights_; ///< see screeningWeights()
+  Array<float> expected_;
   MatrixRows laplacian_rows_;
   std::vector<std::uint64_t> bounded_; ///< by brick, bits ownIndex(): see keepFree(); empty: none
   int threads_;

@@ -62,4 +62,15 @@ inline void addScreening(const HatWeights& hat, float weight, MatrixRows& rows)
       row[offsetIndex((k & 1) - 1, (k >> 1 & 1) - 1, (k >> 2) - 1) * own_nodes] += weighted * hat.value[k];
   }
 }
+
+/// Adds alpha f_i s_i e_i B_j(p_i) to the right-hand side of the nodes j that the brick owns, of a sample that expects
+/// e_i where other samples expect 0.
+inline void addExpected(const HatWeights& hat, float weighted, float* right)
+{
+  for (int j = 0; j < 8; ++j) {
+    const int x = hat.x + (j & 1), y = hat.y + (j >> 1 & 1), z = hat.z + (j >> 2);
+    if (((x | y | z) & ~3) == 0)
+      right[ownIndex(x, y, z)] += weighted * hat.value[j];
+  }
+}
 } // namespace fresco::poisson

@@ -2,22 +2,36 @@
 #include "poisson/solver/solve.h"
 #include "poisson/samples/sample_ghosts.h"
 #include "poisson/solver/base_solver.h"
+#include "poisson/solver/expected_values.h"
 #include "poisson/solver/level_system.h"
 #include "poisson/solver/low_pass_filter.h"
 #include "poisson/solver/transfer.h"
 #include <algorithm>
 #include <cmath>
 namespace fresco::poisson {
-SampleLevels sampleLevels(SampleLevel&& finest, const Octree& tree, int threads)
+SampleLevels sampleLevels(SampleLevel&& finest, const Array<Eigen::Vector3f>& normals, const Octree& tree, int threads)
 {
   SampleLevels levels(finest.depth + 1);
   levels.back() = std::move(finest);
   for (int d = levels.back().depth; d > 2; --d)
-    levels[d - 1] = coarsen(levels[d], tree, threads);
+    levels[d - 1] = coarsen(levels[d], tree, threads, d == tree.depth ? &normals : nullptr);
   return levels;
 }
 
 namespace {
+LevelSystem systemOf(const PoissonProblem& problem, int depth, const VolumetricOptions& options)
+{
+  const Octree& tree = problem.tree;
+  const BrickLevel& level = tree.levels[depth];
+  const SampleLevel& joined = problem.levels[std::min(depth + 1, tree.depth)];
+  return {level,
+          joined,
+          expectedValues(level, problem.levels[depth], joined, tree.depth, options.threads),
+          tree.depth,
+          options.point_weight,
+          options.threads};
+}
+
 /// The depths at which the octree is complete.
 NodeField solveComplete(const PoissonProblem& problem, const VolumetricOptions& options)
 {
@@ -31,9 +45,7 @@ NodeField solveComplete(const PoissonProblem& problem, const VolumetricOptions& 
   if (tree.partition)
     broadcastNodes(tree.exchange(), tree.levels[depth], chi);
   if (free_places.map)
-    LevelSystem(tree.levels[depth], levels[std::min(depth + 1, tree.depth)], tree.depth, options.point_weight,
-                options.threads)
-        .keepFree(free_places, constraints.fine[depth], options.iterations, chi);
+    systemOf(problem, depth, options).keepFree(free_places, constraints.fine[depth], options.iterations, chi);
   return chi;
 }
 } // namespace
@@ -44,7 +56,7 @@ Solution solve(const PoissonProblem& problem, const VolumetricOptions& options, 
   Solution solution;
   solution.chi.resize(tree.levels.size());
   solution.chi[tree.full_depth] = solveComplete(problem, options);
-  for (int d = 2; d <= std::min(tree.full_depth + 1, tree.depth - 1); ++d)
+  for (int d = 2; d <= std::min(tree.full_depth, tree.depth - 1); ++d)
     levels[d] = SampleLevel();
   for (int d = tree.full_depth + 1; d <= tree.depth; ++d) {
     report(progress, "solve", 0.35 + 0.35 * (d - tree.full_depth) / (tree.depth - tree.full_depth + 1));
@@ -53,8 +65,7 @@ Solution solve(const PoissonProblem& problem, const VolumetricOptions& options, 
     NodeField& chi = solution.chi[d] = NodeField(level);
     interpolateLevel(tree, d, solution.chi[d - 1], options.threads,
                      [&](Index b, const float* nodes) { chi.store(level, b, nodes); });
-    const SampleLevel& joined = levels[std::min(d + 1, tree.depth)];
-    LevelSystem system(level, joined, tree.depth, options.point_weight, options.threads);
+    LevelSystem system = systemOf(problem, d, options);
     system.smooth(constraints.fine[d], options.iterations, chi);
     if (d == tree.depth) {
       const LevelSystem::Norms norms = system.residual(constraints.fine[d], chi);
@@ -63,10 +74,11 @@ Solution solve(const PoissonProblem& problem, const VolumetricOptions& options, 
     system.keepFree(free_places, constraints.fine[d], options.iterations, chi);
     if (d < tree.depth)
       system.addMultiplierUpdate(chi, constraints.own[d]);
-    LowPassFilter(level, joined, tree.depth, options.threads).apply(chi, constraints.fine[d]);
+    LowPassFilter(level, levels[std::min(d + 1, tree.depth)], tree.depth, options.threads)
+        .apply(chi, constraints.fine[d]);
     constraints.fine[d] = NodeField();
-    if (d + 1 < tree.depth)
-      levels[d + 1] = SampleLevel();
+    if (d < tree.depth)
+      levels[d] = SampleLevel();
   }
   return solution;
 }

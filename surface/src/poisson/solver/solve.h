@@ -10,7 +10,8 @@ namespace fresco::poisson {
 /// Samples joined in the cells of each depth, by depth.
 using SampleLevels = std::vector<SampleLevel>;
 
-SampleLevels sampleLevels(SampleLevel&& finest, const Octree& tree, int threads);
+/// @param normals of the finest samples
+SampleLevels sampleLevels(SampleLevel&& finest, const Array<Eigen::Vector3f>& normals, const Octree& tree, int threads);
 
 /// What determines chi.
 struct PoissonProblem {

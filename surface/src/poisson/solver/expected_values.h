@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include "poisson/octree/octree.h"
+#include "poisson/samples/samples.h"
+namespace fresco::poisson {
+/// What chi of a depth is expected to be at the samples, as its cells resolve it: 1/2 less the share of the solid in
+/// what a hat function around the sample covers. At a surface that is 0. Cells that hold both sides of a sheet of
+/// thickness t, in cells, see mostly the space around it: from one of its sides
+///
+///   1/2 - integral of 1 - x over 0..t  =  1/2 (1 - t)^2,
+///
+/// and the opposite around a gap. Held at 0 there, chi would be about 0 in all the empty space beside a sheet, where no
+/// finer depth corrects it. Of the samples in the eight cells around a node, with their mean normal n, and with m the
+/// mean of n_i . (p_i - mean p), t/2 between the sides of a sheet and -t/2 in a gap, it is
+///
+///   1/2 max(0, 1 - 2 |n|) max(0, 1 - 2 |m|)^2 m / (|m| + 0.02),
+///
+/// 0 at surfaces, edges and corners.
+/// @param cells   samples joined in the cells of `level`, with fluxes; at the finest depth, without, 0 is expected
+/// @param samples that hold chi, of the level's depth or finer
+/// @param finest  depth whose cells are the unit of the samples' positions
+/// @return by sample, see expectedOf()
+Array<float> expectedValues(const BrickLevel& level, const SampleLevel& cells, const SampleLevel& samples, int finest,
+                            int threads);
+
+inline float expectedOf(const Array<float>& values, Index sample) { return values.empty() ? 0.f : values[sample]; }
+} // namespace fresco::poisson
