@@ -4,7 +4,7 @@
 fresco_packages=(
   g++ cmake ninja-build ccache pkg-config ca-certificates
   libpcl-dev libvtk9-dev libopencv-dev libeigen3-dev libembree-dev
-  libtinygltf-dev libjpeg-dev libpng-dev libwebp-dev zlib1g-dev liblzf-dev libpugixml-dev nlohmann-json3-dev
+  libtinygltf-dev libjpeg-dev libpng-dev libwebp-dev zlib1g-dev liblzf-dev libmeshoptimizer-dev libpugixml-dev nlohmann-json3-dev
   libegl-dev libglew-dev libegl-mesa0 libgl1-mesa-dri
 )
 

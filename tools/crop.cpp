@@ -16,7 +16,7 @@ using namespace fresco;
 struct CropOptions {
   CropRegion region;
   std::string polygon;
-  int quality = 0;
+  GltfOptions gltf;
 
   void declare(Args& args)
   {
@@ -44,7 +44,7 @@ struct CropOptions {
     };
     height("above", region.low, "keep what lies above this height");
     height("below", region.high, "keep what lies below this height");
-    args.option("quality", quality, "JPEG quality of a texture's pictures, 1..100; 0 = PNG, without loss");
+    args.option("quality", gltf.jpeg_quality, "JPEG quality of a texture's pictures, 1..100; 0 = PNG, without loss");
   }
 };
 
@@ -78,13 +78,13 @@ void cropCloud(const std::vector<std::string>& files, const CropRegion& region, 
 
 void cropSurface(const std::vector<std::string>& files, const CropOptions& options, bool quiet)
 {
-  TexturedMesh model = readModel(files[0]);
-  const Index before = model.mesh.faceCount();
-  model = cropModel(std::move(model), options.region);
-  const Index faces = model.mesh.faceCount();
+  GltfModel model = readModel(files[0]);
+  const Index before = model.model.mesh.faceCount();
+  model.model = cropModel(std::move(model.model), options.region);
+  const Index faces = model.model.mesh.faceCount();
   if (faces == 0)
     refuseEmpty(files[0]);
-  writeOutputs([&] { writeModel(files[1], std::move(model), options.quality); });
+  writeOutputs([&] { writeModel(files[1], std::move(model), options.gltf); });
   inform(quiet, concat(faces, " of ", before, " faces"));
 }
 

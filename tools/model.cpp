@@ -47,8 +47,8 @@ int main(int argc, char** argv)
         "datasets and phones, a COLMAP project, photographs, a video. -dry_run tells what it is taken for. Of scans "
         "with\n"
         "photographs, poses.txt ties them to each other; only its first pose is used unless -use_poses is given.\n"
-        "Writes model.obj/.mtl/.png, model.glb, mesh.ply, poses.txt, snapshots/*.png, report.html and\n"
-        "report.json to OUT_DIR; OUT_DIR/work holds what -resume needs.");
+        "Writes model.glb (light: fewer faces, with a normal map), model_full.glb, model.obj/.mtl/.png, mesh.ply,\n"
+        "poses.txt, snapshots/*.png, report.html and report.json to OUT_DIR; OUT_DIR/work holds what -resume needs.");
     args.flag("use_poses", options.use_poses,
               "take the poses of the scans (poses.txt) or of RGB-D frames as they are: neither found nor refined");
     args.flag("poses", options.use_poses, "the same as -use_poses");
@@ -76,6 +76,9 @@ int main(int argc, char** argv)
         "as many as memory holds");
     args.option("atlas", options.atlas,
                 "largest side of a picture of the texture, 128..16384 pixels; a larger texture has several; 0 = 8192");
+    args.option("faces", options.faces, "most faces of model.glb, the light model, at least 1");
+    args.flag("compress", options.compress,
+              "compress model.glb by EXT_meshopt_compression, which not all programs read");
     args.option("quality", options.quality, "JPEG quality of the texture's pictures, 1..100; 0 = PNG, without loss");
     args.option(
         "panorama_direction", options.panorama_direction,

@@ -1,59 +1,132 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "support/tool.h"
 #include <fresco/core/require.h>
+#include <fresco/deliverables/core/detail_baking.h>
 #include <fresco/deliverables/core/model_file.h>
 #include <fresco/deliverables/core/simplification.h>
 #include <fresco/io/file.h>
 #include <fresco/io/formats.h>
 #include <fresco/io/mesh_io.h>
+#include <fresco/io/pose_file.h>
 namespace {
 using namespace fresco;
 
-/// Says where what was asked for was not possible.
-void warnOfBounds(const SimplificationFigures& figures, Index before, Index after, Index wanted)
+struct SimplifyOptions {
+  int faces = 0, atlas = LightModelOptions().atlas, atlases = LightModelOptions().atlases, quality = 0;
+  double error = 0, texel = 0;
+  bool compress = false;
+  std::string full, to_world;
+
+  void declare(Args& args)
+  {
+    args.option("faces", faces, "faces that are to be left, at least 1; 0 = as few as -error allows");
+    args.option("error", error,
+                "most that a vertex may be off the surface it stands for (RMS), mesh units, >= 0; 0 = any");
+    args.option("from", full,
+                "full model whose colours and normals are baked into a new atlas with a normal map; OUT is .glb");
+    args.option("texel", texel, "with -from: side of a texel, mesh units, >= 0; 0 = that of the full model");
+    args.option("atlas", atlas, "with -from: side of an atlas, 128..16384 pixels");
+    args.option("atlases", atlases, "with -from: most atlases, at least 1; texels are made larger until they suffice");
+    args.option("quality", quality, "JPEG quality of the pictures, 1..100; 0 = 90 with -from, else PNG without loss");
+    args.flag("compress", compress, "compress OUT.glb by EXT_meshopt_compression, which not all programs read");
+    args.option(
+        "to_world", to_world,
+        "file of 16 numbers, rows of the matrix that takes the model into the world: kept in the node of a .glb");
+  }
+
+  /// @throws UsageError
+  void validate(const std::vector<std::string>& files) const
+  {
+    const bool glb = extension(files[1]) == ".glb";
+    if (faces == 0 && error == 0 && full.empty())
+      throw UsageError("one of -faces, -error, -from is needed");
+    if (!glb && (!full.empty() || !to_world.empty() || compress))
+      throw UsageError(files[1] + ": the output's extension must be .glb with -from, -to_world and -compress");
+    if (!glb && !isWritable(files[1], FileKind::mesh) && !isWritable(files[1], FileKind::textured_mesh))
+      throw UsageError(files[1] + ": the output's extension must be " + writableExtensions(FileKind::mesh) + ", or " +
+                       writableExtensions(FileKind::textured_mesh));
+    requireDistinct({files[1]}, {files[0], full, to_world});
+  }
+};
+
+GltfOptions gltfOptions(const SimplifyOptions& options)
 {
-  if (wanted >= before)
-    inform(false, concat("warning: the model has ", before, " faces only, so they stay"));
-  else if (figures.exhausted)
-    inform(false, concat("warning: ", before, " faces became ", after,
-                         ": fewer would break a bound, make holes, flipped faces or slivers"));
+  GltfOptions gltf;
+  gltf.jpeg_quality = options.quality > 0 || options.full.empty() ? options.quality : 90;
+  gltf.compact = true;
+  gltf.compress = options.compress;
+  if (options.to_world.empty())
+    return gltf;
+  const std::vector<Pose> poses = readPoses(options.to_world);
+  if (poses.size() != 1 || !poses[0])
+    throw std::runtime_error(options.to_world + ": is not one matrix of 16 numbers");
+  gltf.T_world_model = *poses[0];
+  return gltf;
+}
+
+/// Says where what was asked for was not possible.
+void informOfBounds(const SimplificationFigures& figures, Index before, Index after, const SimplifyOptions& options)
+{
+  const auto said = [&] { return concat(before, " faces became ", after); };
+  if (options.faces >= before)
+    return inform(false, concat("warning: the model has ", before, " faces only, so they stay"));
+  if (figures.exhausted)
+    inform(false, concat("warning: ", said(), ": fewer would ", options.error > 0 ? "exceed the error, " : "",
+                         "make holes, flipped faces or slivers"));
+}
+
+TexturedMesh simplified(TexturedMesh model, const SimplifyOptions& options, const CommonOptions& common)
+{
+  const Index before = model.mesh.faceCount();
+  SimplificationFigures figures;
+  model = simplifyModel(std::move(model), {options.faces, options.error, common.threads}, &figures,
+                        printProgress(common.quiet));
+  if (!common.quiet)
+    informOfBounds(figures, before, model.mesh.faceCount(), options);
+  inform(common.quiet, concat(model.mesh.faceCount(), " faces of ", before, ", error ", format("%.3g", figures.error)));
+  return model;
+}
+
+/// The model of fewer faces in a new atlas with what the full one shows.
+/// @param gltf is told whether it is to be lit
+GltfModel baked(TexturedMesh model, const SimplifyOptions& options, const CommonOptions& common, GltfOptions& gltf)
+{
+  if (options.faces > 0 || options.error > 0) {
+    model.texcoord_faces.resize(3, 0); // its seams are of no account
+    model = simplified(std::move(model), options, common);
+  }
+  const TexturedMesh full = readModel(options.full).model;
+  gltf.lit = !isTextured(full) && full.mesh.colors.cols() == 0;
+  LightModelOptions light;
+  light.texel = options.texel;
+  light.atlas = options.atlas;
+  light.atlases = options.atlases;
+  light.threads = common.threads;
+  return bakeLightModel(std::move(model.mesh), full, light, printProgress(common.quiet));
 }
 
 void run(int argc, char** argv)
 {
-  int faces = 0, quality = 0;
-  SimplificationOptions options;
+  SimplifyOptions options;
   CommonOptions common;
-  Args args(
-      "fresco_simplify MODEL OUT -faces N | -error M [options]",
-      "Makes a mesh or a textured model lighter: fewer faces, the same borders, creases and texture seams.\nMODEL: " +
-          readableExtensions(FileKind::mesh) + ", or textured " + readableExtensions(FileKind::textured_mesh) +
-          ".\nOUT: " + writableExtensions(FileKind::mesh) + ", or textured " +
-          writableExtensions(FileKind::textured_mesh) + ".");
-  args.option("faces", faces, "faces that are to be left, at least 1; 0 = as few as -error allows");
-  args.option("error", options.error,
-              "most that a vertex may be off the surface it stands for (RMS), mesh units, >= 0; 0 = any");
-  args.option("quality", quality, "JPEG quality of a texture's pictures, 1..100; 0 = PNG, without loss");
+  Args args("fresco_simplify MODEL OUT -faces N | -error M | -from FULL [options]",
+            "Makes a mesh or a textured model lighter: fewer faces, the same borders, creases and texture "
+            "seams.\nMODEL, FULL: " +
+                readableExtensions(FileKind::mesh) + ", or textured " + readableExtensions(FileKind::textured_mesh) +
+                ".\nOUT: " + writableExtensions(FileKind::mesh) + ", or textured " +
+                writableExtensions(FileKind::textured_mesh) + ".");
+  options.declare(args);
   common.declare(args);
-  args.note("Example: fresco_simplify model.glb light.glb -faces 100000");
+  args.note("Example: fresco_simplify model_full.glb light.glb -faces 100000 -from model_full.glb");
   const std::vector<std::string> files = args.parse(argc, argv, 2);
-  options.faces = faces;
-  options.threads = common.threads;
-  if (faces == 0 && options.error == 0)
-    throw UsageError("one of -faces and -error is needed");
-  if (!isWritable(files[1], FileKind::mesh) && !isWritable(files[1], FileKind::textured_mesh))
-    throw UsageError(files[1] + ": the output's extension must be " + writableExtensions(FileKind::mesh) + ", or " +
-                     writableExtensions(FileKind::textured_mesh));
-  requireDistinct({files[1]}, {files[0]});
-  TexturedMesh model = readModel(files[0]);
-  const Index before = model.mesh.faceCount();
-  SimplificationFigures figures;
-  model = simplifyModel(std::move(model), options, &figures, printProgress(common.quiet));
-  const Index after = model.mesh.faceCount();
-  writeOutputs([&] { writeModel(files[1], std::move(model), quality); });
-  if (!common.quiet)
-    warnOfBounds(figures, before, after, options.faces);
-  inform(common.quiet, concat(after, " faces of ", before, ", error ", format("%.3g", figures.error)));
+  options.validate(files);
+  GltfOptions gltf = gltfOptions(options);
+  GltfModel model = readModel(files[0]);
+  if (options.full.empty())
+    model.model = simplified(std::move(model.model), options, common);
+  else
+    model = baked(std::move(model.model), options, common, gltf);
+  writeOutputs([&] { writeModel(files[1], std::move(model), gltf); });
 }
 } // namespace
 

@@ -7,29 +7,33 @@
 namespace fresco {
 bool isTextured(const TexturedMesh& model) { return (model.face_atlas.array() >= 0).any(); }
 
-TexturedMesh readModel(const std::string& path)
+GltfModel readModel(const std::string& path)
 {
-  TexturedMesh model;
-  if (isReadable(path, FileKind::textured_mesh))
-    model = readTexturedMesh(path);
-  if (!isTextured(model)) {
-    TriangleMesh mesh = extension(path) == ".glb" ? std::move(model.mesh) : readMesh(path);
-    model = {};
-    model.mesh = std::move(mesh);
+  GltfModel read;
+  if (extension(path) == ".glb")
+    read = readGltf(path);
+  else if (isReadable(path, FileKind::textured_mesh))
+    read.model = readTexturedMesh(path);
+  if (!isTextured(read.model)) {
+    TriangleMesh mesh = extension(path) == ".glb" ? std::move(read.model.mesh) : readMesh(path);
+    read = {};
+    read.model.mesh = std::move(mesh);
   }
-  if (model.mesh.faceCount() == 0)
+  if (read.model.mesh.faceCount() == 0)
     throw std::runtime_error(path + ": has no faces");
-  return model;
+  return read;
 }
 
-void writeModel(const std::string& path, TexturedMesh model, int jpeg_quality)
+void writeModel(const std::string& path, GltfModel written, const GltfOptions& options)
 {
-  if (!isWritable(path, FileKind::textured_mesh) || (!isTextured(model) && extension(path) != ".glb"))
+  TexturedMesh& model = written.model;
+  const bool glb = extension(path) == ".glb";
+  if (!isWritable(path, FileKind::textured_mesh) || (!isTextured(model) && !glb))
     return writeMesh(path, model.mesh);
   if (model.texcoord_faces.cols() == 0) {
     model.texcoord_faces = Faces::Constant(3, model.mesh.faceCount(), -1);
     model.face_atlas = Eigen::VectorXi::Constant(model.mesh.faceCount(), -1);
   }
-  writeTexturedMesh(path, model, jpeg_quality);
+  glb ? writeGltf(path, written, options) : writeTexturedMesh(path, model, options.jpeg_quality);
 }
 } // namespace fresco

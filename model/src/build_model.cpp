@@ -23,6 +23,7 @@ void validate(const ModelInput& input, const ModelOptions& options)
   require(options.bilateral >= 0 && options.trim_levels >= 0 && options.texel >= 0, "model: an option is negative");
   require(options.atlas == 0 || (options.atlas >= 128 && options.atlas <= 16384), "model: atlas ", options.atlas,
           " is neither 0 nor in 128..16384");
+  require(options.faces >= 1, "model: ", options.faces, " faces of the light model");
   require(options.tile_faces >= 0, "model: ", options.tile_faces, " faces of a tile");
   require(options.quality >= 0 && options.quality <= 100, "model: quality ", options.quality, " is not in 0..100");
   require(options.width >= 160 && options.height >= 120, "model: pictures of ", options.width, "x", options.height,
@@ -78,9 +79,10 @@ std::vector<Stage> stagesOf(const Job& job)
   add({"texture",
        concat(options.texel, " ", options.atlas, " ", options.quality, " ", options.panorama_direction, " ",
               options.panorama_mirrored, " ", options.tile_faces),
-       {files.model_obj, files.model_glb, files.viewer_glb},
+       {files.model_obj, files.full_glb},
        step(makeTexture)},
       {"texture"});
+  add({"light", concat(options.faces, " ", options.compress), {files.model_glb, files.viewer_glb}, step(makeLight)}, {});
   add({"pictures", concat(options.width, "x", options.height), pictureFiles(job), step(makePictures)}, {});
   return stages;
 }

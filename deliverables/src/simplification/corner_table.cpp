@@ -26,6 +26,7 @@ CornerTable::CornerTable(TexturedMesh& model)
 std::vector<int> CornerTable::neighbors(int vertex) const
 {
   std::vector<int> found;
+  found.reserve(24); // twice the usual number
   forFaces(vertex, [&](int face, int k) {
     found.push_back(model_.mesh.faces((k + 1) % 3, face));
     found.push_back(model_.mesh.faces((k + 2) % 3, face));

@@ -15,6 +15,7 @@ struct ModelFiles {
   std::string cameras = work + "/cameras";         ///< of photographs, in the frame of the points
   std::string poses = folder + "/poses.txt", mesh = folder + "/mesh.ply";
   std::string model_obj = folder + "/model.obj", model_glb = folder + "/model.glb";
+  std::string full_glb = folder + "/model_full.glb";
   std::string report_json = folder + "/report.json", report_html = folder + "/report.html";
 };
 } // namespace fresco::model

@@ -59,6 +59,10 @@ Figures makeOptimizedSurface(const Job& job, const Progress& progress);
 /// Texture from photographs and panoramas, else from the points: reads `files.mesh`, writes the model and the masks.
 Figures makeTexture(const Job& job, const Progress& progress);
 
+/// The model as it is handed over: reads `files.full_glb`, writes `files.model_glb`, of fewer faces, with a normal map,
+/// and `files.viewer_glb`, smaller still.
+Figures makeLight(const Job& job, const Progress& progress);
+
 /// Pictures of the model from inside and above: reads `files.model_obj`, writes PNG files into `files.snapshots`.
 /// @return with an array "pictures" of {file, title, textured, eye, look, angle} and the upright direction "up"
 Figures makePictures(const Job& job, const Progress& progress);

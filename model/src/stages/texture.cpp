@@ -136,10 +136,7 @@ void removeOldPictures(const ModelFiles& files, std::size_t masks)
 
 TexturedModelWriter writerOf(const Job& job)
 {
-  constexpr int viewer_quality = 90; // smaller, since the report has it inside
-  return TexturedModelWriter({{job.files.model_obj, job.options.quality},
-                              {job.files.model_glb, job.options.quality},
-                              {job.files.viewer_glb, viewer_quality}});
+  return TexturedModelWriter({{job.files.model_obj, job.options.quality}, {job.files.full_glb, job.options.quality}});
 }
 
 AtlasSink sinkOf(TexturedModelWriter& writer)

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "io/texture/gltf_loader.h"
+#include "io/texture/gltf_compression.h"
 #include <algorithm>
 #include <filesystem>
 #include <fresco/core/point_table.h>
@@ -76,6 +77,9 @@ tinygltf::Model loadGltf(std::string_view content, const std::string& folder)
   if (content.size() < header)
     fail("not binary glTF");
   checkJson(content.substr(header, loadScalar<std::uint32_t>(content.data() + 12)));
+  std::string plain;
+  if (isCompressedGlb(content))
+    content = plain = uncompressedGlb(content);
   tinygltf::TinyGLTF loader;
   loader.SetImageLoader(keepImageBytes, nullptr);
   ExternalFiles files{folder};

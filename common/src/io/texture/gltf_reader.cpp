@@ -133,10 +133,12 @@ public:
     addFaces(corners, vertices, texcoords.cols() > 0 ? atlas : -1, first_texcoord);
   }
 
-  TexturedMesh take()
+  GltfModel take()
   {
     if (faces_.empty())
       fail("no triangles");
+    if (!normal_maps_.empty())
+      normal_maps_.resize(model_.atlases.size());
     TriangleMesh& mesh = model_.mesh;
     mesh.vertices = Eigen::Map<const Points>(positions_[0].data(), 3, positions_.size());
     if (has_normals_)
@@ -150,7 +152,7 @@ public:
     model_.texcoords.resize(2, texcoords_.size());
     for (Index i = 0; i < model_.texcoords.cols(); ++i)
       model_.texcoords.col(i) = texcoords_[i];
-    return std::move(model_);
+    return {std::move(model_), std::move(normal_maps_)};
   }
 
 private:
@@ -273,20 +275,32 @@ private:
     }
   }
 
+  /// Image of a texture, that exists.
+  int sourceOf(int texture) const
+  {
+    const int source = at(gltf_.textures, texture, "texture").source;
+    at(gltf_.images, source, "image");
+    return source;
+  }
+
   /// Atlas of the material's base colour, -1 if it has none.
   int atlasOf(const tinygltf::Primitive& primitive)
   {
     if (primitive.material < 0)
       return -1;
-    const int texture = at(gltf_.materials, primitive.material, "material").pbrMetallicRoughness.baseColorTexture.index;
+    const tinygltf::Material& material = at(gltf_.materials, primitive.material, "material");
+    const int texture = material.pbrMetallicRoughness.baseColorTexture.index;
     if (texture < 0)
       return -1;
-    const int source = at(gltf_.textures, texture, "texture").source;
-    const tinygltf::Image& image = at(gltf_.images, source, "image");
+    const int source = sourceOf(texture);
     int& atlas = atlas_of_image_[source];
     if (atlas < 0) {
       atlas = model_.atlases.size();
-      model_.atlases.push_back(readImageOf(gltf_, image));
+      model_.atlases.push_back(readImageOf(gltf_, gltf_.images[source]));
+      if (const int map = material.normalTexture.index; map >= 0) {
+        normal_maps_.resize(model_.atlases.size());
+        normal_maps_.back() = readImageOf(gltf_, gltf_.images[sourceOf(map)]);
+      }
     }
     return atlas;
   }
@@ -298,6 +312,7 @@ private:
   std::vector<int> atlas_of_image_;
   std::size_t elements_left_;
   TexturedMesh model_;
+  std::vector<Image> normal_maps_;
   std::unordered_map<std::array<float, 3>, std::size_t, PositionHash> known_;
   std::vector<Eigen::Vector3f> positions_, normals_;
   std::vector<Color> colors_;
@@ -352,7 +367,7 @@ std::vector<PlacedMesh> collectMeshes(const tinygltf::Model& gltf, const tinyglt
 }
 } // namespace
 
-TexturedMesh parseGlb(std::string_view content, const std::string& folder)
+GltfModel parseGlb(std::string_view content, const std::string& folder)
 {
   const tinygltf::Model gltf = loadGltf(content, folder);
   for (const std::string& name : gltf.extensionsRequired)

@@ -1,119 +1,59 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "io/texture/texture_io.h"
+#include "io/texture/gltf_compression.h"
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <fresco/core/require.h>
 #include <fresco/io/file.h>
 #include <limits>
+#include <sstream>
 #include <streambuf>
 #include <tiny_gltf.h>
-#include <unordered_map>
 #include <utility>
 namespace fresco::io {
 namespace {
-using Color16 = Eigen::Matrix<std::uint16_t, 4, 1>;
-
-/// Vertices and triangles of one primitive.
-struct Part {
-  std::vector<Eigen::Vector3f> positions, normals;
-  std::vector<Eigen::Vector2f> texcoords; ///< v points down
-  std::vector<Color16> colors;            ///< linear RGBA
-  std::vector<std::uint16_t> indices;
-};
-
-/// Linear light of an sRGB byte as 16 bit (IEC 61966-2-1).
-std::uint16_t linearLight(std::uint8_t value)
-{
-  const double s = value / 255.0;
-  const double linear = s <= 0.04045 ? s / 12.92 : std::pow((s + 0.055) / 1.055, 2.4);
-  return std::lround(65535.0 * linear);
-}
-
-/// Cuts the faces with one atlas into parts, face after face: each pair of vertex and texture coordinate gets one place in
-/// a part.
-class PartBuilder {
-public:
-  /// @param atlas -1: the faces without texture
-  /// @param faces see facesByAtlas()
-  PartBuilder(const TexturedMesh& model, const Groups& faces, int atlas)
-      : model_(model), faces_(faces), textured_(atlas >= 0), at_(faces.begin[atlas + 1]), end_(faces.begin[atlas + 2])
-  {
-    for (int value = 0; value < 256; ++value)
-      linear_[value] = linearLight(value);
-  }
-
-  /// The next part; without indices at the end.
-  Part next()
-  {
-    constexpr std::size_t most_places = 65535; // so that 16 bits hold an index; 65535 itself has a meaning of its own
-    part_ = {};
-    first_.clear();
-    for (; at_ < end_ && places_.size() + 3 <= most_places; ++at_)
-      for (int k = 0, face = faces_.list[at_]; k < 3; ++k)
-        part_.indices.push_back(place(model_.mesh.faces(k, face), textured_ ? model_.texcoord_faces(k, face) : -1));
-    places_.clear();
-    return std::move(part_);
-  }
-
-private:
-  struct Place {
-    int vertex, texcoord, next; ///< next place of the same vertex, -1: none
-  };
-
-  std::uint16_t place(int vertex, int texcoord)
-  {
-    int& first = first_.emplace(vertex, -1).first->second;
-    for (int at = first; at >= 0; at = places_[at].next)
-      if (places_[at].texcoord == texcoord)
-        return at;
-    places_.push_back({vertex, texcoord, first});
-    first = places_.size() - 1;
-    append(vertex, texcoord);
-    return first;
-  }
-
-  void append(int vertex, int texcoord)
-  {
-    const TriangleMesh& mesh = model_.mesh;
-    part_.positions.emplace_back(mesh.vertices.col(vertex));
-    if (mesh.normals.cols() > 0)
-      part_.normals.emplace_back(mesh.normals.col(vertex).normalized());
-    if (textured_)
-      part_.texcoords.emplace_back(model_.texcoords(0, texcoord), 1.f - model_.texcoords(1, texcoord));
-    else if (mesh.colors.cols() > 0)
-      part_.colors.emplace_back(linear_[mesh.colors(0, vertex)], linear_[mesh.colors(1, vertex)],
-                                linear_[mesh.colors(2, vertex)], std::uint16_t{65535});
-  }
-
-  const TexturedMesh& model_;
-  const Groups& faces_;
-  bool textured_;
-  Index at_, end_;                     ///< faces that are in no part yet
-  std::unordered_map<int, int> first_; ///< place of each vertex of the part
-  std::vector<Place> places_;
-  std::uint16_t linear_[256];
-  Part part_;
-};
-
 /// Column by column, as Eigen and glTF have matrices: x y z becomes x z -y.
 const Eigen::Matrix3d R_gltf_model = (Eigen::Matrix3d() << 1, 0, 0, 0, 0, 1, 0, -1, 0).finished();
 
+/// Images as they are stored, of one atlas.
+struct StoredImages {
+  std::vector<std::uint8_t> colors, normals; ///< normals: empty = none
+};
+
+bool isUnit(const Eigen::Vector3f& normal) { return std::abs(normal.squaredNorm() - 1.f) < 1e-3f; }
+bool isFraction(const Eigen::Vector2f& at) { return at.minCoeff() >= 0 && at.maxCoeff() <= 1; }
+
 class GltfBuilder {
 public:
-  explicit GltfBuilder(const TexturedMesh& model) : source_(model), faces_(facesByAtlas(model))
+  GltfBuilder(const GltfScene& scene, const GltfOptions& options)
+      : source_(scene.model), options_(options), faces_(facesByAtlas(scene.model))
   {
     gltf_.asset.version = "2.0";
     gltf_.asset.generator = "fresco";
     gltf_.buffers.emplace_back();
     gltf_.meshes.emplace_back();
+    const TriangleMesh& mesh = scene.model.mesh;
+    if (!scene.normal_maps.empty() && mesh.normals.cols() > 0)
+      tangents_ = texcoordTangents(scene.model);
+    if (options.compact) {
+      const Eigen::Vector3f low = mesh.vertices.rowwise().minCoeff();
+      low_ = low.cast<double>();
+      step_ = (mesh.vertices.colwise() - low).maxCoeff() / 65535.0;
+      step_ = step_ > 0 ? step_ : 1;
+      gltf_.extensionsUsed = gltf_.extensionsRequired = {"KHR_mesh_quantization"};
+    }
   }
 
   /// @param atlas -1: the faces without texture
-  /// @param image of the atlas
-  void addPart(int atlas, const std::vector<std::uint8_t>& image, bool is_jpeg)
+  void addParts(int atlas, const StoredImages& images)
   {
-    PartBuilder builder(source_, faces_, atlas);
-    Part part = builder.next();
+    // Short indices: 65,535 itself has a meaning of its own. A compact model has one part for each atlas.
+    const std::size_t most = options_.compact ? std::numeric_limits<std::int32_t>::max() : 65535;
+    GltfPartBuilder builder(source_, faces_, atlas);
+    const bool mapped = !images.normals.empty() && tangents_.cols() > 0;
+    if (mapped)
+      builder.addTangents(tangents_);
+    GltfPart part = builder.next(most);
     if (part.indices.empty())
       return;
     tinygltf::Material material;
@@ -121,16 +61,19 @@ public:
     surface.metallicFactor = 0.0;
     surface.roughnessFactor = 1.0;
     if (atlas >= 0)
-      surface.baseColorTexture.index = addTexture(image, is_jpeg);
+      surface.baseColorTexture.index = addTexture(images.colors);
     else if (part.colors.empty())
       surface.baseColorFactor = {0.5, 0.5, 0.5, 1.0};
-    if (atlas >= 0 || !part.colors.empty()) { // photographs hold the light already: they are shown as they are
-      material.extensions["KHR_materials_unlit"] = tinygltf::Value(tinygltf::Value::Object());
-      gltf_.extensionsUsed = {"KHR_materials_unlit"};
-    }
+    if (mapped)
+      material.normalTexture.index = addTexture(images.normals);
+    if (!options_.lit && (atlas >= 0 || !part.colors.empty()))
+      setUnlit(material);
     gltf_.materials.push_back(material);
-    for (; !part.indices.empty(); part = builder.next())
-      addPrimitive(part, is_jpeg);
+    for (; !part.indices.empty(); part = builder.next(most)) {
+      if (options_.compress)
+        orderForCompression(part);
+      addPrimitive(part);
+    }
   }
 
   const tinygltf::Model& finish()
@@ -138,10 +81,12 @@ public:
     require(!gltf_.meshes[0].primitives.empty(), "glTF: the model has no faces");
     tinygltf::Node node;
     node.mesh = 0;
-    const Eigen::Vector3d at = R_gltf_model * source_.mesh.origin;
-    Eigen::Matrix4d T = Eigen::Matrix4d::Identity();
-    T.topLeftCorner<3, 3>() = R_gltf_model;
-    T.topRightCorner<3, 1>() = at;
+    Eigen::Matrix4d T_world_mesh = Eigen::Matrix4d::Identity();
+    T_world_mesh.topLeftCorner<3, 3>() *= step_;
+    T_world_mesh.topRightCorner<3, 1>() = source_.mesh.origin + low_;
+    T_world_mesh = options_.T_world_model * T_world_mesh;
+    Eigen::Matrix4d T = T_world_mesh;
+    T.topRows<3>() = R_gltf_model * T_world_mesh.topRows<3>();
     node.matrix.assign(T.data(), T.data() + 16);
     gltf_.nodes.push_back(node);
     tinygltf::Scene scene;
@@ -152,10 +97,19 @@ public:
   }
 
 private:
-  int addTexture(const std::vector<std::uint8_t>& bytes, bool is_jpeg)
+  /// Photographs hold the light already: they are shown as they are.
+  void setUnlit(tinygltf::Material& material)
+  {
+    const std::string name = "KHR_materials_unlit";
+    material.extensions[name] = tinygltf::Value(tinygltf::Value::Object());
+    if (std::find(gltf_.extensionsUsed.begin(), gltf_.extensionsUsed.end(), name) == gltf_.extensionsUsed.end())
+      gltf_.extensionsUsed.push_back(name);
+  }
+
+  int addTexture(const std::vector<std::uint8_t>& bytes)
   {
     tinygltf::Image image;
-    image.mimeType = is_jpeg ? "image/jpeg" : "image/png";
+    image.mimeType = options_.jpeg_quality > 0 ? "image/jpeg" : "image/png";
     image.bufferView = addView(bytes.data(), bytes.size(), 0);
     gltf_.images.push_back(image);
     if (gltf_.samplers.empty()) {
@@ -193,6 +147,10 @@ private:
     tinygltf::Accessor accessor;
     accessor.bufferView = addView(values.data(), values.size() * sizeof(T),
                                   is_index ? TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER : TINYGLTF_TARGET_ARRAY_BUFFER);
+    const std::size_t element =
+        tinygltf::GetComponentSizeInBytes(component_type) * tinygltf::GetNumComponentsInType(type);
+    if (element != sizeof(T)) // vertices begin at multiples of four bytes
+      gltf_.bufferViews.back().byteStride = sizeof(T);
     accessor.componentType = component_type;
     accessor.type = type;
     accessor.count = values.size();
@@ -200,35 +158,77 @@ private:
     return gltf_.accessors.size() - 1;
   }
 
-  /// @param values 0..1
-  int addFractions(const std::vector<Eigen::Vector2f>& values)
+  /// Values -1..1 or 0..1 as integers that stand for them.
+  /// @tparam stored components of an element in the file, of which the last ones may be none
+  template <typename T, int stored, int components>
+  int addNormalized(const std::vector<Eigen::Matrix<float, components, 1>>& values, int component_type, int type)
   {
-    std::vector<Eigen::Matrix<std::uint16_t, 2, 1>> stored;
-    for (const Eigen::Vector2f& value : values)
-      stored.emplace_back((value.array() * 65535.f).round().cwiseMax(0.f).cwiseMin(65535.f).cast<std::uint16_t>());
-    const int accessor = addAccessor(stored, TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT, TINYGLTF_TYPE_VEC2);
+    using Element = std::array<T, stored>;
+    constexpr float largest = std::numeric_limits<T>::max();
+    std::vector<Element> elements;
+    for (const auto& value : values) {
+      Element& element = elements.emplace_back();
+      for (int k = 0; k < components; ++k)
+        element[k] = std::lround(std::min(std::max(value[k], std::is_signed_v<T> ? -1.f : 0.f), 1.f) * largest);
+    }
+    const int accessor = addAccessor(elements, component_type, type);
     gltf_.accessors[accessor].normalized = true;
     return accessor;
   }
 
-  /// @param coarse whether texture coordinates have 16 bits, a tenth of a texel in an atlas of 6,500
-  void addPrimitive(const Part& part, bool coarse)
+  int addPositions(const std::vector<Eigen::Vector3f>& positions)
+  {
+    const auto addBounded = [&](const auto& values, int component_type) {
+      const int accessor = addAccessor(values, component_type, TINYGLTF_TYPE_VEC3);
+      std::vector<double>&low = gltf_.accessors[accessor].minValues, &high = gltf_.accessors[accessor].maxValues;
+      low.assign(3, std::numeric_limits<double>::infinity());
+      high.assign(3, -std::numeric_limits<double>::infinity());
+      for (const auto& value : values)
+        for (int axis = 0; axis < 3; ++axis) {
+          low[axis] = std::min<double>(low[axis], value[axis]);
+          high[axis] = std::max<double>(high[axis], value[axis]);
+        }
+      return accessor;
+    };
+    if (!options_.compact)
+      return addBounded(positions, TINYGLTF_COMPONENT_TYPE_FLOAT);
+    std::vector<std::array<std::uint16_t, 4>> steps;
+    for (const Eigen::Vector3f& position : positions) {
+      const Eigen::Vector3d at = (position.cast<double>() - low_) / step_;
+      steps.push_back({std::uint16_t(std::lround(at.x())), std::uint16_t(std::lround(at.y())),
+                       std::uint16_t(std::lround(at.z())), 0});
+    }
+    return addBounded(steps, TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT);
+  }
+
+  int addIndices(const GltfPart& part)
+  {
+    if (part.positions.size() > 65535)
+      return addAccessor(part.indices, TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT, TINYGLTF_TYPE_SCALAR);
+    const std::vector<std::uint16_t> shorter(part.indices.begin(), part.indices.end());
+    return addAccessor(shorter, TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT, TINYGLTF_TYPE_SCALAR);
+  }
+
+  void addPrimitive(const GltfPart& part)
   {
     tinygltf::Primitive primitive;
     primitive.mode = TINYGLTF_MODE_TRIANGLES;
-    const Eigen::Map<const Points> positions(part.positions[0].data(), 3, part.positions.size());
-    const Eigen::Vector3d low = positions.rowwise().minCoeff().cast<double>();
-    const Eigen::Vector3d high = positions.rowwise().maxCoeff().cast<double>();
-    const int vertices = addAccessor(part.positions, TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_VEC3);
-    gltf_.accessors[vertices].minValues.assign(low.data(), low.data() + 3);
-    gltf_.accessors[vertices].maxValues.assign(high.data(), high.data() + 3);
-    primitive.attributes["POSITION"] = vertices;
-    const auto is_unit = [](const Eigen::Vector3f& normal) { return std::abs(normal.squaredNorm() - 1.f) < 1e-3f; };
-    if (!part.normals.empty() && std::all_of(part.normals.begin(), part.normals.end(), is_unit))
-      primitive.attributes["NORMAL"] = addAccessor(part.normals, TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_VEC3);
-    const auto is_fraction = [](const Eigen::Vector2f& at) { return at.minCoeff() >= 0 && at.maxCoeff() <= 1; };
-    if (!part.texcoords.empty() && coarse && std::all_of(part.texcoords.begin(), part.texcoords.end(), is_fraction))
-      primitive.attributes["TEXCOORD_0"] = addFractions(part.texcoords);
+    primitive.attributes["POSITION"] = addPositions(part.positions);
+    if (!part.normals.empty() && std::all_of(part.normals.begin(), part.normals.end(), isUnit))
+      primitive.attributes["NORMAL"] =
+          options_.compact
+              ? addNormalized<std::int16_t, 4>(part.normals, TINYGLTF_COMPONENT_TYPE_SHORT, TINYGLTF_TYPE_VEC3)
+              : addAccessor(part.normals, TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_VEC3);
+    if (!part.tangents.empty())
+      primitive.attributes["TANGENT"] =
+          options_.compact
+              ? addNormalized<std::int16_t, 4>(part.tangents, TINYGLTF_COMPONENT_TYPE_SHORT, TINYGLTF_TYPE_VEC4)
+              : addAccessor(part.tangents, TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_VEC4);
+    // With JPEG, 16 bits: a tenth of a texel in an atlas of 6,500.
+    const bool coarse = options_.compact || options_.jpeg_quality > 0;
+    if (!part.texcoords.empty() && coarse && std::all_of(part.texcoords.begin(), part.texcoords.end(), isFraction))
+      primitive.attributes["TEXCOORD_0"] =
+          addNormalized<std::uint16_t, 2>(part.texcoords, TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT, TINYGLTF_TYPE_VEC2);
     else if (!part.texcoords.empty())
       primitive.attributes["TEXCOORD_0"] =
           addAccessor(part.texcoords, TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_VEC2);
@@ -237,13 +237,17 @@ private:
       gltf_.accessors[colors].normalized = true;
       primitive.attributes["COLOR_0"] = colors;
     }
-    primitive.indices = addAccessor(part.indices, TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT, TINYGLTF_TYPE_SCALAR);
+    primitive.indices = addIndices(part);
     primitive.material = gltf_.materials.size() - 1;
     gltf_.meshes[0].primitives.push_back(primitive);
   }
 
   const TexturedMesh& source_;
+  const GltfOptions& options_;
   Groups faces_;
+  Eigen::Matrix4Xf tangents_;                     ///< without columns where there are no normal maps
+  Eigen::Vector3d low_ = Eigen::Vector3d::Zero(); ///< position = low + step * what is stored
+  double step_ = 1;
   tinygltf::Model gltf_;
 };
 
@@ -270,23 +274,31 @@ private:
 };
 } // namespace
 
-void writeGlb(const std::string& path, const TexturedMesh& model, std::vector<std::vector<std::uint8_t>> images,
-              bool are_jpeg)
+void writeGlb(const std::string& path, const GltfScene& scene, const GltfOptions& options,
+              std::vector<std::vector<std::uint8_t>> images)
 {
   OutputFile file(path);
-  GltfBuilder builder(model);
-  for (std::size_t i = 0; i < images.size(); ++i)
-    builder.addPart(i, std::exchange(images[i], {}), are_jpeg);
-  builder.addPart(-1, {}, are_jpeg);
+  GltfBuilder builder(scene, options);
+  for (std::size_t i = 0; i < images.size(); ++i) {
+    StoredImages stored{std::exchange(images[i], {}), {}};
+    if (i < scene.normal_maps.size() && !scene.normal_maps[i].empty())
+      stored.normals = storedImage(scene.normal_maps[i], options.jpeg_quality);
+    builder.addParts(i, stored);
+  }
+  builder.addParts(-1, {});
   const tinygltf::Model& gltf = builder.finish();
   // The header of the format counts bytes with 32 bits; one MiB is left for the JSON part.
   if (gltf.buffers[0].data.size() > std::numeric_limits<std::uint32_t>::max() - (std::size_t{1} << 20))
     throw std::runtime_error(path + ": the model is larger than the 4 GiB that binary glTF can hold");
   FileStreambuf buffer(file);
-  std::ostream stream(&buffer);
+  std::ostream plain(&buffer);
+  std::ostringstream packed;
+  std::ostream& stream = options.compress ? packed : plain;
   stream.exceptions(std::ios::badbit | std::ios::failbit);
   if (!tinygltf::TinyGLTF().WriteGltfSceneToStream(&gltf, stream, false, true))
     throw std::runtime_error(path + ": cannot be written as glTF");
+  if (options.compress)
+    file.write(compressedGlb(packed.str()));
   file.commit();
 }
 } // namespace fresco::io

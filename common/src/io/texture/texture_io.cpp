@@ -2,6 +2,7 @@
 #include "io/texture/texture_io.h"
 #include "io/files/format_table.h"
 #include "io/points/parse_file.h"
+#include <Eigen/LU>
 #include <filesystem>
 #include <fresco/core/require.h>
 #include <fresco/io/image_io.h>
@@ -29,6 +30,13 @@ void validateFaces(const TexturedMesh& model)
               " of atlas ", atlas, " names texture coordinate ", texcoord, ", there are ", texcoords);
     }
   }
+}
+
+GltfOptions gltfOptions(int jpeg_quality)
+{
+  GltfOptions options;
+  options.jpeg_quality = jpeg_quality;
+  return options;
 }
 } // namespace
 
@@ -74,7 +82,7 @@ void TexturedMeshWriter::addAtlas(const Image& atlas)
   if (parts_->files)
     parts_->files->addAtlas(atlas, parts_->several ? concat('_', parts_->count) : "");
   else
-    parts_->images.push_back(encodeImage(atlas, parts_->quality > 0 ? ".jpg" : ".png", parts_->quality));
+    parts_->images.push_back(io::storedImage(atlas, parts_->quality));
   ++parts_->count;
 }
 
@@ -86,7 +94,41 @@ void TexturedMeshWriter::finish(const TexturedMesh& model)
   if (parts_->files)
     parts_->files->finish(model);
   else
-    io::writeGlb(parts_->path, model, std::move(parts_->images), parts_->quality > 0);
+    io::writeGlb(parts_->path, {model, {}}, gltfOptions(parts_->quality), std::move(parts_->images));
+}
+
+void writeGltf(const std::string& path, const GltfModel& scene, const GltfOptions& options)
+{
+  const auto& [model, normal_maps] = scene;
+  validateTexturedMesh(model);
+  require(options.jpeg_quality >= 0 && options.jpeg_quality <= 100, "glTF: JPEG quality ", options.jpeg_quality,
+          " is not in 0..100");
+  require(normal_maps.empty() || normal_maps.size() == model.atlases.size(), "glTF: ", model.atlases.size(),
+          " atlases, ", normal_maps.size(), " normal maps");
+  for (const Image& image : normal_maps)
+    require(image.channels == 3 && image.data.size() == std::size_t{3} * image.width * image.height,
+            "glTF: a normal map is no RGB image");
+  require(options.T_world_model.allFinite() && options.T_world_model.row(3) == Eigen::RowVector4d(0, 0, 0, 1) &&
+              std::abs(options.T_world_model.determinant()) > 0,
+          "glTF: the transform into the world is none");
+  require(extension(path) == ".glb", path, ": glTF is written to .glb");
+  std::vector<std::vector<std::uint8_t>> images;
+  for (const Image& atlas : model.atlases)
+    images.push_back(io::storedImage(atlas, options.jpeg_quality));
+  io::writeGlb(path, {model, normal_maps}, options, std::move(images));
+}
+
+std::vector<std::uint8_t> io::storedImage(const Image& image, int jpeg_quality)
+{
+  return encodeImage(image, jpeg_quality > 0 ? ".jpg" : ".png", jpeg_quality);
+}
+
+GltfModel readGltf(const std::string& path)
+{
+  require(isGlb(io::formatToRead(path, FileKind::textured_mesh)), path, ": is no .glb");
+  return io::parseFile(path, [&](std::string_view content) {
+    return io::parseGlb(content, std::filesystem::path(path).parent_path().string());
+  });
 }
 
 Groups io::facesByAtlas(const TexturedMesh& model)
@@ -97,9 +139,7 @@ Groups io::facesByAtlas(const TexturedMesh& model)
 TexturedMesh readTexturedMesh(const std::string& path)
 {
   if (isGlb(io::formatToRead(path, FileKind::textured_mesh)))
-    return io::parseFile(path, [&](std::string_view content) {
-      return io::parseGlb(content, std::filesystem::path(path).parent_path().string());
-    });
+    return readGltf(path).model;
   return extension(path) == ".ply" ? io::readTexturedPly(path) : io::readTexturedObj(path);
 }
 

@@ -3,6 +3,7 @@
 #include <fresco/core/grouped.h>
 #include <fresco/core/textured_mesh.h>
 #include <fresco/io/file.h>
+#include <fresco/io/gltf.h>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -42,14 +43,22 @@ std::string portablePath(std::string name);
 /// @param empty_atlases whether materials without image have an empty atlas
 TexturedMesh readTexturedObj(const std::string& path, bool empty_atlases = false);
 
-/// Binary glTF, primitives of at most 65535 vertices, each of one atlas or of faces without texture. With JPEG, texture
-/// coordinates have 16 bits. glTF is y-up and models are z-up: the node turns, and its translation is `origin`.
-/// @param images of the atlases as they are stored, PNG or JPEG
-void writeGlb(const std::string& path, const TexturedMesh& model, std::vector<std::vector<std::uint8_t>> images,
-              bool are_jpeg);
+/// What is stored.
+struct GltfScene {
+  const TexturedMesh& model;
+  const std::vector<Image>& normal_maps; ///< see GltfModel
+};
+
+/// Binary glTF. glTF is y-up and models are z-up: the node turns.
+/// @param images of the atlases as they are stored
+void writeGlb(const std::string& path, const GltfScene& scene, const GltfOptions& options,
+              std::vector<std::vector<std::uint8_t>> images);
+
+/// An image as it is stored: PNG, or JPEG of a quality above 0.
+std::vector<std::uint8_t> storedImage(const Image& image, int jpeg_quality);
 
 /// All triangles of all nodes, turned from y-up to z-up; vertices at the same place become one.
 /// @param folder of the file: buffers and images outside of it are read from there and below only
 /// @throws std::runtime_error if malformed
-TexturedMesh parseGlb(std::string_view content, const std::string& folder);
+GltfModel parseGlb(std::string_view content, const std::string& folder);
 } // namespace fresco::io

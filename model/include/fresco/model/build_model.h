@@ -25,6 +25,8 @@ struct ModelOptions {
   int atlas = 0;            ///< largest side of a picture of the texture, 128..16384 pixels, more of them beyond;
                             ///< 0 = 8192
   int tile_faces = 0;       ///< most faces that are textured at a time; 0 = all, or as many as memory holds
+  int faces = 100000;       ///< most faces of model.glb, the light model, >= 1
+  bool compress = false;    ///< model.glb: see GltfOptions::compress
   int quality = 0;          ///< JPEG quality of the texture's pictures, 1..100; 0 = PNG
   double panorama_direction = 0;  ///< degrees counter-clockwise from the scan's x axis to the middle of its panorama
   bool panorama_mirrored = false; ///< panoramas go around counter-clockwise from left to right
@@ -37,9 +39,10 @@ struct ModelOptions {
 
 /// What one stage cost and what it found.
 struct ModelStage {
-  std::string name;       ///< features, matches, cameras, points, alignment, surface, optimization, texture or pictures
-  double seconds = 0;     ///< wall clock
-  double cpu_seconds = 0; ///< of all threads, and of programs that were run
+  std::string
+      name; ///< features, matches, cameras, points, alignment, surface, optimization, texture, light or pictures
+  double seconds = 0;        ///< wall clock
+  double cpu_seconds = 0;    ///< of all threads, and of programs that were run
   double peak_megabytes = 0; ///< resident memory of the process, highest during the stage
   bool resumed = false;      ///< taken over from an earlier run
   /// Name and value, numbers with four digits, lists as JSON; report.json has them in full.
@@ -58,7 +61,7 @@ struct ModelReport {
 /// reconstruction, sharp edges, texture, pictures and a report.
 ///
 /// Stages hand over files, so a resumed run gives the same bytes as an undisturbed one. Every file is written whole or
-/// not at all. Written are model.obj with .mtl and .png, model.glb, model_mask.png, mesh.ply, poses.txt,
+/// not at all. Written are model.obj with .mtl and .png, model_full.glb, model.glb of fewer faces, model_mask.png, mesh.ply, poses.txt,
 /// snapshots/*.png, report.html, report.json, and in work/ what `resume` needs.
 /// @param input_folder  scans or a cloud, with or without photographs, or RGB-D frames, in any of the layouts of docs/inputs.md; or a file
 /// @param output_folder made where it is missing
