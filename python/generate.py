@@ -17,7 +17,7 @@ ScanRegistrationOptions ScanRegistrationResult ScanResult PairResult Alternative
 VolumetricOptions VolumetricResult NormalFilteringOptions NormalFilteringResult NormalFilteringStep
 DepthFusionOptions DepthFusionResult MeshDistanceOptions MeshDistanceResult TwoSidedDistance DistanceStatistics
 NormalDeviation TextureOptions TextureView TextureResult PlacedCamera PhotographFit PointTextureOptions PointTextureResult
-PointLook ModelOptions ModelReport ModelStage PictureOptions Viewpoint
+PointLook SimplificationOptions LightModelOptions GltfModel GltfOptions ModelOptions ModelReport ModelStage PictureOptions Viewpoint
 PointToPlaneOptions PointToPlaneResult CameraAlignmentOptions CameraAlignmentResult RgbdTrackingOptions
 RgbdTrackingResult""".split()
 # What a function is called in Python where it is not its name in C++ with underscores.

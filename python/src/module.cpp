@@ -75,6 +75,7 @@ PYBIND11_MODULE(_fresco, module)
   addSurface(module);
   addQueries(module);
   addTexture(module);
+  addDeliverables(module);
   addModel(module);
   addRendering(module);
   module.attr("__version__") = FRESCO_VERSION;

@@ -85,6 +85,28 @@ def test_texture(room, mesh_file, tool, tmp_path):
     assert np.array_equal(again, result.model.atlases[0])
 
 
+def test_deliverables(mesh_file, tool, tmp_path):
+    mesh = fresco.read_mesh(mesh_file)
+    tool("simplify", mesh_file, tmp_path / "tool.ply", "-faces", 500)
+    fresco.write_mesh(tmp_path / "python.ply", fresco.simplify(mesh, faces=500))
+    same_files(tmp_path / "python.ply", tmp_path / "tool.ply")
+    tool("simplify", mesh_file, tmp_path / "tool.glb", "-faces", 500, "-texel", 0.1, "-from", mesh_file)
+    full = fresco.TexturedMesh(mesh=mesh)
+    light = fresco.make_light_model(full, faces=500, texel=0.1)
+    assert len(light.normal_maps) == len(light.model.atlases) > 0
+    fresco.write_gltf(tmp_path / "python.glb", light, compact=True, jpeg_quality=90, lit=mesh.colors.size == 0)
+    same_files(tmp_path / "python.glb", tmp_path / "tool.glb")
+    low, middle = mesh.vertices.min(axis=0), mesh.vertices.mean(axis=0)
+    (x0, y0, z0), (x1, y1, z1) = (low - 1) + mesh.origin, middle + mesh.origin
+    tool("crop", mesh_file, tmp_path / "tool_cut.ply", "-box", x0, y0, z0, x1, y1, z1)
+    outline = np.array([[x0, y0], [x1, y0], [x1, y1], [x0, y1]])
+    cut = fresco.crop(mesh, [outline], low=z0, high=z1)
+    fresco.write_mesh(tmp_path / "cut.ply", cut)
+    same_files(tmp_path / "cut.ply", tmp_path / "tool_cut.ply")
+    with pytest.raises(ValueError):
+        fresco.crop(mesh, [outline[[0, 2, 1, 3]]])  # crosses itself
+
+
 def test_texture_from_points(room, mesh_file, tool, tmp_path):
     scan = room / "scans/scan_00.pcd"
     tool("texture", mesh_file, "-points", scan, tmp_path / "tool.glb", "-texel", 0.1)
