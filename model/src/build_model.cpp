@@ -82,7 +82,8 @@ std::vector<Stage> stagesOf(const Job& job)
        {files.model_obj, files.full_glb},
        step(makeTexture)},
       {"texture"});
-  add({"light", concat(options.faces, " ", options.compress), {files.model_glb, files.viewer_glb}, step(makeLight)}, {});
+  add({"light", concat(options.faces, " ", options.compress), {files.model_glb, files.viewer_glb}, step(makeLight)},
+      {});
   add({"pictures", concat(options.width, "x", options.height), pictureFiles(job), step(makePictures)}, {});
   return stages;
 }

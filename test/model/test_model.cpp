@@ -210,6 +210,8 @@ TEST(Report, IsWholeAndEscaped)
   model.texcoord_faces = Faces::Constant(3, 1, -1);
   model.face_atlas = Eigen::VectorXi::Constant(1, -1);
   writeTexturedMesh(files.viewer_glb, model);
+  writeMesh(files.mesh, model.mesh);
+  writeFile(files.poses, "1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1\n");
   Report content;
   content.input = "a<b>";
   content.stages = {stage};
@@ -217,7 +219,9 @@ TEST(Report, IsWholeAndEscaped)
   content.seconds = 1.5;
   writeReport(content, files);
   const std::string html = readFile(files.report_html);
-  EXPECT_NE(html.find("data:image/png;base64,iVBORw0KGgo"), std::string::npos);
+  EXPECT_NE(html.find("data:image/jpeg;base64,/9j/"), std::string::npos);
+  EXPECT_NE(html.find("name=\"viewport\""), std::string::npos);
+  EXPECT_NE(html.find("<a href=\"mesh.ply\">"), std::string::npos);
   EXPECT_NE(html.find("a&lt;b&gt;"), std::string::npos);
   EXPECT_EQ(html.find("<b>\""), std::string::npos);
   EXPECT_NE(html.find("fresco-viewer"), std::string::npos);

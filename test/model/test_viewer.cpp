@@ -41,7 +41,7 @@ TexturedMesh board()
 /// Exit status of a command; -1 if it did not end by itself.
 int run(const std::string& command)
 {
-  const int status = std::system(("timeout 120 " + command).c_str());
+  const int status = std::system(("timeout 300 " + command).c_str());
   return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
 
@@ -127,6 +127,46 @@ TEST(Viewer, ShowsTheModelFromAFile)
   expectBoard(picture, picture.width / 2, picture.height / 2, 80);
 }
 
+/// Folder of node's modules, with `package` in it; "": it cannot be had.
+std::string nodeModules(const std::string& package, const std::string& version)
+{
+  const std::string folder = std::string(FRESCO_BINARY_DIR) + "/npm", modules = folder + "/node_modules";
+  makeFolder(folder);
+  if (!std::filesystem::exists(modules + "/" + package) &&
+      run("npm install --no-audit --no-fund --prefix " + folder + " " + package + "@" + version + " > " +
+          scratchFolder() + "/npm.txt 2>&1") != 0)
+    return "";
+  return modules;
+}
+
+TEST(Viewer, MouseFingersAndKeys)
+{
+  FRESCO_NEED_CHROMIUM();
+  const std::string folder = scratchFolder(), modules = nodeModules("playwright-core", "1.65.1");
+  if (modules.empty()) {
+    std::cout << "*** SKIPPED: playwright-core could not be had from npm ***\n";
+    GTEST_SKIP();
+  }
+  ViewerOptions options = before();
+  options.places.push_back(options.places[0]);
+  const std::vector<std::uint8_t> photograph = encodeImage(Image(40, 30, 3, 90), ".jpg");
+  options.places[1].photograph = {photograph.begin(), photograph.end()};
+  options.places[1].aspect = 4.0 / 3;
+  std::string text;
+  for (int k = 0; k < 60; ++k)
+    text += "<p>What is said about the model.</p>\n";
+  writeFile(folder + "/page.html",
+            "<!DOCTYPE html><html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" "
+            "content=\"width=device-width, initial-scale=1\"><title>Board</title></head>\n<body><div "
+            "style=\"height:500px\">" +
+                viewerElement(boardBytes(folder), options) + "</div>\n<a href=\"#\">A link</a>" + text +
+                "</body></html>\n");
+  const std::string script = std::string(FRESCO_SOURCE_DIR) + "/test/model/use_viewer.js";
+  EXPECT_EQ(run("sh -c 'HOME=" + folder + " node " + script + " " + modules + " $(command -v " + chromium() + ") " +
+                folder + "/page.html'"),
+            0);
+}
+
 TEST(Viewer, SaysWhatIsWrongWithAModel)
 {
   FRESCO_NEED_CHROMIUM();
@@ -144,11 +184,8 @@ TEST(Viewer, SaysWhatIsWrongWithAModel)
 TEST(Viewer, ThreeJsReadsTheGlb)
 {
   FRESCO_NEED_CHROMIUM();
-  const std::string folder = scratchFolder(), modules = std::string(FRESCO_BINARY_DIR) + "/npm";
-  const std::string loader = "/node_modules/three/examples/jsm/loaders/GLTFLoader.js";
-  makeFolder(modules);
-  if (!std::filesystem::exists(modules + loader) && run("npm install --no-audit --no-fund --prefix " + modules +
-                                                        " three@0.169.0 > " + folder + "/npm.txt 2>&1") != 0) {
+  const std::string folder = scratchFolder(), modules = nodeModules("three", "0.169.0");
+  if (modules.empty()) {
     std::cout << "*** SKIPPED: three.js could not be had from npm ***\n";
     GTEST_SKIP();
   }
@@ -172,7 +209,7 @@ renderer.setAnimationLoop(() => renderer.render(scene, camera));
 </script></body></html>)");
   std::string page = readFile(folder + "/page.html");
   for (std::size_t at; (at = page.find("MODULES")) != std::string::npos;)
-    page.replace(at, 7, "file://" + modules + "/node_modules");
+    page.replace(at, 7, "file://" + modules);
   writeFile(folder + "/page.html", page);
   const Image picture = screenshot(folder, "page.html");
   expectBoard(picture, picture.width / 2, picture.height / 2, 80);

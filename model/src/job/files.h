@@ -10,6 +10,7 @@ struct ModelFiles {
   std::string cell = work + "/cell.txt"; ///< finest cell of a cloud, as its points ask for
   std::string video = work + "/video";   ///< frames of a video
   std::string surface = work + "/surface.ply", viewer_glb = work + "/viewer.glb";
+  std::string places = work + "/places";           ///< small photographs for the report
   std::string pictures = work + "/pictures";       ///< unpacked from files of scans while they are needed
   std::string photographs = work + "/photographs"; ///< what the program colmap finds
   std::string cameras = work + "/cameras";         ///< of photographs, in the frame of the points

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "stages/photograph_places.h"
 #include "stages/placed_points.h"
 #include "stages/stages.h"
 #include <algorithm>
@@ -229,6 +230,7 @@ Figures makeTexture(const Job& job, const Progress& progress)
                                   : textureFromViews(job, std::move(mesh), views, progress);
   for (const std::string& warning : job.input.inside.warnings)
     figures["warnings"].push_back(warning);
+  figures["places"] = writePhotographPlaces(job, views);
   std::filesystem::remove_all(job.files.pictures);
   return figures;
 }

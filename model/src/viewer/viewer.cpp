@@ -28,10 +28,22 @@ Json listOf(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 std::string optionsText(const ViewerOptions& options)
 {
   Json places = Json::array();
-  for (const ViewerPlace& place : options.places)
-    places.push_back(
-        {{"name", place.name}, {"eye", listOf(place.eye)}, {"look", listOf(place.look)}, {"angle", place.angle}});
-  const Json all = {{"up", listOf(options.up)}, {"places", places}};
+  for (const ViewerPlace& place : options.places) {
+    places.push_back({{"name", place.name},
+                      {"group", place.group},
+                      {"eye", listOf(place.eye)},
+                      {"look", listOf(place.look)},
+                      {"angle", place.angle}});
+    if (!place.photograph.empty())
+      places.back().update(
+          {{"aspect", place.aspect}, {"photograph", "data:image/jpeg;base64," + base64(place.photograph)}});
+  }
+  Json walls = Json::array();
+  for (const ViewerWall& wall : options.walls)
+    walls.push_back({listOf(wall.from), listOf(wall.to)});
+  Json all = {{"up", listOf(options.up)}, {"places", places}, {"walls", walls}};
+  if (options.floor)
+    all["floor"] = *options.floor;
   return std::regex_replace(all.dump(-1, ' ', true, Json::error_handler_t::replace), std::regex("<"), "\\u003c");
 }
 } // namespace
