@@ -57,6 +57,11 @@ int main(int argc, char** argv)
               "tell what INPUT is taken for and what would be done, and how long it takes; write nothing");
     args.option("as", options.taken_as,
                 "what INPUT is taken for: scans, cloud, rgbd or photographs; empty = what it looks like");
+    args.option("depth_unit", options.depth_unit,
+                "RGB-D: what a unit of depth images of whole numbers stands for, metres; 0 = as the layout has it");
+    args.option("until", options.until,
+                "stop at points (points.ply), surface (surface.ply) or mesh (mesh.ply: edges are sharp, no texture); "
+                "-resume goes on from there; empty = the whole model");
     args.flag("resume", options.resume, "go on after the last stage that an earlier run into OUT_DIR finished");
     args.option("cell", options.cell,
                 "finest cell of the surface reconstruction, metres; 0 = 0.02 for scans, 3 pixels at the median depth "

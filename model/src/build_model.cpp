@@ -3,11 +3,13 @@
 #include "photographs/structure_from_motion.h"
 #include "plan.h"
 #include "report/report.h"
+#include "stages/placed_points.h"
 #include "stages/stages.h"
 #include "stages/video.h"
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <filesystem>
 #include <fresco/core/require.h>
 #include <fresco/io/file.h>
 #include <fresco/io/files_read.h>
@@ -20,6 +22,7 @@ using namespace model;
 void validate(const ModelInput& input, const ModelOptions& options)
 {
   require(options.cell >= 0 && options.fuse >= 0, "model: a cell of ", options.cell, " m or ", options.fuse, " m");
+  require(options.depth_unit >= 0, "model: a unit of depth of ", options.depth_unit, " m");
   require(options.bilateral >= 0 && options.trim_levels >= 0 && options.texel >= 0, "model: an option is negative");
   require(options.atlas == 0 || (options.atlas >= 128 && options.atlas <= 16384), "model: atlas ", options.atlas,
           " is neither 0 nor in 128..16384");
@@ -34,10 +37,26 @@ void validate(const ModelInput& input, const ModelOptions& options)
           " degrees");
 }
 
-/// @throws std::runtime_error naming the program that is not installed
-void requirePrograms(const ModelInput& input)
+/// What a run may end with, and the last stage that this needs.
+constexpr std::pair<const char*, const char*> ends[] = {
+    {"points", "points"}, {"surface", "surface"}, {"mesh", "optimization"}, {"", "pictures"}};
+
+std::string lastStage(const ModelOptions& options)
 {
-  if (input.findsCameras())
+  for (const auto& [what, stage] : ends)
+    if (options.until == what)
+      return stage;
+  throw std::invalid_argument("model: -until " + options.until + " is none of points, surface, mesh");
+}
+
+/// Whether pictures are looked at: of scans only where there is to be a texture.
+bool usesPictures(const Job& job) { return job.options.until.empty() || job.input.rgbd || job.input.scans.empty(); }
+
+/// @throws std::runtime_error naming the program that is not installed
+void requirePrograms(const Job& job)
+{
+  const ModelInput& input = job.input;
+  if (input.findsCameras() && usesPictures(job))
     requireStructureFromMotion(input.images.empty() ? input.folder : input.images);
   if (!input.video.empty())
     requireVideoProgram(input.video);
@@ -47,45 +66,66 @@ void requirePrograms(const ModelInput& input)
 std::vector<Stage> stagesOf(const Job& job)
 {
   const auto& [input, files, options, stage_options, ranks] = job;
-  const auto step = [&job](Figures (*make)(const Job&, const Progress&)) {
-    return [&job, make](const Progress& progress) { return make(job, progress); };
-  };
   std::vector<Stage> stages;
-  const StructureFromMotion motion(input.images, input.unplaced, files.photographs, options.threads);
-  if (input.findsCameras())
-    stages = {{"features", "", {motion.database()}, step(findFeatures)},
-              {"matches", "", {motion.database()}, step(matchFeatures)},
-              {"cameras", "", {motion.model() + "/points3D.txt"}, step(findCameras)}};
-  const auto add = [&](Stage stage, const std::vector<std::string>& tools) {
-    for (const auto& [name, value] : options.stage_options)
-      if (std::find(tools.begin(), tools.end(), name.substr(0, name.find('.'))) != tools.end())
-        stage.options += concat(" ", name, " ", value);
-    stages.push_back(std::move(stage));
+  const auto add = [&](const char* name, const std::string& own, std::vector<std::string> outputs,
+                       Figures (*make)(const Job&, const Progress&), const std::vector<std::string>& tools = {}) {
+    std::string all = own;
+    for (const auto& [option, value] : options.stage_options)
+      if (std::find(tools.begin(), tools.end(), option.substr(0, option.find('.'))) != tools.end())
+        all += concat(" ", option, " ", value);
+    stages.push_back(
+        {name, all, std::move(outputs), [&job, make](const Progress& progress) { return make(job, progress); }});
   };
+  const auto addCameras = [&] {
+    const StructureFromMotion motion(input.images, input.unplaced, files.photographs, options.threads);
+    if (!input.findsCameras())
+      return;
+    add("features", "", {motion.database()}, findFeatures);
+    add("matches", "", {motion.database()}, matchFeatures);
+    add("cameras", "", {motion.model() + "/points3D.txt"}, findCameras);
+  };
+  if (input.scans.empty()) // the cameras' points are all there is
+    addCameras();
   std::string columns; // of clouds that are text
   for (const std::string& name : textColumns())
     columns += " " + (name.empty() ? "-" : name);
-  add({"points",
-       concat(options.use_poses, " ", options.fuse, " ", options.fuse > 0 ? 0.0 : options.cell, " ", options.bilateral,
-              columns),
-       input.is_cloud ? std::vector<std::string>{files.points, files.poses, files.cell}
-                      : std::vector<std::string>{files.points, files.poses},
-       step(makePoints), !input.rgbd && !input.is_cloud},
-      {"register", "filter", "normals", "fuse", "track"});
+  std::vector<std::string> of_points{files.points, files.poses};
+  if (input.is_cloud)
+    of_points.push_back(files.cell);
+  add("points",
+      concat(options.use_poses, " ", options.depth_unit, " ", options.fuse, " ", options.fuse > 0 ? 0.0 : options.cell,
+             " ", options.bilateral, columns),
+      of_points, makePoints, {"register", "filter", "normals", "fuse", "track"});
+  stages.back().shared = !input.rgbd && !input.is_cloud;
+  add("surface", concat(options.cell, " ", options.trim_levels), {files.surface}, makeSurface, {"reconstruct"});
+  add("optimization", concat(options.optimize), {files.mesh}, makeOptimizedSurface, {"optimize"});
+  if (!input.scans.empty())
+    addCameras();
   if (input.alignsCameras())
-    add({"alignment", "", {files.cameras + "/images.txt"}, step(model::alignCameras)}, {"align"});
-  add({"surface", concat(options.cell, " ", options.trim_levels), {files.surface}, step(makeSurface)}, {"reconstruct"});
-  add({"optimization", concat(options.optimize), {files.mesh}, step(makeOptimizedSurface)}, {"optimize"});
-  add({"texture",
-       concat(options.texel, " ", options.atlas, " ", options.quality, " ", options.panorama_direction, " ",
-              options.panorama_mirrored, " ", options.tile_faces),
-       {files.model_obj, files.full_glb},
-       step(makeTexture)},
-      {"texture"});
-  add({"light", concat(options.faces, " ", options.compress), {files.model_glb, files.viewer_glb}, step(makeLight)},
-      {});
-  add({"pictures", concat(options.width, "x", options.height), pictureFiles(job), step(makePictures)}, {});
+    add("alignment", "", {files.cameras + "/images.txt"}, model::alignCameras, {"align"});
+  add("texture",
+      concat(options.texel, " ", options.atlas, " ", options.quality, " ", options.panorama_direction, " ",
+             options.panorama_mirrored, " ", options.tile_faces),
+      {files.model_obj, files.full_glb}, makeTexture, {"texture"});
+  add("light", concat(options.faces, " ", options.compress), {files.model_glb, files.viewer_glb}, makeLight);
+  add("pictures", concat(options.width, "x", options.height), pictureFiles(job), makePictures);
+  const std::string last = lastStage(options);
+  stages.erase(std::find_if(stages.begin(), stages.end(), [&](const Stage& stage) { return stage.name == last; }) + 1,
+               stages.end());
   return stages;
+}
+
+/// What a run that ends early was asked for, as a file of its own.
+void deliver(const Job& job)
+{
+  const ModelFiles& files = job.files;
+  if (job.options.until == "points")
+    PlacedPoints(files.points).writePly(files.points_ply);
+  if (job.options.until != "surface")
+    return;
+  OutputFile file(files.surface_ply);
+  std::filesystem::copy_file(files.surface, file.temporaryPath(), std::filesystem::copy_options::overwrite_existing);
+  file.commit();
 }
 } // namespace
 
@@ -99,7 +139,7 @@ ModelReport buildModel(const std::string& input_folder, const std::string& outpu
 ModelReport buildModel(const ModelFolders& folders, const ModelOptions& options, const Progress& progress,
                        Exchange& ranks)
 {
-  Job job{readModelInput(folders.input, options.taken_as), ModelFiles{folders.output}, options,
+  Job job{readModelInput(folders.input, options.taken_as, options.depth_unit), ModelFiles{folders.output}, options,
           StageOptions(options.threads, options.stage_options), ranks};
   requireSameFiles(job.input.files(), folders.input, ranks);
   if (ranks.rank() > 0) {
@@ -107,11 +147,12 @@ ModelReport buildModel(const ModelFolders& folders, const ModelOptions& options,
     return {};
   }
   validate(job.input, options);
-  requirePrograms(job.input);
+  requirePrograms(job);
   requireRoom(estimate(job), job);
   const auto start = std::chrono::steady_clock::now();
   report(progress, "photographs", 0.0);
-  checkPhotographs(job.input, options.threads);
+  if (usesPictures(job))
+    checkPhotographs(job.input, options.threads);
   makeFolder(job.files.work);
   const FolderLock lock(job.files.work, "fresco_model");
   makeFolder(job.files.snapshots);
@@ -126,6 +167,7 @@ ModelReport buildModel(const ModelFolders& folders, const ModelOptions& options,
   }
   for (const Stage& stage : stagesOf(job))
     log.run(stage);
+  deliver(job);
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   Report report = makeReport(folders.input, log.records(), seconds);
   report.kind = describe(job.input);
@@ -136,13 +178,13 @@ ModelReport buildModel(const ModelFolders& folders, const ModelOptions& options,
 ModelPlan planModel(const ModelFolders& folders, const ModelOptions& options)
 {
   Exchange alone;
-  const Job job{readModelInput(folders.input, options.taken_as), ModelFiles{folders.output}, options,
-                StageOptions(options.threads, options.stage_options), alone};
+  const Job job{readModelInput(folders.input, options.taken_as, options.depth_unit), ModelFiles{folders.output},
+                options, StageOptions(options.threads, options.stage_options), alone};
   validate(job.input, options);
   ModelPlan plan = estimate(job);
   requireRoom(plan, job);
   try {
-    requirePrograms(job.input);
+    requirePrograms(job);
   } catch (const std::runtime_error& error) {
     plan.warnings.emplace_back(error.what());
   }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "plan.h"
+#include "input/standpoint.h"
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
@@ -41,18 +43,46 @@ double pointsOf(const std::string& file)
     std::memcpy(&many, &head[247], sizeof many); // of version 1.4, where `few` may be 0
     return few > 0 ? few : double(many);
   }
+  double points = bytesOf(file) / bytes_a_point;
   for (const char* key : {"\nPOINTS ", "\nelement vertex "})
     if (const std::size_t at = head.find(key); at != std::string::npos)
-      return std::atof(head.c_str() + at + std::strlen(key));
-  return bytesOf(file) / bytes_a_point;
+      points = std::atof(head.c_str() + at + std::strlen(key));
+  return holdsFaces(file) ? std::clamp(10 * points, 3e5, 4e6) : points; // spread over them: stages/cloud.cpp
+}
+} // namespace
+
+namespace {
+/// Vertices of a surface of scans: what one of them sees, counted in coarse boxes, and n about n^(1/3) times as much, since they overlap.
+double verticesOfScans(const Job& job)
+{
+  constexpr float box = 0.5f; // metres; walls of a room lie in about as many of them as they have area
+  constexpr double usual_cell = 0.02;
+  const std::vector<ScanPath>& scans = job.input.scans;
+  std::set<std::array<int, 3>> boxes;
+  Points points(3, 0);
+  try {
+    points = samplePoints(scans[scans.size() / 2]);
+  } catch (const std::runtime_error&) { // damaged: registration says so
+  }
+  for (Index i = 0; i < points.cols(); ++i)
+    boxes.insert({int(std::floor(points(0, i) / box)), int(std::floor(points(1, i) / box)),
+                  int(std::floor(points(2, i) / box))});
+  const double cell = job.options.cell > 0 ? job.options.cell : usual_cell;
+  return double(boxes.size()) * box * box * std::cbrt(double(scans.size())) / (cell * cell);
+}
+
+/// Vertices by the kind of input.
+double verticesOf(const Job& job, double points)
+{
+  constexpr double most = 3e6, a_frame = 1e3, points_a_vertex = 4;
+  if (job.input.rgbd)
+    return std::min(most, a_frame * double(job.input.rgbd->frames.size()));
+  return std::min(most, job.input.is_cloud ? points / points_a_vertex : verticesOfScans(job));
 }
 } // namespace
 
 ModelPlan estimate(const Job& job)
 {
-  // Seconds of one core and bytes, per item: docs/measurements/model.md. True to a factor of about three.
-  constexpr double per_point = 12e-6, per_vertex = 2e-4, per_picture_byte = 1.5e-6, per_frame = 0.4, pictures = 15;
-  constexpr double stored_point = 36, worked_point = 220, worked_vertex = 2500, program = 3e8;
   const ModelInput& input = job.input;
   ModelPlan plan;
   plan.input = describe(input);
@@ -68,21 +98,29 @@ ModelPlan estimate(const Job& job)
     }
   for (const PictureFile& picture : input.pictures())
     picture_bytes += bytesOf(picture.file);
-  if (input.is_cloud)
-    largest = plan.points;
   const double frames = input.rgbd ? double(input.rgbd->frames.size()) : 0;
   if (input.rgbd)
     plan.points = frames * input.rgbd->camera.width * input.rgbd->camera.height;
-  const double vertices = std::min(input.rgbd ? 1e3 * frames : plan.points / 3, 3e6);
-  const double pairs =
-      input.is_cloud || job.options.use_poses ? 0 : 0.5 * double(input.scans.size() * input.scans.size());
+  // Seconds of one core and bytes, per item, of the runs in docs/measurements/model.md: true to a factor of two there.
+  const double points = input.rgbd ? 0 : plan.points, vertices = verticesOf(job, points);
+  const double scans = input.is_cloud || job.options.use_poses ? 0 : double(input.scans.size());
   const double photographs = double(input.unplaced.size());
-  const double cpu = per_point * (input.rgbd ? 0 : plan.points) + 0.05 * pairs + per_frame * frames +
-                     per_vertex * vertices + per_picture_byte * picture_bytes +
-                     0.1 * photographs * std::min(photographs, 40.0) + pictures;
+  const bool has_poses = input.rgbd && input.rgbd->has_poses;
+  constexpr double most_painted = 2e7, most_averaged = 16; // points of a texture; a vertex
+  double cpu = 9e-6 * points + 0.5 * scans * (scans - 1) + (has_poses ? 0.06 : 0.4) * frames + 1e-5 * vertices;
+  double memory = 2e8 + (input.is_cloud ? 220 * points : 500 * largest), disk = 5e6 + 40 * points + 45 * vertices;
+  if (!input.rgbd)
+    cpu += 8e-5 * vertices + 1.4e-5 * std::min(points, most_averaged * vertices);
+  double later = 2e8 + 800 * vertices;
+  if (job.options.until.empty()) {
+    cpu += 2 + 1.2e-5 * vertices + 0.1 * photographs * std::min(photographs, 40.0);
+    cpu += input.hasPictures() ? 4e-6 * picture_bytes : 4e-5 * vertices + 6e-6 * std::min(points, most_painted);
+    later += input.hasPictures() ? 45 * std::min(picture_bytes, 1e8) : 250 * std::min(points, most_painted);
+    disk += 300 * vertices + 6 * picture_bytes;
+  }
   plan.seconds = cpu / std::max(1.0, 0.7 * threadCount(job.options.threads));
-  plan.memory = program + worked_point * (input.rgbd ? 2e6 : largest) + worked_vertex * vertices;
-  plan.disk = stored_point * (input.rgbd ? 3 * vertices : plan.points) + 200 * vertices + 2 * picture_bytes + 5e7;
+  plan.memory = std::max(memory, later);
+  plan.disk = disk;
   return plan;
 }
 

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "job/file_state.h"
 #include "job/stage_log.h"
 #include "test_data.h"
 #include <fresco/io/file.h>
 #include <fstream>
 #include <map>
+#include <set>
 namespace fresco::model {
 namespace {
 namespace fs = std::filesystem;
@@ -111,6 +113,54 @@ TEST(StageLog, BelievesNoFileThatWasDamagedEmptiedOrLost)
     EXPECT_NE(job.run(true), Runs()) << file;
     EXPECT_EQ(job.run(true), Runs()) << file;
   }
+}
+
+/// Copied, or written again as it was: neither number nor times tell, the content does.
+TEST(StageLog, BelievesFilesThatOnlyWereTouched)
+{
+  const std::string folder = test::scratchFolder();
+  SmallJob job(folder);
+  job.run(false);
+  for (const std::string& part : {folder + "/in", folder + "/out"})
+    for (const std::string& file : filesIn(part)) {
+      const std::string content = readFile(file);
+      fs::remove(file);
+      writeFile(file, content);
+      EXPECT_EQ(job.run(true), Runs()) << file;
+    }
+}
+
+/// Nobody knows which of both contents the stage has seen.
+TEST(StageLog, AnInputThatChangesWhileItIsReadIsNotBelieved)
+{
+  const std::string folder = test::scratchFolder();
+  writeFile(folder + "/input", "before");
+  int runs = 0;
+  for (const bool changes : {true, false, false}) {
+    StageLog log(folder + "/out/work", {folder + "/input"}, true, {});
+    log.run({"stage", "", {}, [&](const Progress&) {
+               ++runs;
+               readFile(folder + "/input");
+               if (changes)
+                 writeFile(folder + "/input", "after");
+               return nlohmann::ordered_json::object();
+             }});
+  }
+  EXPECT_EQ(runs, 2);
+}
+
+TEST(FileState, HashTellsAnyChangeOfAByte)
+{
+  std::set<std::string> hashes;
+  for (const std::size_t size : {1u, 7u, 8u, 9u, 40u})
+    for (std::size_t i = 0; i < size; ++i)
+      for (const int bit : {0, 3, 7}) {
+        std::string text(size, 'x');
+        text[i] = static_cast<char>(text[i] ^ 1 << bit);
+        hashes.insert(hashOf(text));
+      }
+  EXPECT_EQ(hashes.size(), (1u + 7 + 8 + 9 + 40) * 3);
+  EXPECT_NE(hashOf("a"), hashOf(std::string("a\0", 2)));
 }
 
 TEST(StageLog, StageOfAChangedInputAndThoseBehindItRunAgain)

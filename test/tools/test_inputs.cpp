@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // fresco_model with every layout that docs/inputs.md lists, sound and with one thing wrong.
+#include "common/float_files.h"
 #include "test_data.h"
 #include "tools/layout_source.h"
 #include <fresco/simulation/sensors/layouts.h>
@@ -21,6 +22,8 @@ const std::map<std::string, std::string>& expected()
       {"cloud_normals", "input: 1 file of one cloud, no pictures"},
       {"cloud_utm", "input: 2 files of one cloud, no pictures"},
       {"cloud_trajectory", "input: 1 file of one cloud, no pictures"},
+      {"cloud_times", "input: 1 file of one cloud, no pictures"},
+      {"matterpak", "input: 1 file of one cloud, no pictures"},
       {"e57", "input: 2 scans, 2 panoramas"},
       {"photographs", "input: 4 photographs and no scans"},
       {"images", "input: 4 photographs and no scans"},
@@ -99,8 +102,8 @@ TEST_P(WholeChain, MakesTheRoom)
 }
 
 INSTANTIATE_TEST_SUITE_P(Some, WholeChain,
-                         testing::Values("one_cloud", "cloud_utm", "cloud_normals", "cloud_trajectory", "colmap",
-                                         "scanner_export"),
+                         testing::Values("one_cloud", "cloud_utm", "cloud_normals", "cloud_trajectory", "cloud_times",
+                                         "matterpak", "colmap", "scanner_export"),
                          [](const auto& info) { return info.param; });
 
 /// Frames show the walls to some height only.
@@ -124,6 +127,94 @@ TEST_P(FramesChain, GivesTheSameSurfaceWhateverTheLayout)
 
 INSTANTIATE_TEST_SUITE_P(Some, FramesChain, testing::Values("tum", "scannet", "stray", "polycam", "matterport"),
                          [](const auto& info) { return info.param; });
+
+/// Points of structure from motion are few: a rough room.
+TEST_F(Inputs, PhotographsOfAModelGiveARoughRoom)
+{
+  const std::string folder = laidOut("colmap_sparse"), model = folder + "/x/sparse/0";
+  const CameraSet set = readColmap(model);
+  SparsePoints found;
+  for (SparsePoint& point : readColmapPoints(model)) {
+    for (int more = 1; more < 3; ++more) // as if others had seen it, too
+      point.track.push_back({(point.track[0].view + more) % int(set.views.size()), {1, 1}});
+    if (std::min(point.position.cwiseAbs().minCoeff(), (roomSize() - point.position).cwiseAbs().minCoeff()) < 0.01)
+      found.push_back(point);
+  }
+  writeColmap(model, set, found);
+  const Outcome outcome = run(folder, "model x out -size 160x120");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  expectRoom(folder + "/out/mesh.ply", {0, 0, 0}, 0.15);
+  EXPECT_TRUE(fs::exists(folder + "/out/model.glb"));
+}
+
+TEST_F(Inputs, TheViewpointThatPclAlwaysWritesTellsNothing)
+{
+  const std::string folder = laidOut("one_cloud");
+  PointSet cloud = readPoints(folder + "/x/cloud.pcd");
+  cloud.viewpoints = Points::Zero(3, 1);
+  writePoints(folder + "/x/cloud.pcd", cloud);
+  ASSERT_NE(get(folder + "/x/cloud.pcd").find("VIEWPOINT 0 0 0 1 0 0 0"), std::string::npos);
+  const Outcome outcome = run(folder, "model x out -cell 0.1 -until mesh");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(outcome.err.rfind(expected().at("one_cloud"), 0), 0u) << outcome.err;
+  EXPECT_GT(facingInside(folder + "/out/mesh.ply", {0, 0, 0}), 0.98);
+}
+
+TEST_F(Inputs, AHandfulOfPointsIsNoModel)
+{
+  const std::string folder = scratchFolder();
+  PointSet few;
+  few.points = Points::Random(3, 11);
+  writePoints(folder + "/few.ply", few);
+  const Outcome outcome = run(folder, "model few.ply out -as cloud -quiet");
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_NE(outcome.err.find("few.ply: only "), std::string::npos) << outcome.err;
+}
+
+TEST_F(Inputs, TimesOfPointsTellFromWhereTheyWereSeen)
+{
+  const std::string folder = laidOut("cloud_times"), command = "model x out -until points";
+  const auto normals = [&] {
+    const auto report = nlohmann::json::parse(get(folder + "/out/report.json"));
+    return report["stages"][0]["figures"]["normals"].get<std::string>();
+  };
+  ASSERT_EQ(run(folder, command).status, 0);
+  EXPECT_EQ(normals(), "to where each point was seen from");
+  std::string lines = get(folder + "/x/trajectory.txt");
+  put(folder + "/x/trajectory.txt",
+      "1" + lines.substr(0, lines.find('\n')) + "\n1" + lines.substr(lines.find('\n') + 1));
+  const Outcome other_clock = run(folder, command);
+  ASSERT_EQ(other_clock.status, 0);
+  EXPECT_NE(other_clock.err.find("is it the same clock?"), std::string::npos) << other_clock.err;
+  EXPECT_EQ(normals(), "to the places of the sensor in sight");
+}
+
+/// Depths in metres, as floats, in each kind of file.
+TEST_F(Inputs, DepthsMayBeFloats)
+{
+  const std::string folder = laidOut("open3d"), command = "model x out -use_poses -until surface -cell 0.1";
+  ASSERT_EQ(run(folder, command).status, 0);
+  const double area = surfaceArea(readMesh(folder + "/out/surface.ply"));
+  for (const char* extension : {".pfm", ".npy", ".tif"}) {
+    for (const std::string& file : listing(folder + "/x/depth")) {
+      const DepthFile depth = readDepthFile(file);
+      Floats metres{depth.image.width, depth.image.height, {}};
+      for (const std::uint16_t value : depth.image.data)
+        metres.values.push_back(float(value * (depth.in_metres ? metres_unit : 1e-3)));
+      fs::remove(file);
+      put(fs::path(file).replace_extension(extension), extension == std::string(".pfm")   ? pfmBytes(metres)
+                                                       : extension == std::string(".npy") ? npyBytes(metres)
+                                                                                          : tiffBytes(metres));
+    }
+    EXPECT_NE(run(folder, "model x out -dry_run").out.find("12 depth images, 80x60, metres"), std::string::npos);
+    ASSERT_EQ(run(folder, command).status, 0) << extension;
+    EXPECT_NEAR(surfaceArea(readMesh(folder + "/out/surface.ply")), area, 0.01 * area) << extension;
+  }
+  const std::string last = listing(folder + "/x/depth").back();
+  writeImage(fs::path(last).replace_extension(".png"), Image16{80, 60, std::vector<std::uint16_t>(4800, 1000)});
+  fs::remove(last);
+  EXPECT_NE(run(folder, command).err.find("whole numbers, but the first frame's depths are floats"), std::string::npos);
+}
 
 TEST_F(Inputs, OneFileStandsForItsFolder)
 {
@@ -163,7 +254,7 @@ TEST_F(Inputs, AThingSeenFromAroundIsClosedAndFacesOutwards)
   PointSet ball;
   ball.points = 0.2f * test::sphere(1.f, 5).vertices;
   writePoints(folder + "/ball.ply", ball);
-  const Outcome outcome = run(folder, "model ball.ply out -as cloud -size 160x120");
+  const Outcome outcome = run(folder, "model ball.ply out -size 160x120");
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   const double volume = 4.0 / 3 * pi * 0.008;
   EXPECT_NEAR(signedVolume(readMesh(folder + "/out/mesh.ply")), volume, 0.05 * volume);

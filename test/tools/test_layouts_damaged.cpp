@@ -211,7 +211,7 @@ const std::vector<Damage>& damages()
       {"StrayMatrixShort",
        "stray",
        [](const auto& x) { put(x + "/camera_matrix.csv", "1, 2, 3\n"); },
-       {"camera_matrix.csv: wants 9 numbers, has 3"}},
+       {"camera_matrix.csv: wants 3x3 numbers, has 3"}},
       {"StrayHalfThePoses",
        "stray",
        [](const auto& x) { keepLines(x + "/odometry.csv", 5); },

@@ -85,7 +85,7 @@ private:
 void dropCosts(nlohmann::ordered_json& json)
 {
   if (json.is_object())
-    for (const char* cost : {"seconds", "cpu_seconds", "peak_megabytes", "resumed"})
+    for (const char* cost : {"seconds", "cpu_seconds", "peak_megabytes", "resumed", "stamp"})
       json.erase(cost);
   for (auto& part : json)
     if (part.is_structured())

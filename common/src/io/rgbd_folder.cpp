@@ -1,36 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "io/points/text_numbers.h"
 #include <algorithm>
 #include <filesystem>
-#include <fresco/core/poses.h>
 #include <fresco/core/require.h>
-#include <fresco/io/file.h>
 #include <fresco/io/image_io.h>
 #include <fresco/io/natural_order.h>
 #include <fresco/io/rgbd_folder.h>
+#include <fresco/io/text_rows.h>
 namespace fresco {
 namespace {
 namespace fs = std::filesystem;
 
-/// `rows` x `columns` numbers, nothing else; "nan" and "inf" are numbers, too.
-Eigen::MatrixXd readMatrix(const std::string& path, int rows, int columns)
-{
-  const std::string content = readFile(path);
-  io::TextScanner words(content);
-  Eigen::MatrixXd matrix(rows, columns);
-  for (int i = 0; i < rows * columns; ++i)
-    try {
-      matrix(i / columns, i % columns) = io::parseNumber<double>(words.wordAcrossLines());
-    } catch (const std::runtime_error&) {
-      throw std::runtime_error(concat(path, ": wants ", rows, "x", columns, " numbers"));
-    }
-  return matrix;
-}
-
 CameraModel depthCamera(const std::string& path, const std::string& depth)
 {
   const Eigen::MatrixXd K = readMatrix(path, 3, 3);
-  const Image16 first = readImage16(depth);
+  const ImageSize first = readImageSize(depth);
   CameraModel camera{first.width, first.height, K(0, 0), K(1, 1), K(0, 2) + 0.5, K(1, 2) + 0.5, 0, 0, 0, 0};
   try {
     validateCamera(camera);
@@ -70,15 +53,7 @@ RgbdFolderFiles listRgbdFolder(const std::string& folder)
 
 std::optional<Eigen::Isometry3d> readRgbdPose(const std::string& path)
 {
-  const Eigen::Matrix4d T = readMatrix(path, 4, 4);
-  if (!T.allFinite())
-    return {};
-  constexpr double rounded = 0.02; // trackers add up rotations without making them rotations again
-  if (!isRigid(T, rounded))
-    throw std::runtime_error(path + ": not a rigid transform");
-  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-  pose.linear() = Eigen::Quaterniond(Eigen::Matrix3d(T.topLeftCorner<3, 3>())).normalized().toRotationMatrix();
-  pose.translation() = T.topRightCorner<3, 1>();
-  return pose;
+  const Pose pose = rigidPose(path, readMatrix(path, 4, 4));
+  return pose ? std::optional<Eigen::Isometry3d>(*pose) : std::nullopt;
 }
 } // namespace fresco

@@ -55,8 +55,10 @@ std::vector<RgbdFrame> pairedFrames(const Survey& found, const std::string& colo
   return frames;
 }
 
-ModelInput rgbdInput(RgbdParts parts, ModelInput input)
+void takeFrames(ModelInput& input, RgbdParts parts, double depth_unit)
 {
+  if (depth_unit > 0)
+    parts.folder.depth_unit = depth_unit;
   const std::size_t count = parts.folder.frames.size();
   require(parts.poses.empty() || parts.poses.size() == count, "model: ", parts.poses.size(), " poses of ", count,
           " frames");
@@ -70,14 +72,37 @@ ModelInput rgbdInput(RgbdParts parts, ModelInput input)
     for (const RgbdFrame& frame : rgbd.frames)
       input.poses.emplace_back(frame.T_world_camera.matrix());
   const RgbdFrame& first = rgbd.frames[0];
-  input.found.insert(input.found.begin(), concat(counted(count, "depth image"), ", ", rgbd.camera.width, "x",
-                                                 rgbd.camera.height, ", a unit is ", 1000 * rgbd.depth_unit, " mm",
-                                                 first.confidence.empty() ? "" : ", of least confidence left out"));
+  input.found.insert(input.found.begin(),
+                     concat(counted(count, "depth image"), ", ", rgbd.camera.width, "x", rgbd.camera.height, ", ",
+                            rgbd.in_metres ? "metres" : concat("a unit is ", 1000 * rgbd.depth_unit, " mm"),
+                            first.confidence.empty() ? "" : ", of least confidence left out"));
   input.found.insert(input.found.begin() + 1, concat(counted(count, "colour image"), ", ", first.color_camera.width,
                                                      "x", first.color_camera.height));
   input.found.push_back(rgbd.has_poses ? concat("poses of ", rgbd.frames.size(), " frames")
                                        : "no poses: the frames are one video, which is tracked");
-  return input;
+}
+
+Pose poseOf(const std::string& path, const Eigen::Vector3d& t, const Eigen::Vector4d& q)
+{
+  if (!t.allFinite() || !q.allFinite())
+    return {};
+  if (!(q.norm() > 0))
+    throw std::runtime_error(path + ": a quaternion of zeros is no rotation");
+  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
+  T.linear() = Eigen::Quaterniond(q).normalized().toRotationMatrix();
+  T.translation() = t;
+  return rigidPose(path, T.matrix());
+}
+
+CameraModel readCameraMatrix(const std::string& path, int side)
+{
+  const Eigen::MatrixXd K = readMatrix(path, side, side);
+  return {0, 0, K(0, 0), K(1, 1), K(0, 2) + 0.5, K(1, 2) + 0.5};
+}
+
+Eigen::Matrix4d lookingAhead(const Eigen::Matrix4d& T_world_camera)
+{
+  return T_world_camera * Eigen::Vector4d(1, -1, -1, 1).asDiagonal();
 }
 
 CameraModel usualCamera(const std::string& depth, const std::string& wanted)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include "input/layout.h"
+#include <fresco/io/text_rows.h>
 #include <map>
 #include <string>
 namespace fresco::model {
@@ -14,8 +15,18 @@ Index numberOfName(const std::string& name);
 std::vector<RgbdFrame> pairedFrames(const Survey& found, const std::string& color, const std::string& depth,
                                     ModelInput& input);
 
-/// The input that is these frames: puts them together and tells of them.
-ModelInput rgbdInput(RgbdParts parts, ModelInput input);
+/// Puts the frames together and tells of them. @param depth_unit metres; 0 = that of the layout
+void takeFrames(ModelInput& input, RgbdParts parts, double depth_unit);
+
+/// World from camera; nothing where a number is not finite. @param q x y z w, not all zero @throws as rigidPose()
+Pose poseOf(const std::string& path, const Eigen::Vector3d& t, const Eigen::Vector4d& q);
+
+/// Camera of 3x3 (or 4x4) numbers, pixel centres of the file at whole numbers; without a size.
+CameraModel readCameraMatrix(const std::string& path, int side);
+
+/// A camera that looks along -z with y up, as OpenGL, ARKit and most mesh programs have it, as one that looks along z with y
+/// down.
+Eigen::Matrix4d lookingAhead(const Eigen::Matrix4d& T_world_camera);
 
 /// Depth cameras of structured light whose layouts say nothing of the camera: fx = fy = 525 at 640x480, as the makers of the
 /// layouts recommend. @throws std::runtime_error naming `wanted` if the images have another size

@@ -21,23 +21,25 @@ struct Layout {
   std::vector<Reading> readings;     ///< the first is the usual one
   std::vector<const char*> marks;    ///< patterns of Survey::match() that tell it: all must be there
   std::vector<const char*> optional; ///< what it takes besides
+  /// Takes what lies there into `input`, whose folder is set.
   /// @param asked what the user wants it taken for, where that is said
   /// @throws std::runtime_error naming the file that is wrong, and the cure
-  ModelInput (*read)(const Survey&, std::optional<Reading> asked);
+  void (*read)(const Survey&, std::optional<Reading> asked, ModelInput& input);
+  RgbdParts (*frames)(const Survey&, ModelInput& input) = nullptr; ///< the same of RGB-D, instead of `read`
 };
 
-ModelInput readScansFolder(const Survey& found, std::optional<Reading> asked);
-ModelInput readFlatPoints(const Survey& found, std::optional<Reading> asked);
-ModelInput readPhotographsAlone(const Survey& found, std::optional<Reading> asked);
-ModelInput readVideo(const Survey& found, std::optional<Reading> asked);
-ModelInput readColmapProject(const Survey& found, std::optional<Reading> asked);
-ModelInput readScannerExport(const Survey& found, std::optional<Reading> asked);
-ModelInput readSevenScenes(const Survey& found, std::optional<Reading> asked);
-ModelInput readTum(const Survey& found, std::optional<Reading> asked);
-ModelInput readOpen3d(const Survey& found, std::optional<Reading> asked);
-ModelInput readRedwood(const Survey& found, std::optional<Reading> asked);
-ModelInput readScanNet(const Survey& found, std::optional<Reading> asked);
-ModelInput readStrayScanner(const Survey& found, std::optional<Reading> asked);
-ModelInput readPolycam(const Survey& found, std::optional<Reading> asked);
-ModelInput readMatterport(const Survey& found, std::optional<Reading> asked);
+void readScansFolder(const Survey& found, std::optional<Reading> asked, ModelInput& input);
+void readFlatPoints(const Survey& found, std::optional<Reading> asked, ModelInput& input);
+void readPhotographsAlone(const Survey& found, std::optional<Reading> asked, ModelInput& input);
+void readVideo(const Survey& found, std::optional<Reading> asked, ModelInput& input);
+void readColmapProject(const Survey& found, std::optional<Reading> asked, ModelInput& input);
+void readScannerExport(const Survey& found, std::optional<Reading> asked, ModelInput& input);
+void readExportedModel(const Survey& found, std::optional<Reading> asked, ModelInput& input);
+RgbdParts readSevenScenes(const Survey& found, ModelInput& input);
+RgbdParts readTum(const Survey& found, ModelInput& input);
+RgbdParts readOpen3d(const Survey& found, ModelInput& input);
+RgbdParts readScanNet(const Survey& found, ModelInput& input);
+RgbdParts readStrayScanner(const Survey& found, ModelInput& input);
+RgbdParts readPolycam(const Survey& found, ModelInput& input);
+RgbdParts readMatterport(const Survey& found, ModelInput& input);
 } // namespace fresco::model

@@ -34,6 +34,7 @@ struct ModelInput {
   /// from motion finds are the cloud.
   bool is_cloud = false;
   std::vector<Eigen::Vector3d> sensor_path; ///< of a cloud: where the sensor was, world; may be empty
+  std::vector<double> sensor_times;         ///< when it was there, ascending, by the clock of the points; or empty
   std::vector<Pose> poses;                  ///< world from scan; empty where neither folder nor scans have any
   CameraSet cameras;                        ///< photographs; no view where the folder has none
   SparsePoints sparse;                      ///< points of the model that `cameras` are of; none where it has none
@@ -59,9 +60,10 @@ struct ModelInput {
 
 /// Looks at a folder or file, tells its layout (docs/inputs.md) and reads everything small (poses, cameras).
 /// @param as what it is taken for: scans, cloud, rgbd or photographs; "" = what it looks like
+/// @param depth_unit of RGB-D, metres; 0 = that of the layout
 /// @throws std::runtime_error naming what is missing or does not fit together, what two layouts claim, or, where no layout
 ///         fits, what was found
-ModelInput readModelInput(const std::string& path, const std::string& as = "");
+ModelInput readModelInput(const std::string& path, const std::string& as = "", double depth_unit = 0);
 
 /// "6 scans, 60 photographs".
 std::string describe(const ModelInput& input);

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "input/parts.h"
-#include "input/text_table.h"
+#include "input/standpoint.h"
 #include <algorithm>
 #include <filesystem>
 #include <fresco/core/require.h>
 #include <fresco/io/colmap.h>
 #include <fresco/io/file.h>
 #include <fresco/io/formats.h>
+#include <fresco/io/text_rows.h>
 #include <map>
 #include <set>
 namespace fresco::model {
@@ -65,6 +66,15 @@ void takeScans(ModelInput& input, const Survey& found, const std::vector<std::st
                                input.poses.empty() ? "" : " with poses of their own"));
 }
 
+std::vector<std::string> cloudsIn(const Survey& found)
+{
+  const std::vector<std::string> all = found.match("<points>");
+  std::vector<std::string> clouds;
+  std::copy_if(all.begin(), all.end(), std::back_inserter(clouds),
+               [&](const std::string& name) { return !holdsFaces(found.at(name)); });
+  return clouds.empty() ? all : clouds;
+}
+
 void takePoses(ModelInput& input, const Survey& found)
 {
   if (!found.has("poses.txt"))
@@ -85,16 +95,23 @@ void takeAsCloud(ModelInput& input, const Survey& found)
   if (!found.has("trajectory.txt"))
     return;
   const std::string path = found.at("trajectory.txt");
-  for (const auto& row : readTable(path)) {
+  for (const auto& row : readTextRows(path)) {
     if (row.size() < 3)
       throw std::runtime_error(path + ": wants lines of x y z, or of time x y z and whatever else");
     const int first = row.size() == 3 ? 0 : 1;
     Eigen::Vector3d place;
     for (int k = 0; k < 3; ++k)
       place[k] = numberIn(path, row[first + k]);
-    if (place.allFinite())
-      input.sensor_path.push_back(place);
+    if (!place.allFinite())
+      continue;
+    input.sensor_path.push_back(place);
+    if (first == 1)
+      input.sensor_times.push_back(numberIn(path, row[0]));
   }
+  if (!std::is_sorted(input.sensor_times.begin(), input.sensor_times.end()))
+    throw std::runtime_error(path + ": its lines are not in the order of time: sort them");
+  if (input.sensor_times.size() != input.sensor_path.size())
+    input.sensor_times.clear();
   input.found.push_back(concat("trajectory.txt: ", counted(input.sensor_path.size(), "place"), " of the sensor"));
 }
 

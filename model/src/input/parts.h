@@ -7,6 +7,9 @@ namespace fresco::model {
 /// The scans in files, with the poses that the files themselves have.
 void takeScans(ModelInput& input, const Survey& found, const std::vector<std::string>& names);
 
+/// The files of one cloud: those without faces where there are any, so that nothing is there twice.
+std::vector<std::string> cloudsIn(const Survey& found);
+
 /// poses.txt, where there is one. @throws std::runtime_error if it has another number of poses than there are scans
 void takePoses(ModelInput& input, const Survey& found);
 

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "input/layout.h"
+#include "input/frame_files.h"
 #include <algorithm>
 #include <fresco/io/file.h>
 #include <fresco/io/listed.h>
+#include <regex>
 #include <set>
 namespace fresco::model {
 namespace {
@@ -31,51 +32,75 @@ const std::vector<Layout>& layouts()
       {"scanner export with a table of panoramas",
        {R::cloud},
        {"*pano*.csv|pano*/*pano*.csv|info/*pano*.csv|*pano*.txt", "<points>"},
-       {"<pictures>", "pano/", "panos/", "panorama/", "panoramas/", "info/"},
+       {"<pictures>", "*.mtl", "pano/", "panos/", "panorama/", "panoramas/", "info/"},
        readScannerExport},
+      {"exported model with textures",
+       {R::cloud},
+       {"*.obj", "*.mtl"},
+       {"<points>", "<pictures>", "textures/", "trajectory.txt", "*.pdf"},
+       readExportedModel},
       {"7-Scenes RGB-D",
        {R::rgbd},
        {"frame-*.depth.png"},
        {"camera-intrinsics.txt", "frame-*", "poses.txt", "masks/"},
+       nullptr,
        readSevenScenes},
       {"TUM RGB-D",
        {R::rgbd},
-       {"rgb/", "depth/", "rgb.txt|associations.txt", "depth.txt|associations.txt"},
-       {"associations.txt", "groundtruth.txt", "camera-intrinsics.txt", "accelerometer.txt"},
+       {"rgb*/|color*/", "depth*/", "rgb.txt|associations.txt|association.txt",
+        "depth.txt|associations.txt|association.txt"},
+       {"associations.txt", "association.txt", "groundtruth.txt", "camera-intrinsics.txt", "accelerometer.txt"},
+       nullptr,
        readTum},
       {"Open3D RGB-D",
        {R::rgbd},
        {"color/|image/|rgb/", "depth/", "camera_intrinsic.json|intrinsic.json|camera.json"},
        {"trajectory.log", "trajectory.txt", "*.json"},
+       nullptr,
        readOpen3d},
-      {"Redwood RGB-D", {R::rgbd}, {"rgb/|image/|color/", "depth/", "depth/*-*.png|*.log|*-traj.txt"}, {}, readRedwood},
-      {"ScanNet", {R::rgbd}, {"color/", "depth/", "pose/", "intrinsic/"}, {"*.txt"}, readScanNet},
+      {"Redwood RGB-D",
+       {R::rgbd},
+       {"rgb/|image/|color/", "depth/", "depth/*-*.png|*.log|*-traj.txt"},
+       {},
+       nullptr,
+       readOpen3d},
+      {"ScanNet", {R::rgbd}, {"color/", "depth/", "pose/", "intrinsic/"}, {"*.txt"}, nullptr, readScanNet},
       {"Stray Scanner",
        {R::rgbd},
        {"rgb.mp4|rgb/", "depth/", "odometry.csv", "camera_matrix.csv"},
        {"confidence/", "imu.csv"},
+       nullptr,
        readStrayScanner},
       {"Polycam raw data",
        {R::rgbd},
        {"keyframes/corrected_images/|keyframes/images/", "keyframes/corrected_cameras/|keyframes/cameras/",
         "keyframes/depth/"},
        {"keyframes/", "*.glb", "thumbnail.jpg", "polycam.mp4", "mesh_info.json"},
+       nullptr,
        readPolycam},
       {"Matterport3D",
        {R::rgbd},
        {"undistorted_color_images/", "undistorted_depth_images/", "undistorted_camera_parameters/*.conf"},
        {"*/"},
+       nullptr,
        readMatterport},
   };
   return table;
 }
 
-/// A layout that fits.
+std::string topOf(const std::string& name) { return name.substr(0, name.find('/')); }
+
+/// A layout and how well it fits.
 struct Candidate {
   const Layout* layout;
-  std::set<std::string> takes; ///< names at the top of the folder
+  std::set<std::string> takes;             ///< names at the top of the folder
+  std::vector<std::string> there, missing; ///< marks, as messages have them
+
+  bool fits() const { return missing.empty(); }
+  const char* reading() const { return reading_names[int(layout->readings[0])]; }
 };
 
+/// Of all layouts, or of those that what is asked for may be.
 std::vector<Candidate> candidates(const Survey& found, std::optional<Reading> asked)
 {
   std::vector<Candidate> all;
@@ -83,14 +108,14 @@ std::vector<Candidate> candidates(const Survey& found, std::optional<Reading> as
     const auto& readings = layout.readings;
     if (asked && std::find(readings.begin(), readings.end(), *asked) == readings.end())
       continue;
-    const auto has = [&](const char* mark) { return found.has(mark); };
-    if (!std::all_of(layout.marks.begin(), layout.marks.end(), has))
-      continue;
-    Candidate next{&layout, {}};
+    Candidate next{&layout, {}, {}, {}};
     for (const auto* list : {&layout.marks, &layout.optional})
-      for (const char* pattern : *list)
-        for (const std::string& name : found.match(pattern))
-          next.takes.insert(name.substr(0, name.find('/')));
+      for (const std::string pattern : *list) {
+        const std::vector<std::string> names = found.match(pattern);
+        std::transform(names.begin(), names.end(), std::inserter(next.takes, next.takes.end()), topOf);
+        if (list == &layout.marks)
+          (names.empty() ? next.missing : next.there).push_back(std::regex_replace(pattern, std::regex("\\|"), " or "));
+      }
     all.push_back(std::move(next));
   }
   return all;
@@ -108,29 +133,17 @@ bool isPartOf(const Candidate& less, const Candidate& more)
   return within && (more.takes.size() > less.takes.size() || more.layout->marks.size() > less.layout->marks.size());
 }
 
-std::string quoted(const char* pattern)
-{
-  std::string text = pattern;
-  for (std::size_t at; (at = text.find('|')) != std::string::npos;)
-    text.replace(at, 1, " or ");
-  return text;
-}
-
 /// The layout of which most is there, and what it misses.
-std::string nearest(const Survey& found)
+std::string nearest(const std::vector<Candidate>& all)
 {
   double best = 0.49; // less than half of a layout is another one
   std::string text;
-  for (const Layout& layout : layouts()) {
-    std::vector<std::string> there, missing;
-    for (const char* mark : layout.marks)
-      (found.has(mark) ? there : missing).push_back(quoted(mark));
-    if (const double share = double(there.size()) / layout.marks.size(); share > best) {
+  for (const auto& [layout, takes, there, missing] : all)
+    if (const double share = double(there.size()) / layout->marks.size(); share > best) {
       best = share;
-      text = concat("; nearest is ", layout.name, ": ", listed(there, 4), there.size() == 1 ? " is" : " are",
+      text = concat("; nearest is ", layout->name, ": ", listed(there, 4), there.size() == 1 ? " is" : " are",
                     " there, ", listed(missing, 4), missing.size() == 1 ? " is" : " are", " missing");
     }
-  }
   return text;
 }
 
@@ -140,44 +153,36 @@ std::string understoodBelow(const Survey& found)
   constexpr int most_asked = 20;
   int asked = 0;
   for (const std::string& folder : found.folders())
-    if (folder.find('/') == std::string::npos && ++asked <= most_asked &&
-        !candidates(Survey(found.at(folder)), {}).empty())
-      return concat("; ", found.at(folder), " would be understood");
+    if (folder.find('/') == std::string::npos && ++asked <= most_asked) {
+      const std::vector<Candidate> all = candidates(Survey(found.at(folder)), {});
+      if (std::any_of(all.begin(), all.end(), [](const Candidate& one) { return one.fits(); }))
+        return concat("; ", found.at(folder), " would be understood");
+    }
   return "";
 }
 
-[[noreturn]] void throwUnknown(const Survey& found, std::optional<Reading> asked)
+[[noreturn]] void throwUnknown(const Survey& found, const std::vector<Candidate>& all, std::optional<Reading> asked)
 {
   std::vector<std::string> kinds;
   for (const auto& [kind, count] : found.kinds())
     kinds.push_back(concat(count, " ", kind.empty() ? "without extension" : kind));
   if (kinds.empty())
     throw std::runtime_error(found.path() + ": an empty folder; docs/inputs.md lists what is understood");
-  const std::string closest = nearest(found), near = closest.empty() ? understoodBelow(found) : closest;
+  const std::string closest = nearest(all), near = closest.empty() ? understoodBelow(found) : closest;
   throw std::runtime_error(
       concat(found.path(), ": nothing ", asked ? concat("for -as ", reading_names[int(*asked)], " ") : "",
              "in it is understood (", listed(kinds, 5), ")", near, "; docs/inputs.md lists the layouts"));
 }
 
 /// A layout of which one mark of several is missing, while what is there makes another layout fit: rather that than the other.
-void requireNoNearMiss(const Survey& found, const Candidate& chosen)
+void requireNoNearMiss(const Survey& found, const std::vector<Candidate>& all, const Candidate& chosen)
 {
-  for (const Layout& layout : layouts()) {
-    std::vector<std::string> missing;
-    std::set<std::string> takes;
-    for (const char* mark : layout.marks) {
-      const std::vector<std::string> names = found.match(mark);
-      if (names.empty())
-        missing.push_back(quoted(mark));
-      for (const std::string& name : names)
-        takes.insert(name.substr(0, name.find('/')));
-    }
-    if (missing.size() == 1 && layout.marks.size() > chosen.layout->marks.size() + 1 &&
-        std::includes(takes.begin(), takes.end(), chosen.takes.begin(), chosen.takes.end()))
-      throw std::runtime_error(concat(found.path(), "/", missing[0], ": is missing; all else is there of ", layout.name,
-                                      ". Add it, or say -as ", reading_names[int(chosen.layout->readings[0])], " for ",
+  for (const Candidate& one : all)
+    if (one.missing.size() == 1 && one.layout->marks.size() > chosen.layout->marks.size() + 1 &&
+        std::includes(one.takes.begin(), one.takes.end(), chosen.takes.begin(), chosen.takes.end()))
+      throw std::runtime_error(concat(found.path(), "/", one.missing[0], ": is missing; all else is there of ",
+                                      one.layout->name, ". Add it, or say -as ", chosen.reading(), " for ",
                                       chosen.layout->name));
-  }
 }
 
 Candidate theLayout(const Survey& found, std::optional<Reading> asked)
@@ -185,18 +190,17 @@ Candidate theLayout(const Survey& found, std::optional<Reading> asked)
   const std::vector<Candidate> all = candidates(found, asked);
   std::vector<const Candidate*> kept;
   for (const Candidate& one : all)
-    if (std::none_of(all.begin(), all.end(), [&](const Candidate& other) { return isPartOf(one, other); }))
+    if (one.fits() && std::none_of(all.begin(), all.end(),
+                                   [&](const Candidate& other) { return other.fits() && isPartOf(one, other); }))
       kept.push_back(&one);
   if (kept.empty())
-    throwUnknown(found, asked);
-  if (kept.size() > 1) {
-    const Layout &a = *kept[0]->layout, &b = *kept[1]->layout;
-    throw std::runtime_error(concat(found.path(), ": may be ", a.name, " (-as ", reading_names[int(a.readings[0])],
-                                    ") or ", b.name, " (-as ", reading_names[int(b.readings[0])],
+    throwUnknown(found, all, asked);
+  if (kept.size() > 1)
+    throw std::runtime_error(concat(found.path(), ": may be ", kept[0]->layout->name, " (-as ", kept[0]->reading(),
+                                    ") or ", kept[1]->layout->name, " (-as ", kept[1]->reading(),
                                     "): say which, or move one of them elsewhere"));
-  }
   if (!asked)
-    requireNoNearMiss(found, *kept[0]);
+    requireNoNearMiss(found, all, *kept[0]);
   return *kept[0];
 }
 
@@ -205,8 +209,8 @@ std::string unused(const Survey& found, const Candidate& chosen)
 {
   std::set<std::string> others;
   for (const std::string& file : found.files())
-    if (const std::string top = file.substr(0, file.find('/')); chosen.takes.count(top) == 0)
-      others.insert(top);
+    if (chosen.takes.count(topOf(file)) == 0)
+      others.insert(topOf(file));
   return listed({others.begin(), others.end()}, 6);
 }
 
@@ -220,14 +224,18 @@ std::optional<Reading> readingOf(const std::string& name)
 }
 } // namespace
 
-ModelInput readModelInput(const std::string& path, const std::string& as)
+ModelInput readModelInput(const std::string& path, const std::string& as, double depth_unit)
 {
   const std::optional<Reading> asked = readingOf(as);
   const Survey found(path);
   const Candidate chosen = theLayout(found, asked);
-  ModelInput input = chosen.layout->read(found, asked);
+  ModelInput input;
   input.folder = path;
   input.layout = chosen.layout->name;
+  if (chosen.layout->frames)
+    takeFrames(input, chosen.layout->frames(found, input), depth_unit);
+  else
+    chosen.layout->read(found, asked, input);
   if (const std::string others = unused(found, chosen); !others.empty() && !found.isFile())
     input.found.push_back("not used: " + others);
   return input;

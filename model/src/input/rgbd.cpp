@@ -46,6 +46,16 @@ Image16 resampled(const Image16& image, const CameraModel& from, const CameraMod
   return out;
 }
 
+/// @throws std::runtime_error naming a file that does not hold what the first one does
+Image16 unitsIn(const std::string& path, bool in_metres)
+{
+  DepthFile file = readDepthFile(path);
+  if (file.in_metres != in_metres)
+    throw std::runtime_error(path + (in_metres ? ": whole numbers, but the first frame's depths are floats"
+                                               : ": floats, but the first frame's depths are whole numbers"));
+  return std::move(file.image);
+}
+
 /// @throws std::runtime_error where the depths cannot be ones that a camera measures, in the unit that the layout has
 void requirePlausible(const RgbdFolder& folder)
 {
@@ -54,18 +64,18 @@ void requirePlausible(const RgbdFolder& folder)
   std::vector<float> depths;
   const std::size_t step = std::max<std::size_t>(1, folder.frames.size() / 3);
   for (std::size_t f = 0; f < folder.frames.size(); f += step)
-    for (const std::uint16_t value : readImage16(folder.frames[f].depth).data)
+    for (const std::uint16_t value : unitsIn(folder.frames[f].depth, folder.in_metres).data)
       if (value != 0 && value != 65535)
         depths.push_back(folder.depth_unit * value);
   const std::string& path = folder.frames[0].depth;
   if (depths.empty())
     throw std::runtime_error(
         path + ": no depth in it, nor in others (0 and 65535 are none): is the unit so large that all is cut "
-               "off? 16 bit want whole millimetres");
+               "off? 16 bit want whole millimetres, floats metres");
   if (const float typical = median(depths); !(typical >= least && typical <= most))
     throw std::runtime_error(concat(path, ": a median depth of ", typical,
                                     " m cannot be: this layout counts in units of ", 1000 * folder.depth_unit,
-                                    " mm; convert the depth images to that"));
+                                    " mm; convert the depth images to that, or say their unit (-depth_unit METRES)"));
 }
 } // namespace
 
@@ -108,6 +118,9 @@ RgbdFolder assembleRgbd(RgbdParts parts)
     throw std::runtime_error(
         concat(parts.camera_file, ": does not fit ", first.depth, " or ", first.color, ": ", error.what()));
   }
+  folder.in_metres = readDepthFile(first.depth).in_metres;
+  if (folder.in_metres)
+    folder.depth_unit = metres_unit;
   requirePlausible(folder);
   folder.has_poses = std::any_of(parts.poses.begin(), parts.poses.end(), [](const Pose& pose) { return bool(pose); });
   if (!folder.has_poses)
@@ -126,7 +139,7 @@ RgbdFolder assembleRgbd(RgbdParts parts)
 Image16 readDepthUnits(const RgbdFolder& folder, Index f)
 {
   const RgbdFrame& frame = folder.frames.at(f);
-  Image16 image = readImage16(frame.depth);
+  Image16 image = unitsIn(frame.depth, folder.in_metres);
   const CameraModel& own = frame.camera.width > 0 ? frame.camera : folder.camera;
   if (image.width != own.width || image.height != own.height)
     throw std::runtime_error(concat(frame.depth, ": ", image.width, "x", image.height,

@@ -21,6 +21,7 @@ struct RgbdFolder {
   CameraModel camera; ///< of the depth images; pixel centres at +0.5
   std::vector<RgbdFrame> frames;
   double depth_unit = 1e-3; ///< metres
+  bool in_metres = false;   ///< the files hold metres as floats
   bool has_poses = true;    ///< else no frame has one: they are to be tracked
   Index without_pose = 0;   ///< frames that were left out since they have no pose, but others do
 };

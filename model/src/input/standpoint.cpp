@@ -41,6 +41,12 @@ Points sampleOf(const ScanPath& scan, PointSet& first)
 }
 } // namespace
 
+Points samplePoints(const ScanPath& scan)
+{
+  PointSet first;
+  return sampleOf(scan, first);
+}
+
 double hiddenShare(const Points& points)
 {
   constexpr float other_range =
@@ -70,6 +76,12 @@ bool holdsFaces(const std::string& file)
   return kind == ".obj" || kind == ".stl" || (at != std::string::npos && head[at + 14] >= '1' && head[at + 14] <= '9');
 }
 
+bool tellsViewpoint(const PointSet& set)
+{
+  return set.viewpoints.cols() > 1 ||
+         (set.viewpoints.cols() == 1 && !(set.origin + set.viewpoints.col(0).cast<double>()).isZero());
+}
+
 Standpoint standpointOf(const ScanPath& scan)
 {
   if (holdsFaces(scan.file))
@@ -84,12 +96,14 @@ Standpoint standpointOf(const ScanPath& scan)
   }
   PointSet first;
   const Points points = sampleOf(scan, first);
-  if (first.viewpoints.cols() > 0)
+  if (tellsViewpoint(first))
     return first.viewpoints.cols() == 1 ? Standpoint::origin : Standpoint::many;
   if (points.cols() < 2)
     return Standpoint::unknown;
   const Eigen::AlignedBox3f box(points.rowwise().minCoeff(), points.rowwise().maxCoeff());
-  if (box.exteriorDistance(Eigen::Vector3f::Zero().eval()) > box.diagonal().norm())
+  constexpr float nearest = 0.3f; // metres; what lies around the origin within that was turned before a scanner
+  if (box.exteriorDistance(Eigen::Vector3f::Zero().eval()) > box.diagonal().norm() ||
+      points.colwise().norm().maxCoeff() < nearest)
     return Standpoint::many;
   return hiddenShare(points) < most_hidden ? Standpoint::origin : Standpoint::unknown;
 }

@@ -8,13 +8,19 @@ namespace fresco::model {
 enum class Standpoint { origin, many, unknown };
 
 /// What the file says of the sensor, else the points: almost nothing is hidden behind something else for one who stands where a
-/// scan was taken. Points farther from the origin than they extend were not measured from there. Up to four million are read.
+/// scan was taken. Points farther from the origin than they extend, or all within 0.3 m of it, were not measured from there. Up to four million are read.
 /// @throws std::runtime_error as readPoints()
 Standpoint standpointOf(const ScanPath& scan);
+
+/// Whether a set's viewpoints say something: PCL writes one at the origin into every PCD file, whatever it was seen from.
+bool tellsViewpoint(const PointSet& set);
 
 /// Whether a file holds a surface, whose points are to be spread over its faces: of PLY its header tells; OBJ always, since a
 /// scanner exports it only so.
 bool holdsFaces(const std::string& file);
+
+/// Up to 200,000 points of a scan, finite, spread over what is read of it. @throws as standpointOf()
+Points samplePoints(const ScanPath& scan);
 
 /// Share of the points that have about the same direction from the origin as their neighbour in direction, and a range that is
 /// different by a tenth, 0..1.

@@ -23,6 +23,8 @@ bool isOfSort(const std::string& name, const std::string& sort, bool alone)
   const std::string kind = extension(name);
   if (sort == "<pictures>")
     return isOneOf(kind, {".jpg", ".jpeg", ".png", ".tif", ".tiff"});
+  if (sort == "<depths>")
+    return isOneOf(kind, {".png", ".tif", ".tiff", ".pfm", ".npy"});
   if (sort == "<videos>")
     return isOneOf(kind, {".mp4", ".mov", ".avi", ".mkv", ".m4v", ".webm"});
   const bool notes =

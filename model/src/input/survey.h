@@ -20,7 +20,7 @@ public:
 
   /// Names that fit, relative to the folder, numbers in them compared as numbers. Of alternatives ("color/|rgb/") the first
   /// that anything fits. "NAME/" is a folder with something in it; "*" stands for any part of one name, in either case;
-  /// "<points>", "<pictures>" and "<videos>" for the files of that sort, which may stand below folders: "images/<pictures>".
+  /// "<points>", "<pictures>", "<depths>" and "<videos>" for the files of that sort, which may stand below folders: "images/<pictures>".
   std::vector<std::string> match(const std::string& pattern) const;
   bool has(const std::string& pattern) const { return !match(pattern).empty(); }
 

@@ -14,6 +14,7 @@ struct ModelFiles {
   std::string pictures = work + "/pictures";       ///< unpacked from files of scans while they are needed
   std::string photographs = work + "/photographs"; ///< what the program colmap finds
   std::string cameras = work + "/cameras";         ///< of photographs, in the frame of the points
+  std::string points_ply = folder + "/points.ply", surface_ply = folder + "/surface.ply"; ///< of a run that ends there
   std::string poses = folder + "/poses.txt", mesh = folder + "/mesh.ply";
   std::string model_obj = folder + "/model.obj", model_glb = folder + "/model.glb";
   std::string full_glb = folder + "/model_full.glb";

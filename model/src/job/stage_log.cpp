@@ -1,49 +1,25 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "job/stage_log.h"
+#include "job/file_state.h"
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdint>
-#include <cstring>
 #include <filesystem>
 #include <fresco/core/require.h>
 #include <fresco/io/file.h>
 #include <fresco/io/files_read.h>
 #include <fresco/io/json_text.h>
 #include <fstream>
-#include <iomanip>
 #include <link.h>
 #include <map>
-#include <sstream>
 #include <sys/resource.h>
-#include <sys/stat.h>
 namespace fresco::model {
 namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-/// FNV-1a (Fowler, Noll, Vo), 64 bits, as hexadecimal text.
-std::string hashed(const std::string& text)
-{
-  std::uint64_t hash = 0xcbf29ce484222325ULL;
-  for (const unsigned char c : text)
-    hash = (hash ^ c) * 0x100000001b3ULL;
-  std::ostringstream out;
-  out << std::hex << std::setw(16) << std::setfill('0') << hash;
-  return out.str();
-}
-
-/// What a file is known by without reading it: size, times and number. The time of its last change of any kind cannot be set.
-std::string identityOf(const std::string& file)
-{
-  struct stat found = {};
-  if (::stat(file.c_str(), &found) != 0)
-    return "none";
-  return concat(found.st_size, " ", found.st_mtim.tv_sec, ".", found.st_mtim.tv_nsec, " ", found.st_ctim.tv_sec, ".",
-                found.st_ctim.tv_nsec);
-}
-
-/// Regular files below a folder with what they are known by; hidden ones are nobody's output.
+/// Regular files below a folder with their stamps; hidden ones are nobody's output.
 std::map<std::string, std::string> filesBelow(const std::string& folder)
 {
   std::map<std::string, std::string> files;
@@ -52,30 +28,8 @@ std::map<std::string, std::string> filesBelow(const std::string& folder)
     if (entry->path().filename().string()[0] == '.')
       entry.disable_recursion_pending();
     else if (entry->is_regular_file())
-      files[entry->path().lexically_relative(folder).string()] = identityOf(entry->path());
+      files[entry->path().lexically_relative(folder).string()] = stampOf(entry->path());
   return files;
-}
-
-/// Size and hash of the content, eight bytes at a time; "" where the file cannot be read.
-std::string contentOf(const std::string& file)
-{
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream)
-    return "";
-  std::vector<char> block(1 << 20);
-  std::uint64_t hash = 0xcbf29ce484222325ULL, size = 0;
-  while (stream.read(block.data(), std::streamsize(block.size())) || stream.gcount() > 0) {
-    const std::size_t read = stream.gcount();
-    size += read;
-    std::fill(block.begin() + read, block.begin() + (read + 7) / 8 * 8, 0);
-    for (std::size_t i = 0; i < read; i += 8) {
-      std::uint64_t word = 0;
-      std::memcpy(&word, block.data() + i, 8);
-      hash = (hash ^ word) * 0x9e3779b97f4a7c15ULL; // odd, so that no word is lost
-      hash ^= hash >> 32;
-    }
-  }
-  return concat(size, " ", std::hex, hash);
 }
 
 /// Restarts the kernel's count of the highest resident memory.
@@ -133,14 +87,6 @@ bool tellRanks(bool known, Exchange& ranks)
 }
 } // namespace
 
-std::string fingerprint(const std::vector<std::string>& files)
-{
-  std::string text;
-  for (const std::string& file : files)
-    text += concat(file, " ", identityOf(file), "\n");
-  return text;
-}
-
 std::vector<std::string> programFiles()
 {
   std::error_code error;
@@ -156,21 +102,30 @@ std::vector<std::string> programFiles()
 }
 
 StageLog::StageLog(std::string folder, const std::vector<std::string>& inputs, bool resume, Progress progress)
-    : folder_(std::move(folder)), root_(fs::path(folder_).parent_path()), known_(inputs.begin(), inputs.end()),
+    : folder_(std::move(folder)), root_(fs::path(folder_).parent_path()), inputs_(inputs.begin(), inputs.end()),
       resume_(resume), progress_(std::move(progress))
 {
-  const std::vector<std::string> all(known_.begin(), known_.end());
-  key_ = hashed(fingerprint(all) + fingerprint(programFiles()));
+  std::string names;
+  for (const std::string& file : inputs_)
+    if (!isOutput(file))
+      names += file + "\n";
+  key_ = hashOf(names);
+  for (const std::string& file : programFiles())
+    inputs_.insert(file);
   makeFolder(folder_);
 }
 
-Json StageLog::readSince() const
+bool StageLog::isOutput(const std::string& file) const { return file.rfind(root_ + "/", 0) == 0; }
+
+Json StageLog::inputsOfStage()
 {
-  Json read = Json::object();
   for (const std::string& file : filesRead())
-    if (known_.count(file) == 0 && file.rfind(root_ + "/", 0) != 0) // what lies there is an output
-      read[file] = identityOf(file);
-  return read;
+    inputs_.insert(file);
+  Json states = Json::object();
+  for (const std::string& file : inputs_)
+    if (!isOutput(file) && recorded_.insert(file).second)
+      states[file] = stateOf(file, start_);
+  return states;
 }
 
 bool StageLog::takeOver(const Stage& stage, const std::string& file)
@@ -181,19 +136,19 @@ try {
   if (stored.is_discarded() || !stored.is_object() || stored.value("key", "") != key_ || !stored.contains("figures"))
     return false;
   const Json outputs = stored.at("outputs"), inputs = stored.at("inputs");
-  for (const auto& [name, content] : outputs.items())
-    if (contentOf(root_ + "/" + name) != content)
+  for (const auto& [name, state] : outputs.items())
+    if (!isAs(state, root_ + "/" + name))
       return false;
-  for (const auto& [name, identity] : inputs.items())
-    if (identityOf(name) != identity)
+  for (const auto& [name, state] : inputs.items())
+    if (!isAs(state, name))
       return false;
   for (const std::string& path : stage.outputs) // nothing has come into its folders
     if (fs::is_directory(path))
-      for (const auto& [name, identity] : filesBelow(path))
+      for (const auto& [name, stamp] : filesBelow(path))
         if (!outputs.contains(fs::path(path + "/" + name).lexically_relative(root_).string()))
           return false;
-  for (const auto& [name, content] : outputs.items())
-    known_.insert(root_ + "/" + name);
+  for (const auto& [name, state] : inputs.items())
+    recorded_.insert(name);
   records_.push_back({stage.name, stored.value("seconds", 0.0), stored.value("cpu_seconds", 0.0),
                       stored.value("peak_megabytes", 0.0), true, stored["figures"]});
   return true;
@@ -209,7 +164,7 @@ void StageLog::renewReplaced(const Json& outputs) const
     if (record.is_discarded() || !record.contains("outputs"))
       continue;
     const Json before = record["outputs"];
-    for (const auto& [name, content] : before.items())
+    for (const auto& [name, state] : before.items())
       if (outputs.contains(name))
         record["outputs"][name] = outputs[name];
       else if (!fs::exists(root_ + "/" + name))
@@ -221,7 +176,7 @@ void StageLog::renewReplaced(const Json& outputs) const
 
 void StageLog::run(const Stage& stage)
 {
-  key_ = hashed(key_ + "\n" + stage.name + "\n" + stage.options);
+  key_ = hashOf(key_ + "\n" + stage.name + "\n" + stage.options);
   const std::string file = folder_ + "/" + stage.name + ".json";
   report(progress_, stage.name, 0.0);
   const bool taken_over = takeOver(stage, file);
@@ -241,15 +196,13 @@ void StageLog::run(const Stage& stage)
   if (stage.shared)
     addCosts(record, *ranks_);
   Json outputs = Json::object();
-  for (const auto& [name, identity] : filesBelow(root_))
+  for (const auto& [name, stamp] : filesBelow(root_))
     if (const auto old = before.find(name);
-        fs::path(name).filename() != "log.txt" && (old == before.end() || old->second != identity)) {
-      outputs[name] = contentOf(root_ + "/" + name);
-      known_.insert(root_ + "/" + name);
-    }
+        fs::path(name).filename() != "log.txt" && (old == before.end() || old->second != stamp))
+      outputs[name] = stateOf(root_ + "/" + name);
   writeFile(file, jsonText(Json{{"key", key_},
                                 {"outputs", outputs},
-                                {"inputs", readSince()},
+                                {"inputs", inputsOfStage()},
                                 {"seconds", record.seconds},
                                 {"cpu_seconds", record.cpu_seconds},
                                 {"peak_megabytes", record.peak_megabytes},

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+#include <chrono>
 #include <fresco/core/exchange.h>
 #include <fresco/core/progress.h>
 #include <functional>
@@ -28,12 +29,12 @@ struct Stage {
 };
 
 /// Runs stages one after the other and keeps a record of each in `folder`, so that a later run can go on after the last
-/// one that was finished with the same input and options. Nothing is believed because it exists: a record holds every file below
-/// the folder's parent that the stage wrote, with size and hash, and every other file that was read until then, and is good only
-/// while all of them are as they were.
+/// one that was finished with the same options. Nothing is believed because it exists: a record holds the state of every
+/// file below the folder's parent that the stage wrote, and of every other file that the process had read by then, and is good
+/// only while all of them are as they were.
 class StageLog {
 public:
-  /// @param inputs   files that the whole job depends on, besides those that its stages read
+  /// @param inputs   files that the job reads as far as is known; those that the library reads besides are found
   /// @param progress hears of each stage from 0 to 1, steps as "STAGE: STEP"
   StageLog(std::string folder, const std::vector<std::string>& inputs, bool resume, Progress progress);
 
@@ -50,10 +51,12 @@ private:
   /// Outputs of earlier stages that a later one has changed, such as a database that grows, or taken away: all of these stages
   /// are to be done again where they are not as that one left them.
   void renewReplaced(const nlohmann::ordered_json& outputs) const;
-  nlohmann::ordered_json readSince() const; ///< files that were read besides the outputs of stages
+  bool isOutput(const std::string& file) const;
+  nlohmann::ordered_json inputsOfStage(); ///< states of the inputs that no earlier record has
   std::string folder_, key_;
-  std::string root_;            ///< below which outputs lie
-  std::set<std::string> known_; ///< files that the key stands for, and outputs so far
+  std::string root_; ///< below which outputs lie
+  std::set<std::string> inputs_, recorded_;
+  std::chrono::system_clock::time_point start_ = std::chrono::system_clock::now();
   bool resume_;
   Progress progress_;
   std::vector<StageRecord> records_;
@@ -63,9 +66,6 @@ private:
 
 /// Takes part in the shared stages among those that rank 0 runs. @throws what they throw
 void followStages(const std::vector<Stage>& stages, Exchange& ranks, const Progress& progress);
-
-/// Name, size and times of each file: changes when one of them does, also where its time of change is set back.
-std::string fingerprint(const std::vector<std::string>& files);
 
 /// The files that this program consists of: itself and the fresco libraries that it has loaded.
 std::vector<std::string> programFiles();

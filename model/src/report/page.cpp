@@ -122,6 +122,18 @@ std::string sizeText(std::uintmax_t bytes)
   return bytes >= 1000000 ? fixed(bytes / 1e6, 1) + " MB" : fixed(std::max(1.0, bytes / 1e3), 0) + " kB";
 }
 
+/// What a run wrote that was asked to end early; "" of a whole one.
+std::string endSection(const Report& report)
+{
+  if (report.isWhole())
+    return "";
+  const std::string& last = report.stages.back().name;
+  const std::string file = last == "points" ? "points.ply" : last == "surface" ? "surface.ply" : "mesh.ply";
+  return "<p>The run was asked to end with <a href=\"" + file + "\">" + file +
+         "</a>; poses: <a href=\"poses.txt\">poses.txt</a>. <code>-resume</code> without <code>-until</code> goes "
+         "on.</p>\n";
+}
+
 std::string fileSection(const ModelFiles& files)
 {
   static const std::pair<const char*, const char*> known[] = {
@@ -253,11 +265,14 @@ std::string reportPage(const Report& report, const ModelFiles& files, const std:
                      "</h1>\n<p>Made from " + escapedHtml(report.kind) + ".</p>\n";
   if (facts)
     html += cards(*facts);
-  html += viewer(report, files, facts);
+  html += endSection(report);
+  if (report.isWhole())
+    html += viewer(report, files, facts);
   if (facts)
     html += planSection(*facts);
-  html +=
-      errorSection(report, facts) + unseenSection(report, facts) + fileSection(files) + pictureSection(report, files);
+  html += errorSection(report, facts);
+  if (report.isWhole())
+    html += unseenSection(report, facts) + fileSection(files) + pictureSection(report, files);
   html += "<details><summary>Times, memory and figures of each step</summary>\n<p>Input: " + escapedHtml(report.input) +
           ". Time of this run: " + fixed(report.seconds, 1) + " s.</p>\n<div class=\"wide\">" + stageTable(report) +
           fitTable(report) + "</div></details>\n";

@@ -73,6 +73,8 @@ Json toJson(const Report& report)
 /// Nothing where the mesh is not like a building in metres: a report without a plan is still one.
 std::optional<RoomFacts> factsOf(const Report& report, const ModelFiles& files)
 {
+  if (!report.isWhole())
+    return {};
   try {
     return measureRooms(report, files);
   } catch (const std::invalid_argument&) {
@@ -84,6 +86,8 @@ std::optional<RoomFacts> factsOf(const Report& report, const ModelFiles& files)
 Report makeReport(const std::string& input, const std::vector<StageRecord>& stages, double seconds)
 {
   Report report{input, "", stages, {}, Eigen::Vector3d::UnitZ(), seconds};
+  if (!report.isWhole())
+    return report;
   const Json& figures = stages.back().figures;
   report.up = vectorOf(figures, "up");
   for (const Json& picture : figures["pictures"])

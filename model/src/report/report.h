@@ -21,9 +21,11 @@ struct Report {
   std::vector<ReportPicture> pictures;
   Eigen::Vector3d up = Eigen::Vector3d::UnitZ(); ///< upright direction
   double seconds = 0;                            ///< of this run
+
+  bool isWhole() const { return stages.back().name == "pictures"; } ///< else it ended before
 };
 
-/// @param stages the last one is that of the pictures, see makePictures()
+/// @param stages not empty; a whole run ends with that of the pictures, see makePictures()
 Report makeReport(const std::string& input, const std::vector<StageRecord>& stages, double seconds);
 
 /// What the caller of buildModel() gets.

@@ -5,10 +5,12 @@
 #include "stages/stages.h"
 #include <algorithm>
 #include <cmath>
+#include <fresco/core/point_table.h>
 #include <fresco/core/require.h>
 #include <fresco/core/statistics.h>
 #include <fresco/filters/core/normal_orientation.h>
 #include <fresco/filters/core/outliers.h>
+#include <fresco/io/cloud_file.h>
 #include <fresco/io/file.h>
 #include <fresco/io/mesh_io.h>
 #include <fresco/io/point_io.h>
@@ -79,8 +81,49 @@ PointSet pointsOnFaces(const TriangleMesh& mesh)
   return set;
 }
 
+/// A column of a cloud; empty where it has none of these names.
+std::vector<double> columnOf(const pcl::PCLPointCloud2& cloud, std::initializer_list<const char*> names)
+{
+  std::vector<double> values;
+  for (const char* name : names)
+    for (const pcl::PCLPointField& field : cloud.fields)
+      if (values.empty() && field.name == name &&
+          (field.datatype == pcl::PCLPointField::FLOAT64 || field.datatype == pcl::PCLPointField::FLOAT32))
+        for (std::size_t at = field.offset; at < cloud.data.size(); at += cloud.point_step)
+          values.push_back(field.datatype == pcl::PCLPointField::FLOAT64 ? core::loadScalar<double>(&cloud.data[at])
+                                                                         : core::loadScalar<float>(&cloud.data[at]));
+  return values;
+}
+
+/// Points of a file. Where these and the trajectory bear times of one clock, each with the place that it was seen from then.
+PointSet readTimedPoints(const ScanPath& scan, const ModelInput& input, std::vector<std::string>& warnings)
+{
+  const std::vector<double>& times = input.sensor_times;
+  if (times.size() < 2)
+    return readPoints(scan);
+  const CloudFile file = readCloud(scan);
+  PointSet set = toPointSet(file);
+  const std::vector<double> seen = columnOf(file.cloud, {"gps_time", "time", "timestamp", "t"});
+  Points places(3, seen.size());
+  Index within = 0;
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    const std::size_t next = std::clamp<std::size_t>(
+        std::upper_bound(times.begin(), times.end(), seen[i]) - times.begin(), 1, times.size() - 1);
+    const double share =
+        std::clamp((seen[i] - times[next - 1]) / std::max(times[next] - times[next - 1], 1e-9), 0.0, 1.0);
+    within += seen[i] >= times.front() && seen[i] <= times.back();
+    places.col(i) =
+        ((1 - share) * input.sensor_path[next - 1] + share * input.sensor_path[next] - set.origin).cast<float>();
+  }
+  if (2 * within > Index(seen.size()) && Index(seen.size()) == set.size())
+    set.viewpoints = places;
+  else if (!seen.empty())
+    warnings.push_back(scan.name() + ": its times and those of trajectory.txt do not meet: is it the same clock?");
+  return set;
+}
+
 /// All files of the cloud in the frame of the world, near an origin that is the first point's: large coordinates stay exact.
-PointSet readCloud(const Job& job, const Progress& progress)
+PointSet readCloud(const Job& job, std::vector<std::string>& warnings, const Progress& progress)
 {
   const ModelInput& input = job.input;
   if (input.scans.empty())
@@ -89,9 +132,11 @@ PointSet readCloud(const Job& job, const Progress& progress)
   for (std::size_t s = 0; s < input.scans.size(); ++s) {
     report(progress, concat("file ", s + 1, " of ", input.scans.size()), 0.3 * double(s) / double(input.scans.size()));
     const std::string& file = input.scans[s].file;
-    PointSet part = holdsFaces(file) ? pointsOnFaces(readMesh(file)) : readPoints(input.scans[s]);
+    PointSet part = holdsFaces(file) ? pointsOnFaces(readMesh(file)) : readTimedPoints(input.scans[s], input, warnings);
     if (part.size() == 0 || !input.poses.at(s))
       continue;
+    if (!tellsViewpoint(part))
+      part.viewpoints.resize(3, 0);
     Eigen::Matrix4d T = *input.poses[s];
     if (!T.isIdentity()) {
       const Eigen::Vector3d origin = cloud.size() > 0 ? cloud.origin : T.topRightCorner<3, 1>();
@@ -178,11 +223,15 @@ Figures pointsFromCloud(const Job& job, const Progress& progress)
 {
   constexpr double within = 2; // metres: in less than that nobody stood to look around
   const auto& [input, files, options, stages, ranks] = job;
-  PointSet cloud = readCloud(job, progress);
+  std::vector<std::string> warnings;
+  PointSet cloud = readCloud(job, warnings, progress);
   const Index raw = cloud.size();
   const bool has_normals = cloud.hasNormals();
   report(progress, "outliers", 0.3);
   cloud = selectPoints(cloud, withoutOutliers(cloud.points, stages.outliers));
+  if (constexpr Index fewest = 100; cloud.size() < fewest)
+    throw std::runtime_error(concat(input.scans.empty() ? input.folder : input.scans[0].file, ": only ", cloud.size(),
+                                    " points but for outliers: no surface can be made of them"));
   report(progress, "normals", 0.4);
   FreeSideHints hints;
   hints.sensors.resize(3, input.sensor_path.size());
@@ -196,14 +245,16 @@ Figures pointsFromCloud(const Job& job, const Progress& progress)
   const PlacedPoints placed(files.points);
   placed.clear();
   placed.write(0, cloud);
-  writePoses(files.poses, input.poses);
+  writePoses(files.poses,
+             input.poses.empty() ? std::vector<Pose>{Eigen::Matrix4d(Eigen::Matrix4d::Identity())} : input.poses);
   writeFile(files.cell, concat(options.cell > 0 ? options.cell : cellOf(spacing, cloud.size()), "\n"));
   Figures figures{
       {"registration", "none: one cloud"}, {"raw_points", raw}, {"points", cloud.size()}, {"point_spacing", spacing}};
   if (found == Orientation::cloud && has_normals)
-    figures["warnings"].push_back(
-        "the normals of the file are not used: neighbours point to different sides, or do not stand on the "
-        "surface");
+    warnings.emplace_back(
+        "the normals of the file are not used: neighbours point to different sides, or do not stand on the surface");
+  if (!warnings.empty())
+    figures["warnings"] = warnings;
   figures["normals"] = found == Orientation::file         ? "those of the file"
                        : found == Orientation::viewpoints ? "to where each point was seen from"
                        : !input.sensor_path.empty()       ? "to the places of the sensor in sight"

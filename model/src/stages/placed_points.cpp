@@ -8,6 +8,7 @@
 #include <fresco/core/morton.h>
 #include <fresco/core/require.h>
 #include <fresco/io/file.h>
+#include <fresco/io/ply_rows.h>
 #include <fresco/io/point_files.h>
 #include <fresco/io/point_io.h>
 #include <iomanip>
@@ -159,6 +160,22 @@ PointSet PlacedPoints::sample(Index most) const
     appendPoints(all, count > most ? selectPoints(points, shares.take(points)) : points);
   });
   return all;
+}
+
+void PlacedPoints::writePly(const std::string& path) const
+{
+  const std::unique_ptr<PointStream> all = stream();
+  const Index count = countPoints(*all);
+  OutputFile file(path);
+  bool begun = false;
+  all->read([&](const PointSet& window) {
+    const core::PointTable rows = io::plyRows(core::pointsToTable(window));
+    if (!begun)
+      file.write(io::plyHeader(rows, count, 0));
+    begun = true;
+    file.write(rows.rowsBegin(), std::size_t(rows.rows) * rows.stride);
+  });
+  file.commit();
 }
 
 Index countPoints(const PointStream& points)

@@ -33,6 +33,9 @@ public:
   /// part of space, as far as it has them.
   PointSet sample(Index most) const;
 
+  /// All points as one file, in windows. @throws as stream(), and if it cannot be written
+  void writePly(const std::string& path) const;
+
 private:
   std::vector<std::string> files() const;
 

@@ -34,7 +34,7 @@ Image16 enlarged(const Image16& image, int width, int height)
   return out;
 }
 
-std::string lasFile(const PointSet& set)
+std::string lasFile(const PointSet& set, const std::vector<double>& times)
 {
   constexpr double unit = 1e-4; // metres
   const std::vector<Index> finite = finiteColumns(set.points);
@@ -49,6 +49,8 @@ std::string lasFile(const PointSet& set)
     put(points,
         std::uint16_t(set.intensities.size() > 0 ? 65535 * std::min(1.f, std::max(0.f, set.intensities[i])) : 0));
     points += std::string("\x09\x01\x00\x00\x00\x00", 6); // first return of one, class 1, angle, user data, source
+    if (!times.empty())
+      put(points, times[i]);
     for (int k = 0; k < 3; ++k)
       put(points, std::uint16_t(set.colors.cols() > 0 ? 257 * set.colors(k, i) : 0));
   }
@@ -59,8 +61,8 @@ std::string lasFile(const PointSet& set)
   put(head, std::uint16_t(227)); // bytes of the header
   put(head, std::uint32_t(227)); // where points begin
   put(head, std::uint32_t(0));
-  put(head, std::uint8_t(2));   // point format
-  put(head, std::uint16_t(26)); // bytes of a point
+  put(head, std::uint8_t(times.empty() ? 2 : 3));    // point format
+  put(head, std::uint16_t(times.empty() ? 26 : 34)); // bytes of a point
   put(head, std::uint32_t(finite.size()));
   put(head, std::uint32_t(finite.size()));
   head.resize(131, '\0');

@@ -1,59 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <algorithm>
-#include <cmath>
-#include <filesystem>
-#include <fresco/core/require.h>
+#include "sensors/layout_copy.h"
 #include <fresco/io/colmap.h>
-#include <fresco/io/file.h>
 #include <fresco/io/image_io.h>
 #include <fresco/io/point_io.h>
-#include <fresco/io/pose_file.h>
-#include <fresco/io/rgbd_folder.h>
 #include <fresco/simulation/sensors/layout_files.h>
 #include <fresco/simulation/sensors/layouts.h>
-#include <iomanip>
 namespace fresco::simulation {
 namespace {
 namespace fs = std::filesystem;
-
-/// From where to where.
-struct Copy {
-  const std::string &from, &to;
-
-  std::vector<Pose> poses(const std::string& file = "/poses.txt") const { return readPoses(from + file); }
-  std::string scan(std::size_t k) const
-  {
-    return concat(from, "/scans/scan_", std::setfill('0'), std::setw(2), k, ".pcd");
-  }
-  void folder(const std::string& source, const std::string& target) const
-  {
-    makeFolder(to + "/" + target);
-    fs::copy(from + "/" + source, to + "/" + target,
-             fs::copy_options::recursive | fs::copy_options::overwrite_existing);
-  }
-};
-
-std::string numbered(std::size_t k, int digits) { return concat(std::setfill('0'), std::setw(digits), k); }
-
-std::string matrixText(const Eigen::Matrix4d& T)
-{
-  std::string text;
-  for (int r = 0; r < 4; ++r)
-    text += concat(std::setprecision(12), T(r, 0), " ", T(r, 1), " ", T(r, 2), " ", T(r, 3), "\n");
-  return text;
-}
-
-std::string quaternionText(const Eigen::Matrix4d& T, const char* between)
-{
-  const Eigen::Quaterniond q(Eigen::Matrix3d(T.topLeftCorner<3, 3>()));
-  return concat(std::setprecision(12), T(0, 3), between, T(1, 3), between, T(2, 3), between, q.x(), between, q.y(),
-                between, q.z(), between, q.w());
-}
-
-/// Camera that looks along -z with y up.
-Eigen::Matrix4d lookingBack(const Eigen::Matrix4d& T) { return T * Eigen::Vector4d(1, -1, -1, 1).asDiagonal(); }
-
-// --- points
 
 void writeScansAs(const Copy& copy, const std::string& extension)
 {
@@ -120,10 +74,40 @@ void writeTrajectory(const Copy& copy)
   writeFile(copy.to + "/trajectory.txt", lines);
 }
 
+/// Each point bears the time at which its scan was taken; the sensor goes from one place to the next.
+void writeTimedCloud(const Copy& copy)
+{
+  std::vector<double> times;
+  std::string lines;
+  const std::vector<Pose> poses = copy.poses();
+  for (std::size_t k = 0; k < poses.size(); ++k) {
+    times.resize(times.size() + readPoints(copy.scan(k)).size(), 500 + 10.0 * k);
+    lines += concat(500 + 10 * k, " ", quaternionText(*poses[k], " "), "\n");
+  }
+  writeFile(copy.to + "/drive.las", lasFile(mergedCloud(copy), times));
+  writeFile(copy.to + "/trajectory.txt", lines);
+}
+
+/// As Matterport's MatterPak: a textured mesh, of which a few faces do here, and the cloud.
+void writeMatterPak(const Copy& copy)
+{
+  const PointSet cloud = mergedCloud(copy);
+  writePoints(copy.to + "/cloud.xyz", cloud);
+  const Eigen::Vector3f far = cloud.points.rowwise().maxCoeff();
+  writeFile(copy.to + "/0f37bd07.obj", concat("mtllib 0f37bd07.mtl\nv 0 0 0\nv ", far.x(), " 0 0\nv 0 ", far.y(),
+                                              " 0\nvt 0 0\nvt 1 0\nvt 0 1\nusemtl a\nf 1/1 2/2 3/3\n"));
+  writeFile(copy.to + "/0f37bd07.mtl", "newmtl a\nmap_Kd 0f37bd07_000.jpg\n");
+  for (const char* name : {"/0f37bd07_000.jpg", "/colorplan_000.jpg"})
+    writeImage(copy.to + name, Image(16, 16, 3, 200));
+}
+
 void writeColmapProject(const Copy& copy, bool dense)
 {
   copy.folder("images", "images");
   writeColmap(copy.to + "/sparse/0", readColmap(copy.from + "/cameras"), readColmapPoints(copy.from + "/cameras"));
+  writeFile(copy.to + "/sparse/0/rigs.txt",
+            "# RIG_ID, NUM_SENSORS, REF_SENSOR_TYPE, REF_SENSOR_ID, SENSORS[]\n1 1 CAMERA 1\n");
+  writeFile(copy.to + "/sparse/0/frames.txt", "# FRAME_ID, RIG_ID, RIG_FROM_WORLD, NUM_DATA_IDS, DATA_IDS[]\n");
   if (!dense)
     return;
   makeFolder(copy.to + "/dense");
@@ -150,189 +134,6 @@ void writeScannerExport(const Copy& copy)
   writeFile(copy.to + "/pano-poses.csv", table);
 }
 
-// --- RGB-D frames
-
-struct Video {
-  RgbdFolderFiles files;
-  std::vector<Pose> poses;
-  explicit Video(const Copy& copy) : files(listRgbdFolder(copy.from + "/rgbd")), poses(copy.poses("/rgbd/poses.txt")) {}
-};
-
-/// A depth image in another unit. @param units of millimetres a unit of the layout
-void copyDepth(const std::string& from, const std::string& to, double millimetres)
-{
-  Image16 depth = readImage16(from);
-  for (std::uint16_t& value : depth.data)
-    value = value == 65535 ? 0 : std::uint16_t(std::min(65535.0, std::round(value / millimetres)));
-  writeImage(to, depth);
-}
-
-void writeSevenScenes(const Copy& copy)
-{
-  const Video video(copy);
-  fs::copy(copy.from + "/rgbd/camera-intrinsics.txt", copy.to, fs::copy_options::overwrite_existing);
-  for (std::size_t f = 0; f < video.poses.size(); ++f) {
-    const auto& frame = video.files.frames[f];
-    fs::copy(frame.color, copy.to, fs::copy_options::overwrite_existing);
-    fs::copy(frame.depth, copy.to, fs::copy_options::overwrite_existing);
-    writeFile(copy.to + "/" + frame.name + ".pose.txt", matrixText(*video.poses[f]));
-  }
-}
-
-void writeTum(const Copy& copy)
-{
-  const Video video(copy);
-  makeFolder(copy.to + "/rgb");
-  makeFolder(copy.to + "/depth");
-  std::string colors = "# color images\n", depths = "# depth maps\n", poses = "# timestamp tx ty tz qx qy qz qw\n";
-  for (std::size_t f = 0; f < video.poses.size(); ++f) {
-    const std::string color_time = concat(std::fixed, std::setprecision(6), 1305031102.175 + f / 30.0),
-                      depth_time = concat(std::fixed, std::setprecision(6), 1305031102.160 + f / 30.0);
-    writeImage(copy.to + "/rgb/" + color_time + ".png", readImage(video.files.frames[f].color));
-    copyDepth(video.files.frames[f].depth, copy.to + "/depth/" + depth_time + ".png", 0.2);
-    colors += color_time + " rgb/" + color_time + ".png\n";
-    depths += depth_time + " depth/" + depth_time + ".png\n";
-    poses += color_time + " " + quaternionText(*video.poses[f], " ") + "\n";
-  }
-  writeFile(copy.to + "/rgb.txt", colors);
-  writeFile(copy.to + "/depth.txt", depths);
-  writeFile(copy.to + "/groundtruth.txt", poses);
-  fs::copy(copy.from + "/rgbd/camera-intrinsics.txt", copy.to, fs::copy_options::overwrite_existing);
-}
-
-/// Both images of each frame, named by number.
-void copyFrames(const Copy& copy, const Video& video, const std::string& color, int digits)
-{
-  makeFolder(copy.to + "/" + color);
-  makeFolder(copy.to + "/depth");
-  for (std::size_t f = 0; f < video.poses.size(); ++f) {
-    fs::copy(video.files.frames[f].color, copy.to + "/" + color + "/" + numbered(f, digits) + ".jpg",
-             fs::copy_options::overwrite_existing);
-    copyDepth(video.files.frames[f].depth, copy.to + "/depth/" + numbered(f, digits) + ".png", 1);
-  }
-}
-
-std::string poseLog(const Video& video)
-{
-  std::string log;
-  for (std::size_t f = 0; f < video.poses.size(); ++f)
-    log += concat(f, " ", f, " ", f + 1, "\n") + matrixText(*video.poses[f]);
-  return log;
-}
-
-void writeOpen3d(const Copy& copy)
-{
-  const Video video(copy);
-  copyFrames(copy, video, "color", 6);
-  const CameraModel& camera = video.files.camera;
-  writeFile(copy.to + "/camera_intrinsic.json",
-            concat("{\"width\": ", camera.width, ", \"height\": ", camera.height, ", \"intrinsic_matrix\": [",
-                   camera.fx, ", 0, 0, 0, ", camera.fy, ", 0, ", camera.cx - 0.5, ", ", camera.cy - 0.5, ", 1]}\n"));
-  writeFile(copy.to + "/trajectory.log", poseLog(video));
-}
-
-/// Redwood's frames are of 640x480, so images of another size are brought to that.
-void writeRedwood(const Copy& copy)
-{
-  const Video video(copy);
-  makeFolder(copy.to + "/rgb");
-  makeFolder(copy.to + "/depth");
-  for (std::size_t f = 0; f < video.poses.size(); ++f) {
-    writeImage(copy.to + "/rgb/" + numbered(f + 1, 7) + "-" + numbered(33333 * f, 12) + ".jpg",
-               enlarged(readImage(video.files.frames[f].color), 640, 480));
-    writeImage(copy.to + "/depth/" + numbered(f + 1, 7) + "-" + numbered(33333 * f + 900, 12) + ".png",
-               enlarged(readImage16(video.files.frames[f].depth), 640, 480));
-  }
-  writeFile(copy.to + "/scene-traj.log", poseLog(video));
-}
-
-void writeScanNet(const Copy& copy)
-{
-  const Video video(copy);
-  copyFrames(copy, video, "color", 1);
-  for (const char* part : {"/pose", "/intrinsic"})
-    makeFolder(copy.to + part);
-  const CameraModel& camera = video.files.camera;
-  Eigen::Matrix4d K = Eigen::Matrix4d::Identity();
-  K(0, 0) = camera.fx, K(1, 1) = camera.fy, K(0, 2) = camera.cx - 0.5, K(1, 2) = camera.cy - 0.5;
-  for (const char* which : {"depth", "color"})
-    writeFile(copy.to + "/intrinsic/intrinsic_" + which + ".txt", matrixText(K));
-  for (std::size_t f = 0; f < video.poses.size(); ++f)
-    writeFile(copy.to + "/pose/" + numbered(f, 1) + ".txt", matrixText(*video.poses[f]));
-}
-
-void writeTrust(const std::string& file, const Image16& depth, std::uint8_t trusted)
-{
-  Image trust(depth.width, depth.height, 1);
-  for (std::size_t i = 0; i < depth.data.size(); ++i)
-    trust.data[i] = depth.data[i] == 0 || i % 50 == 0 ? 0 : trusted;
-  writeImage(file, trust);
-}
-
-/// Colours as pictures in rgb/, as of a video that was unpacked.
-void writeStray(const Copy& copy)
-{
-  const Video video(copy);
-  copyFrames(copy, video, "rgb", 6);
-  makeFolder(copy.to + "/confidence");
-  const CameraModel& camera = video.files.camera;
-  writeFile(copy.to + "/camera_matrix.csv", concat(camera.fx, ", 0.0, ", camera.cx - 0.5, "\n0.0, ", camera.fy, ", ",
-                                                   camera.cy - 0.5, "\n0.0, 0.0, 1.0\n"));
-  std::string odometry = "timestamp, frame, x, y, z, qx, qy, qz, qw\n";
-  for (std::size_t f = 0; f < video.poses.size(); ++f) {
-    odometry += concat(7000 + f / 60.0, ", ", numbered(f, 6), ", ", quaternionText(*video.poses[f], ", "), "\n");
-    writeTrust(copy.to + "/confidence/" + numbered(f, 6) + ".png", readImage16(video.files.frames[f].depth), 2);
-  }
-  writeFile(copy.to + "/odometry.csv", odometry);
-}
-
-void writePolycam(const Copy& copy)
-{
-  const Video video(copy);
-  const std::string top = copy.to + "/keyframes";
-  for (const char* part : {"/images", "/cameras", "/depth", "/confidence"})
-    makeFolder(top + part);
-  const CameraModel& camera = video.files.camera;
-  Eigen::Matrix4d y_up = Eigen::Matrix4d::Identity();
-  y_up.topLeftCorner<3, 3>() << 1, 0, 0, 0, 0, 1, 0, -1, 0;
-  for (std::size_t f = 0; f < video.poses.size(); ++f) {
-    const std::string name = std::to_string(1442008525605 + 33333 * f);
-    const auto& frame = video.files.frames[f];
-    fs::copy(frame.color, top + "/images/" + name + ".jpg", fs::copy_options::overwrite_existing);
-    copyDepth(frame.depth, top + "/depth/" + name + ".png", 1);
-    writeTrust(top + "/confidence/" + name + ".png", readImage16(frame.depth), 255);
-    const Eigen::Matrix4d T = y_up * lookingBack(*video.poses[f]);
-    std::string json = concat("{\"width\": ", camera.width, ", \"height\": ", camera.height, ", \"fx\": ", camera.fx,
-                              ", \"fy\": ", camera.fy, ", \"cx\": ", camera.cx, ", \"cy\": ", camera.cy);
-    for (int r = 0; r < 3; ++r)
-      for (int c = 0; c < 4; ++c)
-        json += concat(std::setprecision(12), ", \"t_", r, c, "\": ", T(r, c));
-    writeFile(top + "/cameras/" + name + ".json", json + ", \"blur_score\": 100}\n");
-  }
-}
-
-void writeMatterport(const Copy& copy)
-{
-  const Video video(copy);
-  for (const char* part : {"/undistorted_color_images", "/undistorted_depth_images", "/undistorted_camera_parameters"})
-    makeFolder(copy.to + part);
-  const CameraModel& camera = video.files.camera;
-  std::string lines = concat("dataset matterport\nn_images ", video.poses.size(),
-                             "\ndepth_directory undistorted_depth_images\ncolor_directory undistorted_color_images\n",
-                             "intrinsics_matrix ", camera.fx, " 0 ", camera.cx, " 0 ", camera.fy, " ",
-                             camera.height - camera.cy, " 0 0 1\n");
-  for (std::size_t f = 0; f < video.poses.size(); ++f) {
-    const std::string stem = "0f37bd0737e349de9d536263a4bdd60d_", place = numbered(f / 6, 1) + "_" + numbered(f % 6, 1);
-    fs::copy(video.files.frames[f].color, copy.to + "/undistorted_color_images/" + stem + "i" + place + ".jpg",
-             fs::copy_options::overwrite_existing);
-    copyDepth(video.files.frames[f].depth, copy.to + "/undistorted_depth_images/" + stem + "d" + place + ".png", 0.25);
-    std::string matrix = matrixText(lookingBack(*video.poses[f]));
-    std::replace(matrix.begin(), matrix.end(), '\n', ' ');
-    lines += "scan " + stem + "d" + place + ".png " + stem + "i" + place + ".jpg " + matrix + "\n";
-  }
-  writeFile(copy.to + "/undistorted_camera_parameters/house.conf", lines);
-}
-
 struct Writer {
   const char* name;
   void (*write)(const Copy&);
@@ -348,6 +149,8 @@ constexpr Writer writers[] = {
     {"cloud_normals", [](const Copy& copy) { writePoints(copy.to + "/cloud.ply", cloudWithNormals(copy)); }},
     {"cloud_utm", writeUtmTiles},
     {"cloud_trajectory", writeTrajectory},
+    {"cloud_times", writeTimedCloud},
+    {"matterpak", writeMatterPak},
     {"e57",
      [](const Copy& copy) { fs::copy(copy.from + "/survey.e57", copy.to, fs::copy_options::overwrite_existing); }},
     {"photographs", [](const Copy& copy) { copy.folder("images", "."); }},

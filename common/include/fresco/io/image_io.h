@@ -38,6 +38,18 @@ FRESCO_EXPORT Image decodeImage(std::string_view bytes);
 /// @throws std::runtime_error as readImage, and if the image is not 16 bit with one channel
 FRESCO_EXPORT Image16 readImage16(const std::string& path);
 
+inline constexpr double metres_unit = 1e-4; ///< of depths in metres where they are made whole numbers: up to 6.5 m
+
+struct DepthFile {
+  Image16 image; ///< 0 = none
+  bool in_metres =
+      false; ///< the file has metres as floats, which became units of `metres_unit`; else the camera's units
+};
+
+/// Depths as readImage16() has them, or 32-bit floats: TIFF, PFM, NPY (64 bits, too). What is not finite or farther than 16 bits hold is none.
+/// @throws std::runtime_error as readImage, and if it is another image
+FRESCO_EXPORT DepthFile readDepthFile(const std::string& path);
+
 /// PNG or JPEG by extension; whole or not at all.
 /// @param quality of JPEG, 0..100
 FRESCO_EXPORT void writeImage(const std::string& path, const Image& image, int quality = 95);

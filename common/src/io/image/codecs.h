@@ -7,6 +7,12 @@
 /// 0 where it tells none. Readers give 8-bit RGB: of 16 bits the high byte, grey repeated, alpha left out, CMYK converted
 /// without a colour profile, EXIF orientation not applied. All throw std::runtime_error if the file is damaged, truncated or not supported.
 namespace fresco::io {
+/// Rows from the top.
+struct FloatImage {
+  int width = 0, height = 0;
+  std::vector<float> data;
+};
+
 ImageSize pngSize(std::string_view bytes);
 Image decodePng(std::string_view bytes);
 Image decodePngWithAlpha(std::string_view bytes); ///< RGBA if there is alpha
@@ -19,6 +25,15 @@ Image decodeJpeg(std::string_view bytes); ///< a warning of the library is an er
 ImageSize tiffSize(std::string_view bytes);
 Image decodeTiff(std::string_view bytes);
 Image16 decodeTiff16(std::string_view bytes);
+FloatImage decodeTiffFloats(std::string_view bytes); ///< one channel of 32-bit floats; empty if it is another image
+
+/// Portable float map of one channel (Pf), rows from below.
+ImageSize pfmSize(std::string_view bytes);
+FloatImage decodePfm(std::string_view bytes);
+
+/// Array of NumPy, two-dimensional by rows, of 32 or 64-bit floats, the low byte first.
+ImageSize npySize(std::string_view bytes);
+FloatImage decodeNpy(std::string_view bytes);
 
 /// Not compressed, 1 to 8 bits with a palette, 24 or 32.
 ImageSize bmpSize(std::string_view bytes);

@@ -14,8 +14,9 @@ struct ImageFormat {
   std::vector<std::string_view> marks; ///< one of which begins a file
   std::size_t pixels_per_byte;         ///< more cannot be packed into a byte of a file, or are not trusted to be
   ImageSize (*size)(std::string_view);
-  Image (*decode)(std::string_view);
-  Image16 (*decode16)(std::string_view) = nullptr; ///< empty if the file has no grey of 16 bits
+  Image (*decode)(std::string_view);                           ///< nullptr: it holds no picture
+  Image16 (*decode16)(std::string_view) = nullptr;             ///< empty if the file has no grey of 16 bits
+  io::FloatImage (*decode_floats)(std::string_view) = nullptr; ///< empty if it has none
 };
 
 const ImageFormat& formatOf(std::string_view bytes)
@@ -23,9 +24,11 @@ const ImageFormat& formatOf(std::string_view bytes)
   static const ImageFormat formats[] = {
       {{"\x89PNG"}, 8 * 1032, io::pngSize, io::decodePng, io::decodePng16}, // 1 bit a pixel, zlib's best ratio
       {{"\xff\xd8"}, 512, io::jpegSize, io::decodeJpeg},                    // a block of 64 pixels takes a bit at least
-      {{"II*\0"sv, "MM\0*"sv}, 4096, io::tiffSize, io::decodeTiff, io::decodeTiff16},
+      {{"II*\0"sv, "MM\0*"sv}, 4096, io::tiffSize, io::decodeTiff, io::decodeTiff16, io::decodeTiffFloats},
       {{"BM"}, 8, io::bmpSize, io::decodeBmp},
       {{"RIFF"}, 4096, io::webpSize, io::decodeWebp},
+      {{"Pf\n", "Pf\r", "Pf "}, 1, io::pfmSize, nullptr, nullptr, io::decodePfm},
+      {{"\x93NUMPY"}, 1, io::npySize, nullptr, nullptr, io::decodeNpy},
   };
   const auto begins = [&](std::string_view mark) { return bytes.substr(0, mark.size()) == mark; };
   for (const ImageFormat& format : formats)
@@ -63,6 +66,8 @@ Image decodeImage(std::string_view bytes)
 {
   const ImageFormat& format = formatOf(bytes);
   sizeOf(bytes, format);
+  if (!format.decode)
+    throw std::runtime_error("holds depths (floats), no picture");
   return format.decode(bytes);
 }
 
@@ -108,6 +113,30 @@ Image16 readImage16(const std::string& path)
       throw std::runtime_error("not a 16-bit image with one channel");
     return image;
   });
+}
+
+DepthFile readDepthFile(const std::string& path)
+{
+  const auto decode = [](std::string_view bytes) -> DepthFile {
+    const ImageFormat& format = formatOf(bytes);
+    sizeOf(bytes, format);
+    DepthFile file;
+    if (format.decode_floats) {
+      const io::FloatImage metres = format.decode_floats(bytes);
+      file.image = {metres.width, metres.height, {}};
+      for (const float z : metres.data) {
+        const double units = z / metres_unit;
+        file.image.data.push_back(units >= 0 && units < 65535 ? std::uint16_t(units + 0.5) : 0);
+      }
+      file.in_metres = !file.image.data.empty();
+    }
+    if (!file.in_metres && format.decode16)
+      file.image = format.decode16(bytes);
+    if (file.image.data.empty())
+      throw std::runtime_error("no depth image: wanted are 16 bits with one channel, or floats");
+    return file;
+  };
+  return io::parseFile(path, decode);
 }
 
 std::string maskFileOf(const std::string& folder, const std::string& name)

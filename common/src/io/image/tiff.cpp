@@ -3,6 +3,7 @@
 #include "io/image/codecs.h"
 #include "io/image/header_numbers.h"
 #include <algorithm>
+#include <cstring>
 #include <zlib.h>
 namespace fresco::io {
 namespace {
@@ -160,9 +161,12 @@ Layout layoutOf(const Table& table)
   out.part_height =
       out.tiled ? table.value(tile_height_tag, 0) : std::min(table.value(rows_per_strip_tag, out.height), out.height);
   const auto known = {plain, lzw, deflate, old_deflate, pack_bits};
+  constexpr std::uint32_t whole = 1, floating = 3; // formats of a sample
+  const std::uint32_t format = table.value(sample_format_tag, whole);
+  const bool is_picture = format == whole && (out.bits == 8 || out.bits == 16) && out.predictor <= 2;
+  const bool is_depth = format == floating && out.bits == 32 && out.samples == 1 && out.photometric <= black_is_zero;
   const bool is_known = std::count(known.begin(), known.end(), out.compression) > 0 &&
-                        out.photometric <= palette_colors && (out.bits == 8 || out.bits == 16) && out.predictor <= 2 &&
-                        table.value(sample_format_tag, 1) == 1;
+                        out.photometric <= palette_colors && (is_picture || (is_depth && out.predictor <= 3));
   if (!is_known)
     throw std::runtime_error(concat("TIFF: compression ", out.compression, ", ", out.bits, " bits, photometric ",
                                     out.photometric, " is not supported: save the image as PNG"));
@@ -175,8 +179,25 @@ Layout layoutOf(const Table& table)
   return out;
 }
 
+/// Undoes the prediction of floats (Adobe Photoshop TIFF Technical Note 3): the first bytes of all pixels of a row, the high ones, then the
+/// second ones ..., each as the difference from the byte before.
+std::string withoutFloatPrediction(const std::string& raw, std::size_t row, bool low_first)
+{
+  std::string out(raw.size(), '\0');
+  for (std::size_t begin = 0; begin + 4 * row <= raw.size(); begin += 4 * row) {
+    char byte = 0;
+    for (std::size_t i = 0; i < 4 * row; ++i) {
+      byte = static_cast<char>(byte + raw[begin + i]);
+      const std::size_t place = i / row;
+      out[begin + 4 * (i % row) + (low_first ? 3 - place : place)] = byte;
+    }
+  }
+  return out;
+}
+
 /// Samples of the part `index` in the order of pixels, native and without prediction.
-std::vector<std::uint16_t> samplesOf(const Table& table, const Layout& layout, std::size_t index, std::uint32_t rows)
+template <typename Sample>
+std::vector<Sample> samplesOf(const Table& table, const Layout& layout, std::size_t index, std::uint32_t rows)
 {
   const std::size_t step = layout.apart ? 1 : layout.samples, row = step * layout.part_width, bytes = layout.bits / 8;
   const std::size_t begin = table.value(layout.tiled ? tile_offsets_tag : strip_offsets_tag, 0, index);
@@ -184,9 +205,11 @@ std::vector<std::uint16_t> samplesOf(const Table& table, const Layout& layout, s
   const std::string_view file = table.file().bytes;
   if (begin >= file.size() || size > file.size() - begin || row * rows * bytes > best_ratio * size)
     failDamaged();
-  const std::string raw = unpack(file.substr(begin, size), layout.compression, row * rows * bytes);
+  std::string raw = unpack(file.substr(begin, size), layout.compression, row * rows * bytes);
+  if (layout.predictor == 3)
+    raw = withoutFloatPrediction(raw, row, table.file().low_first);
   const HeaderNumbers numbers{raw, table.file().low_first};
-  std::vector<std::uint16_t> samples(row * rows);
+  std::vector<Sample> samples(row * rows);
   for (std::size_t i = 0; i < samples.size(); ++i) {
     samples[i] = numbers.number(i * bytes, bytes);
     if (layout.predictor == 2 && i % row >= step)
@@ -198,7 +221,7 @@ std::vector<std::uint16_t> samplesOf(const Table& table, const Layout& layout, s
 }
 
 /// put(x, y, sample, value) of every sample of a file.
-template <typename Put>
+template <typename Sample = std::uint16_t, typename Put>
 void forEachSample(const Table& table, const Layout& layout, const Put& put)
 {
   const std::uint32_t across = (layout.width + layout.part_width - 1) / layout.part_width;
@@ -207,7 +230,7 @@ void forEachSample(const Table& table, const Layout& layout, const Put& put)
   for (std::size_t part = 0; part < std::size_t{1} * across * down * planes; ++part) {
     const std::uint32_t x0 = part % across * layout.part_width, y0 = part / across % down * layout.part_height;
     const std::uint32_t shown = std::min(layout.part_height, layout.height - y0);
-    const auto samples = samplesOf(table, layout, part, layout.tiled ? layout.part_height : shown);
+    const auto samples = samplesOf<Sample>(table, layout, part, layout.tiled ? layout.part_height : shown);
     for (std::uint32_t y = 0; y < shown; ++y)
       for (std::uint32_t x = 0; x < layout.part_width && x0 + x < layout.width; ++x)
         for (std::uint32_t s = 0; s < step; ++s)
@@ -228,6 +251,8 @@ Image decodeTiff(std::string_view bytes)
 {
   const Table table(bytes);
   const Layout layout = layoutOf(table);
+  if (layout.bits == 32)
+    throw std::runtime_error("TIFF: holds depths (floats), no picture");
   Image image(layout.width, layout.height, 3);
   const std::size_t colors = std::size_t{1} << layout.bits;
   forEachSample(table, layout, [&](std::uint32_t x, std::uint32_t y, std::uint32_t sample, std::uint32_t value) {
@@ -255,6 +280,21 @@ Image16 decodeTiff16(std::string_view bytes)
   forEachSample(table, layout, [&](std::uint32_t x, std::uint32_t y, std::uint32_t, std::uint32_t value) {
     image.data[std::size_t{y} * layout.width + x] = value;
   });
+  return image;
+}
+
+FloatImage decodeTiffFloats(std::string_view bytes)
+{
+  const Table table(bytes);
+  const Layout layout = layoutOf(table);
+  if (layout.bits != 32)
+    return {};
+  FloatImage image{int(layout.width), int(layout.height),
+                   std::vector<float>(std::size_t{layout.width} * layout.height)};
+  const auto put = [&](std::uint32_t x, std::uint32_t y, std::uint32_t, std::uint32_t value) {
+    std::memcpy(&image.data[std::size_t{y} * layout.width + x], &value, sizeof value);
+  };
+  forEachSample<std::uint32_t>(table, layout, put);
   return image;
 }
 } // namespace fresco::io

@@ -10,25 +10,28 @@ class Exchange;
 
 /// Options of buildModel(). Lengths in metres.
 struct ModelOptions {
-  bool resume = false;      ///< go on after the last stage that an earlier run finished
-  std::string taken_as;     ///< what the input is taken for: scans, cloud, rgbd, photographs; "" = what it looks like
-  bool use_poses = false;   ///< take the poses of scans (poses.txt) or of RGB-D frames as they are
-  double cell = 0;          ///< finest cell of the surface reconstruction, >= 0; 0 = 0.02 for scans, three pixels
-                            ///< at the median depth for RGB-D
-  double fuse = 0;          ///< RGB-D: cell in which the frames are fused, >= 0; 0 = as `cell`
-  int bilateral = 2;        ///< rounds of bilateral smoothing of the normals of scans, >= 0
-  bool optimize = true;     ///< move the vertices so that edges become sharp; scans only
-  double trim_levels = 2.0; ///< >= 0; 0 = keep the surface closed. Scans: it is cut where none saw it, but gaps of
-                            ///< 4 x 4 cells so many octree levels coarser stay closed. RGB-D: see
-                            ///< VolumetricOptions::trim_levels, at most 0.75
-  double texel = 0.0;       ///< side of a texel, >= 0; 0 = as fine as photographs, panoramas or points
-  int atlas = 0;            ///< largest side of a picture of the texture, 128..16384 pixels, more of them beyond;
-                            ///< 0 = 8192
-  int tile_faces = 0;       ///< most faces that are textured at a time; 0 = all, or as many as memory holds
-  int faces = 100000;       ///< most faces of model.glb, the light model, >= 1
-  bool compress = false;    ///< model.glb: see GltfOptions::compress
-  int quality = 0;          ///< JPEG quality of the texture's pictures, 1..100; 0 = PNG
-  double panorama_direction = 0;  ///< degrees counter-clockwise from the scan's x axis to the middle of its panorama
+  bool resume = false;    ///< go on after the last stage that an earlier run finished
+  std::string taken_as;   ///< what the input is taken for: scans, cloud, rgbd, photographs; "" = what it looks like
+  double depth_unit = 0;  ///< metres a unit of 16-bit depth images stands for, >= 0; 0 = as the layout has it
+  std::string until;      ///< stop once that is written: points (points.ply), surface (surface.ply) or mesh (mesh.ply);
+                          ///< "" = the whole model. A later run with `resume` goes on from there
+  bool use_poses = false; ///< take the poses of scans (poses.txt) or of RGB-D frames as they are
+  double cell = 0;        ///< finest cell of the surface reconstruction, >= 0; 0 = 0.02 for scans, three pixels
+                          ///< at the median depth for RGB-D
+  double fuse = 0;        ///< RGB-D: cell in which the frames are fused, >= 0; 0 = as `cell`
+  int bilateral = 2;      ///< rounds of bilateral smoothing of the normals of scans, >= 0
+  bool optimize = true;   ///< move the vertices so that edges become sharp; scans only
+  double trim_levels = 2.0;      ///< >= 0; 0 = keep the surface closed. Scans: it is cut where none saw it, but gaps of
+                                 ///< 4 x 4 cells so many octree levels coarser stay closed. RGB-D: see
+                                 ///< VolumetricOptions::trim_levels, at most 0.75
+  double texel = 0.0;            ///< side of a texel, >= 0; 0 = as fine as photographs, panoramas or points
+  int atlas = 0;                 ///< largest side of a picture of the texture, 128..16384 pixels, more of them beyond;
+                                 ///< 0 = 8192
+  int tile_faces = 0;            ///< most faces that are textured at a time; 0 = all, or as many as memory holds
+  int faces = 100000;            ///< most faces of model.glb, the light model, >= 1
+  bool compress = false;         ///< model.glb: see GltfOptions::compress
+  int quality = 0;               ///< JPEG quality of the texture's pictures, 1..100; 0 = PNG
+  double panorama_direction = 0; ///< degrees counter-clockwise from the scan's x axis to the middle of its panorama
   bool panorama_mirrored = false; ///< panoramas go around counter-clockwise from left to right
   int width = 1280, height = 960; ///< of the pictures, pixels, at least 160 x 120
   /// Options of the stages' own tools: {"reconstruct.depth", "10"}, {"texture.refine", "0"}; see StageOptions. What the others
@@ -39,8 +42,8 @@ struct ModelOptions {
 
 /// What one stage cost and what it found.
 struct ModelStage {
-  std::string
-      name; ///< features, matches, cameras, points, alignment, surface, optimization, texture, light or pictures
+  std::string name;          ///< points, surface, optimization, features, matches, cameras, alignment, texture, light,
+                             ///< pictures
   double seconds = 0;        ///< wall clock
   double cpu_seconds = 0;    ///< of all threads, and of programs that were run
   double peak_megabytes = 0; ///< resident memory of the process, highest during the stage
@@ -89,7 +92,7 @@ FRESCO_EXPORT ModelReport buildModel(const ModelFolders& folders, const ModelOpt
 /// @throws std::runtime_error as buildModel()
 FRESCO_EXPORT std::string describeInput(const std::string& input_folder);
 
-/// What buildModel() would do. Numbers are true to a factor of about three.
+/// What buildModel() would do. Numbers are true to a factor of about two.
 struct ModelPlan {
   std::string input;                 ///< see describeInput()
   std::vector<std::string> found;    ///< a line for each thing in the input and what it is taken for

@@ -27,10 +27,8 @@ std::string largestModel(const Survey& found, const std::string& folder)
 }
 } // namespace
 
-ModelInput readColmapProject(const Survey& found, std::optional<Reading> asked)
+void readColmapProject(const Survey& found, std::optional<Reading> asked, ModelInput& input)
 {
-  ModelInput input;
-  input.folder = found.path();
   const std::string dense = found.has("dense/0/sparse/") ? "dense/0" : "dense";
   const bool undistorted = found.has(dense + "/images/") && found.has(dense + "/sparse/");
   const std::string top = undistorted ? dense + "/" : "";
@@ -45,6 +43,5 @@ ModelInput readColmapProject(const Survey& found, std::optional<Reading> asked)
     input.is_cloud = true;
     input.warnings.push_back(roughOnly());
   }
-  return input;
 }
 } // namespace fresco::model

@@ -26,15 +26,13 @@ bool isCloud(const Survey& found, const ModelInput& input)
 }
 } // namespace
 
-ModelInput readFlatPoints(const Survey& found, std::optional<Reading> asked)
+void readFlatPoints(const Survey& found, std::optional<Reading> asked, ModelInput& input)
 {
   if (const auto packed = found.match("*.laz"); !packed.empty())
     throw std::runtime_error(
         concat(found.at(packed[0]), packed.size() > 1 ? concat(" and ", packed.size() - 1, " more") : "",
                ": compressed LAS is not read: unpack all at once (laszip -i \"", found.path(),
                found.isFile() ? "" : "/*.laz", "\", or pdal translate) and move the .laz elsewhere"));
-  ModelInput input;
-  input.folder = found.path();
   takeScans(input, found, found.match("<points>"));
   takePoses(input, found);
   const bool by_files = input.scans.size() > 1 && !input.poses.empty();
@@ -44,11 +42,10 @@ ModelInput readFlatPoints(const Survey& found, std::optional<Reading> asked)
     input.found.push_back(
         "each was seen from the origin of its frame (-as cloud: they are parts of one cloud in one frame)");
   if (found.isFile())
-    return input;
+    return;
   takePhotographs(input, found, "cameras", "images");
   takePanoramas(input, found, "panoramas/<pictures>");
   if (input.cameras.views.empty() && input.unplaced.empty() && input.panoramas.empty())
     takePicturesBeside(input, found);
-  return input;
 }
 } // namespace fresco::model

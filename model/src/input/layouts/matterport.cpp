@@ -1,21 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Chang et al. 2017, "Matterport3D": undistorted images with a list of cameras and poses.
 #include "input/frame_files.h"
-#include "input/text_table.h"
 #include <fresco/core/require.h>
 #include <fresco/io/image_io.h>
 #include <tuple>
 namespace fresco::model {
-ModelInput readMatterport(const Survey& found, std::optional<Reading>)
+RgbdParts readMatterport(const Survey& found, ModelInput&)
 {
-  ModelInput input;
-  input.folder = found.path();
   RgbdParts parts;
   parts.folder.depth_unit = 1.0 / 4000;
   parts.camera_file = found.at(found.match("undistorted_camera_parameters/*.conf")[0]);
   const ImageSize any = readImageSize(found.at(found.match("undistorted_color_images/<pictures>")[0]));
   CameraModel camera{any.width, any.height};
-  for (const auto& row : readTable(parts.camera_file)) {
+  for (const auto& row : readTextRows(parts.camera_file)) {
     const auto number = [&](std::size_t k) { return numberIn(parts.camera_file, row.at(k)); };
     if (row[0] == "intrinsics_matrix" && row.size() == 10)
       camera.fx = number(1), camera.fy = number(5), camera.cx = number(3),
@@ -44,6 +41,6 @@ ModelInput readMatterport(const Survey& found, std::optional<Reading>)
   if (parts.folder.frames.empty())
     throw std::runtime_error(parts.camera_file + ": names no image: lines 'scan DEPTH COLOUR MATRIX' are wanted");
   parts.folder.camera = parts.folder.frames[0].color_camera;
-  return rgbdInput(std::move(parts), std::move(input));
+  return parts;
 }
 } // namespace fresco::model

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Folders of Open3D's reconstruction system: color/, depth/, camera_intrinsic.json, trajectory.log (Choi et al. 2015).
+// Folders of Open3D's reconstruction system: color/, depth/, camera_intrinsic.json, trajectory.log (Choi et al. 2015, "Robust
+// Reconstruction of Indoor Scenes"). Those of Redwood are the same without the camera.
 #include "input/frame_files.h"
-#include "input/pose_log.h"
 #include <fresco/core/require.h>
 #include <fresco/io/file.h>
 #include <nlohmann/json.hpp>
@@ -25,32 +25,51 @@ CameraModel cameraOf(const std::string& path)
     throw wrong();
   }
 }
+
+/// World from camera of each frame: per frame a line of three whole numbers and a 4x4 matrix. None where there is no such file.
+/// @param frames how many poses are wanted @throws std::runtime_error naming the file if it has another number or is malformed
+std::vector<Pose> readPoseLog(const Survey& found, std::size_t frames)
+{
+  const std::vector<std::string> names = found.match("trajectory.log|*.log|*-traj.txt");
+  if (names.empty())
+    return {};
+  const std::string path = found.at(names[0]);
+  const auto rows = readTextRows(path);
+  if (rows.size() % 5 != 0)
+    throw std::runtime_error(
+        concat(path, ": ", rows.size(), " lines, but each pose has five: three numbers and a 4x4 matrix"));
+  if (rows.size() / 5 != frames)
+    throw std::runtime_error(concat(path, ": ", rows.size() / 5, " poses for ", frames,
+                                    " frames: complete it, or take it away and the frames are tracked"));
+  std::vector<Pose> poses;
+  for (std::size_t k = 0; k < rows.size(); k += 5) {
+    Eigen::Matrix4d T;
+    for (int r = 0; r < 4; ++r)
+      for (int c = 0; c < 4; ++c) {
+        if (rows[k + 1 + r].size() != 4)
+          throw std::runtime_error(concat(path, ": pose ", k / 5 + 1, " is not 4 lines of 4 numbers"));
+        T(r, c) = numberIn(path, rows[k + 1 + r][c]);
+      }
+    poses.push_back(rigidPose(path, T));
+  }
+  return poses;
+}
 } // namespace
 
-ModelInput readOpen3d(const Survey& found, std::optional<Reading>)
+RgbdParts readOpen3d(const Survey& found, ModelInput& input)
 {
-  ModelInput input;
-  input.folder = found.path();
   RgbdParts parts;
   parts.folder.frames =
-      pairedFrames(found, "color/<pictures>|image/<pictures>|rgb/<pictures>", "depth/<pictures>", input);
-  parts.camera_file = found.at(found.match("camera_intrinsic.json|intrinsic.json|camera.json")[0]);
-  parts.folder.camera = cameraOf(parts.camera_file);
-  parts.poses = readPoseLog(found, "trajectory.log|*.log|*-traj.txt", parts.folder.frames.size());
-  return rgbdInput(std::move(parts), std::move(input));
-}
-
-ModelInput readRedwood(const Survey& found, std::optional<Reading>)
-{
-  ModelInput input;
-  input.folder = found.path();
-  RgbdParts parts;
-  parts.folder.frames =
-      pairedFrames(found, "rgb/<pictures>|image/<pictures>|color/<pictures>", "depth/<pictures>", input);
-  parts.camera_file = found.at("camera_intrinsic.json");
-  parts.folder.camera = usualCamera(parts.folder.frames[0].depth, parts.camera_file);
-  input.warnings.push_back("no camera_intrinsic.json: the camera is taken as Redwood's, fx = fy = 525");
-  parts.poses = readPoseLog(found, "*.log|*-traj.txt", parts.folder.frames.size());
-  return rgbdInput(std::move(parts), std::move(input));
+      pairedFrames(found, "color/<pictures>|rgb/<pictures>|image/<pictures>", "depth/<depths>", input);
+  const std::vector<std::string> intrinsics = found.match("camera_intrinsic.json|intrinsic.json|camera.json");
+  parts.camera_file = found.at(intrinsics.empty() ? "camera_intrinsic.json" : intrinsics[0]);
+  if (intrinsics.empty()) {
+    parts.folder.camera = usualCamera(parts.folder.frames[0].depth, parts.camera_file);
+    input.warnings.push_back("no camera_intrinsic.json: the camera is taken as Redwood's, fx = fy = 525");
+  } else {
+    parts.folder.camera = cameraOf(parts.camera_file);
+  }
+  parts.poses = readPoseLog(found, parts.folder.frames.size());
+  return parts;
 }
 } // namespace fresco::model

@@ -2,13 +2,10 @@
 // Photographs and nothing else: in images/, or a folder of them.
 #include "input/parts.h"
 namespace fresco::model {
-ModelInput readPhotographsAlone(const Survey& found, std::optional<Reading>)
+void readPhotographsAlone(const Survey& found, std::optional<Reading>, ModelInput& input)
 {
-  ModelInput input;
-  input.folder = found.path();
   input.is_cloud = true;
   takeUnplaced(input, found, found.has("images/") ? "images" : "");
   input.warnings.push_back(roughOnly());
-  return input;
 }
 } // namespace fresco::model

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Raw data of Polycam, https://github.com/PolyCam/polyform: keyframes/{images,cameras,depth,confidence}, cameras as JSON.
 #include "input/frame_files.h"
-#include "input/text_table.h"
 #include <filesystem>
 #include <fresco/core/require.h>
 #include <fresco/io/file.h>
@@ -28,16 +27,14 @@ Pose readCameraFile(const std::string& path, RgbdFrame& frame)
 }
 } // namespace
 
-ModelInput readPolycam(const Survey& found, std::optional<Reading>)
+RgbdParts readPolycam(const Survey& found, ModelInput& input)
 {
-  ModelInput input;
-  input.folder = found.path();
   const bool corrected = found.has("keyframes/corrected_images/") && found.has("keyframes/corrected_cameras/");
   const std::string images = corrected ? "keyframes/corrected_images" : "keyframes/images",
                     cameras = corrected ? "keyframes/corrected_cameras" : "keyframes/cameras";
   RgbdParts parts;
   parts.camera_file = found.at(cameras);
-  parts.folder.frames = pairedFrames(found, images + "/<pictures>", "keyframes/depth/<pictures>", input);
+  parts.folder.frames = pairedFrames(found, images + "/<pictures>", "keyframes/depth/<depths>", input);
   for (RgbdFrame& frame : parts.folder.frames) {
     const std::string file = cameras + "/" + frame.name + ".json",
                       trust = "keyframes/confidence/" + frame.name + ".png";
@@ -51,6 +48,6 @@ ModelInput readPolycam(const Survey& found, std::optional<Reading>)
   parts.folder.camera = parts.folder.frames[0].color_camera;
   parts.camera_of_color = true;
   input.found.push_back(cameras + ": a camera and pose per frame");
-  return rgbdInput(std::move(parts), std::move(input));
+  return parts;
 }
 } // namespace fresco::model

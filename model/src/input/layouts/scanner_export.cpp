@@ -1,29 +1,23 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Cloud of a mobile scanner with panoramas and a table of their poses, as pano-poses.csv of NavVis: a header that names the
 // columns, then a line per panorama. World from panorama: z is up, x looks to the middle of the picture.
+#include "input/frame_files.h"
 #include "input/parts.h"
-#include "input/text_table.h"
 #include <algorithm>
 #include <fresco/core/require.h>
+#include <fresco/io/file.h>
 #include <fresco/io/image_io.h>
-#include <fstream>
 namespace fresco::model {
 namespace {
 /// Columns of file, x y z, qx qy qz qw, by the words of the header.
 std::vector<int> columnsOf(const std::string& path)
 {
-  std::ifstream file(path);
-  std::string line;
-  std::getline(file, line);
+  std::string line = readFile(path);
+  line.resize(std::min(line.find('\n'), line.size()));
   if (const std::size_t colon = line.find(':'); line[0] == '#' && colon != std::string::npos)
     line.erase(0, colon + 1); // "# pano poses v1.0: ID; filename; ..."
-  std::vector<std::string> names;
-  for (char& c : line)
-    c = c == ';' || c == ',' || c == '#' || c == '\t' || c == '\r' ? ' '
-                                                                   : char(std::tolower(static_cast<unsigned char>(c)));
-  std::istringstream words(line);
-  for (std::string word; words >> word;)
-    names.push_back(word);
+  std::transform(line.begin(), line.end(), line.begin(), [](unsigned char c) { return std::tolower(c); });
+  const std::vector<std::string> names = cellsOf(line.substr(line.find_first_not_of("# ")));
   std::vector<int> columns;
   for (const auto& wanted : std::vector<std::vector<std::string>>{{"filename", "file", "image", "name"},
                                                                   {"pano_pos_x", "x", "tx"},
@@ -43,11 +37,9 @@ std::vector<int> columnsOf(const std::string& path)
 }
 } // namespace
 
-ModelInput readScannerExport(const Survey& found, std::optional<Reading>)
+void readScannerExport(const Survey& found, std::optional<Reading>, ModelInput& input)
 {
-  ModelInput input;
-  input.folder = found.path();
-  takeScans(input, found, found.match("<points>"));
+  takeScans(input, found, cloudsIn(found));
   takeAsCloud(input, found);
   const std::string table = found.match("*pano*.csv|pano*/*pano*.csv|info/*pano*.csv|*pano*.txt")[0],
                     path = found.at(table);
@@ -55,7 +47,7 @@ ModelInput readScannerExport(const Survey& found, std::optional<Reading>)
   Eigen::Matrix4d T_pano_camera = Eigen::Matrix4d::Identity();
   T_pano_camera.topLeftCorner<3, 3>() << 0, 0, 1, -1, 0, 0, 0, -1, 0;
   input.images = found.path();
-  for (const auto& row : readTable(path)) {
+  for (const auto& row : readTextRows(path)) {
     if (int(row.size()) <= *std::max_element(columns.begin(), columns.end()))
       throw std::runtime_error(path + ": a line of fewer words than its first one names");
     if (row[columns[0]] == "filename" || row[columns[0]] == "file")
@@ -83,6 +75,5 @@ ModelInput readScannerExport(const Survey& found, std::optional<Reading>)
     input.cameras.views.push_back(view);
   }
   input.found.push_back(concat(table, ": poses of ", counted(input.cameras.views.size(), "panorama")));
-  return input;
 }
 } // namespace fresco::model

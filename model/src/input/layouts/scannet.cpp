@@ -1,16 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Dai et al. 2017, "ScanNet": a .sens file unpacked into color/, depth/, pose/ and intrinsic/.
 #include "input/frame_files.h"
-#include "input/text_table.h"
 #include <fresco/core/require.h>
 #include <fresco/io/rgbd_folder.h>
 namespace fresco::model {
-ModelInput readScanNet(const Survey& found, std::optional<Reading>)
+RgbdParts readScanNet(const Survey& found, ModelInput& input)
 {
-  ModelInput input;
-  input.folder = found.path();
   RgbdParts parts;
-  parts.folder.frames = pairedFrames(found, "color/<pictures>", "depth/<pictures>", input);
+  parts.folder.frames = pairedFrames(found, "color/<pictures>", "depth/<depths>", input);
   const std::string depth_file = "intrinsic/intrinsic_depth.txt", color_file = "intrinsic/intrinsic_color.txt";
   parts.camera_of_color = !found.has(depth_file);
   parts.camera_file = found.at(parts.camera_of_color ? color_file : depth_file);
@@ -33,6 +30,6 @@ ModelInput readScanNet(const Survey& found, std::optional<Reading>)
                                     parts.folder.frames.size(),
                                     " frames: complete them, or take the folder away (then add "
                                     "camera_intrinsic.json and the frames are tracked)"));
-  return rgbdInput(std::move(parts), std::move(input));
+  return parts;
 }
 } // namespace fresco::model

@@ -3,10 +3,8 @@
 #include "input/parts.h"
 #include <fresco/core/require.h>
 namespace fresco::model {
-ModelInput readScansFolder(const Survey& found, std::optional<Reading> asked)
+void readScansFolder(const Survey& found, std::optional<Reading> asked, ModelInput& input)
 {
-  ModelInput input;
-  input.folder = found.path();
   const std::vector<std::string> scans = found.match("scans/<points>");
   if (scans.empty())
     throw std::runtime_error(found.at("scans") + ": no scan (" + readablePoints() + ") in it");
@@ -16,6 +14,5 @@ ModelInput readScansFolder(const Survey& found, std::optional<Reading> asked)
     takeAsCloud(input, found);
   takePhotographs(input, found, "cameras", "images");
   takePanoramas(input, found, "panoramas/<pictures>");
-  return input;
 }
 } // namespace fresco::model

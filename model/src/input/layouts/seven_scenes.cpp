@@ -4,13 +4,13 @@
 #include <fresco/core/require.h>
 #include <fresco/io/rgbd_folder.h>
 namespace fresco::model {
-ModelInput readSevenScenes(const Survey& found, std::optional<Reading>)
+RgbdParts readSevenScenes(const Survey& found, ModelInput&)
 {
   if (!found.has("camera-intrinsics.txt"))
     throw std::runtime_error(
         found.at("camera-intrinsics.txt") +
         ": no such file: write the 3x3 intrinsics of the depth camera into it (those of 7-Scenes: 585 0 320, "
-        "0 585 240, 0 0 1)");
+        "0 585 240, 0 0 1), or copy that of the folder above, if it has one");
   const RgbdFolderFiles files = listRgbdFolder(found.path());
   RgbdParts parts;
   parts.camera_file = found.at("camera-intrinsics.txt");
@@ -26,8 +26,6 @@ ModelInput readSevenScenes(const Survey& found, std::optional<Reading>)
       std::any_of(files.frames.begin(), files.frames.end(), [](const auto& file) { return !file.pose.empty(); });
   if (any && std::none_of(parts.poses.begin(), parts.poses.end(), [](const Pose& pose) { return bool(pose); }))
     throw std::runtime_error(found.path() + ": no frame has a finite pose");
-  ModelInput input;
-  input.folder = found.path();
-  return rgbdInput(std::move(parts), std::move(input));
+  return parts;
 }
 } // namespace fresco::model

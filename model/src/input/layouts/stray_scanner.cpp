@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // https://docs.strayrobots.io/apps/scanner/format.html: depth and confidence of an iPhone, colours as a video.
 #include "input/frame_files.h"
-#include "input/text_table.h"
 #include <fresco/core/require.h>
 namespace fresco::model {
 namespace {
@@ -9,7 +8,7 @@ namespace {
 std::map<Index, Pose> posesOf(const std::string& path)
 {
   std::map<Index, Pose> poses;
-  const auto rows = readTable(path);
+  const auto rows = readTextRows(path);
   for (std::size_t r = 1; r < rows.size(); ++r) { // after the header
     if (rows[r].size() < 9)
       throw std::runtime_error(concat(path, ": line ", r + 1, " has ", rows[r].size(),
@@ -22,20 +21,18 @@ std::map<Index, Pose> posesOf(const std::string& path)
 }
 } // namespace
 
-ModelInput readStrayScanner(const Survey& found, std::optional<Reading>)
+RgbdParts readStrayScanner(const Survey& found, ModelInput& input)
 {
-  ModelInput input;
-  input.folder = found.path();
   RgbdParts parts;
   parts.camera_file = found.at("camera_matrix.csv");
   parts.camera_of_color = true;
   parts.folder.camera = readCameraMatrix(parts.camera_file, 3);
   if (found.has("rgb/<pictures>")) {
-    parts.folder.frames = pairedFrames(found, "rgb/<pictures>", "depth/<pictures>", input);
+    parts.folder.frames = pairedFrames(found, "rgb/<pictures>", "depth/<depths>", input);
   } else {
     parts.folder.camera.width = 1920, parts.folder.camera.height = 1440; // of the app's video
     input.video = found.at("rgb.mp4");
-    for (const std::string& name : found.match("depth/<pictures>")) {
+    for (const std::string& name : found.match("depth/<depths>")) {
       RgbdFrame frame;
       frame.name = name.substr(6), frame.depth = found.at(name), frame.video_frame = numberOfName(name);
       parts.folder.frames.push_back(frame);
@@ -57,6 +54,6 @@ ModelInput readStrayScanner(const Survey& found, std::optional<Reading>)
   if (2 * missing >= parts.folder.frames.size())
     throw std::runtime_error(concat(odometry, ": poses of ", parts.folder.frames.size() - missing, " of ",
                                     parts.folder.frames.size(), " frames: export the recording again"));
-  return rgbdInput(std::move(parts), std::move(input));
+  return parts;
 }
 } // namespace fresco::model

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Sturm et al. 2012, "A benchmark for the evaluation of RGB-D SLAM systems": lists of times and files, poses by time.
 #include "input/frame_files.h"
-#include "input/text_table.h"
 #include <cmath>
 #include <fresco/core/require.h>
 namespace fresco::model {
@@ -32,44 +31,47 @@ std::map<double, const std::vector<std::string>*> byTime(const std::string& path
   return rows;
 }
 
-/// Times and the files of both images.
-std::map<double, std::pair<std::string, std::string>> associated(const Survey& found)
+struct Pair {
+  double time;
+  std::string color, depth;
+};
+
+/// Images that belong together, in the order of the lists.
+std::vector<Pair> associated(const Survey& found)
 {
-  std::map<double, std::pair<std::string, std::string>> pairs;
-  if (found.has("associations.txt")) {
-    const std::string path = found.at("associations.txt");
-    for (const auto& row : readTable(path)) {
+  std::vector<Pair> pairs;
+  if (const auto list = found.match("associations.txt|association.txt"); !list.empty()) {
+    const std::string path = found.at(list[0]);
+    for (const auto& row : readTextRows(path)) {
       if (row.size() < 4)
         throw std::runtime_error(path + ": wants lines of time, colour image, time, depth image");
       const bool color_first = row[1].find("depth") == std::string::npos;
-      pairs[numberIn(path, row[0])] = {row[color_first ? 1 : 3], row[color_first ? 3 : 1]};
+      pairs.push_back({numberIn(path, row[0]), row[color_first ? 1 : 3], row[color_first ? 3 : 1]});
     }
     return pairs;
   }
-  const Table colors = readTable(found.at("rgb.txt")), depths = readTable(found.at("depth.txt"));
+  const Table colors = readTextRows(found.at("rgb.txt")), depths = readTextRows(found.at("depth.txt"));
   const auto depth_at = byTime(found.at("depth.txt"), depths, 2);
   for (const auto& [time, row] : byTime(found.at("rgb.txt"), colors, 2))
     if (const auto* depth = rowAt(depth_at, time))
-      pairs[time] = {(*row)[1], (*depth)[1]};
+      pairs.push_back({time, (*row)[1], (*depth)[1]});
   return pairs;
 }
 } // namespace
 
-ModelInput readTum(const Survey& found, std::optional<Reading>)
+RgbdParts readTum(const Survey& found, ModelInput& input)
 {
-  ModelInput input;
-  input.folder = found.path();
   RgbdParts parts;
   parts.folder.depth_unit = 1.0 / 5000;
   parts.camera_file = found.at("camera-intrinsics.txt");
   const std::string truth = found.at("groundtruth.txt");
-  const Table poses = found.has("groundtruth.txt") ? readTable(truth) : Table();
+  const Table poses = found.has("groundtruth.txt") ? readTextRows(truth) : Table();
   const auto pose_at = byTime(truth, poses, 8);
-  for (const auto& [time, files] : associated(found)) {
+  for (const auto& [time, color, depth] : associated(found)) {
     RgbdFrame frame;
-    frame.name = files.second;
-    frame.color = found.at(files.first), frame.depth = found.at(files.second);
-    for (const std::string& name : {files.first, files.second})
+    frame.name = depth;
+    frame.color = found.at(color), frame.depth = found.at(depth);
+    for (const std::string& name : {color, depth})
       if (!found.has(name))
         throw std::runtime_error(found.at(name) + ": no such file, but the lists of this TUM folder name it");
     parts.folder.frames.push_back(frame);
@@ -95,6 +97,6 @@ ModelInput readTum(const Survey& found, std::optional<Reading>)
     input.warnings.push_back(
         "no camera-intrinsics.txt (3x3): the camera is taken as the one that TUM recommends, fx = fy = 525");
   }
-  return rgbdInput(std::move(parts), std::move(input));
+  return parts;
 }
 } // namespace fresco::model

@@ -3,10 +3,8 @@
 #include "input/parts.h"
 #include <fresco/core/require.h>
 namespace fresco::model {
-ModelInput readVideo(const Survey& found, std::optional<Reading>)
+void readVideo(const Survey& found, std::optional<Reading>, ModelInput& input)
 {
-  ModelInput input;
-  input.folder = found.path();
   input.is_cloud = true;
   const std::vector<std::string> videos = found.match("<videos>");
   if (videos.size() > 1)
@@ -15,6 +13,5 @@ ModelInput readVideo(const Survey& found, std::optional<Reading>)
   input.video = found.at(videos[0]);
   input.found.push_back(videos[0] + ": a video; the program ffmpeg takes its frames, the sharpest become photographs");
   input.warnings.push_back(roughOnly());
-  return input;
 }
 } // namespace fresco::model
