@@ -52,6 +52,11 @@ int main(int argc, char** argv)
     args.flag("use_poses", options.use_poses,
               "take the poses of the scans (poses.txt) or of RGB-D frames as they are: neither found nor refined");
     args.flag("poses", options.use_poses, "the same as -use_poses");
+    args.option(
+        "hints", options.hints,
+        "what is known of the places of scans, a line each: link A B, relative A B POSE, near A X Y [Z] R, choose "
+        "A B NUMBER, apart A B, order; OUT_DIR/registration.html shows the lines that help. With -resume pairs of "
+        "scans are not searched again");
     bool dry_run = false;
     args.flag("dry_run", dry_run,
               "tell what INPUT is taken for and what would be done, and how long it takes; write nothing");

@@ -2,25 +2,22 @@
 #include "support/scan_option.h"
 #include "support/tool.h"
 #include <algorithm>
-#include <fresco/core/constants.h>
 #include <fresco/core/require.h>
 #include <fresco/io/file.h>
 #include <fresco/io/formats.h>
-#include <fresco/io/json_text.h>
 #include <fresco/io/point_files.h>
 #include <fresco/io/point_io.h>
 #include <fresco/io/pose_file.h>
 #include <fresco/io/scan_file.h>
 #include <fresco/registration/core/scan_registration.h>
-#include <nlohmann/json.hpp>
+#include <fstream>
 namespace {
 using namespace fresco;
 
-using Json = nlohmann::ordered_json;
-
 struct Request {
   std::vector<fresco::ScanPath> scans;
-  std::string folder, start_file;
+  std::string folder, start_file, hint_file;
+  bool resume = false;
   ScanRegistrationOptions options;
   CommonOptions common;
 };
@@ -34,14 +31,19 @@ Request parse(int argc, char** argv)
           ", each in its own frame, or a folder of them.\n"
           "Each scan of a file of several (.e57, .ptx) is one. "
           "Writes poses.txt (world from scan, `none` for a scan without a place), registered.pcd (all placed scans,\n"
-          "normals towards each point's own viewpoint) and registration.json (overlap graph, residuals, unplaced "
-          "scans).");
+          "normals towards each point's own viewpoint), registration.json (overlap graph, residuals, why scans have "
+          "no\n"
+          "place and where they may be) and registration.html (the same as floor plans).");
   args.option("o", request.folder, "folder of the output, created; required");
   args.option(
       "poses", request.start_file,
       "start poses, one a line as in poses.txt; `none` = unknown; or a file of scans, whose own poses are taken");
   args.flag("fixed", request.options.fixed,
             "scans with a start pose keep it exactly; only those with `none` are placed, against them");
+  args.option("hints", request.hint_file,
+              "what is known of places, a line each: link A B, relative A B POSE, near A X Y [Z] R, choose A B NUMBER, "
+              "apart A B, order; registration.html shows the lines that help");
+  args.flag("resume", request.resume, "take what an earlier run into OUT_DIR found of pairs, whatever its hints were");
   args.option("voxel", request.options.voxel, "finest thinning, unit of the points; 0 = from the data");
   args.option("max_distance", request.options.max_distance,
               "how far start poses may be off, unit of the points; 0 = 20 voxels");
@@ -62,88 +64,17 @@ Request parse(int argc, char** argv)
   std::vector<std::string> inputs = pointFilesIn(words);
   request.scans = scansOf(inputs, true);
   inputs.push_back(request.start_file);
-  requireDistinct(
-      {request.folder + "/registered.pcd", request.folder + "/poses.txt", request.folder + "/registration.json"},
-      inputs);
+  inputs.push_back(request.hint_file);
+  std::vector<std::string> outputs;
+  for (const char* name : {"registered.pcd", "poses.txt", "registration.json", "registration.html", "pairs.bin"})
+    outputs.push_back(request.folder + "/" + name);
+  requireDistinct(outputs, inputs);
   request.options.threads = request.common.threads;
   for (const fresco::ScanPath& scan : request.scans)
     request.options.names.push_back(scan.name());
+  if (!request.hint_file.empty())
+    request.options.hints = readHints(request.hint_file, request.options.names);
   return request;
-}
-
-Json toJson(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
-
-// By rows.
-Json rowsJson(const Eigen::MatrixXd& matrix)
-{
-  Json rows = Json::array();
-  for (Index r = 0; r < matrix.rows(); ++r) {
-    Json& row = rows.emplace_back(Json::array());
-    for (Index c = 0; c < matrix.cols(); ++c)
-      row.push_back(matrix(r, c));
-  }
-  return rows;
-}
-
-Json pairJson(const PairResult& pair)
-{
-  Json json = {{"a", pair.a},
-               {"b", pair.b},
-               {"overlap", pair.overlap},
-               {"violation", pair.violation},
-               {"rms", pair.rms},
-               {"matches", pair.matches},
-               {"accepted", pair.accepted},
-               {"pose", rowsJson(pair.T_a_b)},
-               {"information", pair.information.isZero() ? Json() : rowsJson(pair.information)},
-               {"information_point", toJson(pair.information_point)}};
-  json["alternatives"] = Json::array();
-  for (const AlternativePose& pose : pair.alternatives)
-    json["alternatives"].push_back(
-        {{"pose", rowsJson(pose.T_a_b)}, {"overlap", pose.overlap}, {"violation", pose.violation}});
-  return json;
-}
-
-Json scanJson(const std::string& file, const ScanResult& scan, const Pose& pose)
-{
-  Json json = {{"file", file}, {"placed", scan.placed}, {"group", scan.group}};
-  json["pose"] = pose ? rowsJson(*pose) : Json();
-  json["pose_in_group"] = scan.group >= 0 ? rowsJson(scan.T_group_scan) : Json();
-  json["problem"] = scan.problem;
-  json["duplicate_of"] = scan.duplicate_of;
-  json["viewpoint_problem"] = scan.viewpoint_problem;
-  if (scan.found_viewpoint)
-    json["found_viewpoint"] = toJson(*scan.found_viewpoint);
-  json["rms"] = scan.rms;
-  json["translation_deviation"] = scan.translation_deviation;
-  json["rotation_deviation_deg"] = scan.rotation_deviation * 180.0 / pi;
-  if (scan.free_motion)
-    json["free_motion"] = {{"translation", toJson(scan.free_motion->translation)},
-                           {"rotation", toJson(scan.free_motion->rotation)}};
-  return json;
-}
-
-std::string reportText(const Request& request, const ScanRegistrationResult& result)
-{
-  Json json;
-  json["scans"] = Json::array();
-  json["unplaced"] = Json::array();
-  const std::vector<std::string>& names = request.options.names;
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    json["scans"].push_back(scanJson(names[i], result.scans[i], result.poses[i]));
-    if (!result.scans[i].placed)
-      json["unplaced"].push_back(names[i]);
-  }
-  json["pairs"] = Json::array();
-  for (const PairResult& pair : result.pairs)
-    json["pairs"].push_back(pairJson(pair));
-  json["warnings"] = registrationWarnings(result, request.options);
-  json["groups"] = result.groups;
-  json["rms"] = result.rms;
-  json["voxel"] = result.voxel;
-  json["iterations"] = result.iterations;
-  json["converged"] = result.converged;
-  return fresco::jsonText(json, 1);
 }
 
 std::vector<Pose> startPoses(const Request& request)
@@ -171,7 +102,17 @@ void write(const Request& request, const ScanSource& files, const ScanRegistrati
   const ScanSource scans(files.count, [&](Index i) { return withViewpoint(files.read(i), result.scans[i]); });
   writePoints(request.folder + "/registered.pcd", mergeScans(scans, result.poses, request.common.threads));
   writePoses(request.folder + "/poses.txt", result.poses);
-  writeFile(request.folder + "/registration.json", reportText(request, result));
+  writeFile(request.folder + "/registration.json", registrationJson(result, request.options));
+  writeFile(request.folder + "/registration.html", registrationPage(result, request.options));
+  if (files.memory != nullptr && !files.memory->used)
+    writeFile(request.folder + "/pairs.bin", files.memory->bytes);
+}
+
+// Not among the inputs of this run, which replaces it where it does not fit.
+std::string earlierBytes(const std::string& path)
+{
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
 }
 
 void run(int argc, char** argv)
@@ -181,9 +122,16 @@ void run(int argc, char** argv)
   makeFolder(request.folder);
   const FolderLock lock(request.folder, "fresco_register");
   const Progress progress = printProgress(request.common.quiet);
-  const ScanSource scans(request.scans.size(), [&](Index i) { return readPoints(request.scans[i]); });
+  PairMemory memory;
+  if (request.resume)
+    memory.bytes = earlierBytes(request.folder + "/pairs.bin");
+  ScanSource scans(request.scans.size(), [&](Index i) { return readPoints(request.scans[i]); });
+  scans.memory = &memory;
   report(progress, "read", 0.0);
   const auto result = registerScans(scans, start, request.options, subProgress(progress, 0.0, 0.9));
+  if (request.resume && !memory.used)
+    inform(request.common.quiet,
+           "warning: no earlier run with these scans and options in " + request.folder + ": all pairs were searched");
   const auto placed = std::count_if(result.scans.begin(), result.scans.end(), [](const auto& s) { return s.placed; });
   if (placed == 0)
     throw std::runtime_error(request.options.names[0] + ": " + result.scans[0].problem + "; no scan could be placed");

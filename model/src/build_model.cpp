@@ -93,8 +93,8 @@ std::vector<Stage> stagesOf(const Job& job)
   if (input.is_cloud)
     of_points.push_back(files.cell);
   add("points",
-      concat(options.use_poses, " ", options.depth_unit, " ", options.fuse, " ", options.fuse > 0 ? 0.0 : options.cell,
-             " ", options.bilateral, columns),
+      concat(options.use_poses, " ", options.hints, " ", options.depth_unit, " ", options.fuse, " ",
+             options.fuse > 0 ? 0.0 : options.cell, " ", options.bilateral, columns),
       of_points, makePoints, {"register", "filter", "normals", "fuse", "track"});
   stages.back().shared = !input.rgbd && !input.is_cloud;
   add("surface", concat(options.cell, " ", options.trim_levels), {files.surface}, makeSurface, {"reconstruct"});

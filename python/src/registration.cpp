@@ -9,6 +9,9 @@ void addRegistration(const py::module_& module)
   addRecord<PairResult>(module);
   addRecord<AlternativePose>(module);
   addRecord<FreeMotion>(module);
+  addRecord<RegistrationHint>(module);
+  addRecord<Refusal>(module);
+  addRecord<CandidatePlace>(module);
   addFunction<ScanRegistrationOptions>(
       module,
       {"register_scans",

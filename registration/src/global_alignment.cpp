@@ -5,6 +5,7 @@
 #include "graph/loop_closing.h"
 #include "graph/moved_people.h"
 #include "graph/scan_exchange.h"
+#include "graph/scan_plans.h"
 #include "graph/viewpoint_check.h"
 #include "pair/pair_ranking.h"
 #include "pair/partial_alias.h"
@@ -43,8 +44,6 @@ private:
     parallelFor((n - first + step - 1) / step, options_.threads, [&](Index k) { body(first + k * step); }, 1);
   }
   void confirmViewpoints();
-  void findFrames();
-  void drawPlans();
   bool hasAllPlans() const;
   VerificationOptions verification() const;
   void alignByPlans(const std::vector<RankedPair>& pairs);
@@ -101,31 +100,7 @@ void GlobalAligner::confirmViewpoints()
   forOwn(scans_.size(), [&](Index k) { signs[k] = findViewpointSign(scans_[k], 1); });
   shareItems(ranks_, signs);
   registration::confirmViewpoints(scans_, signs);
-}
-
-// Where all scanners saw around, and their files or points tell from where.
-void GlobalAligner::findFrames()
-{
-  const auto known_view = [](const PreparedScan& scan) {
-    return !scan.problem.empty() || (sawAround(scan) && knowsViewpoint(scan));
-  };
-  if (!known_.scans.empty() || !std::all_of(scans_.begin(), scans_.end(), known_view))
-    return;
-  frames_ = findPlanFrames(scans_, options_.threads);
-}
-
-void GlobalAligner::drawPlans()
-{
-  const PlanGrid grid = choosePlanGrid(frames_, scans_);
-  if (grid.side == 0)
-    frames_.clear();
-  parallelFor(
-      frames_.size(), options_.threads,
-      [&](Index k) {
-        if (frames_[k])
-          plans_[k] = PlanSpectrum(drawFloorPlan(scans_[k], *frames_[k], grid), *frames_[k], grid);
-      },
-      1);
+  result_.signs = signs;
 }
 
 bool GlobalAligner::hasAllPlans() const
@@ -267,7 +242,8 @@ void GlobalAligner::correctViewpoints()
   for (std::vector<char> wrong = find(); std::find(wrong.begin(), wrong.end(), 1) != wrong.end(); wrong = find()) {
     for (std::size_t i = 0; i < scans_.size(); ++i)
       if (wrong[i]) {
-        distrustViewpoint(scans_[i], "its viewpoint contradicts the other scans");
+        result_.distrusted[i] = "its viewpoint contradicts the other scans";
+        distrustViewpoint(scans_[i], result_.distrusted[i]);
         features_[i] = describeScan(scans_[i], features);
       }
     std::vector<RankedPair> again;
@@ -369,13 +345,13 @@ void GlobalAligner::alignInRounds(const Progress& progress)
 GlobalAlignment GlobalAligner::run(const Progress& progress)
 {
   confirmViewpoints();
-  plans_.resize(scans_.size());
-  findFrames();
-  drawPlans();
+  result_.distrusted.resize(scans_.size());
+  frames_ = knownFrames(scans_, known_, options_.threads);
+  plans_ = drawPlans(scans_, frames_, options_.threads);
   std::vector<RankedPair> pairs = hasAllPlans() ? pairsByPlans() : std::vector<RankedPair>();
   const bool people_moved = sparePeople(pairs);
   if (people_moved) { // plans are drawn with more care then
-    drawPlans();
+    plans_ = drawPlans(scans_, frames_, options_.threads);
     pairs = pairsByPlans();
   }
   if (people_moved || (hasAllPlans() && !hasFew())) // rounds place some of these wrongly
@@ -387,8 +363,12 @@ GlobalAlignment GlobalAligner::run(const Progress& progress)
     closeLoops(input, known_, cluster);
   if (!frames_.empty())
     joinSubmaps(input, frames_, result_.graph, progress);
+  for (const PreparedScan& scan : scans_)
+    result_.aliases.push_back(scan.aliases);
+  result_.people_moved = people_moved;
   return std::move(result_);
 }
+
 } // namespace
 
 GlobalAlignment alignGlobally(const AlignmentInput& input, const ScanRegistrationOptions& options,

@@ -1,17 +1,30 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "registration_result.h"
+#include "answer/places.h"
+#include "scan/floor_plan.h"
 #include <algorithm>
 #include <cmath>
+#include <fresco/core/parallel.h>
 #include <fresco/core/require.h>
 #include <fresco/core/union_find.h>
-#include <fresco/io/listed.h>
 #include <map>
 namespace fresco::registration {
 namespace {
 using Groups = std::vector<std::vector<Index>>;
 
-// Members held together by accepted pairs or because none moves, largest group first after that, each in rising order.
-Groups acceptedGroups(const Placement& placement, Index scan_count)
+// Whether free space contradicts what a hint brings together: of scans that other pairs hold to either side.
+bool isContradicted(const HintedJoin& join, const Placement& placement, UnionFind& held, double most_violation)
+{
+  const Index a = held.root(join.a), b = held.root(join.b);
+  return std::any_of(placement.pairs.begin(), placement.pairs.end(), [&](const PairResult& pair) {
+    const Index first = held.root(pair.a), second = held.root(pair.b);
+    return pair.violation > most_violation && ((first == a && second == b) || (first == b && second == a)) && a != b;
+  });
+}
+
+// Members held together by accepted pairs, by hints or because none moves, largest group first after that, each in rising
+// order.
+Groups acceptedGroups(const Placement& placement, Index scan_count, double most_violation)
 {
   UnionFind held(scan_count);
   Index fixed = -1;
@@ -23,6 +36,9 @@ Groups acceptedGroups(const Placement& placement, Index scan_count)
   for (const PairResult& pair : placement.pairs)
     if (pair.accepted)
       held.join(pair.a, pair.b);
+  for (const HintedJoin& join : placement.hinted)
+    if (!isContradicted(join, placement, held, most_violation))
+      held.join(join.a, join.b);
   Groups groups(scan_count);
   for (const Index scan : placement.members)
     groups[held.root(scan)].push_back(scan);
@@ -61,14 +77,17 @@ Index contradictingScan(const std::vector<PairResult>& pairs, Index scan, const 
 class Description {
 public:
   explicit Description(const RegistrationState& state)
-      : state_(state), scans_(state.scans), start_(state.start), options_(state.options), look_alike_(scans_.size(), 0),
+      : state_(state), scans_(state.scans), start_(state.start), options_(state.options), refusals_(scans_.size()),
         loose_(scans_.size(), 0)
   {
+    result_.hints = state.hints;
     result_.voxel = options_.voxel;
     result_.poses.resize(scans_.size());
     result_.scans.resize(scans_.size());
     for (std::size_t i = 0; i < scans_.size(); ++i) {
       result_.scans[i].problem = scans_[i].problem;
+      if (!scans_[i].problem.empty())
+        result_.scans[i].refusal.reason = RefusalReason::unusable;
       result_.scans[i].duplicate_of = scans_[i].duplicate_of;
       result_.scans[i].viewpoint_problem = scans_[i].viewpoint_problem;
       if (scans_[i].viewpoint_found && scans_[i].oriented)
@@ -86,13 +105,18 @@ private:
   void placeOther(const std::vector<Index>& group, const std::vector<Index>& main, bool same_frame);
   void placeDuplicates();
   void addTriedPairs();
+  void drawOutlines();
+  void describeHints(const Placement& placement);
+  void findCandidates(const std::vector<ScanCluster>& groups);
+  Refusal refusalOf(Index group) const;
 
   const RegistrationState& state_;
   const std::vector<PreparedScan>& scans_;
   const std::vector<Pose>& start_;
   const ScanRegistrationOptions& options_;
   ScanRegistrationResult result_;
-  std::vector<char> look_alike_, loose_; // per scan
+  std::vector<Refusal> refusals_; // per scan, of its cluster
+  std::vector<char> loose_;       // per scan
 };
 
 void Description::describeScans(const Placement& placement)
@@ -123,7 +147,8 @@ void Description::describeScans(const Placement& placement)
 void Description::placeMain(const std::vector<Index>& group)
 {
   for (const Index i : group) {
-    if (loose_[i] && !started(i)) {
+    if (loose_[i] && !started(i) && scan(i).hint.empty()) {
+      scan(i).refusal.reason = RefusalReason::loose;
       scan(i).problem =
           scan(i).free_motion
               ? "its surfaces leave a motion free, and nothing tells where along it the scan belongs"
@@ -132,16 +157,36 @@ void Description::placeMain(const std::vector<Index>& group)
     }
     scan(i).placed = true;
     result_.poses[i] = scan(i).T_group_scan;
-    if (scan(i).free_motion)
+    if (scan(i).free_motion && scan(i).problem.empty())
       scan(i).problem = "its surfaces leave a motion free: the pose is arbitrary along it";
   }
 }
 
+// What decided, or else what the data say of the best place that was found.
+Refusal Description::refusalOf(Index group) const
+{
+  const auto in_group = [&](const ScanResult& s) { return s.group == group; };
+  const Index first = std::find_if(result_.scans.begin(), result_.scans.end(), in_group) - result_.scans.begin();
+  Refusal refusal = refusals_[first];
+  if (refusal.reason != RefusalReason::none)
+    return refusal;
+  const auto best =
+      std::find_if(result_.candidates.begin(), result_.candidates.end(), [&](const CandidatePlace& place) {
+        return place.group == group && result_.scans[place.beside].group == 0;
+      });
+  if (best == result_.candidates.end())
+    return {RefusalReason::nothing_found};
+  return {best->contradicted ? RefusalReason::contradicted : RefusalReason::too_little, best->beside, best->agree,
+          best->contradict};
+}
+
 void Description::placeOther(const std::vector<Index>& group, const std::vector<Index>& main, bool same_frame)
 {
+  const Refusal refusal = refusalOf(scan(group[0]).group);
   for (const Index i : group) {
     const Index against = same_frame ? contradictingScan(result_.pairs, i, main, options_.max_violation) : -1;
     if (against >= 0) {
+      scan(i).refusal = {RefusalReason::contradicted, against};
       scan(i).problem = "its place contradicts what " + scanName(options_, against) + " saw through";
     } else if (same_frame && started(i)) {
       scan(i).placed = true;
@@ -150,8 +195,8 @@ void Description::placeOther(const std::vector<Index>& group, const std::vector<
       scan(i).rotation_deviation = options_.max_distance / scans_[i].size;
       result_.poses[i] = scan(i).T_group_scan;
     } else {
-      scan(i).problem = look_alike_[i] ? "fits in several places that look alike, and nothing seen tells which is right"
-                                       : "no place among the other scans is certain";
+      scan(i).refusal = refusal;
+      scan(i).problem = refusalText(refusal, options_);
     }
     if (scan(i).free_motion)
       scan(i).problem += "; within its group, its surfaces leave a motion free";
@@ -168,6 +213,7 @@ void Description::placeDuplicates()
       continue;
     const std::string problem = scan(i).problem;
     scan(i) = scan(original);
+    scan(i).refusal.reason = scan(i).placed ? RefusalReason::none : RefusalReason::unusable;
     scan(i).duplicate_of = original;
     scan(i).problem = problem + (scan(i).placed ? ": placed on it" : ", which has no place");
     result_.poses[i] = result_.poses[original];
@@ -215,6 +261,86 @@ void Description::addTriedPairs()
   }
 }
 
+// A hint's place is kept where nothing contradicts it, as a start pose is.
+void Description::describeHints(const Placement& placement)
+{
+  UnionFind held(scans_.size());
+  for (const PairResult& pair : placement.pairs)
+    if (pair.accepted)
+      held.join(pair.a, pair.b);
+  for (const HintedJoin& join : placement.hinted) {
+    const bool confirmed = held.root(join.a) == held.root(join.b);
+    const char* what = confirmed ? ", and surfaces confirm it" : ", which surfaces do not confirm";
+    if (isContradicted(join, placement, held, options_.max_violation)) {
+      result_.hints.push_back(join.hint + ": not followed: free space contradicts it");
+      continue;
+    }
+    for (const Index i : join.moved) {
+      scan(i).hint = join.hint;
+      if (confirmed)
+        continue;
+      scan(i).problem = "placed by a hint alone: " + join.hint;
+      scan(i).translation_deviation = options_.max_distance;
+      scan(i).rotation_deviation = options_.max_distance / scans_[i].size;
+    }
+    held.join(join.a, join.b);
+    result_.hints.push_back(
+        concat(join.hint, ": ", scanName(options_, join.a), " and ", scanName(options_, join.b), " are joined", what));
+  }
+}
+
+void Description::drawOutlines()
+{
+  constexpr float upright = 0.3f; // sine of 17 degrees
+  constexpr Index most = 900;     // points: a wall of 10 m gets some dozens
+  const PlanFrames frames = findPlanFrames(scans_, options_.threads);
+  for (std::size_t i = 0; i < scans_.size(); ++i) {
+    if (!scans_[i].problem.empty())
+      continue;
+    const ScanLevel& level = scans_[i].levels[check_level];
+    const Eigen::Vector3f up =
+        frames[i] ? frames[i]->T_plan_scan.linear().row(2).transpose().eval() : Eigen::Vector3f::UnitZ().eval();
+    std::vector<Index> chosen;
+    for (Index k = 0; k < level.points.cols(); ++k)
+      if (std::abs(level.normals.col(k).dot(up)) < upright)
+        chosen.push_back(k);
+    const Index step = std::max<Index>(1, static_cast<Index>(chosen.size()) / most);
+    scan(i).up = up.cast<double>();
+    scan(i).outline.resize(3, (static_cast<Index>(chosen.size()) + step - 1) / step);
+    for (Index k = 0; k < scan(i).outline.cols(); ++k)
+      scan(i).outline.col(k) = level.points.col(chosen[k * step]) + scans_[i].center.cast<float>();
+  }
+}
+
+void Description::findCandidates(const std::vector<ScanCluster>& groups)
+{
+  constexpr std::size_t most = 4;        // of a group: a person looks at no more
+  constexpr double least_overlap = 0.02; // of two scans: of less, nobody can tell whether they fit
+  const PlaceFinder finder(scans_, state_.tried, state_.plan_places, options_);
+  const FreeSpaceJudge judge(scans_);
+  std::vector<std::vector<CandidatePlace>> found(groups.size());
+  parallelFor(
+      groups.size(), options_.threads,
+      [&](Index g) {
+        Places places;
+        for (Index larger = 0; larger < g; ++larger)
+          for (const Place& place : finder.ofClusters(groups[larger], groups[g]))
+            places.push_back(place);
+        finder.judge(groups, judge, places);
+        for (const Place& place : places) {
+          if (found[g].size() == most || place.fit.overlap < least_overlap)
+            continue;
+          CandidatePlace& candidate = found[g].emplace_back(finder.described(place));
+          candidate.group = g;
+          const Eigen::Matrix4d T_larger_scan = result_.scans[place.a].T_group_scan * candidate.T_beside_scan;
+          candidate.T_larger_group = T_larger_scan * result_.scans[place.b].T_group_scan.inverse();
+        }
+      },
+      1);
+  for (const auto& candidates : found)
+    result_.candidates.insert(result_.candidates.end(), candidates.begin(), candidates.end());
+}
+
 ScanRegistrationResult Description::run()
 {
   const std::vector<Placement>& placements = state_.placements;
@@ -223,21 +349,32 @@ ScanRegistrationResult Description::run()
     result_.iterations = std::max(result_.iterations, placement.joint.iterations);
     result_.converged = (&placement == &placements.front() || result_.converged) && placement.joint.converged;
     describeScans(placement);
+    describeHints(placement);
     for (const Index i : placement.members)
-      look_alike_[i] = placement.look_alike;
+      refusals_[i] = placement.refusal;
   }
   result_.rms = pooledRms(result_.pairs, -1);
   result_.people_moved = std::any_of(scans_.begin(), scans_.end(), [](const auto& s) { return s.spares_doubtful; });
-  std::vector<Index> main;
+  std::vector<ScanCluster> groups;
+  std::vector<char> same_frame; // per group, as the first one
   for (const Placement& placement : placements)
-    for (const std::vector<Index>& group : acceptedGroups(placement, scans_.size())) {
-      for (const Index i : group)
+    for (const std::vector<Index>& group : acceptedGroups(placement, scans_.size(), options_.max_violation)) {
+      ScanCluster& cluster = groups.emplace_back();
+      cluster.scans = group;
+      for (const Index i : group) {
         scan(i).group = result_.groups;
-      if (result_.groups++ == 0)
-        placeMain(main = group);
-      else
-        placeOther(group, main, &placement == &placements.front());
+        cluster.poses.push_back(Eigen::Isometry3d(scan(i).T_group_scan) * Eigen::Translation3d(scans_[i].center));
+      }
+      same_frame.push_back(&placement == &placements.front());
+      ++result_.groups;
     }
+  findCandidates(groups);
+  for (std::size_t g = 0; g < groups.size(); ++g)
+    if (g == 0)
+      placeMain(groups[0].scans);
+    else
+      placeOther(groups[g].scans, groups[0].scans, same_frame[g]);
+  drawOutlines();
   addTriedPairs();
   placeDuplicates();
   std::sort(result_.pairs.begin(), result_.pairs.end(),
@@ -248,38 +385,3 @@ ScanRegistrationResult Description::run()
 
 ScanRegistrationResult describeRegistration(const RegistrationState& state) { return Description(state).run(); }
 } // namespace fresco::registration
-
-namespace fresco {
-namespace {
-std::string namesOf(const std::vector<Index>& scans, const ScanRegistrationOptions& options)
-{
-  std::vector<std::string> names;
-  for (const Index scan : scans)
-    names.push_back(scanName(options, scan));
-  return listed(names, 5);
-}
-} // namespace
-
-std::vector<std::string> registrationWarnings(const ScanRegistrationResult& result,
-                                              const ScanRegistrationOptions& options)
-{
-  std::vector<std::string> warnings;
-  std::vector<std::vector<Index>> groups(result.groups);
-  for (std::size_t i = 0; i < result.scans.size(); ++i) {
-    const ScanResult& scan = result.scans[i];
-    if (!scan.problem.empty())
-      warnings.push_back(scanName(options, i) + ": " + scan.problem);
-    if (!scan.viewpoint_problem.empty())
-      warnings.push_back(scanName(options, i) + ": free space not used: " + scan.viewpoint_problem);
-    if (scan.group > 0)
-      groups[scan.group].push_back(i);
-  }
-  if (result.people_moved)
-    warnings.push_back("people moved between the scans: what may be one speaks against no pose");
-  for (const std::vector<Index>& group : groups)
-    if (group.size() > 1)
-      warnings.push_back(concat("another group: ", group.size(),
-                                " scans hang together, but not with the placed ones: ", namesOf(group, options)));
-  return warnings;
-}
-} // namespace fresco

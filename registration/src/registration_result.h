@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include "pair/pair_alignment.h"
-#include "refinement/placement.h"
+#include "graph/scan_graph.h"
 namespace fresco::registration {
 /// What was found, before it is described.
 struct RegistrationState {
@@ -10,6 +9,8 @@ struct RegistrationState {
   const ScanRegistrationOptions& options;
   std::vector<Placement> placements; ///< each in a frame of its own, the most important first
   std::vector<PairAlignment> tried;  ///< pairs without start poses
+  PlanPlaces plan_places;            ///< see ScanGraph
+  std::vector<std::string> hints;    ///< what became of those that join nothing
 };
 
 /// What users get to know. Poses are those of the first placement: of its largest group, and of other scans that have a

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "answer/hints.h"
+#include "answer/more_pairs.h"
+#include "answer/pair_memory.h"
 #include "global_alignment.h"
 #include "graph/scan_exchange.h"
 #include "registration_result.h"
@@ -79,8 +82,8 @@ ScanCluster startCluster(const std::vector<PreparedScan>& scans, const std::vect
 }
 
 // Start poses where all scans have one, else what global alignment finds.
-GlobalAlignment findClusters(const AlignmentInput& input, const ScanRegistrationOptions& options,
-                             const Progress& progress)
+GlobalAlignment searchClusters(const AlignmentInput& input, const ScanRegistrationOptions& options,
+                               const Progress& progress)
 {
   const Index usable = countUsable(input.scans);
   const Index started = input.known.scans.size();
@@ -92,8 +95,37 @@ GlobalAlignment findClusters(const AlignmentInput& input, const ScanRegistration
   return alignment;
 }
 
+// The same, or what an earlier registration found.
+GlobalAlignment findClusters(const AlignmentInput& input, const ScanRegistrationOptions& options,
+                             const std::string& key, PairMemory* memory, const Progress& progress)
+{
+  if (memory == nullptr)
+    return searchClusters(input, options, progress);
+  if (const auto earlier = unpackAlignment(memory->bytes, key)) {
+    memory->used = true;
+    restoreScans(input, *earlier, options.threads);
+    return *earlier;
+  }
+  GlobalAlignment alignment = searchClusters(input, options, progress);
+  *memory = {packAlignment(alignment, key), false};
+  return alignment;
+}
+
+// Brings the first cluster into the frame of its first scan, which stays that of the world whatever hints add.
+// @return that scan
+Index fixWorld(const std::vector<PreparedScan>& scans, ScanCluster& cluster)
+{
+  const auto first = std::min_element(cluster.scans.begin(), cluster.scans.end());
+  const Eigen::Isometry3d T_world_cluster =
+      workingToScan(scans[*first]) * cluster.poses[first - cluster.scans.begin()].inverse();
+  for (Eigen::Isometry3d& pose : cluster.poses)
+    pose = T_world_cluster * pose;
+  return *first;
+}
+
 // Members in rising order; without start poses, the frame of the first scan becomes that of the cluster.
-Placement toPlacement(const ScanCluster& cluster, const RegistrationState& state)
+// @param world_scan see fixWorld(); -1 = none
+Placement toPlacement(const ScanCluster& cluster, const RegistrationState& state, Index world_scan)
 {
   const auto hasStart = [&](Index i) { return !state.start.empty() && state.start[i].has_value(); };
   const bool started = std::any_of(cluster.scans.begin(), cluster.scans.end(), hasStart);
@@ -104,14 +136,17 @@ Placement toPlacement(const ScanCluster& cluster, const RegistrationState& state
   const Index first = cluster.scans[order[0]];
   const Eigen::Isometry3d T_first_frame = workingToScan(state.scans[first]) * cluster.poses[order[0]].inverse();
   Placement placement;
-  placement.look_alike = cluster.look_alike;
+  placement.refusal = cluster.refusal;
+  placement.hinted = cluster.hinted;
   for (const std::size_t k : order) {
     if (hasStart(cluster.scans[k]))
       placement.anchors.push_back(placement.members.size());
     if (state.options.fixed && started)
       placement.fixed.push_back(hasStart(cluster.scans[k]));
+    if (cluster.scans[k] == world_scan)
+      placement.holder = placement.members.size();
     placement.members.push_back(cluster.scans[k]);
-    placement.poses.push_back(started ? cluster.poses[k] : T_first_frame * cluster.poses[k]);
+    placement.poses.push_back(started || world_scan >= 0 ? cluster.poses[k] : T_first_frame * cluster.poses[k]);
   }
   return placement;
 }
@@ -135,12 +170,21 @@ ScanRegistrationResult findPoses(const ScanSource& scans, const std::vector<Pose
       prepareAll({scans, survey, ranks}, options, thinning, subProgress(progress, 0.0, 0.3));
 
   const ScanCluster known = startCluster(prepared, start);
-  GlobalAlignment alignment = findClusters({prepared, known, ranks}, options, subProgress(progress, 0.3, 0.6));
-  RegistrationState state{prepared, start, options, {}, std::move(alignment.pairs)};
+  const AlignmentInput input{prepared, known, ranks};
+  GlobalAlignment alignment =
+      findClusters(input, options, memoryKey(survey, start, options), scans.memory, subProgress(progress, 0.3, 0.6));
+  Index world_scan = -1;
+  std::vector<std::string> said;
+  if (!options.hints.empty() && !alignment.graph.clusters.empty()) {
+    if (known.scans.empty())
+      world_scan = fixWorld(prepared, alignment.graph.clusters[0]);
+    followHints(input, options, alignment, said);
+  }
+  RegistrationState state{prepared, start, options, {}, std::move(alignment.pairs), alignment.graph.places, said};
   const double step = 1.0 / alignment.graph.clusters.size();
   for (const ScanCluster& cluster : alignment.graph.clusters) {
     const double done = state.placements.size() * step;
-    state.placements.push_back(toPlacement(cluster, state));
+    state.placements.push_back(toPlacement(cluster, state, state.placements.empty() ? world_scan : -1));
     refinePlacement(prepared, options, state.placements.back(),
                     subProgress(progress, 0.6 + 0.4 * done, 0.6 + 0.4 * (done + step)));
   }

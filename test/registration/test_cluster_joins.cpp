@@ -138,12 +138,12 @@ TEST_F(ClusterUnion, WhatOnlyTheSecondGraphHoldsTogetherStaysAlone)
 
 TEST_F(ClusterUnion, WhoStaysAloneKeepsTheReason)
 {
-  for (const bool look_alike : {false, true}) {
+  for (const RefusalReason reason : {RefusalReason::none, RefusalReason::claimed}) {
     ScanCluster alone = of({2});
-    alone.look_alike = look_alike;
+    alone.refusal.reason = reason;
     const std::vector<JoinedCluster> united = uniteClusters(scene_.input(), judge_, {{of({0, 1}), alone}}, {});
     ASSERT_EQ(united.size(), 2u);
-    EXPECT_EQ(united.back().cluster.look_alike, look_alike);
+    EXPECT_EQ(united.back().cluster.refusal.reason, reason);
   }
 }
 

@@ -83,7 +83,11 @@ void takePoses(ModelInput& input, const Survey& found)
   if (input.poses.size() != input.scans.size())
     throw std::runtime_error(concat(found.at("poses.txt"), ": ", input.poses.size(), " poses for ", input.scans.size(),
                                     " scans: a line each is wanted ('none' where it is not known)"));
-  input.found.push_back("poses.txt: the first pose gives the frame; with -use_poses all are taken as they are");
+  const auto unknown = std::count(input.poses.begin(), input.poses.end(), std::nullopt);
+  input.found.push_back(
+      unknown > 0 && unknown < Index(input.poses.size())
+          ? concat("poses.txt: ", input.poses.size() - unknown, " start poses; those of ", unknown, " scans are found")
+          : "poses.txt: the first pose gives the frame; with -use_poses all are taken as they are");
 }
 
 void takeAsCloud(ModelInput& input, const Survey& found)

@@ -18,6 +18,8 @@ struct ModelFiles {
   std::string poses = folder + "/poses.txt", mesh = folder + "/mesh.ply";
   std::string model_obj = folder + "/model.obj", model_glb = folder + "/model.glb";
   std::string full_glb = folder + "/model_full.glb";
+  std::string pairs = work + "/pairs.bin"; ///< what the search of pairs of scans found
+  std::string registration_json = folder + "/registration.json", registration_html = folder + "/registration.html";
   std::string report_json = folder + "/report.json", report_html = folder + "/report.html";
 };
 } // namespace fresco::model

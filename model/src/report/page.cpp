@@ -241,6 +241,22 @@ std::string viewer(const Report& report, const ModelFiles& files, const std::opt
   return "<div class=\"viewer\">" + viewerElement(readFile(files.viewer_glb), options) + "</div>\n";
 }
 
+/// Of scans that were registered: where they are, and what those without a place need.
+std::string registrationLink(const Report& report)
+{
+  for (const StageRecord& stage : report.stages)
+    if (const std::string page = stage.figures.value("registration_page", ""); !page.empty()) {
+      const int without = stage.figures.value("unplaced_scans", 0);
+      return "<p><a href=\"" + page + "\">Floor plan of the scans</a>" +
+             (without > 0
+                  ? ": " + std::to_string(without) +
+                        " are not in the model; the page shows where they may be and which hint takes each place"
+                  : "") +
+             ".</p>\n";
+    }
+  return "";
+}
+
 std::string pictureSection(const Report& report, const ModelFiles& files)
 {
   constexpr int quality = 80; // of JPEG: a page of a few megabytes
@@ -268,6 +284,7 @@ std::string reportPage(const Report& report, const ModelFiles& files, const std:
   html += endSection(report);
   if (report.isWhole())
     html += viewer(report, files, facts);
+  html += registrationLink(report);
   if (facts)
     html += planSection(*facts);
   html += errorSection(report, facts);

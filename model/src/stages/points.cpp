@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <filesystem>
 #include <fresco/core/constants.h>
 #include <fresco/core/require.h>
 #include <fresco/filters/core/bilateral_normals.h>
@@ -16,8 +17,10 @@
 #include <fresco/io/point_io.h>
 #include <fresco/io/pose_file.h>
 #include <fresco/registration/core/scan_registration.h>
+#include <fstream>
 #include <utility>
 namespace fresco::model {
+namespace fs = std::filesystem;
 /// `set` without points that are not finite or have no normal; normals smoothed.
 PointSet smoothed(const PointSet& set, const Job& job, const Progress& progress)
 {
@@ -58,9 +61,36 @@ PointSet preparedScan(PointSet read, const Job& job, const Progress& progress)
   return smoothed(scan, job, subProgress(progress, 0.6, 1.0));
 }
 
+/// Whether some scans have a pose and others do not.
+bool isPartial(const std::vector<Pose>& poses)
+{
+  const auto known = std::count_if(poses.begin(), poses.end(), [](const Pose& pose) { return pose.has_value(); });
+  return known > 0 && known < Index(poses.size());
+}
+
+/// As an earlier run left it, on all ranks the same. It is no input: this run may replace it.
+PairMemory pairMemory(const Job& job)
+{
+  std::ifstream file(job.options.resume ? job.files.pairs : "", std::ios::binary);
+  const std::string bytes{std::istreambuf_iterator<char>(file), {}};
+  return {gatherValues(job.ranks, bytes)[0], false};
+}
+
+/// What a person may look at, and what a run with other hints starts from.
+void writeRegistration(const Job& job, const ScanRegistrationResult& result, const ScanRegistrationOptions& options,
+                       const PairMemory& memory)
+{
+  if (job.ranks.rank() > 0)
+    return;
+  if (!memory.used)
+    writeFile(job.files.pairs, memory.bytes);
+  writeFile(job.files.registration_json, registrationJson(result, options));
+  writeFile(job.files.registration_html, registrationPage(result, options));
+}
+
 /// World from scan. Without -use_poses all scans are registered from scratch, as they were measured: what cleaning takes
 /// from a sparse scan is what its place would be known by. The folder's first pose then only ties the result to the
-/// frame of the photographs.
+/// frame of the photographs. Where only some scans have poses, these are start poses.
 std::vector<Pose> placeScans(const Job& job, const Progress& progress, Figures& figures)
 {
   const auto& [input, files, options, stages, ranks] = job;
@@ -71,12 +101,20 @@ std::vector<Pose> placeScans(const Job& job, const Progress& progress, Figures& 
   ScanRegistrationOptions registration = stages.registration;
   for (const ScanPath& scan : input.scans)
     registration.names.push_back(scan.name());
+  if (!options.hints.empty())
+    registration.hints = readHints(options.hints, registration.names);
   const Index count = input.scans.size();
   ScanSource scans{count, [&, &paths = input.scans](Index i) { return readPoints(paths[i]); }};
+  PairMemory memory = pairMemory(job);
   scans.ranks = &ranks;
-  const ScanRegistrationResult result = registerScans(scans, {}, registration, progress);
+  scans.memory = &memory;
+  const bool partial = isPartial(input.poses);
+  const ScanRegistrationResult result =
+      registerScans(scans, partial ? input.poses : std::vector<Pose>(), registration, progress);
+  writeRegistration(job, result, registration, memory);
   std::vector<Pose> poses = result.poses;
-  figures["registration"] = "found";
+  figures["registration"] = partial ? "found, from some given poses" : "found";
+  figures["registration_page"] = fs::path(files.registration_html).filename().string();
   figures["registration_rms"] = result.rms;
   figures["warnings"] = registrationWarnings(result, registration);
   Index tie = 0;
@@ -84,7 +122,7 @@ std::vector<Pose> placeScans(const Job& job, const Progress& progress, Figures& 
     ++tie;
   if (tie == count)
     throw std::runtime_error(registration.names[0] + ": " + result.scans[0].problem + "; no scan could be placed");
-  if (!input.poses.empty() && input.poses[tie]) {
+  if (!partial && !input.poses.empty() && input.poses[tie]) {
     const Eigen::Matrix4d T_world_group = *input.poses[tie] * poses[tie]->inverse();
     for (Pose& pose : poses)
       if (pose)

@@ -52,6 +52,7 @@ private:
   {
     return fits_.of(groups_[first].id, groups_[second].id);
   }
+  RefusalReason refusal(const Join& candidate) const;
   bool hasAlias(const Join& join) const;
   bool hasSecondPlace(const Join& join) const;
   bool fitsThird(std::size_t stays, std::size_t moves, const ClusterFit& fit, bool by_chains) const;
@@ -193,18 +194,28 @@ Assembler::Joins Assembler::likelyJoins() const
   return joins;
 }
 
+RefusalReason Assembler::refusal(const Join& candidate) const
+{
+  if (hasAlias(candidate))
+    return RefusalReason::repeats;
+  if (hasSecondPlace(candidate))
+    return RefusalReason::second_place;
+  return fitsThird(candidate.first, candidate.second, candidate.fit, true) ||
+                 fitsThird(candidate.second, candidate.first, reversed(candidate.fit), true)
+             ? RefusalReason::claimed
+             : RefusalReason::none;
+}
+
 bool Assembler::joinBest()
 {
   findAllFits();
   for (const Join& candidate : likelyJoins()) {
-    if (hasAlias(candidate) || hasSecondPlace(candidate) ||
-        fitsThird(candidate.first, candidate.second, candidate.fit, true) ||
-        fitsThird(candidate.second, candidate.first, reversed(candidate.fit), true)) {
-      groups_[candidate.first].cluster.look_alike = groups_[candidate.second].cluster.look_alike = true;
-      continue;
+    const RefusalReason reason = refusal(candidate);
+    if (reason == RefusalReason::none) {
+      join(candidate);
+      return true;
     }
-    join(candidate);
-    return true;
+    refuse(groups_[candidate.first].cluster, groups_[candidate.second].cluster, reason, candidate.fit.evidence);
   }
   return false;
 }
@@ -221,7 +232,7 @@ void Assembler::join(const Join& join)
   groups_.erase(groups_.begin() + join.second);
   settle(input_, known_, first.cluster);
   for (Group& group : groups_)
-    group.cluster.look_alike = false; // joinBest() tells anew
+    group.cluster.refusal = {}; // joinBest() tells anew
 }
 
 // Whether another group has a certain place for a part of a group. Whatever was said against its claim while the groups
@@ -317,9 +328,10 @@ void Assembler::split(std::size_t group, const std::vector<Index>& listed)
   for (const ScanCluster& held : hasKnown(left) ? std::vector<ScanCluster>{left} : parts_.heldTogether(left))
     groups_.insert(groups_.begin() + group, {next_id_++, held, parts});
   groups_.push_back({next_id_++, part, parts});
-  groups_.back().cluster.look_alike = true;
+  const Refusal contested{RefusalReason::claimed, rest.scans.empty() ? -1 : rest.scans[0]};
+  groups_.back().cluster.refusal = contested;
   for (const Index scan : alone)
-    groups_.push_back({next_id_++, {{scan}, {Eigen::Isometry3d::Identity()}, true}});
+    groups_.push_back({next_id_++, {{scan}, {Eigen::Isometry3d::Identity()}, contested}});
 }
 
 ScanGraph Assembler::checked()

@@ -158,7 +158,8 @@ SubmapJoiner::Joins SubmapJoiner::soundJoins()
         contradictsOther(candidate, accepted))
       continue;
     if (isContested(candidate)) {
-      groups_[candidate.first].cluster.look_alike = groups_[candidate.second].cluster.look_alike = true;
+      refuse(groups_[candidate.first].cluster, groups_[candidate.second].cluster, RefusalReason::claimed,
+             candidate.place.evidence);
       continue;
     }
     stays[candidate.first] = moves[candidate.second] = 1;
@@ -186,7 +187,7 @@ void SubmapJoiner::join(const Joins& joins)
       groups_.push_back(std::move(before[g]));
   for (std::size_t g = 0; g < before.size(); ++g)
     if (!grown[g].scans.empty()) {
-      grown[g].look_alike = false;
+      grown[g].refusal = {};
       refineCluster(input_, before[g].cluster, grown[g]);
       add(grown[g]);
     }
@@ -206,8 +207,13 @@ void SubmapJoiner::run(ScanGraph& graph, const Progress& progress)
     join(joins);
   }
   graph.clusters.clear();
-  for (const Group& group : groups_)
-    graph.clusters.push_back(group.cluster);
+  for (std::size_t g = 0; g < groups_.size(); ++g) {
+    const ScanCluster& cluster = graph.clusters.emplace_back(groups_[g].cluster);
+    for (std::size_t k = 0; k < g; ++k)
+      for (const SubmapPlace& place : placesOf(k, g))
+        graph.places.push_back({groups_[k].cluster.scans[0], cluster.scans[0],
+                                groups_[k].cluster.poses[0].inverse() * place.T * cluster.poses[0]});
+  }
   sortBySize(graph.clusters, 0);
 }
 } // namespace

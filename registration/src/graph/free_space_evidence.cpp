@@ -23,6 +23,13 @@ FreeSpaceEvidence& FreeSpaceEvidence::operator+=(const FreeSpaceEvidence& other)
   return *this;
 }
 
+void refuse(ScanCluster& first, ScanCluster& second, RefusalReason reason, const FreeSpaceEvidence& evidence)
+{
+  for (const auto& [cluster, other] : {std::pair(&first, &second), std::pair(&second, &first)})
+    if (cluster->refusal.reason == RefusalReason::none || cluster->refusal.agree < evidence.agree)
+      cluster->refusal = {reason, other->scans[0], evidence.agree, evidence.clustered};
+}
+
 bool isContradicted(const FreeSpaceEvidence& evidence)
 {
   return evidence.crowded ? isClearlyContradicted(evidence) : evidence.clustered > usualContradiction(evidence);

@@ -12,6 +12,9 @@ struct FreeSpaceEvidence {
   FreeSpaceEvidence& operator+=(const FreeSpaceEvidence& other);
 };
 
+/// Notes at two clusters why they were not joined where so much agrees. What agrees most is kept.
+void refuse(ScanCluster& first, ScanCluster& second, RefusalReason reason, const FreeSpaceEvidence& evidence);
+
 /// Whether more points contradict a pose than mixed pixels and small errors of poses explain.
 bool isContradicted(const FreeSpaceEvidence& evidence);
 

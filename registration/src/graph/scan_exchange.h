@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include "pair/pair_alignment.h"
+#include "graph/scan_graph.h"
 #include <fresco/io/packing.h>
 namespace fresco::registration {
 // What ranks tell each other of scans and pairs, see Packer.
@@ -55,6 +55,24 @@ template <typename Archive>
 void fields(Archive& archive, PairAlignment& pair)
 {
   archive(pair.a, pair.b, pair.hypotheses, pair.ambiguous, pair.rejected);
+}
+
+template <typename Archive>
+void fields(Archive& archive, ScanCluster& cluster)
+{
+  archive(cluster.scans, cluster.poses, cluster.refusal);
+}
+
+template <typename Archive>
+void fields(Archive& archive, PlanPlace& place)
+{
+  archive(place.a, place.b, place.T_a_b);
+}
+
+template <typename Archive>
+void fields(Archive& archive, ScanGraph& graph)
+{
+  archive(graph.clusters, graph.places);
 }
 
 /// As shareItems().

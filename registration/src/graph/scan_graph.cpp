@@ -4,6 +4,7 @@
 #include "graph/free_space_evidence.h"
 #include "graph/place_check.h"
 #include <algorithm>
+#include <map>
 #include <numeric>
 #include <optional>
 namespace fresco::registration {
@@ -59,7 +60,7 @@ private:
   const ScanCluster& known_;
   const FreeSpaceJudge judge_;
   double least_color_, usual_violation_, most_violation_;
-  std::vector<const PairAlignment*> aliased_;
+  std::map<const PairAlignment*, RefusalReason> aliased_;
   std::vector<char> late_; // per scan
   ScanGraph graph_;
   std::vector<ClusterPlace> places_; // of all scans in graph_
@@ -163,7 +164,7 @@ bool GraphBuilder::tryJoin(const Candidate& candidate)
                     doubtful(*candidate.pair, candidate.hypothesis->check) || unsure;
   if (weak && !supported(candidate, T)) {
     if (unsure)
-      aliased_.push_back(candidate.pair);
+      aliased_[candidate.pair] = RefusalReason::repeats;
     return false;
   }
   const std::optional<Eigen::Isometry3d> fitting = fittingPose(a, b, T);
@@ -173,9 +174,10 @@ bool GraphBuilder::tryJoin(const Candidate& candidate)
   const ScanCluster &first = graph_.clusters[a], &second = graph_.clusters[b];
   const ClusterJoin proposed{a, b, T, candidate.hypothesis->check.overlap};
   const bool single = first.scans.size() == 1 || second.scans.size() == 1; // of which contestedScans() will tell
-  if (hasAliasByChain(input_, graph_.clusters, proposed) || hasAliasByScan(input_, graph_.clusters, proposed) ||
+  const bool by_scan = hasAliasByScan(input_, graph_.clusters, proposed);
+  if (by_scan || hasAliasByChain(input_, graph_.clusters, proposed) ||
       (!single && isContested(input_, first, second, T))) {
-    aliased_.push_back(candidate.pair);
+    aliased_[candidate.pair] = by_scan ? RefusalReason::repeats : RefusalReason::second_place;
     return false;
   }
   join(a, b, T);
@@ -277,10 +279,13 @@ void GraphBuilder::markLookAlikes()
 {
   for (const PairAlignment& pair : input_.pairs) {
     const Index a = places_[pair.a].cluster, b = places_[pair.b].cluster;
-    const bool contested =
-        late_[pair.a] || late_[pair.b] || std::find(aliased_.begin(), aliased_.end(), &pair) != aliased_.end();
-    if (a != b && !blind(pair) && (contested ? !pair.hypotheses.empty() : pair.ambiguous && pair.hypotheses.size() > 1))
-      graph_.clusters[a].look_alike = graph_.clusters[b].look_alike = true;
+    const auto aliased = aliased_.find(&pair);
+    const bool contested = late_[pair.a] || late_[pair.b] || aliased != aliased_.end();
+    if (a == b || blind(pair) || (contested ? pair.hypotheses.empty() : !pair.ambiguous || pair.hypotheses.size() < 2))
+      continue;
+    const RefusalReason reason = aliased == aliased_.end() ? RefusalReason::second_place : aliased->second;
+    graph_.clusters[a].refusal = {reason, pair.b};
+    graph_.clusters[b].refusal = {reason, pair.a};
   }
 }
 
@@ -375,7 +380,7 @@ void splitUndecided(const GraphInput& input, ScanGraph& graph)
         continue;
       clusters[c].scans.erase(clusters[c].scans.begin() + k);
       clusters[c].poses.erase(clusters[c].poses.begin() + k);
-      clusters.push_back({{scan}, {Eigen::Isometry3d::Identity()}, true});
+      clusters.push_back({{scan}, {Eigen::Isometry3d::Identity()}, {RefusalReason::claimed, clusters[c].scans[0]}});
     }
   sortBySize(clusters, clusters.empty() ? 0 : 1);
 }

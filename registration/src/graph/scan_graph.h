@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include "graph/pair_evidence.h"
+#include "refinement/placement.h"
 #include <fresco/core/rigid_motion.h>
 namespace fresco::registration {
 /// Scans in one common frame.
 struct ScanCluster {
   std::vector<Index> scans;
-  IsometryVector poses;    ///< frame of the cluster from working frame
-  bool look_alike = false; ///< whether it fits to other clusters in several ways between which nothing decides
+  IsometryVector poses; ///< frame of the cluster from working frame
+  Refusal refusal = {}; ///< the last that kept it apart from another cluster
+  std::vector<HintedJoin> hinted = {};
 };
 
 bool contains(const ScanCluster& cluster, Index scan);
@@ -30,8 +32,16 @@ struct ClusterPlace {
 /// Place of each scan, {0, 0} for those in no cluster.
 std::vector<ClusterPlace> placesOf(const std::vector<ScanCluster>& clusters, Index scan_count);
 
+/// Where a cluster may be in another one, as their floor plans say.
+struct PlanPlace {
+  Index a = 0, b = 0;      ///< a scan of either
+  Eigen::Isometry3d T_a_b; ///< working frames
+};
+using PlanPlaces = std::vector<PlanPlace, Eigen::aligned_allocator<PlanPlace>>;
+
 struct ScanGraph {
   std::vector<ScanCluster> clusters; ///< every usable scan in one of them, largest first, but `known` before all
+  PlanPlaces places = {};            ///< of clusters as wholes, which decided nothing
 };
 
 struct GraphOptions {

@@ -149,11 +149,12 @@ Index heldTogether(const Placement& placement)
   return std::count(held.begin(), held.end(), 1);
 }
 
+constexpr double sound_violation = 0.01; // others may have seen a pane
+
 // Whether all members are held together, and free space hardly contradicts start poses: a scan that lies on another wall
 // of the same room overlaps with it by its floor.
 bool suffices(const Placement& placement)
 {
-  constexpr double sound_violation = 0.01; // others may have seen a pane
   const bool started = !placement.anchors.empty();
   return heldTogether(placement) == static_cast<Index>(placement.members.size()) &&
          std::none_of(placement.pairs.begin(), placement.pairs.end(),
@@ -214,7 +215,7 @@ void refineWithin(const Reach& reach, const std::vector<PreparedScan>& scans, co
   JointOptions joint = jointOptions(options);
   joint.max_distance = reach.distance;
   joint.first_level = reach.first_level;
-  joint.anchors = placement.anchors;
+  joint.anchors = placement.anchors.empty() ? std::vector<Index>{placement.holder} : placement.anchors;
   joint.cuts = placement.anchors.empty();
   joint.fixed = placement.fixed;
   const IsometryVector start = placement.poses;
@@ -246,6 +247,12 @@ void refineWithin(const Reach& reach, const std::vector<PreparedScan>& scans, co
   }
   addUnsteadyParts(members, joint, placement);
 }
+
+Reach nearReach(const ScanRegistrationOptions& options)
+{
+  constexpr float near_reach = 4.f; // voxels: poses are mostly nearer, and other walls and rooms are further off
+  return {std::min(options.max_distance, near_reach * options.voxel), check_level};
+}
 } // namespace
 
 double positionDeviation(const JointResult& joint, Index member)
@@ -260,15 +267,37 @@ bool isLoose(const PreparedScan& scan, const Placement& placement, Index member)
          (sawAround(scan) && positionDeviation(placement.joint, member) > most_deviation * scan.size);
 }
 
+namespace {
+// Refines start poses within a wide reach: only those that the data do not confirm where they are, then all together.
+// @param near refined from where they are
+Placement refineUnconfirmed(const std::vector<PreparedScan>& scans, const ScanRegistrationOptions& options,
+                            const Placement& near, const Progress& progress)
+{
+  Placement far = near;
+  far.fixed = largestHeld(near);
+  for (const PairResult& pair : near.pairs)
+    if (pair.violation > sound_violation)
+      for (const Index scan : {pair.a, pair.b})
+        far.fixed[memberOf(near, scan)] = 0;
+  for (std::size_t m = 0; m < near.fixed.size(); ++m)
+    far.fixed[m] = far.fixed[m] || near.fixed[m];
+  refineWithin({options.max_distance, 0}, scans, options, far, progress);
+  far.fixed = near.fixed;
+  refineWithin(nearReach(options), scans, options, far, progress);
+  return far;
+}
+} // namespace
+
 void refinePlacement(const std::vector<PreparedScan>& scans, const ScanRegistrationOptions& options,
                      Placement& placement, const Progress& progress)
 {
-  constexpr float near_reach = 4.f; // voxels: poses are mostly nearer, and other walls and rooms are further off
   Placement near = placement;
-  refineWithin({std::min(options.max_distance, near_reach * options.voxel), check_level}, scans, options, near,
-               progress);
+  refineWithin(nearReach(options), scans, options, near, progress);
   if (!suffices(near)) {
-    refineWithin({options.max_distance, 0}, scans, options, placement, progress);
+    if (placement.anchors.empty())
+      refineWithin({options.max_distance, 0}, scans, options, placement, progress);
+    else
+      placement = refineUnconfirmed(scans, options, near, progress);
     if (isBetter(placement, near))
       return;
   }

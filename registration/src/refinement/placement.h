@@ -4,6 +4,13 @@
 #include <fresco/registration/core/scan_registration.h>
 #include <optional>
 namespace fresco::registration {
+/// What a hint holds together.
+struct HintedJoin {
+  Index a = 0, b = 0;       ///< scans of either side
+  std::string hint;         ///< RegistrationHint::source
+  std::vector<Index> moved; ///< the side that was brought
+};
+
 /// Scans with a pose in one common frame, and what is known of their pairs.
 struct Placement {
   std::vector<Index> members;                          ///< indices of the scans
@@ -13,7 +20,9 @@ struct Placement {
   JointResult joint;                                   ///< of the last refinement, indices into members
   std::vector<PairResult> pairs;                       ///< overlapping pairs, indices of scans
   Index violating_points = 0;                          ///< of all pairs of members, see PairCheck
-  bool look_alike = false;                             ///< see ScanCluster
+  Index holder = 0;                                    ///< index into members: keeps its pose where there is no anchor
+  Refusal refusal;                                     ///< see ScanCluster
+  std::vector<HintedJoin> hinted;                      ///< see ScanCluster
   std::vector<std::optional<FreeMotion>> free_motions; ///< per member; of unsteady parts, too
 };
 

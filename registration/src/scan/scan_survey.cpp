@@ -8,19 +8,32 @@
 #include <fresco/io/packing.h>
 namespace fresco::registration {
 namespace {
-// FNV-1a (Fowler, Noll, Vo) over words of 32 bits.
+// FNV-1a (Fowler, Noll, Vo) over whole values.
+template <typename Values>
+void addHash(const Values& values, std::uint64_t& hash)
+{
+  for (Index i = 0; i < values.size(); ++i) {
+    std::uint32_t bits = 0;
+    std::memcpy(&bits, values.data() + i, sizeof(*values.data()));
+    hash = (hash ^ bits) * 1099511628211ull;
+  }
+}
+
 std::uint64_t hashOf(const PointSet& scan)
 {
   std::uint64_t hash = 14695981039346656037ull;
-  const auto add = [&](const Points& values) {
-    for (Index i = 0; i < values.size(); ++i) {
-      std::uint32_t bits;
-      std::memcpy(&bits, values.data() + i, sizeof(bits));
-      hash = (hash ^ bits) * 1099511628211ull;
-    }
-  };
-  add(scan.points);
-  add(scan.origin.cast<float>());
+  addHash(scan.points, hash);
+  addHash(scan.origin.cast<float>().eval(), hash);
+  return hash;
+}
+
+// Of what else registration looks at.
+std::uint64_t lookOf(const PointSet& scan)
+{
+  std::uint64_t hash = 14695981039346656037ull;
+  addHash(scan.viewpoints, hash);
+  addHash(scan.colors, hash);
+  addHash(scan.normals, hash);
   return hash;
 }
 
@@ -34,14 +47,14 @@ std::string withoutName(const std::string& message, const std::string& name)
 struct Sketch {
   std::string problem;
   double size = 0.0, narrowness = 0.0, voxel = 0.0;
-  std::uint64_t hash = 0;
+  std::uint64_t hash = 0, look = 0;
   bool has_points = false;
 };
 
 template <typename Archive>
 void fields(Archive& archive, Sketch& sketch)
 {
-  archive(sketch.problem, sketch.size, sketch.narrowness, sketch.voxel, sketch.hash, sketch.has_points);
+  archive(sketch.problem, sketch.size, sketch.narrowness, sketch.voxel, sketch.hash, sketch.look, sketch.has_points);
 }
 
 Sketch sketchOf(const ScanSource& scans, Index i, const ScanRegistrationOptions& options)
@@ -63,6 +76,7 @@ Sketch sketchOf(const ScanSource& scans, Index i, const ScanRegistrationOptions&
     sketch.voxel = fittingVoxel(scan, sketch.size / voxels_per_size);
   if (sketch.has_points)
     sketch.hash = hashOf(scan);
+  sketch.look = lookOf(scan);
   return sketch;
 }
 } // namespace
@@ -81,6 +95,7 @@ ScanSurvey surveyScans(const ScanSource& scans, Exchange& ranks, const ScanRegis
     survey.sizes.push_back(sketch.size);
     survey.voxels.push_back(sketch.voxel);
     survey.hashes.push_back(sketch.hash);
+    survey.looks.push_back(sketch.look);
     survey.narrowness += sketch.narrowness;
     counted += sketch.has_points ? 1 : 0;
   }

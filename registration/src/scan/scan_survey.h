@@ -8,6 +8,7 @@ struct ScanSurvey {
   std::vector<double> voxels;        ///< that suit each scan, length; 0 without points
   std::vector<std::string> problems; ///< why a scan cannot be read; empty = it can
   std::vector<std::uint64_t> hashes; ///< of the points of each scan; 0 without points
+  std::vector<std::uint64_t> looks;  ///< likewise, of viewpoints, colours and normals
   std::vector<Index> duplicates;     ///< see findDuplicates()
   double narrowness = 0.0;           ///< mean over the scans that have points, 0..1
 };

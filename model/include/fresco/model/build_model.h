@@ -16,6 +16,7 @@ struct ModelOptions {
   std::string until;      ///< stop once that is written: points (points.ply), surface (surface.ply) or mesh (mesh.ply);
                           ///< "" = the whole model. A later run with `resume` goes on from there
   bool use_poses = false; ///< take the poses of scans (poses.txt) or of RGB-D frames as they are
+  std::string hints;      ///< file that tells what is known of the places of scans, see readHints(); "" = none
   double cell = 0;        ///< finest cell of the surface reconstruction, >= 0; 0 = 0.02 for scans, three pixels
                           ///< at the median depth for RGB-D
   double fuse = 0;        ///< RGB-D: cell in which the frames are fused, >= 0; 0 = as `cell`

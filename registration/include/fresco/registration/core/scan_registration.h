@@ -12,6 +12,20 @@
 namespace fresco {
 class Exchange;
 
+enum class HintKind { link, relative, near, choose, apart, order };
+
+/// What a person knows of the places of scans.
+struct RegistrationHint {
+  HintKind kind = HintKind::order;                     ///< see docs/registration.md#hints
+  Index a = 0, b = 0;                                  ///< scans; `near` and `order` have no b
+  Eigen::Matrix4d T_a_b = Eigen::Matrix4d::Identity(); ///< of `relative`: scan a from scan b, off by up to max_distance
+  Eigen::Vector3d place = Eigen::Vector3d::Zero();     ///< of `near`: of the scanner, in the frame of the placed scans
+  double radius = 0.0;                                 ///< of `near`, > 0, length
+  bool any_height = false;                             ///< of `near`: the height of `place` means nothing
+  Index number = 0;                                    ///< of `choose`: CandidatePlace::number
+  std::string source;                                  ///< what messages call it: file and line
+};
+
 /// Registration of many scans: global alignment of scans without a start pose, then joint point-to-plane refinement.
 struct ScanRegistrationOptions {
   float voxel = 0.f;           ///< edge of the finest thinning cells, length; 0 = median range of the scans / 100
@@ -22,7 +36,14 @@ struct ScanRegistrationOptions {
   bool fixed = false;          ///< scans with a start pose keep it exactly; only the others are placed
   bool upright = false; ///< whether all scanners stood upright to 10 degrees, z upwards: fewer poses are possible
   int threads = 0;      ///< 0 = all cores; the result does not depend on it
-  std::vector<std::string> names; ///< of the scans, for messages; empty = their numbers
+  std::vector<std::string> names;      ///< of the scans, for messages; empty = their numbers
+  std::vector<RegistrationHint> hints; ///< followed where free space does not contradict them
+};
+
+/// What the search of pairs found: to be kept for a second registration of the same scans with other hints.
+struct PairMemory {
+  std::string bytes; ///< for this program on this kind of machine; empty = nothing
+  bool used = false; ///< whether they were of the same scans and options; else they are of this registration now
 };
 
 /// Scans that need not be in memory all at once.
@@ -32,6 +53,7 @@ struct ScanSource {
   /// That share out the scans, and the pairs of them, and all come to the result that one would; null = this process
   /// alone. Each reads its own scans only.
   Exchange* ranks = nullptr;
+  PairMemory* memory = nullptr; ///< read and filled; null = nothing is kept. Each rank has its own, all the same
 
   ScanSource(Index scan_count, std::function<PointSet(Index)> reader) : count(scan_count), read(std::move(reader)) {}
 };
@@ -71,10 +93,50 @@ struct FreeMotion {
   Eigen::Vector3d rotation = Eigen::Vector3d::Zero();    ///< axis in the world, through the surfaces that hold the scan
 };
 
+/// Which evidence decides that a scan, or its group, is not placed.
+enum class RefusalReason {
+  none,
+  unusable,      ///< ScanResult::problem says why
+  nothing_found, ///< no pair with a placed scan has an acceptable relative pose
+  too_little,    ///< what agrees at the best place may do so by chance
+  contradicted,  ///< free space contradicts the best place
+  second_place,  ///< fits the same scans as well at a second place
+  repeats,       ///< a scan maps onto itself: an equal room or bay is near
+  claimed,       ///< other scans that cannot be there have as good a place for it
+  loose,         ///< what holds its place leaves it free
+  apart          ///< a hint
+};
+
+/// What spoke against a place.
+struct Refusal {
+  RefusalReason reason = RefusalReason::none;
+  Index scan = -1;         ///< on the other side: of the group that it was not joined to; -1 = none
+  double agree = 0.0;      ///< surfaces that agree there, in scans' worth, see CandidatePlace
+  double contradict = 0.0; ///< likewise
+};
+
+/// Where a scan or group that is not placed may be.
+struct CandidatePlace {
+  Index group = 0;            ///< that is not placed
+  Index scan = 0, beside = 0; ///< one of its scans, and one of a larger group, mostly a placed one
+  Index number = 0; ///< of the places that the two have, from 1, see HintKind::choose; 0 = found for the whole group
+  Eigen::Matrix4d T_beside_scan = Eigen::Matrix4d::Identity();
+  Eigen::Matrix4d T_larger_group = Eigen::Matrix4d::Identity(); ///< between the frames of ScanResult::T_group_scan
+  double overlap = 0.0;                                         ///< of the two scans there, as PairResult::overlap
+  double violation = 0.0;                                       ///< likewise
+  /// Points of both groups as deep as the other side measured, over the points of one scan; those of one
+  /// count for each scan that sees them. No probability: of equal rooms the wrong one may have more.
+  double agree = 0.0;
+  double contradict = 0.0;   ///< those in space that the other side saw through, together with their neighbours
+  bool contradicted = false; ///< that is more than errors and panes explain
+};
+
 /// One scan at the end. Lengths are in the unit of the points.
 struct ScanResult {
   bool placed = false;
   std::string problem;           ///< why it was not placed, or what is doubtful about its place
+  Refusal refusal;               ///< of a scan without a place
+  std::string hint;              ///< that its place rests on; empty = none
   std::string viewpoint_problem; ///< why what it saw through is not used; empty = it is
   /// Where it was seen from, in its own frame, to about a decimetre in rooms; only where its file does not tell and its
   /// points do.
@@ -86,7 +148,9 @@ struct ScanResult {
   /// Standard deviation of the scanner's position: root of the expected squared distance, length. Relative to the scan
   /// that holds the frame, or to the best fit of the group where that is larger. Zero for fixed scans.
   double translation_deviation = 0.0;
-  double rotation_deviation = 0.0;       ///< the same of the rotation, radian
+  double rotation_deviation = 0.0;               ///< the same of the rotation, radian
+  Eigen::Vector3d up = Eigen::Vector3d::UnitZ(); ///< in its own frame: as its surfaces show, else z
+  Points outline;                        ///< 3xN, some points of upright surfaces, in its own frame: for pictures
   std::optional<FreeMotion> free_motion; ///< degenerate: the pose is arbitrary along it
 };
 
@@ -95,12 +159,31 @@ struct ScanRegistrationResult {
   std::vector<PairResult> pairs; ///< that overlap or were tried, ordered by (a, b)
   std::vector<ScanResult> scans;
   Index groups = 0;
-  double rms = 0.0;   ///< point-to-plane distance over all accepted pairs, length
-  float voxel = 0.f;  ///< that was used
-  int iterations = 0; ///< of the last refinement, over all resolutions
+  std::vector<CandidatePlace> candidates; ///< by group, the best first: not contradicted, then of more overlap
+  std::vector<std::string> hints;         ///< what became of each hint, a line each
+  double rms = 0.0;                       ///< point-to-plane distance over all accepted pairs, length
+  float voxel = 0.f;                      ///< that was used
+  int iterations = 0;                     ///< of the last refinement, over all resolutions
   bool converged = false;
   bool people_moved = false; ///< between the scans: nothing that may be a person contradicted a pose
 };
+
+/// Reads hints, one a line; '#' starts a comment. Words with blanks stand in double quotes.
+/// @param names of the scans; a hint may leave out folder and extension where one scan is meant
+/// @throws std::runtime_error "PATH: line N: reason"
+FRESCO_EXPORT std::vector<RegistrationHint> readHints(const std::string& path, const std::vector<std::string>& names);
+
+/// The line of a hints file that takes a place.
+FRESCO_EXPORT std::string hintLine(const CandidatePlace& place, const ScanRegistrationOptions& options);
+
+/// Why a scan is not placed, in words.
+FRESCO_EXPORT std::string refusalText(const Refusal& refusal, const ScanRegistrationOptions& options);
+
+/// All of the result as JSON (docs/registration.md#registrationjson), and as a page with floor plans of the groups, readable offline.
+FRESCO_EXPORT std::string registrationJson(const ScanRegistrationResult& result,
+                                           const ScanRegistrationOptions& options);
+FRESCO_EXPORT std::string registrationPage(const ScanRegistrationResult& result,
+                                           const ScanRegistrationOptions& options);
 
 /// What a user should know of the result, a line each: scans that could not be read or placed or are doubtful, viewpoints
 /// that are not used, people who moved, further groups.
