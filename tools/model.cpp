@@ -32,6 +32,15 @@ void print(const fresco::ModelPlan& plan, bool quiet, bool dry_run)
       say("warning: " + warning);
   say((dry_run ? "would do: " : "to do: ") + fresco::planSummary(plan));
 }
+
+/// @throws UsageError
+void check(const fresco::ModelOptions& options, const std::vector<std::string>& folders)
+{
+  if (options.width < 160 || options.height < 120)
+    throw fresco::UsageError("option -size: pictures of less than 160x120 pixels are too small");
+  for (const char* part : {"", "/scans", "/panoramas", "/images", "/cameras"})
+    fresco::requireDistinct({folders[1]}, {folders[0] + part});
+}
 } // namespace
 
 int main(int argc, char** argv)
@@ -106,10 +115,7 @@ int main(int argc, char** argv)
         [&](const std::string& name, const std::string& value) { options.stage_options.emplace_back(name, value); });
     common.declare(args);
     const auto words = args.parse(argc, argv, 2);
-    if (options.width < 160 || options.height < 120)
-      throw fresco::UsageError("option -size: pictures of less than 160x120 pixels are too small");
-    for (const char* part : {"", "/scans", "/panoramas", "/images", "/cameras"})
-      fresco::requireDistinct({words[1]}, {words[0] + part});
+    check(options, words);
     options.threads = common.threads;
     common.quiet |= ranks.rank() > 0;
     const fresco::ModelPlan plan = fresco::planModel({words[0], words[1]}, options);
