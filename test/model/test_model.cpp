@@ -200,7 +200,7 @@ TEST(Report, IsWholeAndEscaped)
   makeFolder(files.snapshots);
   writeImage(files.snapshots + "/p.png", Image(8, 8));
   StageRecord stage;
-  stage.name = "texture";
+  stage.name = "pictures";
   stage.figures = {{"coverage", 0.5}, {"note", "<b>"}};
   makeFolder(files.work);
   TexturedMesh model;
@@ -228,6 +228,12 @@ TEST(Report, IsWholeAndEscaped)
   const Json json = Json::parse(readFile(files.report_json));
   EXPECT_EQ(json["stages"][0]["figures"]["coverage"], 0.5);
   EXPECT_EQ(json["pictures"][0]["file"], "snapshots/p.png");
+  content.stages[0].name = "surface"; // asked to end there
+  content.pictures.clear();
+  writeReport(content, files);
+  const std::string part = readFile(files.report_html);
+  EXPECT_EQ(part.find("fresco-viewer"), std::string::npos);
+  EXPECT_NE(part.find("surface.ply"), std::string::npos);
 }
 
 TEST(RgbdFolder, RealRoomIsRead)
