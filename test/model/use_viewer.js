@@ -152,12 +152,14 @@ async function useKeys(browser) {
     expect(reached.includes(name), 'keys reach ' + name);
   await page.focus('canvas');
   const before = await camera(page);
-  await page.keyboard.down('ArrowLeft');
-  await page.waitForTimeout(300);
-  await page.keyboard.up('ArrowLeft');
-  await page.keyboard.down('w');
-  await page.waitForTimeout(300);
-  await page.keyboard.up('w');
+  // A busy machine draws seldom: keys are held until something was drawn.
+  const hold = async (key, has) => {
+    await page.keyboard.down(key);
+    for (let k = 0; k < 100 && !has(await camera(page)); ++k) await page.waitForTimeout(100);
+    await page.keyboard.up(key);
+  };
+  await hold('ArrowLeft', at => at.heading < before.heading);
+  await hold('w', at => Math.hypot(...at.target.map((v, i) => v - before.target[i])) > 0.01);
   const after = await camera(page);
   expect(after.heading < before.heading, 'an arrow key turns');
   expect(Math.hypot(...after.target.map((v, i) => v - before.target[i])) > 0.01, 'W walks');
