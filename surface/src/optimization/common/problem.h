@@ -7,7 +7,7 @@ namespace fresco::optimization {
 struct OptimizationProblem {
   MeshGraph graph;
   WorkingFrame frame;
-  Positions start, x; ///< at the beginning and now; columns of vertices without faces are not used
+  Positions start, x;     ///< at the beginning and now; columns of vertices without faces are not used
   Index turned_faces = 0; ///< of the input that are oriented the other way in `graph`
   DataPoints data;
   DataCoverage coverage;
