@@ -2,7 +2,6 @@
 #include "support/option_names.h"
 #include <algorithm>
 #include <map>
-#include <numeric>
 namespace fresco {
 namespace {
 /// Options of PCL's tools, and the options of ours that do the same.
@@ -19,20 +18,20 @@ const std::map<std::string, std::vector<std::string>>& namesOfPcl()
   return names;
 }
 
-/// Letters that are put in, taken out or replaced between two words: Levenshtein 1966.
+/// Letters that are put in, taken out, replaced or swapped with the next between two words: Damerau 1964.
 std::size_t editDistance(const std::string& a, const std::string& b)
 {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), 0);
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    std::size_t diagonal = row[0]++;
-    for (std::size_t k = 0; k < b.size(); ++k) {
-      const std::size_t replaced = diagonal + (a[i] == b[k] ? 0 : 1);
-      diagonal = row[k + 1];
-      row[k + 1] = std::min({replaced, row[k] + 1, row[k + 1] + 1});
+  std::vector<std::vector<std::size_t>> cost(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
+  for (std::size_t i = 0; i <= a.size(); ++i)
+    for (std::size_t k = 0; k <= b.size(); ++k) {
+      cost[i][k] =
+          i == 0 || k == 0
+              ? i + k
+              : std::min({cost[i - 1][k - 1] + (a[i - 1] == b[k - 1] ? 0 : 1), cost[i - 1][k] + 1, cost[i][k - 1] + 1});
+      if (i > 1 && k > 1 && a[i - 1] == b[k - 2] && a[i - 2] == b[k - 1])
+        cost[i][k] = std::min(cost[i][k], cost[i - 2][k - 2] + 1);
     }
-  }
-  return row.back();
+  return cost[a.size()][b.size()];
 }
 } // namespace
 
