@@ -16,6 +16,13 @@ const camera = page => page.evaluate(() => {
   return { heading, pitch, distance, target };
 });
 const scrolled = page => page.evaluate(() => window.scrollY);
+/// The camera has stopped.
+const arrived = async page => {
+  for (let last = '', now = JSON.stringify(await camera(page)); last !== now; now = JSON.stringify(await camera(page))) {
+    last = now;
+    await page.waitForTimeout(300);
+  }
+};
 const settled = page => page.evaluate(() => new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done))));
 const words = page => page.textContent('.fresco-viewer output');
 const press = (page, name) => page.click(`.fresco-viewer button:text-is("${name}")`);
@@ -116,6 +123,7 @@ async function useFingers(browser) {
   await drag([[x - 30, y], [x + 30, y]], [[x - 90, y], [x + 90, y]]);
   expect(Math.hypot(...(await camera(page)).target.map((v, i) => v - turned.target[i])) > 0.05, 'two fingers come nearer');
   await page.selectOption('.fresco-viewer select', { index: 1 });
+  await arrived(page);
   await page.tap('.fresco-viewer button:text-is("Distance")');
   await page.touchscreen.tap(x - 0.5 * metre, y);
   await page.touchscreen.tap(x + 0.5 * metre, y);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+#include <cerrno>
 #include "tools/small_room.h"
 #include "tools/tool_runs.h"
 #include <fresco/core/constants.h>
@@ -67,7 +68,7 @@ class Inputs : public testing::Test {
 protected:
   static void SetUpTestSuite()
   {
-    source() = std::string(FRESCO_BINARY_DIR) + "/scratch/inputs_source";
+    source() = std::string(FRESCO_BINARY_DIR) + "/scratch/source_of_" + program_invocation_short_name; // programs run at once
     fs::remove_all(source());
     layoutSource(source());
   }

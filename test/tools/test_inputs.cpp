@@ -143,7 +143,7 @@ TEST_F(Inputs, PhotographsOfAModelGiveARoughRoom)
   writeColmap(model, set, found);
   const Outcome outcome = run(folder, "model x out -size 160x120");
   ASSERT_EQ(outcome.status, 0) << outcome.err;
-  expectRoom(folder + "/out/mesh.ply", {0, 0, 0}, 0.15);
+  expectRoom(folder + "/out/mesh.ply", {0, 0, 0}, 0.3);
   EXPECT_TRUE(fs::exists(folder + "/out/model.glb"));
 }
 

@@ -128,7 +128,8 @@ TEST_F(Resume, EveryOutputComesBack)
     harms[count++ % 3](file);
     ASSERT_EQ(run(folder, command + " -resume").status, 0) << file;
     EXPECT_TRUE(get(file) == before) << file << " did not come back";
-    EXPECT_FALSE(made(folder + "/out").empty()) << file;
+    const bool by_every_run = fs::path(file).stem() == "plan";
+    EXPECT_EQ(made(folder + "/out").empty(), by_every_run) << file;
   }
   EXPECT_GT(count, 15);
   EXPECT_EQ(run(folder, command + " -resume").status, 0);
@@ -157,7 +158,7 @@ TEST_F(Resume, UntilEndsThereAndALaterRunGoesOn)
   EXPECT_GT(points.size(), 1000);
   EXPECT_EQ(get(folder + "/out/surface.ply"), get(folder + "/out/work/surface.ply"));
   ASSERT_EQ(run(folder, command + " -resume").status, 0);
-  EXPECT_EQ(made(folder + "/out"), (std::vector<std::string>{"alignment", "texture", "pictures"}));
+  EXPECT_EQ(made(folder + "/out"), (std::vector<std::string>{"alignment", "texture", "light", "pictures"}));
   EXPECT_TRUE(fs::exists(folder + "/out/model.glb"));
   const Outcome wrong = run(folder, command + " -until nothing");
   EXPECT_EQ(wrong.status, 1);

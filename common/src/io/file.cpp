@@ -46,7 +46,9 @@ void io::rememberInput(const std::string& path)
 {
   if (const auto identity = identityOf(path)) {
     const std::lock_guard<std::mutex> lock(inputs().mutex);
-    inputs().known.emplace(*identity, path);
+    const auto [known, is_new] = inputs().known.emplace(*identity, path);
+    if (!is_new && identityOf(known->second) != identity)
+      known->second = path; // that file is gone, and its number was given to another one
   }
 }
 

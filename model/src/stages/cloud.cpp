@@ -151,11 +151,13 @@ PointSet readCloud(const Job& job, std::vector<std::string>& warnings, const Pro
   return cloud;
 }
 
-/// Finest cell that the points sustain, without more vertices than are of use.
-double cellOf(double spacing, Index points)
+/// Finest cell that the points sustain, without more vertices than are of use; of few points a rough surface.
+double cellOf(double spacing, const Points& points)
 {
-  constexpr double spacings = 2, most_vertices = 3e6;
-  return std::max(spacings * spacing, spacing * std::sqrt(double(points) / most_vertices));
+  constexpr double spacings = 2, most_vertices = 3e6, fewest_across = 32;
+  const double sustained = std::max(spacings * spacing, spacing * std::sqrt(double(points.cols()) / most_vertices));
+  const double extent = (points.rowwise().maxCoeff() - points.rowwise().minCoeff()).maxCoeff();
+  return std::min(sustained, extent / fewest_across);
 }
 } // namespace
 
@@ -247,7 +249,7 @@ Figures pointsFromCloud(const Job& job, const Progress& progress)
   placed.write(0, cloud);
   writePoses(files.poses,
              input.poses.empty() ? std::vector<Pose>{Eigen::Matrix4d(Eigen::Matrix4d::Identity())} : input.poses);
-  writeFile(files.cell, concat(options.cell > 0 ? options.cell : cellOf(spacing, cloud.size()), "\n"));
+  writeFile(files.cell, concat(options.cell > 0 ? options.cell : cellOf(spacing, cloud.points), "\n"));
   Figures figures{
       {"registration", "none: one cloud"}, {"raw_points", raw}, {"points", cloud.size()}, {"point_spacing", spacing}};
   if (found == Orientation::cloud && has_normals)
