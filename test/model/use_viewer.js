@@ -36,7 +36,7 @@ async function open(browser, options) {
   await page.waitForFunction(() => ['ready', 'error'].includes(document.getElementById('fresco-viewer').dataset.state));
   const { left, top, width, height } = await page.evaluate(() => document.querySelector('canvas').getBoundingClientRect().toJSON());
   expect(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth), 'no wider than the screen');
-  return { page, x: left + width / 2, y: top + height / 2, metre: height / (2 * 3 * Math.tan(Math.PI / 6)) };
+  return { page, x: left + width / 2, y: top + height / 2, metre: height * Math.min(1, Math.max(width / height, 0.6)) / (2 * 3 * Math.tan(Math.PI / 6)) }; // upright screens see as wide
 }
 
 async function measure(page, kind, points) {

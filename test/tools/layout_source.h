@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include <cerrno>
 #include "tools/small_room.h"
 #include "tools/tool_runs.h"
+#include <cerrno>
 #include <fresco/core/constants.h>
 #include <fresco/simulation/sensors/layout_files.h>
 #include <fresco/simulation/sensors/layouts.h>
@@ -68,7 +68,8 @@ class Inputs : public testing::Test {
 protected:
   static void SetUpTestSuite()
   {
-    source() = std::string(FRESCO_BINARY_DIR) + "/scratch/source_of_" + program_invocation_short_name; // programs run at once
+    source() =
+        std::string(FRESCO_BINARY_DIR) + "/scratch/source_of_" + program_invocation_short_name; // programs run at once
     fs::remove_all(source());
     layoutSource(source());
   }
