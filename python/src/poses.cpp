@@ -66,7 +66,7 @@ py::object alignFolder(const Call& call)
 /// Frames that lie in arrays of Python, which stay there.
 class FrameArrays {
 public:
-  FrameArrays(const Call& call, const char* name, const py::dtype& type) : name_(name)
+  FrameArrays(const Call& call, const char* name, const py::dtype& type)
   {
     const std::vector<py::object> entries = toEntries(call[name], name, "array");
     for (std::size_t i = 0; i < entries.size(); ++i) {
@@ -101,7 +101,6 @@ private:
     const void* data;
     py::ssize_t height, width, channels;
   };
-  std::string name_;
   std::vector<py::array> arrays_;
   std::vector<Frame> frames_;
 };

@@ -178,15 +178,11 @@ std::string planCsv(const FloorPlan& plan)
   csv << "room,area_m2,height_m,perimeter_m,doors,windows,x,y\n";
   for (std::size_t r = 0; r < plan.rooms.size(); ++r) {
     const PlanRoom& room = plan.rooms[r];
-    int doors = 0, windows = 0;
-    for (const PlanWall& wall : room.walls)
-      for (const PlanOpening& opening : wall.openings)
-        ++(opening.is_door ? doors : windows);
     csv << r + 1 << ',' << room.area << ',';
     if (room.ceiling > room.floor)
       csv << room.ceiling - room.floor;
-    csv << ',' << perimeterOf(room) << ',' << doors << ',' << windows << ',' << room.label.x() << ',' << room.label.y()
-        << '\n';
+    csv << ',' << perimeterOf(room) << ',' << countOpenings(room, true) << ',' << countOpenings(room, false) << ','
+        << room.label.x() << ',' << room.label.y() << '\n';
   }
   return csv.str();
 }

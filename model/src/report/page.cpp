@@ -9,20 +9,11 @@
 #include <fresco/io/image_io.h>
 #include <fresco/io/json_text.h>
 #include <fresco/io/mesh_io.h>
-#include <iomanip>
 #include <optional>
-#include <sstream>
 namespace fresco::model {
 namespace {
 using Json = nlohmann::ordered_json;
 namespace fs = std::filesystem;
-
-std::string fixed(double value, int digits)
-{
-  std::ostringstream text;
-  text << std::fixed << std::setprecision(digits) << value;
-  return text.str();
-}
 
 /// A figure of the first stage that has it; nothing where it is absent or no number.
 std::optional<double> figure(const Report& report, const char* name)
@@ -56,14 +47,10 @@ std::string roomTable(const FloorPlan& plan)
       "<div class=\"wide\"><table><tr><th>Room<th>Area<th>Height<th>Doors<th>Windows<th>Middle x, y</tr>\n";
   for (std::size_t r = 0; r < plan.rooms.size(); ++r) {
     const PlanRoom& room = plan.rooms[r];
-    int doors = 0, windows = 0;
-    for (const PlanWall& wall : room.walls)
-      for (const PlanOpening& opening : wall.openings)
-        ++(opening.is_door ? doors : windows);
     html += "<tr><td>" + std::to_string(r + 1) + "<td>" + fixed(room.area, 2) + " m\u00b2<td>" +
             (room.ceiling > room.floor ? fixed(room.ceiling - room.floor, 2) + " m" : "not seen") + "<td>" +
-            std::to_string(doors) + "<td>" + std::to_string(windows) + "<td>" + fixed(room.label.x(), 2) + ", " +
-            fixed(room.label.y(), 2) + " m</tr>\n";
+            std::to_string(countOpenings(room, true)) + "<td>" + std::to_string(countOpenings(room, false)) + "<td>" +
+            fixed(room.label.x(), 2) + ", " + fixed(room.label.y(), 2) + " m</tr>\n";
   }
   return html + "</table></div>\n";
 }

@@ -11,13 +11,6 @@ namespace fresco::model {
 namespace {
 using Json = nlohmann::ordered_json;
 
-std::string fixed(double value, int digits)
-{
-  std::ostringstream text;
-  text << std::fixed << std::setprecision(digits) << value;
-  return text.str();
-}
-
 std::string shown(const Json& value)
 {
   if (value.is_number_float()) {
@@ -82,6 +75,13 @@ std::optional<RoomFacts> factsOf(const Report& report, const ModelFiles& files)
   }
 }
 } // namespace
+
+std::string fixed(double value, int digits)
+{
+  std::ostringstream text;
+  text << std::fixed << std::setprecision(digits) << value;
+  return text.str();
+}
 
 Report makeReport(const std::string& input, const std::vector<StageRecord>& stages, double seconds)
 {

@@ -25,6 +25,9 @@ struct Report {
   bool isWhole() const { return stages.back().name == "pictures"; } ///< else it ended before
 };
 
+/// With so many digits behind the point.
+std::string fixed(double value, int digits);
+
 /// @param stages not empty; a whole run ends with that of the pictures, see makePictures()
 Report makeReport(const std::string& input, const std::vector<StageRecord>& stages, double seconds);
 

@@ -47,6 +47,16 @@ struct PlanRoom {
   Eigen::Vector2d label = {0, 0}; ///< inside, far from all walls
 };
 
+/// Doors, or windows, in the walls of a room.
+inline int countOpenings(const PlanRoom& room, bool doors)
+{
+  int count = 0;
+  for (const PlanWall& wall : room.walls)
+    for (const PlanOpening& opening : wall.openings)
+      count += opening.is_door == doors;
+  return count;
+}
+
 /// Horizontal plan of one storey. x and y are those of the model where `up` is its z axis.
 struct FloorPlan {
   Eigen::Isometry3d T_plan_model = Eigen::Isometry3d::Identity(); ///< turns `up` to z and the floor level
