@@ -63,28 +63,26 @@ inline std::string layoutSource(const std::string& folder, Index beams = 3000)
   return folder;
 }
 
+/// Folder of the source that the tests of this program lay out; programs run at once.
+inline std::string sourceFolder()
+{
+  return std::string(FRESCO_BINARY_DIR) + "/scratch/source_of_" + program_invocation_short_name;
+}
+
 /// Tests that lay out one source, which is written once.
 class Inputs : public testing::Test {
 protected:
   static void SetUpTestSuite()
   {
-    source() =
-        std::string(FRESCO_BINARY_DIR) + "/scratch/source_of_" + program_invocation_short_name; // programs run at once
-    fs::remove_all(source());
-    layoutSource(source());
-  }
-
-  static std::string& source()
-  {
-    static std::string folder;
-    return folder;
+    fs::remove_all(sourceFolder());
+    layoutSource(sourceFolder());
   }
 
   /// The layout as folder `x` of a folder of its own.
   std::string laidOut(const std::string& layout)
   {
     const std::string folder = scratchFolder();
-    simulation::writeLayout(layout, source(), folder + "/x");
+    simulation::writeLayout(layout, sourceFolder(), folder + "/x");
     return folder;
   }
 };

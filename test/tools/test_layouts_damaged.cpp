@@ -75,9 +75,7 @@ const std::vector<Damage>& damages()
        {"x/freiburg would be understood"}},
       {"TwoReadings",
        "tum",
-       [](const auto& x) {
-         simulation::writeLayout("flat_pcd", std::string(FRESCO_BINARY_DIR) + "/scratch/inputs_source", x + "/scans");
-       },
+       [](const auto& x) { simulation::writeLayout("flat_pcd", sourceFolder(), x + "/scans"); },
        {"-as scans", "-as rgbd"}},
       {"Laz",
        "flat_las",
@@ -88,9 +86,7 @@ const std::vector<Damage>& damages()
        {"a.laz and 1 more", "laszip"}},
       {"ScanAndCloud",
        "flat_las",
-       [](const auto& x) {
-         simulation::writeLayout("cloud_utm", std::string(FRESCO_BINARY_DIR) + "/scratch/inputs_source", x);
-       },
+       [](const auto& x) { simulation::writeLayout("cloud_utm", sourceFolder(), x); },
        {"-as scans", "-as cloud"}},
       {"PosesForFewer",
        "flat_pcd",

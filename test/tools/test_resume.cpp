@@ -113,7 +113,7 @@ TEST_F(Resume, AddedInputsAreSeen)
 TEST_F(Resume, EveryOutputComesBack)
 {
   const std::string folder = scratchFolder(),
-                    command = "model '" + source() + "' out -use_poses -texture.refine 0" + small;
+                    command = "model '" + sourceFolder() + "' out -use_poses -texture.refine 0" + small;
   ASSERT_EQ(run(folder, command).status, 0);
   const std::function<void(const std::string&)> harms[] = {damage,
                                                            [](const std::string& file) { fs::resize_file(file, 0); },
@@ -140,7 +140,7 @@ TEST_F(Resume, EveryOutputComesBack)
 TEST_F(Resume, UntilEndsThereAndALaterRunGoesOn)
 {
   const std::string folder = scratchFolder(),
-                    command = "model '" + source() + "' out -use_poses -texture.refine 0" + small;
+                    command = "model '" + sourceFolder() + "' out -use_poses -texture.refine 0" + small;
   std::vector<std::string> expected;
   for (const auto& [until, file, stage] : {std::tuple{"points", "points.ply", "points"},
                                            {"surface", "surface.ply", "surface"},
