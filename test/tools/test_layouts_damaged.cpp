@@ -44,206 +44,202 @@ void scaleDepths(const std::string& folder, double factor)
     }
 }
 
-const std::vector<Damage>& damages()
-{
-  static const std::vector<Damage> all = {
-      {"EmptyFolder",
-       "flat_pcd",
-       [](const auto& x) {
-         fs::remove_all(x);
-         fs::create_directory(x);
-       },
-       {"x: an empty folder", "docs/inputs.md"}},
-      {"Unknown",
-       "flat_pcd",
-       [](const auto& x) {
-         fs::remove_all(x);
-         fs::create_directory(x);
-         put(x + "/a.dwg", "1");
-         put(x + "/b.dwg", "1");
-         put(x + "/c.rcp", "1");
-       },
-       {"2 .dwg, 1 .rcp", "docs/inputs.md"}},
-      {"Gone", "flat_pcd", [](const auto& x) { fs::remove_all(x); }, {"x: no such file or folder"}},
-      {"WrapperFolder",
-       "tum",
-       [](const auto& x) {
-         fs::rename(x, x + "_");
-         fs::create_directory(x);
-         fs::rename(x + "_", x + "/freiburg");
-       },
-       {"x/freiburg would be understood"}},
-      {"TwoReadings",
-       "tum",
-       [](const auto& x) { simulation::writeLayout("flat_pcd", sourceFolder(), x + "/scans"); },
-       {"-as scans", "-as rgbd"}},
-      {"Laz",
-       "flat_las",
-       [](const auto& x) {
-         put(x + "/a.laz", "LASF");
-         put(x + "/b.laz", "LASF");
-       },
-       {"a.laz and 1 more", "laszip"}},
-      {"ScanAndCloud",
-       "flat_las",
-       [](const auto& x) { simulation::writeLayout("cloud_utm", sourceFolder(), x); },
-       {"-as scans", "-as cloud"}},
-      {"PosesForFewer",
-       "flat_pcd",
-       [](const auto& x) { put(x + "/poses.txt", "none\n"); },
-       {"poses.txt: 1 poses for 2 scans"}},
-      {"ColmapWithoutModel",
-       "colmap",
-       [](const auto& x) {
-         for (const auto& file : listing(x + "/sparse/0"))
-           fs::remove(file);
-         put(x + "/sparse/0/readme.md", "1");
-       },
-       {"sparse", "colmap mapper"}},
-      {"ColmapPhotographGone",
-       "colmap",
-       [](const auto& x) { fs::remove(x + "/images/view_2.png"); },
-       {"view_2.png: no such photograph"}},
-      {"ExportPanoramaGone",
-       "scanner_export",
-       [](const auto& x) { fs::remove(x + "/pano/00001-pano.jpg"); },
-       {"00001-pano.jpg: no such panorama"}},
-      {"ExportColumnGone",
-       "scanner_export",
-       [](const auto& x) { replaceIn(x + "/pano-poses.csv", "pano_ori_w", "angle"); },
-       {"pano-poses.csv", "pano_ori_w"}},
-      {"SevenScenesIntrinsics",
-       "seven_scenes",
-       [](const auto& x) { fs::remove(x + "/camera-intrinsics.txt"); },
-       {"camera-intrinsics.txt: no such file", "585 0 320"}},
-      {"SevenScenesColorGone",
-       "seven_scenes",
-       [](const auto& x) { fs::remove(x + "/frame-100003.color.jpg"); },
-       {"frame-100003.color.jpg: no such file"}},
-      {"TumListGone", "tum", [](const auto& x) { fs::remove(x + "/rgb.txt"); }, {"rgb.txt", "TUM"}},
-      {"TumOtherClock",
-       "tum",
-       [](const auto& x) {
-         replaceIn(x + "/depth.txt", "1305031102.16", "1305099102.16");
-         keepLines(x + "/depth.txt", 2);
-       },
-       {"no colour and depth image within 0.02 s"}},
-      {"TumFileGone",
-       "tum",
-       [](const auto& x) { fs::remove(firstIn(x + "/depth")); },
-       {"depth/1305031102.160000.png: no such file"}},
-      {"TumPosesOfAnotherTime",
-       "tum",
-       [](const auto& x) { put(x + "/groundtruth.txt", "1 0 0 0 0 0 0 1\n"); },
-       {"groundtruth.txt: no pose within 0.02 s"}},
-      {"TumDepthTimesThousand",
-       "tum",
-       [](const auto& x) { scaleDepths(x + "/depth", 0.001); },
-       {"depth/1305031102.160000.png: a median depth of", "units of 0.2 mm"}},
-      {"Open3dHalfThePoses",
-       "open3d",
-       [](const auto& x) { keepLines(x + "/trajectory.log", 30); },
-       {"trajectory.log: 6 poses for 12 frames"}},
-      {"Open3dOddLines",
-       "open3d",
-       [](const auto& x) { keepLines(x + "/trajectory.log", 29); },
-       {"trajectory.log: 29 lines"}},
-      {"Open3dIntrinsicsBroken",
-       "open3d",
-       [](const auto& x) { put(x + "/camera_intrinsic.json", "{}"); },
-       {"camera_intrinsic.json: wants width"}},
-      {"Open3dIntrinsicsGone",
-       "open3d",
-       [](const auto& x) {
-         fs::remove(x + "/camera_intrinsic.json");
-         fs::remove(x + "/trajectory.log");
-       },
-       {"camera_intrinsic.json", "missing"}},
-      {"Open3dSizesDisagree",
-       "open3d",
-       [](const auto& x) { replaceIn(x + "/camera_intrinsic.json", "\"height\": 60", "\"height\": 80"); },
-       {"camera_intrinsic.json: does not fit"}},
-      {"Open3dDepthTimesThousandth",
-       "open3d",
-       [](const auto& x) { scaleDepths(x + "/depth", 0.001); },
-       {"depth/000000.png: a median depth of", "units of 1 mm"}},
-      {"RedwoodOtherSize",
-       "redwood",
-       [](const auto& x) {
-         for (const auto& file : listing(x + "/depth"))
-           writeImage(file, simulation::enlarged(readImage16(file), 320, 240));
-       },
-       {"camera_intrinsic.json: no such file", "320x240"}},
-      {"ScanNetIntrinsicsGone",
-       "scannet",
-       [](const auto& x) {
-         for (const auto& file : listing(x + "/intrinsic"))
-           fs::remove(file);
-         put(x + "/intrinsic/extrinsic_depth.txt", "1");
-       },
-       {"intrinsic_color.txt: no such file"}},
-      {"ScanNetHalfThePoses",
-       "scannet",
-       [](const auto& x) {
-         for (int f = 0; f < 6; ++f)
-           fs::remove(x + "/pose/" + std::to_string(f) + ".txt");
-       },
-       {"pose: poses of 6 of 12 frames"}},
-      {"ScanNetPoseBroken",
-       "scannet",
-       [](const auto& x) { put(x + "/pose/3.txt", "1 0 0\n"); },
-       {"pose/3.txt: wants 4x4 numbers"}},
-      {"ScanNetNamesDisagree",
-       "scannet",
-       [](const auto& x) {
-         for (int f = 0; f < 12; ++f)
-           fs::rename(x + "/color/" + std::to_string(f) + ".jpg", x + "/color/" + std::to_string(f + 100) + ".jpg");
-       },
-       {"only 0 of the same name or number"}},
-      {"StrayMatrixGone",
-       "stray",
-       [](const auto& x) { fs::remove(x + "/camera_matrix.csv"); },
-       {"camera_matrix.csv", "Stray Scanner"}},
-      {"StrayMatrixShort",
-       "stray",
-       [](const auto& x) { put(x + "/camera_matrix.csv", "1, 2, 3\n"); },
-       {"camera_matrix.csv: wants 3x3 numbers, has 3"}},
-      {"StrayHalfThePoses",
-       "stray",
-       [](const auto& x) { keepLines(x + "/odometry.csv", 5); },
-       {"odometry.csv: poses of 4 of 12 frames"}},
-      {"StrayNoQuaternion",
-       "stray",
-       [](const auto& x) { put(x + "/odometry.csv", "timestamp, frame, x, y, z\n1, 000000, 1, 2, 3\n"); },
-       {"odometry.csv: line 2 has 5 values"}},
-      {"PolycamCameraGone",
-       "polycam",
-       [](const auto& x) { fs::remove(firstIn(x + "/keyframes/cameras")); },
-       {".json: no such file"}},
-      {"PolycamCameraBroken",
-       "polycam",
-       [](const auto& x) { put(firstIn(x + "/keyframes/cameras"), "{\"fx\": \"a\"}"); },
-       {".json: wants width, height, fx"}},
-      {"MatterportFileGone",
-       "matterport",
-       [](const auto& x) { fs::remove(firstIn(x + "/undistorted_depth_images")); },
-       {"no such file, but", "house.conf names it"}},
-      {"MatterportShortLine",
-       "matterport",
-       [](const auto& x) {
-         put(x + "/undistorted_camera_parameters/house.conf", "intrinsics_matrix 1 0 1 0 1 1 0 0 1\nscan a b 1 2\n");
-       },
-       {"house.conf: a line 'scan' wants"}},
-      {"NotAPoint", "one_cloud", [](const auto& x) { put(x + "/cloud.pcd", "nonsense"); }, {"cloud.pcd"}},
-  };
-  return all;
-}
+const std::vector<Damage> damages = {
+    {"EmptyFolder",
+     "flat_pcd",
+     [](const auto& x) {
+       fs::remove_all(x);
+       fs::create_directory(x);
+     },
+     {"x: an empty folder", "docs/inputs.md"}},
+    {"Unknown",
+     "flat_pcd",
+     [](const auto& x) {
+       fs::remove_all(x);
+       fs::create_directory(x);
+       put(x + "/a.dwg", "1");
+       put(x + "/b.dwg", "1");
+       put(x + "/c.rcp", "1");
+     },
+     {"2 .dwg, 1 .rcp", "docs/inputs.md"}},
+    {"Gone", "flat_pcd", [](const auto& x) { fs::remove_all(x); }, {"x: no such file or folder"}},
+    {"WrapperFolder",
+     "tum",
+     [](const auto& x) {
+       fs::rename(x, x + "_");
+       fs::create_directory(x);
+       fs::rename(x + "_", x + "/freiburg");
+     },
+     {"x/freiburg would be understood"}},
+    {"TwoReadings",
+     "tum",
+     [](const auto& x) { simulation::writeLayout("flat_pcd", sourceFolder(), x + "/scans"); },
+     {"-as scans", "-as rgbd"}},
+    {"Laz",
+     "flat_las",
+     [](const auto& x) {
+       put(x + "/a.laz", "LASF");
+       put(x + "/b.laz", "LASF");
+     },
+     {"a.laz and 1 more", "laszip"}},
+    {"ScanAndCloud",
+     "flat_las",
+     [](const auto& x) { simulation::writeLayout("cloud_utm", sourceFolder(), x); },
+     {"-as scans", "-as cloud"}},
+    {"PosesForFewer",
+     "flat_pcd",
+     [](const auto& x) { put(x + "/poses.txt", "none\n"); },
+     {"poses.txt: 1 poses for 2 scans"}},
+    {"ColmapWithoutModel",
+     "colmap",
+     [](const auto& x) {
+       for (const auto& file : listing(x + "/sparse/0"))
+         fs::remove(file);
+       put(x + "/sparse/0/readme.md", "1");
+     },
+     {"sparse", "colmap mapper"}},
+    {"ColmapPhotographGone",
+     "colmap",
+     [](const auto& x) { fs::remove(x + "/images/view_2.png"); },
+     {"view_2.png: no such photograph"}},
+    {"ExportPanoramaGone",
+     "scanner_export",
+     [](const auto& x) { fs::remove(x + "/pano/00001-pano.jpg"); },
+     {"00001-pano.jpg: no such panorama"}},
+    {"ExportColumnGone",
+     "scanner_export",
+     [](const auto& x) { replaceIn(x + "/pano-poses.csv", "pano_ori_w", "angle"); },
+     {"pano-poses.csv", "pano_ori_w"}},
+    {"SevenScenesIntrinsics",
+     "seven_scenes",
+     [](const auto& x) { fs::remove(x + "/camera-intrinsics.txt"); },
+     {"camera-intrinsics.txt: no such file", "585 0 320"}},
+    {"SevenScenesColorGone",
+     "seven_scenes",
+     [](const auto& x) { fs::remove(x + "/frame-100003.color.jpg"); },
+     {"frame-100003.color.jpg: no such file"}},
+    {"TumListGone", "tum", [](const auto& x) { fs::remove(x + "/rgb.txt"); }, {"rgb.txt", "TUM"}},
+    {"TumOtherClock",
+     "tum",
+     [](const auto& x) {
+       replaceIn(x + "/depth.txt", "1305031102.16", "1305099102.16");
+       keepLines(x + "/depth.txt", 2);
+     },
+     {"no colour and depth image within 0.02 s"}},
+    {"TumFileGone",
+     "tum",
+     [](const auto& x) { fs::remove(firstIn(x + "/depth")); },
+     {"depth/1305031102.160000.png: no such file"}},
+    {"TumPosesOfAnotherTime",
+     "tum",
+     [](const auto& x) { put(x + "/groundtruth.txt", "1 0 0 0 0 0 0 1\n"); },
+     {"groundtruth.txt: no pose within 0.02 s"}},
+    {"TumDepthTimesThousand",
+     "tum",
+     [](const auto& x) { scaleDepths(x + "/depth", 0.001); },
+     {"depth/1305031102.160000.png: a median depth of", "units of 0.2 mm"}},
+    {"Open3dHalfThePoses",
+     "open3d",
+     [](const auto& x) { keepLines(x + "/trajectory.log", 30); },
+     {"trajectory.log: 6 poses for 12 frames"}},
+    {"Open3dOddLines",
+     "open3d",
+     [](const auto& x) { keepLines(x + "/trajectory.log", 29); },
+     {"trajectory.log: 29 lines"}},
+    {"Open3dIntrinsicsBroken",
+     "open3d",
+     [](const auto& x) { put(x + "/camera_intrinsic.json", "{}"); },
+     {"camera_intrinsic.json: wants width"}},
+    {"Open3dIntrinsicsGone",
+     "open3d",
+     [](const auto& x) {
+       fs::remove(x + "/camera_intrinsic.json");
+       fs::remove(x + "/trajectory.log");
+     },
+     {"camera_intrinsic.json", "missing"}},
+    {"Open3dSizesDisagree",
+     "open3d",
+     [](const auto& x) { replaceIn(x + "/camera_intrinsic.json", "\"height\": 60", "\"height\": 80"); },
+     {"camera_intrinsic.json: does not fit"}},
+    {"Open3dDepthTimesThousandth",
+     "open3d",
+     [](const auto& x) { scaleDepths(x + "/depth", 0.001); },
+     {"depth/000000.png: a median depth of", "units of 1 mm"}},
+    {"RedwoodOtherSize",
+     "redwood",
+     [](const auto& x) {
+       for (const auto& file : listing(x + "/depth"))
+         writeImage(file, simulation::enlarged(readImage16(file), 320, 240));
+     },
+     {"camera_intrinsic.json: no such file", "320x240"}},
+    {"ScanNetIntrinsicsGone",
+     "scannet",
+     [](const auto& x) {
+       for (const auto& file : listing(x + "/intrinsic"))
+         fs::remove(file);
+       put(x + "/intrinsic/extrinsic_depth.txt", "1");
+     },
+     {"intrinsic_color.txt: no such file"}},
+    {"ScanNetHalfThePoses",
+     "scannet",
+     [](const auto& x) {
+       for (int f = 0; f < 6; ++f)
+         fs::remove(x + "/pose/" + std::to_string(f) + ".txt");
+     },
+     {"pose: poses of 6 of 12 frames"}},
+    {"ScanNetPoseBroken",
+     "scannet",
+     [](const auto& x) { put(x + "/pose/3.txt", "1 0 0\n"); },
+     {"pose/3.txt: wants 4x4 numbers"}},
+    {"ScanNetNamesDisagree",
+     "scannet",
+     [](const auto& x) {
+       for (int f = 0; f < 12; ++f)
+         fs::rename(x + "/color/" + std::to_string(f) + ".jpg", x + "/color/" + std::to_string(f + 100) + ".jpg");
+     },
+     {"only 0 of the same name or number"}},
+    {"StrayMatrixGone",
+     "stray",
+     [](const auto& x) { fs::remove(x + "/camera_matrix.csv"); },
+     {"camera_matrix.csv", "Stray Scanner"}},
+    {"StrayMatrixShort",
+     "stray",
+     [](const auto& x) { put(x + "/camera_matrix.csv", "1, 2, 3\n"); },
+     {"camera_matrix.csv: wants 3x3 numbers, has 3"}},
+    {"StrayHalfThePoses",
+     "stray",
+     [](const auto& x) { keepLines(x + "/odometry.csv", 5); },
+     {"odometry.csv: poses of 4 of 12 frames"}},
+    {"StrayNoQuaternion",
+     "stray",
+     [](const auto& x) { put(x + "/odometry.csv", "timestamp, frame, x, y, z\n1, 000000, 1, 2, 3\n"); },
+     {"odometry.csv: line 2 has 5 values"}},
+    {"PolycamCameraGone",
+     "polycam",
+     [](const auto& x) { fs::remove(firstIn(x + "/keyframes/cameras")); },
+     {".json: no such file"}},
+    {"PolycamCameraBroken",
+     "polycam",
+     [](const auto& x) { put(firstIn(x + "/keyframes/cameras"), "{\"fx\": \"a\"}"); },
+     {".json: wants width, height, fx"}},
+    {"MatterportFileGone",
+     "matterport",
+     [](const auto& x) { fs::remove(firstIn(x + "/undistorted_depth_images")); },
+     {"no such file, but", "house.conf names it"}},
+    {"MatterportShortLine",
+     "matterport",
+     [](const auto& x) {
+       put(x + "/undistorted_camera_parameters/house.conf", "intrinsics_matrix 1 0 1 0 1 1 0 0 1\nscan a b 1 2\n");
+     },
+     {"house.conf: a line 'scan' wants"}},
+    {"NotAPoint", "one_cloud", [](const auto& x) { put(x + "/cloud.pcd", "nonsense"); }, {"cloud.pcd"}},
+};
 
 class OneThingWrong : public Inputs, public testing::WithParamInterface<std::size_t> {};
 
 TEST_P(OneThingWrong, IsOneLineWithFileAndCure)
 {
-  const Damage& damage = damages()[GetParam()];
+  const Damage& damage = damages[GetParam()];
   const std::string folder = laidOut(damage.layout);
   damage.harm(folder + "/x");
   const Outcome outcome = run(folder, "model x out -dry_run");
@@ -254,7 +250,7 @@ TEST_P(OneThingWrong, IsOneLineWithFileAndCure)
   EXPECT_FALSE(fs::exists(folder + "/out"));
 }
 
-INSTANTIATE_TEST_SUITE_P(All, OneThingWrong, testing::Range(std::size_t{0}, damages().size()),
-                         [](const auto& info) { return damages()[info.param].name; });
+INSTANTIATE_TEST_SUITE_P(All, OneThingWrong, testing::Range(std::size_t{0}, damages.size()),
+                         [](const auto& info) { return damages[info.param].name; });
 } // namespace
 } // namespace fresco::test
