@@ -16,12 +16,20 @@ const camera = page => page.evaluate(() => {
   return { heading, pitch, distance, target };
 });
 const scrolled = page => page.evaluate(() => window.scrollY);
-/// The camera has stopped.
+/// Camera and page have stopped.
 const arrived = async page => {
-  for (let last = '', now = JSON.stringify(await camera(page)); last !== now; now = JSON.stringify(await camera(page))) {
+  const state = async () => JSON.stringify([await camera(page), await scrolled(page)]);
+  for (let last = '', now = await state(); last !== now; now = await state()) {
     last = now;
     await page.waitForTimeout(300);
   }
+};
+/// The page is at its top and stays there.
+const atTop = async page => {
+  do {
+    await page.evaluate(() => scrollTo(0, 0));
+    await arrived(page);
+  } while ((await scrolled(page)) > 0);
 };
 const settled = page => page.evaluate(() => new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done))));
 const words = page => page.textContent('.fresco-viewer output');
@@ -109,14 +117,14 @@ async function useFingers(browser) {
     await touch('touchStart', from);
     for (let k = 1; k <= 8; ++k) { await touch('touchMove', from.map(([a, b], i) => [a + (to[i][0] - a) * k / 8, b + (to[i][1] - b) * k / 8])); await page.waitForTimeout(16); }
     await touch('touchEnd', []);
-    await page.waitForTimeout(300);
+    await arrived(page);
   };
   const start = await camera(page);
   await drag([[x, y + 60]], [[x, y - 120]]);
   expect((await scrolled(page)) > 50 && (await camera(page)).heading === start.heading, 'a finger scrolls the page past the model');
-  await page.evaluate(() => scrollTo(0, 0));
-  await page.waitForTimeout(100);
+  await atTop(page);
   await page.touchscreen.tap(x, y);
+  await page.waitForFunction(() => document.querySelector('.fresco-viewer').contains(document.activeElement));
   await drag([[x - 60, y]], [[x + 60, y + 30]]);
   expect((await scrolled(page)) === 0 && (await camera(page)).heading !== start.heading, 'after a tap a finger turns');
   const turned = await camera(page);
