@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fresco/core/rigid_motion.h>
+#include <fresco/core/robust_weights.h>
 #include <fresco/core/statistics.h>
 #include <optional>
 namespace fresco::alignment {
@@ -48,8 +49,7 @@ Similarity improved(const SparseModel& model, const std::vector<Index>& points, 
     const auto foot = footOf(surface, arm + T.t, reach);
     if (!foot || std::abs(foot->height) >= reach)
       continue;
-    const double share = foot->height / reach,
-                 weight = (range.flat ? foot->flatness : 1) * std::pow(1 - share * share, 2);
+    const double share = foot->height / reach, weight = (range.flat ? foot->flatness : 1) * tukeyWeight(share * share);
     Vector7 J;
     J << arm.cross(foot->normal), foot->normal, foot->normal.dot(arm);
     H += weight * J * J.transpose();

@@ -2,6 +2,7 @@
 #include "plan/outline.h"
 #include <Eigen/Dense>
 #include <fresco/core/constants.h>
+#include <fresco/core/robust_weights.h>
 #include <fresco/core/statistics.h>
 #include <opencv2/imgproc.hpp>
 #include <optional>
@@ -52,7 +53,7 @@ FittedLine fitLine(const std::vector<Vector2d>& samples, FittedLine line, const 
     for (int round = 0; round < 2; ++round) {
       double w = 0, wt = 0, wo = 0, wtt = 0, wto = 0;
       for (const Vector2d& s : samples) {
-        const double r = (s.y() - line.offset - line.slope * s.x()) / width, weight = 1 / (1 + r * r);
+        const double r = (s.y() - line.offset - line.slope * s.x()) / width, weight = cauchyWeight(r * r);
         w += weight, wt += weight * s.x(), wo += weight * s.y();
         wtt += weight * s.x() * s.x(), wto += weight * s.x() * s.y();
       }

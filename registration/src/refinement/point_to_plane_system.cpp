@@ -2,6 +2,7 @@
 #include "refinement/point_to_plane_system.h"
 #include <algorithm>
 #include <cmath>
+#include <fresco/core/robust_weights.h>
 #include <fresco/core/statistics.h>
 namespace fresco::registration {
 PairSystem& PairSystem::operator+=(const PairSystem& other)
@@ -68,8 +69,7 @@ void addMatch(const LevelPair& level, const DirectedPair& pair, Index k, PairSys
   const Eigen::Vector3d x = (level.T_target_source * source.points.col(i)).cast<double>();
   const Eigen::Vector3d n = target.normals.col(match.target).cast<double>();
   const double variation = source.surface_variation[i] + target.surface_variation[match.target];
-  const double tukey = (1.0 - u * u) * (1.0 - u * u);
-  const double weight = pair.weight * tukey * plain_variation / (plain_variation + variation);
+  const double weight = pair.weight * tukeyWeight(u * u) * plain_variation / (plain_variation + variation);
   const double r = match.residual;
   Vector6d J;
   J << x.cross(n), n;

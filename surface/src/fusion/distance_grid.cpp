@@ -5,6 +5,7 @@
 #include <fresco/core/morton.h>
 #include <fresco/core/parallel.h>
 #include <fresco/core/require.h>
+#include <fresco/core/robust_weights.h>
 namespace fresco::fusion {
 namespace {
 constexpr int half_range = 1 << 20; // of places: 21 bits each in a key
@@ -12,13 +13,6 @@ constexpr int half_range = 1 << 20; // of places: 21 bits each in a key
 std::uint64_t keyOf(const Eigen::Vector3i& place)
 {
   return mortonCode(place.x() + half_range, place.y() + half_range, place.z() + half_range);
-}
-
-/// Weight of a vote that lies `residual` from the reference: Geman & McClure 1987.
-float robustWeight(float residual, float scale)
-{
-  const float t = 1.f + residual * residual / (scale * scale);
-  return 1.f / (t * t);
 }
 
 /// Half of the truncation: frames whose poses are off by more than that are taken for another surface.
@@ -153,8 +147,10 @@ void DistanceGrid::finish(const DistanceGrid* reference, int threads)
     }
     for (int node = 0; node < brick_size; ++node) {
       float weight = free_[b];
-      if (reference)
-        weight *= robustWeight(truncation_ - reference->bricks_[b].distance[node], scale);
+      if (reference) {
+        const float off = truncation_ - reference->bricks_[b].distance[node];
+        weight *= gemanMcClureWeight(off * off / (scale * scale));
+      }
       brick.weight[node] += weight;
       brick.distance[node] += weight / brick.weight[node] * (truncation_ - brick.distance[node]);
     }

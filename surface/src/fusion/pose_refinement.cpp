@@ -5,6 +5,7 @@
 #include <cmath>
 #include <fresco/core/parallel.h>
 #include <fresco/core/rigid_motion.h>
+#include <fresco/core/robust_weights.h>
 namespace fresco::fusion {
 namespace {
 using Vector6 = Eigen::Matrix<double, 6, 1>;
@@ -47,7 +48,7 @@ NormalEquations equationsOfRow(const DistanceGrid& grid, const DepthFrame& frame
     if (!(slope > 0.3f) || std::abs(distance->value) > reach) // flatter: between two surfaces
       continue;
     const double residual = distance->value / slope, share = residual / grid.truncation();
-    const double kept = 1.0 - share * share, weight = kept * kept / z;
+    const double weight = tukeyWeight(share * share) / z;
     Vector6 J;
     const Eigen::Vector3d normal = (distance->gradient / slope).cast<double>();
     J << (p - T_world_camera.translation()).cast<double>().cross(normal), normal;

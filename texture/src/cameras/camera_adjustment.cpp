@@ -7,6 +7,7 @@
 #include <cmath>
 #include <fresco/core/parallel.h>
 #include <fresco/core/rigid_motion.h>
+#include <fresco/core/robust_weights.h>
 #include <fresco/core/statistics.h>
 #include <map>
 namespace fresco::texture {
@@ -235,7 +236,7 @@ private:
     const Eigen::Matrix<double, 2, 3> transfer = b.by_point * M.inverse();
     const Eigen::Matrix<double, 2, shared_count> by_from = -transfer.leftCols<2>() * a.by_shared;
     row.J << by_from, b.by_shared, by_from.leftCols<pose_count>(), b.by_shared.leftCols<pose_count>();
-    row.weight = row.J.allFinite() ? 1 / (1 + row.r.squaredNorm() / (scale_ * scale_)) : 0;
+    row.weight = row.J.allFinite() ? cauchyWeight(row.r.squaredNorm() / (scale_ * scale_)) : 0;
     return row;
   }
 

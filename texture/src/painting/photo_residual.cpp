@@ -4,6 +4,7 @@
 #include "photographs/grid.h"
 #include <algorithm>
 #include <cmath>
+#include <fresco/core/robust_weights.h>
 #include <fresco/core/simd.h>
 namespace fresco::texture {
 namespace {
@@ -168,8 +169,8 @@ float coverageWeight(float covered)
 float agreementWeight(float difference, float error)
 {
   constexpr float steepness = 12; // grey levels per pixel: what is steeper differs by the error
-  const float x = difference * error / steepness, w = 1 / (1 + x * x);
-  return w * w;
+  const float x = difference * error / steepness;
+  return gemanMcClureWeight(x * x);
 }
 } // namespace
 

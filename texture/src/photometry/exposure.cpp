@@ -4,6 +4,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <fresco/core/robust_weights.h>
 #include <fresco/core/statistics.h>
 namespace fresco::texture {
 namespace {
@@ -31,7 +32,7 @@ Eigen::VectorXd solve(const std::vector<Equation>& equations, Index views)
     Eigen::VectorXd b = Eigen::VectorXd::Zero(views);
     for (const Equation& e : equations) {
       const double error = x[e.first] - x[e.second] - e.difference;
-      const double w = round == 0 ? e.weight : e.weight / (1 + error * error / (outlier * outlier));
+      const double w = round == 0 ? e.weight : e.weight * cauchyWeight(error * error / (outlier * outlier));
       A(e.first, e.first) += w;
       A(e.second, e.second) += w;
       A(e.first, e.second) -= w;

@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <fresco/core/robust_weights.h>
 #include <limits>
 namespace fresco::texture {
 namespace {
@@ -128,7 +129,7 @@ private:
   };
 
   int responseAt(int lens) const { return falloff_terms * lenses_ + views_ + 2 * lens; }
-  static double weight(double error) { return 1 / (1 + error * error / (outlier * outlier)); }
+  static double weight(double error) { return cauchyWeight(error * error / (outlier * outlier)); }
 
   static std::size_t used(const std::vector<ColorRatio>& ratios)
   {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fresco/core/parallel.h>
+#include <fresco/core/robust_weights.h>
 #include <fresco/core/statistics.h>
 #include <fresco/search/batch_knn.h>
 #include <numeric>
@@ -115,7 +116,7 @@ IntensityModel fitIntensities(const std::vector<std::vector<ScanPatch>>& overlap
         const double error = d[0] - row.dot(model.x), scale = std::max(model.error, 1e-6);
         if (!std::isfinite(error))
           continue;
-        const double weight = round == 0 ? 1 : 1 / (1 + error * error / (scale * scale));
+        const double weight = round == 0 ? 1 : cauchyWeight(error * error / (scale * scale));
         A.noalias() += weight * row * row.transpose();
         b += weight * d[0] * row;
         errors.push_back(std::abs(error));

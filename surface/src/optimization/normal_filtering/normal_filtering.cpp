@@ -10,6 +10,7 @@
 #include <cmath>
 #include <fresco/core/parallel.h>
 #include <fresco/core/require.h>
+#include <fresco/core/robust_weights.h>
 namespace fresco {
 using namespace optimization;
 namespace {
@@ -52,7 +53,7 @@ double normalWeight(double noise)
   constexpr double exact_weight = 2.0;   // against the normal of the same area of the mesh, which is rounded at edges
   constexpr double blurred_noise = 0.05; // mean edge lengths: 3 degrees of a normal estimated over an edge length
   const double ratio = noise / blurred_noise;
-  return exact_weight / (1.0 + ratio * ratio);
+  return exact_weight * cauchyWeight(ratio * ratio);
 }
 
 // Shortens moves that would end farther from the start than a datum may be off: where data contradict each other, as on

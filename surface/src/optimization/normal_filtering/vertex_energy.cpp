@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fresco/core/parallel.h>
+#include <fresco/core/robust_weights.h>
 #include <fresco/core/statistics.h>
 namespace fresco::optimization {
 namespace {
@@ -13,7 +14,7 @@ using Eigen::Vector3d;
 double pointWeight(const DataPoints& data, int i, double residual, const FaceTerm& term, double robust)
 {
   const double ratio = residual / robust;
-  double weight = 1.0 / ((1.0 + ratio * ratio) * (1.0 + ratio * ratio)); // Geman, McClure 1987
+  double weight = gemanMcClureWeight(ratio * ratio);
   if (data.hasNormals())
     weight *= std::clamp(2.0 * data.normals.col(i).dot(term.normal), 0.0, 1.0); // all of it up to 60 degrees
   return weight;
