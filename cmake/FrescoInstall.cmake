@@ -14,10 +14,3 @@ install(FILES "${PROJECT_SOURCE_DIR}/README.md" "${PROJECT_SOURCE_DIR}/CHANGELOG
 install(DIRECTORY "${PROJECT_SOURCE_DIR}/docs" "${PROJECT_SOURCE_DIR}/examples"
         DESTINATION "${CMAKE_INSTALL_DATADIR}/doc/fresco" COMPONENT documentation
         PATTERN "site" EXCLUDE PATTERN ".ipynb_checkpoints" EXCLUDE)
-# Debian wants the licence of each package under this name.
-install(FILES "${PROJECT_SOURCE_DIR}/LICENSE" DESTINATION "${CMAKE_INSTALL_DATADIR}/doc/fresco" RENAME copyright
-        COMPONENT runtime)
-install(FILES "${PROJECT_SOURCE_DIR}/LICENSE" DESTINATION "${CMAKE_INSTALL_DATADIR}/doc/libfresco-dev" RENAME copyright
-        COMPONENT development)
-install(FILES "${PROJECT_SOURCE_DIR}/LICENSE" DESTINATION "${CMAKE_INSTALL_DATADIR}/doc/fresco-doc" RENAME copyright
-        COMPONENT documentation)

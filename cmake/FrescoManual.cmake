@@ -21,6 +21,10 @@ endfunction()
 
 if(TARGET fresco_tools AND NOT CMAKE_CROSSCOMPILING)
   fresco_add_tool_pages(man "${PROJECT_BINARY_DIR}/man" ".1" manual_pages)
+  foreach(page IN LISTS manual_pages) # Debian wants them compressed, without a time
+    add_custom_command(OUTPUT "${page}.gz" COMMAND gzip -9nkf "${page}" DEPENDS "${page}" VERBATIM)
+  endforeach()
+  list(TRANSFORM manual_pages APPEND ".gz")
   add_custom_target(fresco_manual ALL DEPENDS ${manual_pages})
-  install(FILES ${manual_pages} DESTINATION "${CMAKE_INSTALL_MANDIR}/man1" COMPONENT runtime)
+  install(FILES ${manual_pages} DESTINATION "${CMAKE_INSTALL_MANDIR}/man1" COMPONENT tools)
 endif()

@@ -6,6 +6,7 @@ set -euo pipefail
 [ $# -ge 1 ] && [ "$(id -u)" -eq 0 ] || { sed -n '2,4s/^# //p' "$0" >&2; exit 2; }
 packages=$(realpath "$1") root=$(realpath -m "${2:-/var/tmp/fresco-clean}")
 [ -x "$root/usr/bin/apt-get" ] || debootstrap --variant=minbase bookworm "$root" http://deb.debian.org/debian
+echo force-unsafe-io >"$root/etc/dpkg/dpkg.cfg.d/quick"
 inside() { chroot "$root" env DEBIAN_FRONTEND=noninteractive LC_ALL=C PATH=/usr/sbin:/usr/bin:/sbin:/bin "$@"; }
 mount -t proc proc "$root/proc"
 trap 'umount "$root/proc"' EXIT
@@ -17,11 +18,11 @@ list() { (cd "$root" && find usr etc -name '*fresco*' | sort); }
 
 [ -z "$(list)" ] || { echo "the system is not clean: $(list)" >&2; exit 1; }
 inside apt-get -q update >/dev/null
-inside sh -c 'apt-get -q -y install --no-install-recommends /packages/fresco_*.deb' >"$root/job/install.log" 2>&1 ||
+inside sh -c 'apt-get -q -y install --no-install-recommends /packages/libfresco0*.deb /packages/fresco-tools_*.deb' >"$root/job/install.log" 2>&1 ||
   { tail -20 "$root/job/install.log" >&2; exit 1; }
 for tool in $(cd "$root/usr/bin" && ls fresco_*); do
   inside "$tool" -h >"$root/job/$tool.txt"
-  [ -f "$root/usr/share/man/man1/$tool.1" ] || { echo "$tool has no manual page" >&2; exit 1; }
+  [ -f "$root/usr/share/man/man1/$tool.1.gz" ] || { echo "$tool has no manual page" >&2; exit 1; }
 done
 cat >"$root/job/cube.obj" <<'END'
 v 0 0 0
@@ -54,7 +55,31 @@ cmp "$root/job/mesh.ply" "$root/job/python.ply"
 
 inside sh -c 'apt-get -q -y install --no-install-recommends /packages/libfresco-dev_*.deb' >>"$root/job/install.log" 2>&1 ||
   { tail -20 "$root/job/install.log" >&2; exit 1; }
-[ -f "$root/usr/include/fresco/core/mesh.h" ]
-inside apt-get -q -y purge fresco libfresco-dev python3-fresco >>"$root/job/install.log" 2>&1
+cat >"$root/job/program.cpp" <<'END'
+#include <fresco/surface/volumetric_reconstruction.h>
+#include <pcl/io/pcd_io.h>
+int main()
+{
+  const pcl::PointCloud<pcl::PointNormal>::Ptr cloud(new pcl::PointCloud<pcl::PointNormal>);
+  pcl::io::loadPCDFile("/job/oriented.pcd", *cloud);
+  fresco::VolumetricReconstruction<pcl::PointNormal> reconstruction;
+  reconstruction.setDepth(6);
+  reconstruction.setInputCloud(cloud);
+  pcl::PolygonMesh mesh;
+  reconstruction.reconstruct(mesh);
+  return mesh.polygons.empty();
+}
+END
+cat >"$root/job/CMakeLists.txt" <<'END'
+cmake_minimum_required(VERSION 3.20)
+project(program C CXX)
+find_package(fresco REQUIRED COMPONENTS surface)
+add_executable(program program.cpp)
+target_link_libraries(program fresco::surface pcl_io)
+END
+inside apt-get -q -y install --no-install-recommends g++ cmake make >>"$root/job/install.log" 2>&1
+inside sh -ec 'cmake -S /job -B /job/build && cmake --build /job/build && /job/build/program' >>"$root/job/install.log" 2>&1 ||
+  { tail -20 "$root/job/install.log" >&2; exit 1; }
+inside apt-get -q -y purge libfresco0.1 fresco-tools libfresco-dev python3-fresco >>"$root/job/install.log" 2>&1
 [ -z "$(list)" ] || { echo "left behind: $(list)" >&2; exit 1; }
 echo "packages: installed, ran $(cd "$root/job" && ls fresco_*.txt | wc -l) tools, removed"

@@ -88,8 +88,8 @@ endforeach()
 
 # What a package holds besides.
 file(GLOB_RECURSE installed RELATIVE "${prefix}" "${prefix}/*")
-foreach(part "libfresco_core.so.${SOVERSION}" "libfresco_surface.so.${SOVERSION}." share/man/man1/fresco_model.1
-             include/fresco/surface/volumetric_reconstruction.h include/fresco/model/build_model.h share/doc/fresco/copyright frescoConfig.cmake)
+foreach(part "libfresco_core.so.${SOVERSION}" "libfresco_surface.so.${SOVERSION}." share/man/man1/fresco_model.1.gz
+             include/fresco/surface/volumetric_reconstruction.h include/fresco/model/build_model.h share/doc/libfresco[0-9.]+/copyright frescoConfig.cmake)
   if(NOT installed MATCHES "${part}")
     message(FATAL_ERROR "${part} was not installed")
   endif()
