@@ -114,9 +114,9 @@ Call::Listener::Listener(py::object callable) : callable_(std::move(callable))
 Progress Call::Listener::progress()
 {
   return [this](std::string_view step, double fraction) {
-    const py::gil_scoped_acquire acquire;
+    const Turn::Asked turn;
     try {
-      return !error_ && hear(step, fraction);
+      return turn && !error_ && hear(step, fraction);
     } catch (py::error_already_set& error) {
       error_.emplace(std::move(error));
       return false;
@@ -143,6 +143,7 @@ void addFunction(const py::module_& module, const Function& function, const std:
   const std::string text = concat(function.name, "(", parametersText(function, options, false), ")\n--\n\n",
                                   documentText(function, options, options_text));
   const auto call = [function, options, body](const py::args& values, const py::kwargs& named) {
+    const Turn turn;
     return body(Call(function, options, values, named));
   };
   py::options plain;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include "record.h"
+#include "turns.h"
 #include <fresco/core/progress.h>
 #include <functional>
 #include <mutex>
@@ -129,7 +130,7 @@ private:
   template <typename Body>
   static auto released(const Body& body)
   {
-    const py::gil_scoped_release release;
+    const Turn::Pause pause;
     return body();
   }
 

@@ -67,6 +67,7 @@ PYBIND11_MODULE(_fresco, module)
   using namespace fresco::python;
   module.doc() = "The compiled part of fresco.";
   py::register_local_exception_translator(translate);
+  watchEndOfPython();
   addCore(module);
   addIo(module);
   addFilters(module);

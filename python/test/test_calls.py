@@ -59,6 +59,36 @@ def test_ctrl_c_ends_a_call():
     assert process.wait(timeout=60) == 42
 
 
+DAEMONS = """
+import fresco, numpy as np, threading, time
+points = fresco.PointSet(np.random.default_rng(1).random((20000, 3), np.float32))
+begun = threading.Semaphore(0)
+def work():
+    def hear(step, fraction):
+        begun.release()
+        return sum(range(20000)) > 0
+    while True:
+        fresco.estimate_normals(points, progress=hear, threads=2)
+for _ in range(6):
+    threading.Thread(target=work, daemon=True).start()
+for _ in range(20):
+    begun.acquire()
+"""
+
+
+def test_python_ends_while_daemons_work():
+    for _ in range(3):
+        ended = subprocess.run([sys.executable, "-c", DAEMONS], stderr=subprocess.PIPE, text=True, timeout=60)
+        assert (ended.returncode, ended.stderr) == (0, "")
+
+
+def test_what_is_called_at_the_end_of_python_is_done(tmp_path):
+    program = "import atexit; atexit.register(lambda: fresco.write_points(sys.argv[1], fresco.PointSet(np.zeros((1, 3)))))\n"
+    subprocess.run([sys.executable, "-c", "import sys, numpy as np\n" + program + "import fresco\n", tmp_path / "last.ply"],
+                   check=True, timeout=60)
+    assert len(fresco.read_points(tmp_path / "last.ply").points) == 1
+
+
 def test_the_gil_is_free_while_the_core_works(sphere):
     counted = 0
     done = threading.Event()
