@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <fcntl.h>
+#include <fresco/core/byte_hash.h>
 #include <fresco/core/require.h>
 #include <fresco/distributed/mpi_session.h>
 #include <fresco/io/file.h>
@@ -38,15 +39,17 @@ void mute(int descriptor)
   ::close(nowhere);
 }
 
-/// FNV-1a (Fowler, Noll, Vo) of what this program and the project's libraries consist of.
+/// A hash of what this program and the project's libraries consist of.
 std::string programVersion()
 {
-  std::uint64_t hash = 0xcbf29ce484222325ULL;
+  std::uint64_t hash = 0;
   const auto add = [](dl_phdr_info* object, std::size_t, void* sum) {
     const std::string path = *object->dlpi_name ? object->dlpi_name : "/proc/self/exe";
-    if (path == "/proc/self/exe" || path.find("libfresco_") != std::string::npos)
-      for (const unsigned char c : readFile(path))
-        *static_cast<std::uint64_t*>(sum) = (*static_cast<std::uint64_t*>(sum) ^ c) * 0x100000001b3ULL;
+    if (path == "/proc/self/exe" || path.find("libfresco_") != std::string::npos) {
+      const std::string content = readFile(path);
+      auto& so_far = *static_cast<std::uint64_t*>(sum);
+      so_far = hashBytes(content.data(), content.size(), so_far);
+    }
     return 0;
   };
   dl_iterate_phdr(add, &hash);

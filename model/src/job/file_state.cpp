@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "job/file_state.h"
-#include <cstdint>
-#include <cstring>
+#include <fresco/core/byte_hash.h>
 #include <fresco/core/require.h>
 #include <fstream>
 #include <optional>
@@ -23,36 +22,16 @@ std::string stampOf(const struct stat& found)
   return concat(found.st_ino, " ", found.st_size, " ", found.st_ctim.tv_sec, ".", found.st_ctim.tv_nsec);
 }
 
-/// Eight bytes at a time. For a given word the steps are one to one in the hash, and for a given hash in the word.
-class Hash {
-public:
-  /// @param room for up to seven bytes more behind the end
-  void add(char* data, std::size_t size)
-  {
-    std::memset(data + size, 0, (8 - size % 8) % 8);
-    for (std::size_t i = 0; i < size; i += 8) {
-      std::uint64_t word = 0;
-      std::memcpy(&word, data + i, 8);
-      value_ = (value_ ^ word) * 0x9e3779b97f4a7c15ULL; // odd: 2^64 divided by the golden ratio
-      value_ ^= value_ >> 32;
-    }
-  }
-  std::string text() const { return concat(std::hex, value_); }
-
-private:
-  std::uint64_t value_ = 0xcbf29ce484222325ULL;
-};
-
 std::string contentHash(const std::string& file)
 {
   std::ifstream stream(file, std::ios::binary);
   if (!stream)
     return "";
   std::vector<char> block(1 << 20);
-  Hash hash;
+  std::uint64_t hash = 0;
   while (stream.read(block.data(), std::streamsize(block.size())) || stream.gcount() > 0)
-    hash.add(block.data(), stream.gcount());
-  return hash.text();
+    hash = hashBytes(block.data(), stream.gcount(), hash);
+  return concat(std::hex, hash);
 }
 } // namespace
 
@@ -87,13 +66,5 @@ bool isAs(const Json& state, const std::string& file)
   if (!state.is_object() || state.at("size") != found->st_size)
     return false;
   return state.value("stamp", "") == stampOf(*found) || state.at("hash") == contentHash(file);
-}
-
-std::string hashOf(const std::string& text)
-{
-  Hash hash;
-  std::string padded = text + std::string(8, '\0');
-  hash.add(padded.data(), text.size());
-  return concat(text.size(), " ", hash.text());
 }
 } // namespace fresco::model

@@ -16,7 +16,4 @@ stateOf(const std::string& file,
 
 /// Whether a file still is what it was: not if its size is another, certainly with the same stamp; else its content tells.
 bool isAs(const nlohmann::ordered_json& state, const std::string& file);
-
-/// 64 bits as hexadecimal text. Texts of one length that differ in one word of eight bytes never have the same.
-std::string hashOf(const std::string& text);
 } // namespace fresco::model

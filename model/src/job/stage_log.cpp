@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
+#include <fresco/core/byte_hash.h>
 #include <fresco/core/require.h>
 #include <fresco/io/file.h>
 #include <fresco/io/files_read.h>
@@ -109,7 +110,7 @@ StageLog::StageLog(std::string folder, const std::vector<std::string>& inputs, b
   for (const std::string& file : inputs_)
     if (!isOutput(file))
       names += file + "\n";
-  key_ = hashOf(names);
+  key_ = std::to_string(hashBytes(names.data(), names.size()));
   for (const std::string& file : programFiles())
     inputs_.insert(file);
   makeFolder(folder_);
@@ -176,7 +177,8 @@ void StageLog::renewReplaced(const Json& outputs) const
 
 void StageLog::run(const Stage& stage)
 {
-  key_ = hashOf(key_ + "\n" + stage.name + "\n" + stage.options);
+  const std::string words = key_ + "\n" + stage.name + "\n" + stage.options;
+  key_ = std::to_string(hashBytes(words.data(), words.size()));
   const std::string file = folder_ + "/" + stage.name + ".json";
   report(progress_, stage.name, 0.0);
   const bool taken_over = takeOver(stage, file);

@@ -1,23 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "answer/pair_memory.h"
 #include "graph/scan_exchange.h"
+#include <cstring>
+#include <fresco/core/byte_hash.h>
 #include <fresco/core/require.h>
 namespace fresco::registration {
 namespace {
 constexpr char version[] = "fresco pairs 1"; // to be changed with what is packed, and with what decides
 
-// FNV-1a (Fowler, Noll, Vo).
-std::uint64_t hashOf(const std::string& bytes)
-{
-  std::uint64_t hash = 14695981039346656037ull;
-  for (const unsigned char byte : bytes)
-    hash = (hash ^ byte) * 1099511628211ull;
-  return hash;
-}
-
 std::string heading(const std::string& key, const std::string& content)
 {
-  return concat(version, "\n", key, "\n", hashOf(content), "\n");
+  return concat(version, "\n", key, "\n", hashBytes(content.data(), content.size()), "\n");
 }
 } // namespace
 
@@ -45,9 +38,7 @@ std::string memoryKey(const ScanSurvey& survey, const std::vector<Pose>& start, 
   bool upright = options.upright;
   packer(voxel, min_overlap, max_violation, upright);
   const Exchange::Bytes bytes = packer.take();
-  std::string text(bytes.size(), '\0');
-  std::memcpy(text.data(), bytes.data(), bytes.size());
-  return concat(survey.hashes.size(), " ", hashOf(text));
+  return concat(survey.hashes.size(), " ", hashBytes(bytes.data(), bytes.size()));
 }
 
 std::string packAlignment(GlobalAlignment alignment, const std::string& key)

@@ -2,39 +2,16 @@
 #include "scan/scan_survey.h"
 #include "scan/thinning.h"
 #include <algorithm>
-#include <cstring>
+#include <fresco/core/byte_hash.h>
 #include <fresco/core/require.h>
 #include <fresco/core/statistics.h>
 #include <fresco/io/packing.h>
 namespace fresco::registration {
 namespace {
-// FNV-1a (Fowler, Noll, Vo) over whole values.
 template <typename Values>
-void addHash(const Values& values, std::uint64_t& hash)
+std::uint64_t hashOf(const Values& values, std::uint64_t before = 0)
 {
-  for (Index i = 0; i < values.size(); ++i) {
-    std::uint32_t bits = 0;
-    std::memcpy(&bits, values.data() + i, sizeof(*values.data()));
-    hash = (hash ^ bits) * 1099511628211ull;
-  }
-}
-
-std::uint64_t hashOf(const PointSet& scan)
-{
-  std::uint64_t hash = 14695981039346656037ull;
-  addHash(scan.points, hash);
-  addHash(scan.origin.cast<float>().eval(), hash);
-  return hash;
-}
-
-// Of what else registration looks at.
-std::uint64_t lookOf(const PointSet& scan)
-{
-  std::uint64_t hash = 14695981039346656037ull;
-  addHash(scan.viewpoints, hash);
-  addHash(scan.colors, hash);
-  addHash(scan.normals, hash);
-  return hash;
+  return hashBytes(values.data(), values.size() * sizeof(*values.data()), before);
 }
 
 // Messages of readers begin with the name of the file.
@@ -75,8 +52,8 @@ Sketch sketchOf(const ScanSource& scans, Index i, const ScanRegistrationOptions&
   if (sketch.size > 0.0)
     sketch.voxel = fittingVoxel(scan, sketch.size / voxels_per_size);
   if (sketch.has_points)
-    sketch.hash = hashOf(scan);
-  sketch.look = lookOf(scan);
+    sketch.hash = hashOf(scan.origin.cast<float>().eval(), hashOf(scan.points));
+  sketch.look = hashOf(scan.normals, hashOf(scan.colors, hashOf(scan.viewpoints))); // what else is looked at
   return sketch;
 }
 } // namespace
