@@ -31,8 +31,8 @@ namespace fs = std::filesystem;
   fail(path, std::string("cannot be written (") + std::strerror(errno) + ")");
 }
 
-/// Mode bits of the file at `path`, nothing where none is. @throws std::runtime_error if it is anything but a file
-std::optional<mode_t> modeOf(const std::string& path)
+/// What the file system says of the file at `path`, nothing where none is. @throws std::runtime_error if it is anything but a file
+std::optional<struct stat> replaced(const std::string& path)
 {
   struct stat found = {};
   if (fs::path(path).filename().empty() || (::lstat(path.c_str(), &found) == 0 && S_ISDIR(found.st_mode)))
@@ -41,7 +41,16 @@ std::optional<mode_t> modeOf(const std::string& path)
     return {};
   if (!S_ISREG(found.st_mode))
     fail(path, "is a link, a device or a pipe: only a file may be replaced");
-  return found.st_mode & 07777;
+  return found;
+}
+
+/// Owner, group and rights of the file that is replaced, as if it were written to in its place: no longer run with the rights of its
+/// owner; and where its group cannot be kept, no other group has what that had.
+void takeOver(const struct stat& old, int descriptor)
+{
+  const bool same_group =
+      ::fchown(descriptor, old.st_uid, old.st_gid) == 0 || ::fchown(descriptor, uid_t(-1), old.st_gid) == 0;
+  ::fchmod(descriptor, old.st_mode & (same_group ? 0777 : 0707 | (old.st_mode & 07) << 3));
 }
 
 /// Temporary names beside a file: `.STEM.`, 16 hexadecimal digits, `.part.EXTENSION`. The extension stays last, since
@@ -126,7 +135,7 @@ using Lock = std::lock_guard<std::timed_mutex>;
 /// To be called with the mutex locked.
 void giveName(const std::string& temporary, const std::string& path)
 {
-  modeOf(path); // what is there now may still be replaced
+  replaced(path); // what is there now may still be replaced
   if (::rename(temporary.c_str(), path.c_str()) != 0)
     failToWrite(path);
   unfinished().paths.erase(temporary);
@@ -186,7 +195,7 @@ void removeEmptyFolders() noexcept
 
 OutputFile::OutputFile(std::string path) : path_(std::move(path))
 {
-  modeOf(path_);
+  replaced(path_);
   const TemporaryNames names(path_);
   removeLeftovers(names);
   constexpr int attempts = 10; // a name is taken by chance only, or by a process that removes leftovers
@@ -260,8 +269,8 @@ void OutputFile::send()
 void OutputFile::commit()
 {
   flush();
-  if (const auto mode = modeOf(path_))
-    ::fchmod(descriptor_, *mode);
+  if (const auto old = replaced(path_))
+    takeOver(*old, descriptor_);
   // A library may have replaced the file behind the descriptor, so the name is what counts.
   const bool stored = ::fsync(descriptor_) == 0 || errno == EINVAL;
   if (!stored)

@@ -9,6 +9,7 @@
 #include <fresco/io/unfinished_files.h>
 #include <fstream>
 #include <sys/stat.h>
+#include <unistd.h>
 namespace {
 using namespace fresco;
 namespace fs = std::filesystem;
@@ -166,6 +167,20 @@ TEST(OutputFile, KeepsTheModeOfWhatItReplaces)
   fs::permissions(path, fs::perms(0640));
   put(path, "new");
   EXPECT_EQ(fs::status(path).permissions(), fs::perms(0640));
+}
+
+TEST(OutputFile, KeepsTheOwnerButNotTheRightToRunAsOne)
+{
+  const std::string path = test::scratchFolder() + "/out.txt";
+  put(path, "old");
+  const bool can_give = ::chown(path.c_str(), 1234, 2345) == 0;
+  fs::permissions(path, fs::perms(06755));
+  put(path, "new");
+  struct stat found = {};
+  ASSERT_EQ(::stat(path.c_str(), &found), 0);
+  EXPECT_EQ(found.st_mode & 07777, 0755U);
+  EXPECT_EQ(found.st_uid, can_give ? 1234 : ::getuid());
+  EXPECT_EQ(found.st_gid, can_give ? 2345 : ::getgid());
 }
 
 TEST(OutputFile, LongNames)
