@@ -61,6 +61,32 @@ TEST(Program, StoppingKillsItAndWhatItStarted)
   EXPECT_FALSE(std::filesystem::exists(folder + "/child"));
 }
 
+TEST(Program, EndsWithItselfThoughAnotherKeepsItsOutput)
+{
+  const std::string folder = test::scratchFolder();
+  for (const std::string keeper : {"", "setsid "}) {
+    const auto start = std::chrono::steady_clock::now();
+    EXPECT_EQ(linesOf({"/bin/sh", "-c", keeper + "sleep 20 & echo done"}, folder + "/log.txt"), Lines{"done"});
+    EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(10));
+  }
+  linesOf({"/bin/sh", "-c", "(sleep 2; echo alive > '" + folder + "/left') &"}, folder + "/log.txt");
+  EXPECT_EQ(linesOf({"/bin/sh", "-c", "exec >&- 2>&-; sleep 2.5"}, folder + "/log.txt"), Lines{})
+      << "and stays without an output";
+  EXPECT_FALSE(std::filesystem::exists(folder + "/left"));
+}
+
+TEST(Program, LineWithoutAnEndComesInPieces)
+{
+  const std::string log = test::scratchFolder() + "/log.txt";
+  std::size_t bytes = 0, longest = 0;
+  for (const std::string& line : linesOf({"/usr/bin/head", "-c", "20000000", "/dev/zero"}, log)) {
+    bytes += line.size();
+    longest = std::max(longest, line.size());
+  }
+  EXPECT_EQ(bytes, 20000000u);
+  EXPECT_LT(longest, 100000u);
+}
+
 TEST(StructureFromMotion, ProgressIsReadFromTheLines)
 {
   EXPECT_DOUBLE_EQ(shareToldBy("Processed file [3/12]", 12), 0.25);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "photographs/program.h"
+#include <algorithm>
 #include <array>
 #include <cerrno>
-#include <chrono>
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
@@ -13,10 +13,11 @@
 #include <fstream>
 #include <poll.h>
 #include <sstream>
+#include <sys/ioctl.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
-#include <thread>
 #include <unistd.h>
+#include <utility>
 namespace fresco::model {
 namespace {
 constexpr int poll_milliseconds = 100; // a tool that was asked to stop has a third of a second
@@ -71,7 +72,8 @@ public:
   }
   ~Child()
   {
-    close(output_);
+    if (output_ >= 0)
+      close(output_);
     if (process_ > 0) {
       kill(-process_, SIGKILL);
       waitpid(process_, nullptr, 0);
@@ -80,24 +82,39 @@ public:
   Child(const Child&) = delete;
   Child& operator=(const Child&) = delete;
 
-  /// Waits a little for output. @return false once there is no more
-  bool read(std::string& text) const
+  /// Waits a little for output; none comes any more once all that could write have closed it.
+  void read(std::string& text)
   {
-    pollfd waiting{output_, POLLIN, 0};
+    pollfd waiting{output_, POLLIN, 0}; // nothing to wait for if negative, but the time
     if (poll(&waiting, 1, poll_milliseconds) <= 0)
-      return true;
+      return;
     std::array<char, 4096> buffer{};
     const ssize_t count = ::read(output_, buffer.data(), buffer.size());
     if (count > 0)
       text.append(buffer.data(), static_cast<std::size_t>(count));
-    return count > 0 || (count < 0 && errno == EINTR);
+    else if (count == 0 || errno != EINTR)
+      close(std::exchange(output_, -1));
   }
 
-  /// @return whether it has ended, and how
+  /// What waits in the pipe, whoever may still hold its other end.
+  void readRest(std::string& text) const
+  {
+    int waiting = 0;
+    if (output_ < 0 || ioctl(output_, FIONREAD, &waiting) != 0)
+      return;
+    std::vector<char> buffer(waiting);
+    const ssize_t count = ::read(output_, buffer.data(), buffer.size());
+    text.append(buffer.data(), static_cast<std::size_t>(std::max<ssize_t>(0, count)));
+  }
+
+  /// @return whether it has ended, and how; what it has left behind is killed then
   bool ended(int& status)
   {
-    if (waitpid(process_, &status, WNOHANG) != process_)
+    siginfo_t end = {};
+    if (waitid(P_PID, process_, &end, WEXITED | WNOHANG | WNOWAIT) != 0 || end.si_pid != process_)
       return false;
+    kill(-process_, SIGKILL); // while its number is still taken
+    waitpid(process_, &status, 0);
     process_ = -1;
     return true;
   }
@@ -107,12 +124,15 @@ private:
   int output_ = -1;
 };
 
-/// Takes whole lines off the front of `text`.
+/// Takes whole lines off the front of `text`, and a line that does not end in pieces, so that it is not searched again and again.
 template <typename Use>
 void takeLines(std::string& text, const Use& use)
 {
+  constexpr std::size_t longest = std::size_t{1} << 16;
   for (std::size_t end; (end = text.find('\n')) != std::string::npos; text.erase(0, end + 1))
     use(text.substr(0, end));
+  if (text.size() > longest)
+    use(std::exchange(text, ""));
 }
 } // namespace
 
@@ -143,17 +163,16 @@ void runProgram(const std::vector<std::string>& command, const std::string& log,
   };
   Child child(command);
   std::string text;
-  while (child.read(text)) {
+  int status = 0;
+  while (!child.ended(status)) {
+    child.read(text);
     takeLines(text, use);
     stop();
   }
+  child.readRest(text);
+  takeLines(text, use);
   if (!text.empty()) // a last line without an end
     use(text);
-  int status = 0;
-  while (!child.ended(status)) { // it has closed its output, and ends soon
-    stop();
-    std::this_thread::sleep_for(std::chrono::milliseconds(poll_milliseconds));
-  }
   if (WIFEXITED(status) && WEXITSTATUS(status) == 0)
     return;
   std::string lines;

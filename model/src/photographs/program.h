@@ -8,7 +8,7 @@ namespace fresco::model {
 /// Path of an installed program, by the variable PATH; "" = not installed.
 std::string findProgram(const std::string& name);
 
-/// Runs a program to its end. What it writes is added to the file `log`; `hear` gets each line of it.
+/// Runs a program to its end, and ends with it what it has started. What it writes is added to the file `log`; `hear` gets each line of it.
 /// @param command  program and its words, as they are: no shell
 /// @param stop     is asked ten times a second and throws to stop: the program and all it has started are killed then
 /// @throws std::runtime_error with the program's last lines if it cannot be started, fails or is killed
