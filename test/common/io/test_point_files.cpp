@@ -5,6 +5,7 @@
 #include <fresco/io/point_io.h>
 #include <fstream>
 #include <set>
+#include <sys/resource.h>
 #include <tuple>
 #include <unistd.h>
 namespace fresco::test {
@@ -136,6 +137,22 @@ TEST_F(PointFiles, FoldersStandForTheirFiles)
   EXPECT_EQ(pointFilesIn({path("in"), b}), (std::vector<std::string>{a, b, b}));
   EXPECT_THROW(pointFilesIn({path("in/deeper")}), std::runtime_error);
   EXPECT_THROW(pointFilesIn({path("none.ply")}), std::runtime_error);
+}
+
+TEST_F(PointFiles, MoreFilesThanAProcessMayOpen)
+{
+  constexpr int count = 100, most_open = 32;
+  std::vector<std::string> files;
+  for (int i = 0; i < count; ++i)
+    files.push_back(write(std::to_string(i) + (i % 2 == 0 ? ".ply" : ".pcd"), fullPointSet(9)));
+  rlimit before = {};
+  ASSERT_EQ(getrlimit(RLIMIT_NOFILE, &before), 0);
+  rlimit few = before;
+  few.rlim_cur = most_open;
+  ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &few), 0);
+  EXPECT_EQ(readAll(files, 5).rows.size(), 9u * count);
+  EXPECT_EQ(readAll(files, 10000).rows.size(), 9u * count);
+  setrlimit(RLIMIT_NOFILE, &before);
 }
 
 TEST_F(PointFiles, MoreRowsThanAnIntCounts)
