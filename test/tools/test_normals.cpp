@@ -119,9 +119,21 @@ TEST_F(Normals, BadInputEndsWithOneLineAndNoFile)
 TEST_F(Normals, SmallCloudsPass)
 {
   for (const char* const points : few_points) {
-    const std::string files = text("few.xyz", points) + " " + path("few.pcd");
-    EXPECT_EQ(run(files + " -bilateral 2"), 0) << errors();
-    EXPECT_EQ(run(files + " -viewpoint 0 0 9 -radius 0.5 -bilateral 2 -move 1"), 0) << errors();
+    const std::string in = text("few.xyz", points);
+    for (const std::string options : {" -bilateral 2", " -viewpoint 0 0 9 -radius 0.5 -bilateral 2 -move 1"}) {
+      EXPECT_EQ(run(in + " " + path("few.pcd") + options), 0) << errors();
+      const PointSet result = readPoints(path("few.pcd"));
+      EXPECT_EQ(result.points, readPoints(in).points) << "a plane does not move";
+      ASSERT_EQ(result.normals.cols(), result.size());
+      for (Index i = 0; i < result.size(); ++i) {
+        const Eigen::Vector3f n = result.normals.col(i), to_viewpoint = Eigen::Vector3f(0, 0, 9) - result.points.col(i);
+        if (options.find("viewpoint") == std::string::npos) {
+          EXPECT_EQ(n.norm() > 0, points == few_points[2]) << "three points alone tell a direction: " << points;
+        } else if (to_viewpoint.norm() < 10) { // and not 1e30
+          EXPECT_GT(n.dot(to_viewpoint.normalized()), 0.9f) << points;
+        }
+      }
+    }
   }
 }
 

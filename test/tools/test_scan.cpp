@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "test_data.h"
+#include <fresco/core/statistics.h>
 #include <fresco/io/colmap.h>
 #include <fresco/io/file.h>
 #include <fresco/io/image_io.h>
@@ -227,9 +228,25 @@ TEST(VirtualDataset, IntensitiesFallWithTheSquareOfTheRange)
   EXPECT_EQ(scan.colors.cols(), 0);
   ASSERT_EQ(scan.intensities.size(), scan.size());
   EXPECT_GT(scan.intensities.minCoeff(), 0.f);
-  const Eigen::ArrayXf at_one_metre =
-      scan.intensities.array() * scan.points.colwise().squaredNorm().transpose().array();
+  const Eigen::ArrayXf range = scan.points.colwise().norm().transpose();
+  const Eigen::ArrayXf at_one_metre = scan.intensities.array() * range.square();
   EXPECT_LT(at_one_metre.maxCoeff(), 1.3f); // no surface sends more back than a white one
+  const Eigen::Isometry3f T_world_scan(readPoses(out + "/poses.txt").at(0).value().cast<float>());
+  std::vector<std::pair<float, float>> floor; // range; what it would send back frontally from a metre
+  for (Index i = 0; i < scan.size(); ++i)
+    if (std::abs((T_world_scan * scan.points.col(i)).z()) < 0.03f)
+      floor.push_back({range[i], at_one_metre[i] * range[i] / T_world_scan.translation().z()});
+  ASSERT_GT(floor.size(), 200u);
+  std::sort(floor.begin(), floor.end());
+  const auto middleOf = [&](std::size_t first, std::size_t last) {
+    std::vector<float> values;
+    for (std::size_t i = first; i < last; ++i)
+      values.push_back(floor[i].second);
+    return median(values);
+  };
+  const float near = middleOf(0, floor.size() / 4), far = middleOf(3 * floor.size() / 4, floor.size());
+  EXPECT_GT(floor[7 * floor.size() / 8].first, 1.2f * floor[floor.size() / 8].first);
+  EXPECT_NEAR(near, far, 0.1f * far); // of another power it would be more than 20 % off
 }
 
 TEST(VirtualDataset, MeshFromOutsideIsSeenFromAllAround)

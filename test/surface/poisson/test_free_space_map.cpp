@@ -156,10 +156,14 @@ TEST(FreeSpaceMap, OrderAndWindowsDoNotMatter)
   const PointSet reversed = selectPoints(all, back);
   std::vector<Index> first(back.end() - 7000, back.end()), rest(back.begin(), back.end() - 7000);
   const FreeSpaceMap whole(Sets({all})), windows(Sets({selectPoints(all, first), selectPoints(all, rest)}));
+  int free = 0;
   for (int i = 0; i < 10000; ++i) {
     const Eigen::Vector3d place = 1.1 * Eigen::Vector3d::Random();
     EXPECT_EQ(whole.isFree(place, 0.05), windows.isFree(place, 0.05));
+    free += whole.isFree(place, 0.05);
   }
+  EXPECT_GT(free, 2000) << "most of the inside of the room";
+  EXPECT_LT(free, 8000) << "not what lies behind its walls";
 }
 
 TEST(FreeSpaceMap, WhatOneStationFoundAnotherMustNotSeeThrough)
