@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "support/plan_option.h"
 #include "support/scan_option.h"
 #include "support/tool.h"
 #include <fresco/core/point_set.h>
@@ -8,13 +9,14 @@
 #include <fresco/io/cloud_file.h>
 #include <fresco/io/file.h>
 #include <fresco/io/formats.h>
-#include <fresco/io/mesh_io.h>
 #include <pcl/common/io.h>
 namespace {
 using namespace fresco;
 
 struct CropOptions {
   CropRegion region;
+  RoomChoice room;
+  PlanOptions plan;
   std::string polygon;
   GltfOptions gltf;
 
@@ -44,24 +46,34 @@ struct CropOptions {
     };
     height("above", region.low, "keep what lies above this height");
     height("below", region.high, "keep what lies below this height");
+    args.option("room", room.number, "keep a room, by its number in the plan that fresco_plan draws, at least 1");
+    args.option("margin", room.margin, "with -room: what is kept behind the lines of its walls, metres, >= 0");
+    declarePlan(args, plan);
     args.option("quality", gltf.jpeg_quality, "JPEG quality of a texture's pictures, 1..100; 0 = PNG, without loss");
   }
 };
-
-bool isCloud(const std::string& path)
-{
-  return !isReadable(path, FileKind::mesh) && !isReadable(path, FileKind::textured_mesh);
-}
 
 [[noreturn]] void refuseEmpty(const std::string& path)
 {
   throw std::runtime_error(path + ": nothing of it lies inside; fresco_crop -h tells what is kept");
 }
 
-void cropCloud(const std::vector<std::string>& files, const CropRegion& region, bool quiet)
+/// @param model a mesh or a cloud
+template <typename Model>
+CropRegion roomOf(const std::string& file, const Model& model, const CropOptions& options, bool quiet)
+{
+  try {
+    return regionOfRoom(drawPlan(model, options.plan, printProgress(quiet)), options.room);
+  } catch (const std::invalid_argument& error) { // of the model, at the height that was asked for
+    throw std::runtime_error(file + ": " + error.what());
+  }
+}
+
+void cropCloud(const std::vector<std::string>& files, const CropOptions& options, bool rooms, bool quiet)
 {
   CloudFile file = readCloud(files[0]);
   const PointSet set = toPointSet(file);
+  const CropRegion region = rooms ? roomOf(files[0], set, options, quiet) : options.region;
   pcl::Indices kept;
   for (Index i = 0; i < set.size(); ++i)
     if (isInside(region, set.origin + set.points.col(i).cast<double>()))
@@ -76,11 +88,12 @@ void cropCloud(const std::vector<std::string>& files, const CropRegion& region, 
   inform(quiet, concat(kept.size(), " of ", set.size(), " points"));
 }
 
-void cropSurface(const std::vector<std::string>& files, const CropOptions& options, bool quiet)
+void cropSurface(GltfModel model, const std::vector<std::string>& files, const CropOptions& options, bool rooms,
+                 bool quiet)
 {
-  GltfModel model = readModel(files[0]);
   const Index before = model.model.mesh.faceCount();
-  model.model = cropModel(std::move(model.model), options.region);
+  const CropRegion region = rooms ? roomOf(files[0], model.model.mesh, options, quiet) : options.region;
+  model.model = cropModel(std::move(model.model), region);
   const Index faces = model.model.mesh.faceCount();
   if (faces == 0)
     refuseEmpty(files[0]);
@@ -88,11 +101,22 @@ void cropSurface(const std::vector<std::string>& files, const CropOptions& optio
   inform(quiet, concat(faces, " of ", before, " faces"));
 }
 
+/// @throws UsageError
+void validate(const Args& args)
+{
+  const bool box = args.given("box"), room = args.given("room");
+  const bool others = args.given("polygon") || args.given("above") || args.given("below");
+  if (box + room + others > 1)
+    throw UsageError("-box and -room go with none of -box, -room, -polygon, -above, -below");
+  if (box + room + others == 0)
+    throw UsageError("one of -box, -room, -polygon, -above, -below is needed");
+}
+
 void run(int argc, char** argv)
 {
   CropOptions options;
   CommonOptions common;
-  Args args("fresco_crop IN OUT -box X0 Y0 Z0 X1 Y1 Z1 | -polygon FILE | -above Z | -below Z [options]",
+  Args args("fresco_crop IN OUT -box X0 Y0 Z0 X1 Y1 Z1 | -polygon FILE | -above Z | -below Z | -room N [options]",
             "Cuts a part out of a cloud, a mesh or a textured model. Faces are cut at the border; textures, colours "
             "and fields "
             "stay.\nIN, OUT: clouds " +
@@ -105,12 +129,10 @@ void run(int argc, char** argv)
       "-polygon, -above and -below may stand together. Example: fresco_crop model.glb room.glb -polygon room.geojson "
       "-below 2.4");
   const std::vector<std::string> files = args.parse(argc, argv, 2);
-  const bool box = args.given("box"), others = args.given("polygon") || args.given("above") || args.given("below");
-  if (box == others)
-    throw UsageError(box ? "-box goes with none of -polygon, -above, -below"
-                         : "one of -box, -polygon, -above, -below is needed");
+  validate(args);
   requireDistinct({files[1]}, {files[0], options.polygon});
-  const bool cloud = isCloud(files[0]) || (extension(files[0]) == ".ply" && readMesh(files[0]).faceCount() == 0);
+  std::optional<GltfModel> model = readModelIfAny(files[0]);
+  const bool cloud = !model, rooms = args.given("room");
   if (!isWritable(files[1], cloud ? FileKind::points : FileKind::mesh) &&
       (cloud || !isWritable(files[1], FileKind::textured_mesh)))
     throw UsageError(
@@ -124,7 +146,9 @@ void run(int argc, char** argv)
   } catch (const std::invalid_argument& error) {
     throw std::runtime_error(options.polygon.empty() ? error.what() : options.polygon + ": " + error.what());
   }
-  cloud ? cropCloud(files, options.region, common.quiet) : cropSurface(files, options, common.quiet);
+  options.plan.threads = common.threads;
+  cloud ? cropCloud(files, options, rooms, common.quiet)
+        : cropSurface(std::move(*model), files, options, rooms, common.quiet);
 }
 } // namespace
 

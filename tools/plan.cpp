@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "support/plan_option.h"
 #include "support/scan_option.h"
 #include "support/tool.h"
 #include <cmath>
 #include <filesystem>
 #include <fresco/core/require.h>
+#include <fresco/deliverables/core/model_file.h>
 #include <fresco/deliverables/core/plan_drawing.h>
 #include <fresco/io/file.h>
-#include <fresco/io/formats.h>
 #include <fresco/io/image_io.h>
-#include <fresco/io/mesh_io.h>
 #include <fresco/io/point_io.h>
 #include <variant>
 namespace {
 using namespace fresco;
-using Model = std::variant<TexturedMesh, PointSet>; ///< a mesh without texture has no atlases
+using Model = std::variant<TexturedMesh, PointSet>;
 
 struct Request {
   PlanOptions plan;
@@ -25,9 +25,7 @@ struct Request {
 
 void declare(Args& args, Request& request)
 {
-  PlanOptions& o = request.plan;
-  args.values("height", "H", "of the cut, z of the model, metres (default: 1.5 m above the lowest large floor)",
-              [&](const auto& words) { o.height = Args::number("height", words[0]); });
+  declarePlan(args, request.plan);
   args.values("sections", "AXIS STEP",
               "also parallel sections of a mesh, each STEP metres along AXIS (x, y or z), as OUT_x+1.50.svg ...",
               [&](const auto& words) {
@@ -41,34 +39,13 @@ void declare(Args& args, Request& request)
   args.flag("ortho", request.ortho,
             "also what lies below the cut, seen from above, true to scale: OUT_ortho.png with OUT_ortho.pgw");
   args.option("pixel", request.pixel, "of pictures, metres, > 0");
-  args.option("tolerance", o.tolerance,
-              "metres that data may lie off a straight wall, and that a wall may move to follow a main direction, "
-              "above 0 and at most 0.1");
-  args.option("cell", o.cell,
-              "of the grid that rooms are found in, metres, 0.005..0.2; 0 = from the density of the data");
-  args.option("door", o.door, "widest passage that ends a room where nothing hangs from the ceiling, metres, 0.3..5");
-  args.values("up", "X Y Z", "upright direction (default: 0 0 1); it is corrected by the largest floor or ceiling",
-              [&](const auto& words) {
-                for (int k = 0; k < 3; ++k)
-                  o.up[k] = Args::number("up", words[k]);
-              });
 }
 
-Model readModel(const ScanPath& path)
+Model readInput(const ScanPath& path)
 {
-  if (!isReadable(path.file, FileKind::mesh) && isReadable(path.file, FileKind::points) &&
-      extension(path.file) != ".glb")
-    return readPoints(path);
-  if (const std::string end = extension(path.file); end == ".glb" || end == ".obj")
-    if (TexturedMesh model = readTexturedMesh(path.file); model.mesh.faceCount() > 0)
-      return model;
-  TexturedMesh model;
-  model.mesh = readMesh(path.file);
-  if (model.mesh.faceCount() == 0)
-    return readPoints(path.file);
-  model.texcoord_faces = Faces::Constant(3, model.mesh.faceCount(), -1);
-  model.face_atlas.setConstant(model.mesh.faceCount(), -1);
-  return model;
+  if (std::optional<GltfModel> read = readModelIfAny(path.file))
+    return std::move(read->model);
+  return readPoints(path);
 }
 
 /// OUT_ADDED.END, in the place of OUT.svg.
@@ -182,7 +159,7 @@ void run(int argc, char** argv)
     throw UsageError("'" + output + "' ends in none of .svg, .dxf, .png");
   requireDistinct({output, beside(output, ".json"), beside(output, ".csv"), beside(output, "_ortho.png")}, {files[0]});
   request.plan.threads = request.common.threads;
-  const Model model = readModel(scan.of(files[0]));
+  const Model model = readInput(scan.of(files[0]));
   const Progress progress = printProgress(request.common.quiet);
   FloorPlan plan;
   try {

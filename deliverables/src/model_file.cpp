@@ -7,9 +7,11 @@
 namespace fresco {
 bool isTextured(const TexturedMesh& model) { return (model.face_atlas.array() >= 0).any(); }
 
-GltfModel readModel(const std::string& path)
+std::optional<GltfModel> readModelIfAny(const std::string& path)
 {
   GltfModel read;
+  if (!isReadable(path, FileKind::mesh) && !isReadable(path, FileKind::textured_mesh))
+    return {};
   if (extension(path) == ".glb")
     read = readGltf(path);
   else if (isReadable(path, FileKind::textured_mesh))
@@ -20,8 +22,15 @@ GltfModel readModel(const std::string& path)
     read.model.mesh = std::move(mesh);
   }
   if (read.model.mesh.faceCount() == 0)
-    throw std::runtime_error(path + ": has no faces");
+    return {};
   return read;
+}
+
+GltfModel readModel(const std::string& path)
+{
+  if (std::optional<GltfModel> model = readModelIfAny(path))
+    return std::move(*model);
+  throw std::runtime_error(path + ": has no faces");
 }
 
 void writeModel(const std::string& path, GltfModel written, const GltfOptions& options)

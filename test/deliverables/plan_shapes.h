@@ -70,6 +70,25 @@ private:
   std::vector<Eigen::Vector3i> faces_;
 };
 
+/// Two rooms of 4 x 3 and 3 x 3 m beside a wall of 10 cm with a door in it; a window in the first one.
+inline TriangleMesh twoRooms()
+{
+  const double high = 2.6;
+  RoomBuilder b;
+  b.openWall({0, 0}, {4, 0}, high, {1, 2.5, 0.9, 2.1});
+  b.openWall({4, 0}, {4, 3}, high, {1, 1.9, 0, 2});
+  b.wall({4, 3}, {0, 3}, 0, high);
+  b.wall({0, 3}, {0, 0}, 0, high);
+  b.slabs({{0, 0}, {4, 0}, {4, 3}, {0, 3}}, high);
+  b.wall({4.1, 0}, {7.1, 0}, 0, high);
+  b.wall({7.1, 0}, {7.1, 3}, 0, high);
+  b.wall({7.1, 3}, {4.1, 3}, 0, high);
+  b.openWall({4.1, 3}, {4.1, 0}, high, {1.1, 2, 0, 2});
+  b.slabs({{4.1, 0}, {7.1, 0}, {7.1, 3}, {4.1, 3}}, high);
+  b.quad({4, 1, 0}, {4.1, 1, 0}, {4.1, 1.9, 0}, {4, 1.9, 0}); // the sill of the door
+  return b.mesh();
+}
+
 inline double areaOf(const std::vector<Eigen::Vector2d>& outline)
 {
   double twice = 0;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "deliverables/models.h"
+#include "deliverables/plan_shapes.h"
 #include "test_data.h"
 #include <fresco/deliverables/core/crop.h>
 #include <fstream>
@@ -116,5 +117,59 @@ TEST(Crop, RefusesWhatIsNoRegion)
 {
   EXPECT_THROW(cropMesh(test::box(), {{}, 1, 0}), std::invalid_argument);
   EXPECT_THROW(cropMesh(test::box(), {{outline({{0, 0}, {4, 4}, {4, 0}, {0, 4}})}}), std::invalid_argument);
+}
+/// Area of the faces of two rooms whose corners lie on one side of x = 4.05, halfway through their wall.
+double areaOfRoom(const TriangleMesh& mesh, bool first)
+{
+  double area = 0;
+  for (Index f = 0; f < mesh.faceCount(); ++f)
+    if ((faceCorner(mesh, f, 0).x() < 4.05) == first && (faceCorner(mesh, f, 1).x() < 4.05) == first &&
+        (faceCorner(mesh, f, 2).x() < 4.05) == first)
+      area += 0.5 * areaVector(mesh, f).norm();
+  return area;
+}
+
+TEST(Crop, ARoomOfThePlanIsItsFacesAndTheOtherOneIsNot)
+{
+  const TriangleMesh rooms = test::twoRooms();
+  const double sill = 0.5 * 0.1 * 0.9;    // half of that in the door
+  for (const double tilt : {0.0, 0.02}) { // radians: what drawPlan() makes level
+    const Eigen::AngleAxisd turn(tilt, Eigen::Vector3d(1, 2, 0).normalized());
+    TriangleMesh mesh = rooms;
+    mesh.vertices = (turn.toRotationMatrix() * mesh.vertices.cast<double>()).cast<float>();
+    mesh.origin = {500000, -4000000, 100};
+    const FloorPlan plan = drawPlan(mesh);
+    ASSERT_EQ(plan.rooms.size(), 2u);
+    for (const int number : {1, 2}) { // the larger one is the first
+      const TriangleMesh room = cropMesh(mesh, regionOfRoom(plan, {number}));
+      EXPECT_NEAR(surfaceArea(room), areaOfRoom(rooms, number == 1) + sill, 0.005) << number << ", tilt " << tilt;
+      ASSERT_EQ(drawPlan(room).rooms.size(), 1u);
+      EXPECT_NEAR(drawPlan(room).rooms[0].area, plan.rooms[number - 1].area, 0.02);
+    }
+  }
+}
+
+TEST(Crop, TheMarginOfARoomGrowsItsOutlineAndShrinksItsColumns)
+{
+  FloorPlan plan;
+  PlanRoom room;
+  const auto closed = [](const Eigen::Matrix2Xd& line) {
+    Polyline polyline(2, line.cols() + 1);
+    polyline << line, line.col(0);
+    return polyline;
+  };
+  room.outline = closed(outline({{0, 0}, {4, 0}, {4, 3}, {0, 3}}));
+  room.columns = {closed(outline({{1, 1}, {1, 2}, {2, 2}, {2, 1}}))};
+  plan.rooms = {room};
+  for (const double margin : {0.0, 0.1, 0.45}) {
+    const CropRegion region = regionOfRoom(plan, {1, margin});
+    ASSERT_EQ(region.outlines.size(), 2u);
+    EXPECT_NEAR(areaOf(region.outlines[0]), (4 + 2 * margin) * (3 + 2 * margin), 1e-6);
+    EXPECT_NEAR(areaOf(region.outlines[1]), std::pow(1 - 2 * margin, 2), 1e-6);
+    EXPECT_NO_THROW(validateCropRegion(region));
+  }
+  EXPECT_EQ(regionOfRoom(plan, {1, 0.6}).outlines.size(), 1u); // nothing of the column is left
+  for (const RoomChoice& bad : {RoomChoice{0}, RoomChoice{2}, RoomChoice{1, -0.1}, RoomChoice{1, NAN}})
+    EXPECT_THROW(regionOfRoom(plan, bad), std::invalid_argument);
 }
 } // namespace

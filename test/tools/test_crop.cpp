@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "deliverables/models.h"
+#include "deliverables/plan_shapes.h"
 #include "tools/cloud_tool.h"
 #include <fresco/io/image_io.h>
 #include <fresco/io/mesh_io.h>
@@ -45,6 +46,24 @@ TEST_F(Crop, MeshesAndModelsOfAllFormats)
   EXPECT_EQ(readTexturedMesh(path("cut_model.glb")).atlases.size(), 1u);
   ASSERT_EQ(run(path("model.glb") + " " + path("bare.ply") + " -above -1"), 0) << errors();
   EXPECT_EQ(readMesh(path("bare.ply")).faceCount(), 32);
+}
+
+TEST_F(Crop, RoomsOfMeshesAndClouds)
+{
+  const TriangleMesh rooms = test::twoRooms();
+  writeMesh(path("rooms.ply"), rooms);
+  writePoints(path("rooms.pcd"), test::scanOf(rooms, 3000, 0.002));
+  ASSERT_EQ(run(path("rooms.ply") + " " + path("room.ply") + " -room 2"), 0) << errors();
+  EXPECT_GT(readMesh(path("room.ply")).vertices.row(0).minCoeff(), 4.0);
+  ASSERT_EQ(run(path("rooms.pcd") + " " + path("room.pcd") + " -room 2 -margin 0.03"), 0) << errors();
+  const PointSet room = readPoints(path("room.pcd"));
+  EXPECT_GT(room.points.row(0).minCoeff(), 4.0);
+  EXPECT_GT(room.size(), 3000 * 2 * 3 * 3); // floor and ceiling, and its walls
+  expectFailure(path("rooms.ply") + " " + path("result.ply") + " -room 3", 1);
+  EXPECT_NE(errors().find("rooms.ply: crop: room 3 of 2 rooms"), std::string::npos) << errors();
+  expectFailure(path("rooms.ply") + " " + path("result.ply") + " -room 1 -above 0", 2);
+  expectFailure(path("rooms.ply") + " " + path("result.ply") + " -room 0", 2);
+  expectFailure(path("rooms.ply") + " " + path("result.ply") + " -room 1 -height 9", 1);
 }
 
 TEST_F(Crop, BadInputEndsWithOneLineAndNoFile)

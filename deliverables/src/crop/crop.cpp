@@ -7,7 +7,7 @@
 namespace fresco {
 using namespace deliverables;
 namespace {
-/// Points of a plane: normal . point = offset, in the mesh's coordinates.
+/// Points of a plane: normal . point = offset.
 struct Plane {
   Eigen::Vector3d normal;
   double offset;
@@ -26,16 +26,16 @@ struct Between {
   }
 };
 
-/// Splits faces along planes.
+/// Splits faces along planes of the region's frame.
 class Splitter {
 public:
-  explicit Splitter(TexturedMesh& model)
-      : model_(model), textured_(model.texcoord_faces.cols() > 0), vertices_(model.mesh.vertexCount()),
-        texcoords_(model.texcoords.cols())
+  Splitter(TexturedMesh& model, const Eigen::Isometry3d& T_region_mesh)
+      : model_(model), T_region_mesh_(T_region_mesh), textured_(model.texcoord_faces.cols() > 0),
+        vertices_(model.mesh.vertexCount()), texcoords_(model.texcoords.cols())
   {
     const TriangleMesh& mesh = model.mesh;
     for (Index v = 0; v < vertices_; ++v)
-      places_.emplace_back(mesh.vertices.col(v).cast<double>());
+      places_.emplace_back(T_region_mesh * mesh.vertices.col(v).cast<double>());
     tolerance_ = 4e-7 * mesh.vertices.cwiseAbs().maxCoeff(); // what float keeps of a coordinate
     for (Index f = 0; f < mesh.faceCount(); ++f)
       faces_.push_back({mesh.faces.col(f), textured_ ? model.texcoord_faces.col(f).eval() : Eigen::Vector3i(-1, -1, -1),
@@ -173,7 +173,7 @@ private:
   void fillVertex(Index v, const Between& between)
   {
     TriangleMesh& mesh = model_.mesh;
-    mesh.vertices.col(v) = places_[v].cast<float>();
+    mesh.vertices.col(v) = (T_region_mesh_.inverse() * places_[v]).cast<float>();
     if (mesh.normals.cols() > 0)
       mesh.normals.col(v) = between.of(mesh.normals).stableNormalized();
     if (mesh.colors.cols() > 0)
@@ -183,6 +183,7 @@ private:
   }
 
   TexturedMesh& model_;
+  Eigen::Isometry3d T_region_mesh_; ///< without the mesh's origin, as seen in the region
   bool textured_;
   Index vertices_, texcoords_; ///< that the model came with
   double tolerance_;
@@ -196,9 +197,9 @@ private:
 void splitAlong(const CropRegion& region, TexturedMesh& model)
 {
   constexpr double far = 1e300;
-  const Eigen::Vector3d origin = model.mesh.origin;
+  const Eigen::Vector3d origin = region.T_region_world * model.mesh.origin;
   const Eigen::AlignedBox2d everywhere(Eigen::Vector2d(-far, -far), Eigen::Vector2d(far, far));
-  Splitter splitter(model);
+  Splitter splitter(model, Eigen::Isometry3d(region.T_region_world.linear()));
   for (const double height : {region.low, region.high})
     if (std::isfinite(height))
       splitter.split({Eigen::Vector3d::UnitZ(), height - origin.z()}, everywhere);

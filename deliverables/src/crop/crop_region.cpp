@@ -70,8 +70,9 @@ void validateCropRegion(const CropRegion& region)
   }
 }
 
-bool isInside(const CropRegion& region, const Eigen::Vector3d& point)
+bool isInside(const CropRegion& region, const Eigen::Vector3d& world)
 {
+  const Eigen::Vector3d point = region.T_region_world * world;
   if (!(point.z() >= region.low && point.z() <= region.high))
     return false;
   bool inside = region.outlines.empty();

@@ -2,6 +2,7 @@
 #include "drawing/drawing.h"
 #include <cmath>
 #include <fresco/core/require.h>
+#include <fresco/deliverables/core/model_file.h>
 #include <iomanip>
 #include <opencv2/imgproc.hpp>
 #include <sstream>
@@ -166,15 +167,16 @@ ScaledPicture planPicture(const FloorPlan& plan, double pixel)
 
 ScaledPicture orthophoto(const TexturedMesh& model, const FloorPlan& plan, double pixel)
 {
-  validateTexturedMesh(model);
   const TriangleMesh& mesh = model.mesh;
-  require(!model.atlases.empty() || mesh.colors.cols() > 0, "orthophoto: the model has neither texture nor colours");
+  const bool textured = isTextured(model);
+  textured ? validateTexturedMesh(model) : validateMesh(mesh);
+  require(textured || mesh.colors.cols() > 0, "orthophoto: the model has neither texture nor colours");
   DownwardView view(plan, pixel);
   for (Index f = 0; f < mesh.faceCount(); ++f) {
     Vector3d corners[3];
     for (int k = 0; k < 3; ++k)
       corners[k] = view.place(faceCorner(mesh, f, k) + mesh.origin);
-    if (const int atlas = model.face_atlas[f]; atlas >= 0) {
+    if (const int atlas = textured ? model.face_atlas[f] : -1; atlas >= 0) {
       Eigen::Matrix<double, 2, 3> at;
       for (int k = 0; k < 3; ++k)
         at.col(k) = model.texcoords.col(model.texcoord_faces(k, f)).cast<double>();

@@ -196,7 +196,7 @@ PlanFrame findFrame(const Points& points, const PlanOptions& options, const Leve
   return frame;
 }
 
-/// Height of the cut without/// Height of the cut without the origin; the range of a refusal is that of the model.
+/// Height of the cut without the origin; the range of a refusal is that of the model.
 Storey storeyOf(const LevelSamples& level, const PlanOptions& options, double origin)
 {
   const auto rounded = [&](double z) { return std::round(1000 * (z + origin)) / 1000 + 0.0; }; // no -0
