@@ -162,7 +162,9 @@ ModelReport buildModel(const ModelFolders& folders, const ModelOptions& options,
   StageLog log(job.files.work, inputs, options.resume, progress);
   log.shareWith(ranks);
   if (!job.input.video.empty()) {
-    log.run({"video", "", {job.files.video}, [&](const Progress& step) { return takeVideoFrames(job, step); }});
+    log.run({"video", "", {job.files.video}, [&](const Progress& step) {
+               return takeVideoFrames(job.input, job.files, options.threads, step);
+             }});
     useVideoFrames(job.input, job.files.video);
   }
   for (const Stage& stage : stagesOf(job))

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "plan.h"
 #include "input/standpoint.h"
+#include "stages/video.h"
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -49,9 +50,7 @@ double pointsOf(const std::string& file)
       points = std::atof(head.c_str() + at + std::strlen(key));
   return holdsFaces(file) ? std::clamp(10 * points, 3e5, 4e6) : points; // spread over them: stages/cloud.cpp
 }
-} // namespace
 
-namespace {
 /// Vertices of a surface of scans: what one of them sees, counted in coarse boxes, and n about n^(1/3) times as much, since they overlap.
 double verticesOfScans(const Job& job)
 {
@@ -98,13 +97,19 @@ ModelPlan estimate(const Job& job)
     }
   for (const PictureFile& picture : input.pictures())
     picture_bytes += bytesOf(picture.file);
+  const double kept = input.video.empty() || input.rgbd ? 0 : framesToKeep(input.video);
+  const double photographs = double(input.unplaced.size()) + kept;
+  constexpr double found_a_photograph = 100, bytes_a_photograph = 2e5; // of a room; of a frame of a video
+  picture_bytes += bytes_a_photograph * kept;
+  const bool pictured = input.hasPictures() || kept > 0;
+  if (input.scans.empty() && !input.rgbd)
+    plan.points = input.sparse.empty() ? found_a_photograph * photographs : double(input.sparse.size());
   const double frames = input.rgbd ? double(input.rgbd->frames.size()) : 0;
   if (input.rgbd)
     plan.points = frames * input.rgbd->camera.width * input.rgbd->camera.height;
   // Seconds of one core and bytes, per item, of the runs in docs/measurements/model.md: true to a factor of two there.
   const double points = input.rgbd ? 0 : plan.points, vertices = verticesOf(job, points);
   const double scans = input.is_cloud || job.options.use_poses ? 0 : double(input.scans.size());
-  const double photographs = double(input.unplaced.size());
   const bool has_poses = input.rgbd && input.rgbd->has_poses;
   constexpr double most_painted = 2e7, most_averaged = 16; // points of a texture; a vertex
   double cpu = 9e-6 * points + 0.5 * scans * (scans - 1) + (has_poses ? 0.06 : 0.4) * frames + 1e-5 * vertices;
@@ -114,8 +119,8 @@ ModelPlan estimate(const Job& job)
   double later = 2e8 + 800 * vertices;
   if (job.options.until.empty()) {
     cpu += 2 + 1.2e-5 * vertices + 0.1 * photographs * std::min(photographs, 40.0);
-    cpu += input.hasPictures() ? 4e-6 * picture_bytes : 4e-5 * vertices + 6e-6 * std::min(points, most_painted);
-    later += input.hasPictures() ? 45 * std::min(picture_bytes, 1e8) : 250 * std::min(points, most_painted);
+    cpu += pictured ? 4e-6 * picture_bytes : 4e-5 * vertices + 6e-6 * std::min(points, most_painted);
+    later += pictured ? 45 * std::min(picture_bytes, 1e8) : 250 * std::min(points, most_painted);
     disk += 300 * vertices + 6 * picture_bytes;
   }
   plan.seconds = cpu / std::max(1.0, 0.7 * threadCount(job.options.threads));

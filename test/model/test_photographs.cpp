@@ -3,13 +3,18 @@
 #include "input/model_input.h"
 #include "photographs/program.h"
 #include "photographs/structure_from_motion.h"
+#include "stages/video.h"
 #include "test_data.h"
 #include "tools/small_room.h"
 #include <chrono>
+#include <filesystem>
+#include <fresco/core/require.h>
 #include <fstream>
+#include <iomanip>
 #include <map>
 namespace fresco::model {
 namespace {
+namespace fs = std::filesystem;
 using Lines = std::vector<std::string>;
 
 Lines linesOf(const Lines& command, const std::string& log)
@@ -170,6 +175,47 @@ Image blotted(const CameraModel& camera, const Eigen::Isometry3d& T_camera_world
       std::fill_n(image.pixel(x, y), 3, test::blotted(at));
     }
   return image;
+}
+
+/// A film in which one frame of each half second is sharp, and the others of it smeared.
+TEST(Video, TheSharpestFrameOfEachWindowIsKept)
+{
+  if (findProgram("ffmpeg").empty()) {
+    std::cout << "*** SKIPPED: the program ffmpeg is not installed ***\n";
+    GTEST_SKIP();
+  }
+  constexpr int windows = 4, frames = 5; // of half a second, at ten a second
+  const std::string folder = test::scratchFolder();
+  makeFolder(folder + "/work");
+  for (int f = 0; f < windows * frames; ++f) {
+    const int window = f / frames, smear = f % frames == window ? 1 : 12; // pixels
+    Image image(320, 240);
+    for (int y = 0; y < image.height; ++y)
+      for (int x = 0; x < image.width; ++x)
+        for (int k = 0; k < 3; ++k)
+          image.pixel(x, y)[k] =
+              test::blotted({0.005 * (x / smear * smear), 0.005 * (y / smear * smear), 0.1 * window});
+    for (int pass = 0; pass < (smear > 1 ? 20 : 0); ++pass) // no edges of blocks
+      for (int y = 0; y + 1 < image.height; ++y)
+        for (int x = 0; x + 1 < image.width; ++x)
+          for (int k = 0; k < 3; ++k)
+            image.pixel(x, y)[k] = (image.pixel(x, y)[k] + image.pixel(x + 1, y)[k] + 2 * image.pixel(x, y + 1)[k]) / 4;
+    writeImage(folder + "/" + std::to_string(100 + f) + ".png", image);
+  }
+  const std::string video = folder + "/walk.avi";
+  linesOf({findProgram("ffmpeg"), "-nostdin", "-framerate", "10", "-start_number", "100", "-i", folder + "/%d.png",
+           "-c:v", "mjpeg", "-q:v", "2", video},
+          folder + "/log.txt");
+  EXPECT_NEAR(framesToKeep(video), windows, 2.0);
+  ModelInput input;
+  input.video = video;
+  const ModelFiles files{folder};
+  const auto figures = takeVideoFrames(input, files, 1, {});
+  EXPECT_NEAR(figures["sharpest"].get<int>(), windows, 1);
+  useVideoFrames(input, files.video);
+  for (int w = 0; w < windows; ++w) // frame 0 of window 0, 1 of 1 ...
+    EXPECT_TRUE(fs::exists(concat(files.video, "/", std::setfill('0'), std::setw(6), w * frames + w, ".jpg"))) << w;
+  EXPECT_EQ(Index(input.unplaced.size()), figures["sharpest"].get<Index>());
 }
 
 TEST(StructureFromMotion, PhotographsOfARoomArePlaced)

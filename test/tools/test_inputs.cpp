@@ -144,6 +144,7 @@ TEST_F(Inputs, PhotographsOfAModelGiveARoughRoom)
   const Outcome outcome = run(folder, "model x out -size 160x120");
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   expectRoom(folder + "/out/mesh.ply", {0, 0, 0}, 0.3);
+  EXPECT_NE(outcome.err.find("\nwarning: sparse: "), std::string::npos) << outcome.err;
   EXPECT_TRUE(fs::exists(folder + "/out/model.glb"));
 }
 

@@ -152,6 +152,20 @@ TEST(ModelInputs, PhotographsAloneArePlacedInStepsThatResume)
   EXPECT_GT(cameras["cpu_seconds"].get<double>(), 0.04); // counting in the program alone
 }
 
+TEST(ModelInputs, AVideoIsJudgedByItsLength)
+{
+  const std::string folder = scratchFolder();
+  makeFolder(folder + "/bin");
+  put(folder + "/bin/ffmpeg", "#!/bin/sh\necho '  Duration: 00:01:10.50, start: 0.0' >&2\nexit 1\n");
+  fs::permissions(folder + "/bin/ffmpeg", fs::perms::owner_all);
+  put(folder + "/walk.mp4", "frames");
+  const FirstInPath path(folder + "/bin");
+  const Outcome outcome = run(folder, "model walk.mp4 out -dry_run -threads 2");
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("; 14000 raw points; about "), std::string::npos) << outcome.out; // of 142 frames
+  EXPECT_FALSE(fs::exists(folder + "/out"));
+}
+
 TEST(ModelInputs, VideoWithoutPosesIsTracked)
 {
   const std::string folder = scratchFolder();

@@ -46,9 +46,9 @@ std::string readablePoints() { return readableExtensions(FileKind::points); }
 
 std::string roughOnly()
 {
-  return "photographs alone give a rough model of the points that structure from motion finds: for a fine one run "
-         "colmap's "
-         "patch_match_stereo and stereo_fusion (they want a CUDA card) and give the project folder, or add scans";
+  return "photographs alone give a rough model, whose size in metres is not known, of the points that structure from "
+         "motion finds: for a fine one run colmap's patch_match_stereo and stereo_fusion (they want a CUDA card) and "
+         "give the project folder, or add scans";
 }
 
 void takeScans(ModelInput& input, const Survey& found, const std::vector<std::string>& names)

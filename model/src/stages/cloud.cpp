@@ -16,6 +16,7 @@
 #include <fresco/io/point_io.h>
 #include <fresco/io/pose_file.h>
 #include <fresco/search/neighbors.h>
+#include <iomanip>
 namespace fresco::model {
 namespace {
 constexpr double least_consistent = 0.97; ///< of pairs of neighbours; beside edges and in noise some disagree rightly
@@ -249,6 +250,10 @@ Figures pointsFromCloud(const Job& job, const Progress& progress)
   placed.write(0, cloud);
   writePoses(files.poses,
              input.poses.empty() ? std::vector<Pose>{Eigen::Matrix4d(Eigen::Matrix4d::Identity())} : input.poses);
+  if (constexpr double dense = 100; extent.maxCoeff() < dense * spacing) // points across, to show what stands in a room
+    warnings.push_back(concat(std::setprecision(2), "sparse: ", cloud.size(), " points, about ", spacing,
+                              " apart in a cloud of ", extent.maxCoeff(),
+                              ": between them the surface is a guess, off by up to twice as much"));
   writeFile(files.cell, concat(options.cell > 0 ? options.cell : cellOf(spacing, cloud.points), "\n"));
   Figures figures{
       {"registration", "none: one cloud"}, {"raw_points", raw}, {"points", cloud.size()}, {"point_spacing", spacing}};

@@ -2,6 +2,7 @@
 #include "stages/video.h"
 #include "photographs/program.h"
 #include <algorithm>
+#include <cstdio>
 #include <filesystem>
 #include <fresco/core/parallel.h>
 #include <fresco/core/require.h>
@@ -34,6 +35,24 @@ void requireVideoProgram(const std::string& video)
                 "ffmpeg)");
 }
 
+double framesToKeep(const std::string& video)
+{
+  double frames = 0;
+  const auto hear = [&](const std::string& line) {
+    constexpr const char* said = "Duration: %d:%d:%d";
+    int hours = 0, minutes = 0, seconds = 0;
+    if (const std::size_t at = line.find("Duration: ");
+        at != std::string::npos && std::sscanf(line.c_str() + at, said, &hours, &minutes, &seconds) == 3)
+      frames = windows_a_second * (3600.0 * hours + 60.0 * minutes + seconds + 1);
+  };
+  if (const std::string program = findProgram("ffmpeg"); !program.empty())
+    try {
+      runProgram({program, "-hide_banner", "-nostdin", "-i", video}, "/dev/null", hear, [] {});
+    } catch (const std::runtime_error&) { // without an output that is an error to it
+    }
+  return frames;
+}
+
 double sharpness(const Image& image)
 {
   double sum = 0;
@@ -46,9 +65,9 @@ double sharpness(const Image& image)
   return sum / std::max(1.0, double(image.width) * image.height);
 }
 
-Figures takeVideoFrames(const Job& job, const Progress& progress)
+nlohmann::ordered_json takeVideoFrames(const ModelInput& input, const ModelFiles& files, int threads,
+                                       const Progress& progress)
 {
-  const auto& [input, files, options, stages, ranks] = job;
   requireVideoProgram(input.video);
   fs::remove_all(files.video);
   makeFolder(files.video);
@@ -65,7 +84,7 @@ Figures takeVideoFrames(const Job& job, const Progress& progress)
     return {{"frames", all.size()}};
   std::vector<double> values(all.size());
   const auto look = [&](Index i) { values[i] = sharpness(readImage(files.video + "/" + all[i])); };
-  parallelFor(all.size(), options.threads, look, 1);
+  parallelFor(all.size(), threads, look, 1);
   constexpr std::size_t window = tried_a_second / windows_a_second;
   std::size_t kept = 0;
   for (std::size_t begin = 0; begin < all.size(); begin += window, ++kept) {
