@@ -13,10 +13,7 @@
 #include "io/points/text_scans.h"
 #include "io/points/xyz.h"
 #include <algorithm>
-#include <fresco/core/pcl_cloud_table.h>
 #include <fresco/io/mesh_io.h>
-#include <fresco/io/scan_writer.h>
-#include <pcl/PCLPointCloud2.h>
 namespace fresco {
 namespace io {
 namespace {
@@ -89,19 +86,6 @@ Format scansFormat(const char* name, const char* extension,
   Format format{name, {extension}, readScans<open>, write};
   format.open_scans = open;
   return format;
-}
-
-/// One scan, in the frame of its sensor where that is known.
-void writeE57Points(const std::string& path, const PointTable& points, bool)
-{
-  PlacedCloud scan{"scan 1", {}, {}};
-  PointTable table = points;
-  if (points.sensor) {
-    scan.T_file_scan = Eigen::Isometry3d(Eigen::Translation3d(points.sensor->position));
-    moveOrigin(table, points.sensor->position);
-  }
-  scan.cloud.cloud = cloudOfTable(std::move(table));
-  writeScans(path, {scan});
 }
 } // namespace
 

@@ -110,7 +110,6 @@ Points PointTree::points() const
 }
 
 namespace {
-
 /// The squared distances of a leaf are offered to a collector, which keeps what is closer than its `bound`.
 struct NearestOne {
   float bound;

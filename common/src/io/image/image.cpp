@@ -34,7 +34,10 @@ const ImageFormat& formatOf(std::string_view bytes)
   for (const ImageFormat& format : formats)
     if (std::any_of(format.marks.begin(), format.marks.end(), begins))
       return format;
-  throw std::runtime_error("no PNG, JPEG, TIFF, BMP or WebP image");
+  throw std::runtime_error(begins("v/1\x01")
+                               ? "OpenEXR is not read: 'oiiotool IN.exr --ch Z -o OUT.tif' (Debian's package "
+                                 "openimageio-tools) makes a TIFF of floats of its channel Z"
+                               : "no PNG, JPEG, TIFF, BMP or WebP image");
 }
 
 /// The size that the header tells, which may be packed into so few bytes: checked before room is made for the pixels.

@@ -237,7 +237,6 @@ void forEachSample(const Table& table, const Layout& layout, const Put& put)
           put(x0 + x, y0 + y, s + part / across / down, samples[(std::size_t{y} * layout.part_width + x) * step + s]);
   }
 }
-
 } // namespace
 
 ImageSize tiffSize(std::string_view bytes)

@@ -41,6 +41,9 @@ FRESCO_EXPORT std::vector<std::pair<std::string, std::string>> parseMtl(std::str
 /// `v` lines (with colours) and `vn` lines.
 FRESCO_EXPORT void writeObjVertices(OutputFile& file, const TriangleMesh& mesh);
 
+/// The `f` line of a face. @param texcoords of its corners; null: none
+FRESCO_EXPORT void writeObjFace(OutputFile& file, const TriangleMesh& mesh, Index f, const int* texcoords = nullptr);
+
 /// Vertices and faces.
 void writeObj(const std::string& path, const TriangleMesh& mesh);
 } // namespace fresco::io

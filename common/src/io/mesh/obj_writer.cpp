@@ -21,6 +21,18 @@ void writeObjVertices(OutputFile& file, const TriangleMesh& mesh)
     file.write(textOf("vn ", mesh.normals(0, v), ' ', mesh.normals(1, v), ' ', mesh.normals(2, v), '\n'));
 }
 
+void writeObjFace(OutputFile& file, const TriangleMesh& mesh, Index f, const int* texcoords)
+{
+  file.write("f");
+  for (int k = 0; k < 3; ++k) {
+    const int vertex = mesh.faces(k, f) + 1;
+    file.write(texcoords ? textOf(' ', vertex, '/', texcoords[k] + 1) : textOf(' ', vertex));
+    if (mesh.normals.cols() > 0)
+      file.write(textOf(texcoords ? "/" : "//", vertex));
+  }
+  file.write("\n");
+}
+
 void writeObj(const std::string& path, const TriangleMesh& mesh)
 {
   validateMesh(mesh);
@@ -29,14 +41,8 @@ void writeObj(const std::string& path, const TriangleMesh& mesh)
                   mesh.fields.size() > 1 ? " ..." : ""));
   OutputFile file(path);
   writeObjVertices(file, mesh);
-  for (Index f = 0; f < mesh.faceCount(); ++f) {
-    file.write("f");
-    for (int k = 0; k < 3; ++k) {
-      const int vertex = mesh.faces(k, f) + 1;
-      file.write(mesh.normals.cols() > 0 ? textOf(' ', vertex, "//", vertex) : textOf(' ', vertex));
-    }
-    file.write("\n");
-  }
+  for (Index f = 0; f < mesh.faceCount(); ++f)
+    writeObjFace(file, mesh, f);
   file.commit();
 }
 } // namespace fresco::io

@@ -332,9 +332,7 @@ PlyContent readElements(Source source, const PlyHeader& header, bool textured)
     std::tie(content.vertices.width, content.vertices.height) = std::pair(camera.width, camera.height);
   return content;
 }
-} // namespace
 
-namespace {
 PlyContent parse(std::string_view content, bool textured)
 {
   const PlyHeader header = parsePlyHeader(content);

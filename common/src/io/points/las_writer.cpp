@@ -145,7 +145,6 @@ private:
   std::vector<Column> extra_;
   std::size_t record_ = 0;
 };
-
 } // namespace
 
 void writeLas(const std::string& path, PointTable table)

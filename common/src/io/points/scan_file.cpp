@@ -22,7 +22,6 @@ void checkScan(const io::ScanReader& reader, Index scan)
   if (scan < 0 || scan >= count)
     throw std::runtime_error(concat("there is no scan ", scan + 1, ", the file has ", count));
 }
-
 } // namespace
 
 std::string ScanPath::name() const { return scan < 0 ? file : concat(file, " scan ", scan + 1); }

@@ -68,7 +68,6 @@ try {
   *error = reason.what();
   return false;
 }
-
 } // namespace
 
 tinygltf::Model loadGltf(std::string_view content, const std::string& folder)

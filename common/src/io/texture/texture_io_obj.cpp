@@ -18,19 +18,9 @@ namespace fs = std::filesystem;
 /// @param faces see facesByAtlas()
 void writeFaces(OutputFile& file, const TexturedMesh& model, const Groups& faces, int atlas)
 {
-  const bool has_normals = model.mesh.normals.cols() > 0;
   for (Index i = faces.begin[atlas + 1]; i < faces.begin[atlas + 2]; ++i) {
     const int f = faces.list[i];
-    file.write("f");
-    for (int k = 0; k < 3; ++k) {
-      const int vertex = model.mesh.faces(k, f) + 1;
-      file.write(textOf(' ', vertex));
-      if (atlas >= 0)
-        file.write(textOf('/', model.texcoord_faces(k, f) + 1));
-      if (has_normals)
-        file.write(textOf(atlas >= 0 ? "/" : "//", vertex));
-    }
-    file.write("\n");
+    writeObjFace(file, model.mesh, f, atlas < 0 ? nullptr : model.texcoord_faces.col(f).data());
   }
 }
 

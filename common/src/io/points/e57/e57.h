@@ -6,4 +6,7 @@ namespace fresco::io {
 /// normals (extension), row and column, and whatever else the prototype has. Page checksums are verified.
 /// @throws std::runtime_error
 std::unique_ptr<ScanReader> openE57(const std::string& path);
+
+/// One scan, in the frame of its sensor where that is known.
+void writeE57Points(const std::string& path, const PointTable& points, bool compressed);
 } // namespace fresco::io

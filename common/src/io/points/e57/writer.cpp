@@ -333,6 +333,18 @@ void fresco::writeScans(const std::string& path, const std::vector<PlacedCloud>&
   builder.write(path);
 }
 
+void fresco::io::writeE57Points(const std::string& path, const PointTable& points, bool)
+{
+  PlacedCloud scan{"scan 1", {}, {}};
+  PointTable table = points;
+  if (points.sensor) {
+    scan.T_file_scan = Eigen::Isometry3d(Eigen::Translation3d(points.sensor->position));
+    moveOrigin(table, points.sensor->position);
+  }
+  scan.cloud.cloud = cloudOfTable(std::move(table));
+  writeScans(path, {scan});
+}
+
 std::vector<fresco::PlacedCloud> fresco::readPlacedClouds(const std::string& path)
 {
   std::vector<PlacedCloud> clouds;
