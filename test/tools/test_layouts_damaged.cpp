@@ -3,6 +3,8 @@
 #include "test_data.h"
 #include "tools/layout_source.h"
 #include <functional>
+#include <numeric>
+#include <unistd.h>
 namespace fresco::test {
 namespace {
 /// One thing wrong with a layout.
@@ -44,7 +46,7 @@ void scaleDepths(const std::string& folder, double factor)
     }
 }
 
-const std::vector<Damage> damages = {
+const std::vector<Damage> damages_of_points = {
     {"EmptyFolder",
      "flat_pcd",
      [](const auto& x) {
@@ -102,6 +104,15 @@ const std::vector<Damage> damages = {
      "colmap",
      [](const auto& x) { fs::remove(x + "/images/view_2.png"); },
      {"view_2.png: no such photograph"}},
+    {"NotAPoint", "one_cloud", [](const auto& x) { put(x + "/cloud.pcd", "nonsense"); }, {"cloud.pcd"}},
+    {"TrajectoryShort",
+     "cloud_trajectory",
+     [](const auto& x) { put(x + "/trajectory.txt", "1 2\n"); },
+     {"trajectory.txt: wants lines of x y z"}},
+    {"TimesInAnotherOrder",
+     "cloud_times",
+     [](const auto& x) { put(x + "/trajectory.txt", "2 0 0 0\n1 1 1 1\n"); },
+     {"trajectory.txt: its lines are not in the order of time", "sort them"}},
     {"ExportPanoramaGone",
      "scanner_export",
      [](const auto& x) { fs::remove(x + "/pano/00001-pano.jpg"); },
@@ -110,6 +121,9 @@ const std::vector<Damage> damages = {
      "scanner_export",
      [](const auto& x) { replaceIn(x + "/pano-poses.csv", "pano_ori_w", "angle"); },
      {"pano-poses.csv", "pano_ori_w"}},
+};
+
+const std::vector<Damage> damages_of_frames = {
     {"SevenScenesIntrinsics",
      "seven_scenes",
      [](const auto& x) { fs::remove(x + "/camera-intrinsics.txt"); },
@@ -165,6 +179,25 @@ const std::vector<Damage> damages = {
      "open3d",
      [](const auto& x) { scaleDepths(x + "/depth", 0.001); },
      {"depth/000000.png: a median depth of", "units of 1 mm"}},
+    {"DepthsAsOpenExr",
+     "open3d",
+     [](const auto& x) {
+       for (const auto& file : listing(x + "/depth")) {
+         fs::remove(file);
+         put(fs::path(file).replace_extension(".exr"), std::string("v/1\x01\2\0\0\0", 8));
+       }
+     },
+     {"depth/000000.exr: OpenEXR is not read", "oiiotool"}},
+    {"SevenScenesDepthTimesThousandth",
+     "seven_scenes",
+     [](const auto& x) { scaleDepths(x, 0.001); },
+     {"frame-100000.depth.png: a median depth of", "units of 1 mm"}},
+    {"PolycamSizesDisagree",
+     "polycam",
+     [](const auto& x) {
+       writeImage(firstIn(x + "/keyframes/depth"), Image16{50, 50, std::vector<std::uint16_t>(2500, 1000)});
+     },
+     {"keyframes/cameras: does not fit"}},
     {"RedwoodOtherSize",
      "redwood",
      [](const auto& x) {
@@ -232,14 +265,23 @@ const std::vector<Damage> damages = {
        put(x + "/undistorted_camera_parameters/house.conf", "intrinsics_matrix 1 0 1 0 1 1 0 0 1\nscan a b 1 2\n");
      },
      {"house.conf: a line 'scan' wants"}},
-    {"NotAPoint", "one_cloud", [](const auto& x) { put(x + "/cloud.pcd", "nonsense"); }, {"cloud.pcd"}},
 };
+
+const std::vector<Damage>& damages()
+{
+  static const std::vector<Damage> all = [] {
+    std::vector<Damage> both = damages_of_points;
+    both.insert(both.end(), damages_of_frames.begin(), damages_of_frames.end());
+    return both;
+  }();
+  return all;
+}
 
 class OneThingWrong : public Inputs, public testing::WithParamInterface<std::size_t> {};
 
 TEST_P(OneThingWrong, IsOneLineWithFileAndCure)
 {
-  const Damage& damage = damages[GetParam()];
+  const Damage& damage = damages()[GetParam()];
   const std::string folder = laidOut(damage.layout);
   damage.harm(folder + "/x");
   const Outcome outcome = run(folder, "model x out -dry_run");
@@ -250,7 +292,48 @@ TEST_P(OneThingWrong, IsOneLineWithFileAndCure)
   EXPECT_FALSE(fs::exists(folder + "/out"));
 }
 
-INSTANTIATE_TEST_SUITE_P(All, OneThingWrong, testing::Range(std::size_t{0}, damages.size()),
-                         [](const auto& info) { return damages[info.param].name; });
+INSTANTIATE_TEST_SUITE_P(All, OneThingWrong, testing::Range(std::size_t{0}, damages().size()),
+                         [](const auto& info) { return damages()[info.param].name; });
+
+/// Lists whose rows lie in another order say the same.
+TEST_F(Inputs, FramesInAnotherOrder)
+{
+  struct List {
+    const char *layout, *file;
+    std::size_t header, rows; ///< lines of the head, of an entry
+  };
+  for (const List& list : {List{"open3d", "trajectory.log", 0, 5}, List{"stray", "odometry.csv", 1, 1},
+                           List{"tum", "groundtruth.txt", 0, 1}, List{"tum", "rgb.txt", 0, 1}}) {
+    const std::string folder = laidOut(list.layout), file = folder + "/x/" + list.file;
+    ASSERT_EQ(run(folder, "model x out -use_poses -until points -cell 0.1").status, 0);
+    const std::string before = get(folder + "/out/poses.txt");
+    std::vector<std::string> lines;
+    std::istringstream text(get(file));
+    for (std::string line; std::getline(text, line);)
+      lines.push_back(line + "\n");
+    std::rotate(lines.begin() + list.header, lines.begin() + list.header + 3 * list.rows, lines.end());
+    put(file, std::accumulate(lines.begin(), lines.end(), std::string()));
+    ASSERT_EQ(run(folder, "model x out -use_poses -until points -cell 0.1").status, 0);
+    EXPECT_EQ(get(folder + "/out/poses.txt"), before) << list.file;
+  }
+}
+
+/// As another user than root, who may read everything.
+TEST_F(Inputs, PermissionIsMissing)
+{
+  const std::string folder = laidOut("open3d");
+  const std::string another = ::geteuid() == 0 ? "setpriv --reuid=65534 --clear-groups " : "";
+  if (run(folder, "model x out -dry_run", another).status != 0)
+    GTEST_SKIP() << "no user who may run the tools, but not read everything";
+  for (const char* name : {"/x/depth", "/x/camera_intrinsic.json", "/x"}) {
+    const fs::perms usual = fs::status(folder + name).permissions();
+    fs::permissions(folder + name, fs::perms::none);
+    const Outcome outcome = run(folder, "model x out -dry_run", another);
+    fs::permissions(folder + name, usual);
+    EXPECT_EQ(outcome.status, 1);
+    EXPECT_NE(outcome.err.find(std::string(name).substr(1) + ": "), std::string::npos) << outcome.err;
+    EXPECT_NE(outcome.err.find("Permission denied"), std::string::npos) << outcome.err;
+  }
+}
 } // namespace
 } // namespace fresco::test

@@ -24,7 +24,7 @@ bool isOfSort(const std::string& name, const std::string& sort, bool alone)
   if (sort == "<pictures>")
     return isOneOf(kind, {".jpg", ".jpeg", ".png", ".tif", ".tiff"});
   if (sort == "<depths>")
-    return isOneOf(kind, {".png", ".tif", ".tiff", ".pfm", ".npy"});
+    return isOneOf(kind, {".png", ".tif", ".tiff", ".pfm", ".npy", ".exr"});
   if (sort == "<videos>")
     return isOneOf(kind, {".mp4", ".mov", ".avi", ".mkv", ".m4v", ".webm"});
   const bool notes =
@@ -58,7 +58,9 @@ Survey::Survey(std::string path) : path_(std::move(path)), folder_(path_)
     return;
   }
   fs::recursive_directory_iterator entry(path_, fs::directory_options::follow_directory_symlink, error), end;
+  std::string last = path_;
   for (; !error && entry != end; entry.increment(error)) {
+    last = entry->path().string();
     const std::string name = entry->path().lexically_relative(path_).string();
     const bool hidden = entry->path().filename().string()[0] == '.' || name == "__MACOSX";
     if (hidden || entry.depth() >= levels)
@@ -70,7 +72,8 @@ Survey::Survey(std::string path) : path_(std::move(path)), folder_(path_)
       folders_.insert(folder);
   }
   if (error)
-    throw std::runtime_error(path_ + ": cannot be listed: " + error.message());
+    throw std::runtime_error(last + ": cannot be listed (" + error.message() +
+                             "): give the right to read, as by chmod -R u+rX");
   std::sort(files_.begin(), files_.end(), isNaturallyBefore);
 }
 

@@ -2,8 +2,10 @@
 // Folders of Open3D's reconstruction system: color/, depth/, camera_intrinsic.json, trajectory.log (Choi et al. 2015, "Robust
 // Reconstruction of Indoor Scenes"). Those of Redwood are the same without the camera.
 #include "input/frame_files.h"
+#include <algorithm>
 #include <fresco/core/require.h>
 #include <fresco/io/file.h>
+#include <map>
 #include <nlohmann/json.hpp>
 namespace fresco::model {
 namespace {
@@ -26,7 +28,8 @@ CameraModel cameraOf(const std::string& path)
   }
 }
 
-/// World from camera of each frame: per frame a line of three whole numbers and a 4x4 matrix. None where there is no such file.
+/// World from camera of each frame: per frame a line of three whole numbers and a 4x4 matrix. The first number is that of the
+/// frame, where they are n in a row; else the order of the file counts. None where there is no such file.
 /// @param frames how many poses are wanted @throws std::runtime_error naming the file if it has another number or is malformed
 std::vector<Pose> readPoseLog(const Survey& found, std::size_t frames)
 {
@@ -41,6 +44,7 @@ std::vector<Pose> readPoseLog(const Survey& found, std::size_t frames)
   if (rows.size() / 5 != frames)
     throw std::runtime_error(concat(path, ": ", rows.size() / 5, " poses for ", frames,
                                     " frames: complete it, or take it away and the frames are tracked"));
+  std::map<double, Pose> by_number;
   std::vector<Pose> poses;
   for (std::size_t k = 0; k < rows.size(); k += 5) {
     Eigen::Matrix4d T;
@@ -51,7 +55,10 @@ std::vector<Pose> readPoseLog(const Survey& found, std::size_t frames)
         T(r, c) = numberIn(path, rows[k + 1 + r][c]);
       }
     poses.push_back(rigidPose(path, T));
+    by_number[numberIn(path, rows[k][0])] = poses.back();
   }
+  if (by_number.size() == frames && by_number.rbegin()->first - by_number.begin()->first + 1 == double(frames))
+    std::transform(by_number.begin(), by_number.end(), poses.begin(), [](const auto& entry) { return entry.second; });
   return poses;
 }
 } // namespace
