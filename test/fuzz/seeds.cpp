@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "seeds.h"
+#include "common/float_files.h"
 #include "common/io/e57_file.h"
 #include "common/io/las_writer.h"
 #include "generator.h"
@@ -244,6 +245,10 @@ void writeSeeds(const std::string& folder)
   put("picture", "tiff", tiff());
   put("picture", "bmp", bmp());
   put("picture", "webp", webp());
+  const test::Floats metres{3, 2, {1, 1.5f, 2, 0, -1, 1e9f}};
+  put("picture", "pfm", test::pfmBytes(metres));
+  put("picture", "npy", test::npyBytes(metres));
+  put("picture", "depth_tiff", test::tiffBytes(metres));
   put("poses", "poses", written("poses.txt", [](const std::string& path) {
         writePoses(path, {Eigen::Matrix4d::Identity().eval(), Pose()});
       }));

@@ -202,7 +202,7 @@ void readPicture(Bytes bytes, const std::string& folder)
            "a picture of another size than its header tells");
   });
   readChecked(folder, [&] {
-    const Image16 image = readImage16(path);
+    const Image16 image = readDepthFile(path).image;
     expect(image.data.size() == std::size_t{1} * image.width * image.height, "a depth image without some pixels");
   });
 }
