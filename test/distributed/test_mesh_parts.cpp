@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "common/shapes.h"
 #include "mesh_parts.h"
+#include "mesh_parts/open_file.h"
 #include "test_data.h"
 #include "thread_ranks.h"
 #include <fresco/distributed/mesh_part.h>
+#include <fresco/io/file.h>
 #include <random>
 namespace {
 using namespace fresco;
@@ -101,6 +103,17 @@ TEST(MeshParts, HaveWhatTheirFacesUse)
 }
 
 // One rank cannot write: the others' files do not get their names, and older ones stay.
+TEST(MeshParts, LargePiecesLieWhereTheyBelong)
+{
+  const std::string path = test::scratchFolder() + "/file", begin = "begin";
+  std::string large(20u << 20, ' ');
+  for (std::size_t i = 0; i < large.size(); ++i)
+    large[i] = static_cast<char>(i * i >> 7);
+  writeFile(path, begin);
+  io::OpenFile(path, path).write(begin.size(), large.data(), large.size());
+  EXPECT_TRUE(readFile(path) == begin + large);
+}
+
 TEST(MeshParts, AllOrNone)
 {
   const std::string folder = test::scratchFolder();

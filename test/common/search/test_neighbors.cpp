@@ -2,6 +2,7 @@
 #include "filters/clouds.h"
 #include <algorithm>
 #include <fresco/filters/core/local_sampling.h>
+#include <fresco/search/batch_knn.h>
 #include <fresco/search/compressed_neighbor_lists.h>
 #include <fresco/search/neighbors.h>
 #include <numeric>
@@ -99,6 +100,26 @@ TEST(PointTree, ManyEqualPointsAndHugeCoordinatesEnd)
     EXPECT_EQ(lists.count(i), 8);
   EXPECT_TRUE(sampleAreas(tree).allFinite());
   EXPECT_GT(sampleAreas(tree).minCoeff(), 0);
+}
+
+TEST(PointTree, PointWithoutOthersInRangeIsItsOwnNeighbourAtNoDistance)
+{
+  Points points(3, 2);
+  points << 3e38f, -3e38f, 3e38f, -3e38f, 3e38f, -3e38f;
+  const PointTree tree(points);
+  BatchKnn group(tree);
+  group.enter(0, 1);
+  group.gather(group.expectedReach(2), 100);
+  for (Index i = 0; i < 2; ++i) {
+    group.nearest(i, 2);
+    int positions[2] = {-1, -1};
+    group.ordered(positions);
+    EXPECT_EQ(positions[0], i);
+    EXPECT_EQ(positions[1], i);
+    float sums[10];
+    group.sum(sums);
+    EXPECT_EQ(sums[9], 0.f) << "largest squared distance";
+  }
 }
 
 TEST(PointTree, ListsHoldThePointAndDoNotDependOnThreads)
