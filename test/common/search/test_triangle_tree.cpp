@@ -190,6 +190,7 @@ TEST(TriangleTree, ManyEqualTrianglesDoNotDegenerate)
   mesh.faces = Eigen::Vector3i(0, 1, 2).replicate(1, 20000);
   const TriangleTree tree(mesh);
   EXPECT_EQ(tree.closest({0.2, 0.2, 1.0}).face, 0);
+  EXPECT_GT(tree.memory(), mesh.faceCount() * sizeof(Eigen::Vector3i));
 }
 
 TEST(TriangleTree, Errors)
