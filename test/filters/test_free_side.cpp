@@ -111,6 +111,26 @@ TEST(FreeSide, OfAThingSeenFromAroundIsOutside)
   EXPECT_LT(wrongShare(found, thing.truth), 0.01);
 }
 
+/// A floor with a thing on it, seen from above, is no room: what stands there tells its side. The thing itself may be taken for one.
+TEST(FreeSide, OfAFloorIsWhereThingsStand)
+{
+  std::vector<Eigen::Vector3f> points, normals, seen;
+  addBox({1, 1, -2}, {2, 3, -1.3f}, false, points, normals);
+  std::mt19937 random(1);
+  std::uniform_real_distribution<float> uniform(0, 6);
+  while (seen.size() < 15000) // a third as dense as the box
+    if (const Eigen::Vector3f p(uniform(random), uniform(random), -2); p.x() < 1 || p.x() > 2 || p.y() < 1 || p.y() > 3)
+      seen.push_back(p);
+  const std::size_t floor = seen.size();
+  for (std::size_t i = 0; i < points.size(); ++i)
+    if (normals[i].z() >= 0) // not what the box stands on
+      seen.push_back(points[i]);
+  const Points all = Eigen::Map<const Points>(seen[0].data(), 3, seen.size());
+  Points found = fitted(all);
+  orientToFreeSide(all, {}, found);
+  EXPECT_GT((found.row(2).head(floor).array() > 0).count(), 0.99 * floor);
+}
+
 TEST(FreeSide, NothingStaysNothing)
 {
   Points none(3, 0), normals(3, 0), two = Points::Random(3, 2);

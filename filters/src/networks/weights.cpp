@@ -9,7 +9,6 @@ extern "C" const char fresco_second_stage_begin[], fresco_second_stage_end[];
 
 namespace fresco::filters {
 namespace {
-
 std::string_view between(const char* begin, const char* end) { return {begin, std::size_t(end - begin)}; }
 
 void check(bool ok)

@@ -8,7 +8,6 @@
 #include <fresco/search/batch_knn.h>
 namespace fresco {
 namespace {
-
 /// A thousandth of the smallest positive value in place of zeros.
 Eigen::VectorXf withoutZeros(const Eigen::VectorXf& areas)
 {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "normals/occupancy.h"
 #include "normals/orientation_forest.h"
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <fresco/core/parallel.h>
@@ -22,8 +23,8 @@ struct Sensors {
 };
 
 /// How certain it is, -1..1, that the normal of a point is on the free side: the side where a sensor that sees the point stands;
-/// else the side on which the way to the next surface is longer. A way without an end counts as none where the cloud was seen
-/// from within: nobody stood there.
+/// else that of the longer ways to the next surface, along the normal and 60 degrees off it: a floor meets what stands on it. A
+/// way without an end counts as none where the cloud was seen from within: nobody stood there.
 float freeSide(const Occupancy& occupied, const Sensors& sensors, const Eigen::Vector3f& point,
                const Eigen::Vector3f& normal)
 {
@@ -38,7 +39,12 @@ float freeSide(const Occupancy& occupied, const Sensors& sensors, const Eigen::V
         return cosine > 0 ? 1.f : -1.f;
     }
   }
-  const float ahead = occupied.freeWay(point, normal), behind = occupied.freeWay(point, -normal);
+  const Eigen::Vector3f u = std::sqrt(3.f) * normal.unitOrthogonal(), v = normal.cross(u);
+  float ahead = 0, behind = 0;
+  for (const Eigen::Vector3f& off : {Eigen::Vector3f(0, 0, 0), u, v, Eigen::Vector3f(-u), Eigen::Vector3f(-v)}) {
+    ahead += occupied.freeWay(point, off + normal);
+    behind += occupied.freeWay(point, off - normal);
+  }
   return ahead + behind > 0 ? (ahead - behind) / (ahead + behind) : 0;
 }
 
@@ -105,8 +111,8 @@ void orientToFreeSide(const Points& points, const FreeSideHints& hints, Points& 
   }
   for (Index i = 0; i < count; ++i) {
     Evidence& part = parts[forest.parts.root(i)];
-    part.sum += patches[forest.patches[i]].mean();
-    ++part.asked;
+    part.sum += field.areas[i] * patches[forest.patches[i]].mean();
+    part.asked += field.areas[i];
   }
   const std::vector<char> turns = partTurns(field, forest.parts); // where nothing else tells
   for (Index i = 0; i < count; ++i) {
