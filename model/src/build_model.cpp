@@ -37,15 +37,11 @@ void validate(const ModelInput& input, const ModelOptions& options)
           " degrees");
 }
 
-/// What a run may end with, and the last stage that this needs.
-constexpr std::pair<const char*, const char*> ends[] = {
-    {"points", "points"}, {"surface", "surface"}, {"mesh", "optimization"}, {"", "pictures"}};
-
 std::string lastStage(const ModelOptions& options)
 {
-  for (const auto& [what, stage] : ends)
-    if (options.until == what)
-      return stage;
+  for (const RunEnd& end : run_ends)
+    if (options.until == end.until)
+      return end.stage;
   throw std::invalid_argument("model: -until " + options.until + " is none of points, surface, mesh");
 }
 

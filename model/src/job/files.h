@@ -22,4 +22,14 @@ struct ModelFiles {
   std::string registration_json = folder + "/registration.json", registration_html = folder + "/registration.html";
   std::string report_json = folder + "/report.json", report_html = folder + "/report.html";
 };
+
+/// What a run may be asked to end with, as ModelOptions::until has it, the last stage that this needs, and what is handed over.
+struct RunEnd {
+  const char *until, *stage;
+  std::string ModelFiles::*file;
+};
+inline constexpr RunEnd run_ends[] = {{"points", "points", &ModelFiles::points_ply},
+                                      {"surface", "surface", &ModelFiles::surface_ply},
+                                      {"mesh", "optimization", &ModelFiles::mesh},
+                                      {"", "pictures", &ModelFiles::report_html}};
 } // namespace fresco::model

@@ -110,12 +110,13 @@ std::string sizeText(std::uintmax_t bytes)
 }
 
 /// What a run wrote that was asked to end early; "" of a whole one.
-std::string endSection(const Report& report)
+std::string endSection(const Report& report, const ModelFiles& files)
 {
   if (report.isWhole())
     return "";
-  const std::string& last = report.stages.back().name;
-  const std::string file = last == "points" ? "points.ply" : last == "surface" ? "surface.ply" : "mesh.ply";
+  const auto end = std::find_if(std::begin(run_ends), std::end(run_ends),
+                                [&](const RunEnd& end) { return report.stages.back().name == end.stage; });
+  const std::string file = fs::path(files.*end->file).filename().string();
   return "<p>The run was asked to end with <a href=\"" + file + "\">" + file +
          "</a>; poses: <a href=\"poses.txt\">poses.txt</a>. <code>-resume</code> without <code>-until</code> goes "
          "on.</p>\n";
@@ -178,11 +179,6 @@ std::string fitTable(const Report& report)
   return html + "</table>\n";
 }
 
-Eigen::Vector3d vectorOf(const Json& list)
-{
-  return Eigen::Vector3d(list.at(0).get<double>(), list.at(1).get<double>(), list.at(2).get<double>());
-}
-
 /// Inside the room, at the stations of the scanner, and where photographs were taken.
 std::vector<ViewerPlace> placesOf(const Report& report, const ModelFiles& files, const RoomFacts& facts)
 {
@@ -205,7 +201,7 @@ std::vector<ViewerPlace> placesOf(const Report& report, const ModelFiles& files,
   }
   for (const StageRecord& stage : report.stages)
     for (const Json& place : stage.figures.value("places", Json::array()))
-      places.push_back({place.at("name"), vectorOf(place.at("eye")), vectorOf(place.at("look")), place.at("angle"),
+      places.push_back({place.at("name"), vectorOf(place, "eye"), vectorOf(place, "look"), place.at("angle"),
                         "Photographs", readFile(files.folder + "/" + place.at("file").get<std::string>()),
                         place.at("aspect")});
   return places;
@@ -268,7 +264,7 @@ std::string reportPage(const Report& report, const ModelFiles& files, const std:
                      "</h1>\n<p>Made from " + escapedHtml(report.kind) + ".</p>\n";
   if (facts)
     html += cards(*facts);
-  html += endSection(report);
+  html += endSection(report, files);
   if (report.isWhole())
     html += viewer(report, files, facts);
   html += registrationLink(report);

@@ -33,12 +33,6 @@ ModelStage publicStage(const StageRecord& record)
   return stage;
 }
 
-Eigen::Vector3d vectorOf(const Json& object, const char* name)
-{
-  const auto values = object.value(name, std::vector<double>{0, 0, 1});
-  return Eigen::Vector3d(values.at(0), values.at(1), values.at(2));
-}
-
 Json toJson(const Report& report)
 {
   Json json{{"input", report.input},
@@ -75,6 +69,12 @@ std::optional<RoomFacts> factsOf(const Report& report, const ModelFiles& files)
   }
 }
 } // namespace
+
+Eigen::Vector3d vectorOf(const nlohmann::ordered_json& object, const char* name)
+{
+  const auto values = object.value(name, std::vector<double>{0, 0, 1});
+  return Eigen::Vector3d(values.at(0), values.at(1), values.at(2));
+}
 
 std::string fixed(double value, int digits)
 {

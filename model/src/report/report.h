@@ -25,6 +25,9 @@ struct Report {
   bool isWhole() const { return stages.back().name == "pictures"; } ///< else it ended before
 };
 
+/// Three numbers of a list; the z axis where it is missing.
+Eigen::Vector3d vectorOf(const nlohmann::ordered_json& object, const char* name);
+
 /// With so many digits behind the point.
 std::string fixed(double value, int digits);
 
