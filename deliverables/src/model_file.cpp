@@ -30,6 +30,8 @@ GltfModel readModel(const std::string& path)
 {
   if (std::optional<GltfModel> model = readModelIfAny(path))
     return std::move(*model);
+  if (!isReadable(path, FileKind::mesh))
+    readMesh(path); // says which files it reads
   throw std::runtime_error(path + ": has no faces");
 }
 
