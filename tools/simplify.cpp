@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "support/tool.h"
+#include <filesystem>
 #include <fresco/core/require.h>
 #include <fresco/deliverables/core/detail_baking.h>
 #include <fresco/deliverables/core/model_file.h>
 #include <fresco/deliverables/core/simplification.h>
+#include <fresco/deliverables/core/tileset.h>
 #include <fresco/io/file.h>
 #include <fresco/io/formats.h>
 #include <fresco/io/mesh_io.h>
@@ -19,7 +21,8 @@ struct SimplifyOptions {
 
   void declare(Args& args)
   {
-    args.option("faces", faces, "faces that are to be left, at least 1; 0 = as few as -error allows");
+    args.option("faces", faces,
+                "faces that are to be left, or most of a tile, at least 1; 0 = as few as -error allows");
     args.option("error", error,
                 "most that a vertex may be off the surface it stands for (RMS), mesh units, >= 0; 0 = any");
     args.option("from", full,
@@ -29,20 +32,24 @@ struct SimplifyOptions {
     args.option("atlases", atlases, "with -from: most atlases, at least 1; texels are made larger until they suffice");
     args.option("quality", quality, "JPEG quality of the pictures, 1..100; 0 = 90 with -from, else PNG without loss");
     args.flag("compress", compress, "compress OUT.glb by EXT_meshopt_compression, which not all programs read");
-    args.option(
-        "to_world", to_world,
-        "file of 16 numbers, rows of the matrix that takes the model into the world: kept in the node of a .glb");
+    args.option("to_world", to_world,
+                "file of 16 numbers, rows of the matrix that takes the model into the world: kept in the node of a "
+                ".glb, or in a tileset.json");
   }
+
+  static bool isTileset(const std::string& path) { return std::filesystem::path(path).filename() == "tileset.json"; }
 
   /// @throws UsageError
   void validate(const std::vector<std::string>& files) const
   {
-    const bool glb = extension(files[1]) == ".glb";
+    const bool glb = extension(files[1]) == ".glb", tiles = isTileset(files[1]);
+    if (tiles && (error > 0 || !full.empty() || compress || faces == 0))
+      throw UsageError(files[1] + ": tiles take -faces and neither -error, -from nor -compress");
     if (faces == 0 && error == 0 && full.empty())
       throw UsageError("one of -faces, -error, -from is needed");
-    if (!glb && (!full.empty() || !to_world.empty() || compress))
+    if (!glb && !tiles && (!full.empty() || !to_world.empty() || compress))
       throw UsageError(files[1] + ": the output's extension must be .glb with -from, -to_world and -compress");
-    if (!glb && !isWritable(files[1], FileKind::mesh) && !isWritable(files[1], FileKind::textured_mesh))
+    if (!glb && !tiles && !isWritable(files[1], FileKind::mesh) && !isWritable(files[1], FileKind::textured_mesh))
       throw UsageError(files[1] + ": the output's extension must be " + writableExtensions(FileKind::mesh) + ", or " +
                        writableExtensions(FileKind::textured_mesh));
     requireDistinct({files[1]}, {files[0], full, to_world});
@@ -105,6 +112,23 @@ GltfModel baked(TexturedMesh model, const SimplifyOptions& options, const Common
   return bakeLightModel(std::move(model.mesh), full, light, printProgress(common.quiet));
 }
 
+void writeTiles(TexturedMesh model, const std::string& path, const SimplifyOptions& options,
+                const CommonOptions& common)
+{
+  TilesetOptions tiles;
+  tiles.faces = options.faces;
+  tiles.texel = options.texel;
+  tiles.jpeg_quality = options.quality > 0 ? options.quality : tiles.jpeg_quality;
+  tiles.T_world_model = gltfOptions(options).T_world_model;
+  tiles.threads = common.threads;
+  const std::filesystem::path folder = std::filesystem::path(path).parent_path();
+  writeOutputs([&] {
+    const auto written =
+        writeTileset(folder.empty() ? "." : folder.string(), std::move(model), tiles, printProgress(common.quiet));
+    inform(common.quiet, concat(written.size(), " tiles, the first of ", written[0].faces, " faces"));
+  });
+}
+
 void run(int argc, char** argv)
 {
   SimplifyOptions options;
@@ -114,7 +138,8 @@ void run(int argc, char** argv)
             "seams.\nMODEL, FULL: " +
                 readableExtensions(FileKind::mesh) + ", or textured " + readableExtensions(FileKind::textured_mesh) +
                 ".\nOUT: " + writableExtensions(FileKind::mesh) + ", or textured " +
-                writableExtensions(FileKind::textured_mesh) + ".");
+                writableExtensions(FileKind::textured_mesh) +
+                ",\nor FOLDER/tileset.json: 3D Tiles 1.1 of a large model, which a browser loads in parts.");
   options.declare(args);
   common.declare(args);
   args.note("Example: fresco_simplify model_full.glb light.glb -faces 100000 -from model_full.glb");
@@ -122,6 +147,8 @@ void run(int argc, char** argv)
   options.validate(files);
   GltfOptions gltf = gltfOptions(options);
   GltfModel model = readModel(files[0]);
+  if (SimplifyOptions::isTileset(files[1]))
+    return writeTiles(std::move(model.model), files[1], options, common);
   if (options.full.empty())
     model.model = simplified(std::move(model.model), options, common);
   else

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fresco/deliverables/core/detail_baking.h>
 #include <fresco/deliverables/core/model_file.h>
+#include <fresco/deliverables/core/tileset.h>
 #include <fresco/io/file.h>
 #include <fresco/io/mesh_io.h>
 #include <gtest/gtest.h>
@@ -196,9 +197,10 @@ TEST(Gltf, KhronosValidatorFindsNothing)
   writeGltf(folder + "/large.glb", {test::texturedSquare(300), {}}, compact(80));
   writeModel(folder + "/bare.glb", bare, compact(0));
   writeModel(folder + "/plain.glb", bare);
+  writeTileset(folder, mapped.model, {mapped.model.mesh.faceCount() / 2});
   writeFile(folder + "/broken.glb", readFile(folder + "/plain.glb").substr(0, 300));
   const std::string validate = std::string(FRESCO_SOURCE_DIR) + "/scripts/validate_gltf " + modules + "/node_modules ";
-  for (const char* name : {"mapped", "exact", "packed", "placed", "large", "bare", "plain"})
+  for (const char* name : {"mapped", "exact", "packed", "placed", "large", "bare", "plain", "tile_0", "tile_1"})
     EXPECT_EQ(std::system((validate + folder + "/" + name + ".glb").c_str()), 0) << name;
   EXPECT_NE(std::system((validate + folder + "/broken.glb > /dev/null").c_str()), 0);
 }

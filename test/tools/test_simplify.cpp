@@ -68,6 +68,19 @@ TEST_F(Simplify, BadInputEndsWithOneLineAndNoFile)
            mesh + glb + " -faces 9 -to_world " + text("wrong.txt", "1 2 3\n"),
            mesh + " " + path("no/result.ply") + " -faces 9"})
     expectFailure(arguments, 1);
+  expectFailure(text("mesh.doc", "x") + out + " -faces 9", 1);
+  EXPECT_NE(errors().find(".ply"), std::string::npos) << errors(); // what is read
+}
+
+TEST_F(Simplify, LargeModelsBecomeTiles)
+{
+  writeMesh(path("mesh.ply"), test::sphere(1, 4));
+  const std::string tileset = path("tiles/tileset.json");
+  ASSERT_EQ(run(path("mesh.ply") + " " + tileset + " -faces 900"), 0) << errors();
+  EXPECT_NE(readFile(tileset).find("tile_1.glb"), std::string::npos);
+  EXPECT_LE(readTexturedMesh(path("tiles/tile_0.glb")).mesh.faceCount(), 900);
+  expectFailure(path("mesh.ply") + " " + path("tileset.json") + " -error 0.1", 2);
+  expectFailure(path("mesh.ply") + " " + path("tileset.json") + " -faces 9 -compress", 2);
 }
 } // namespace
 } // namespace fresco

@@ -28,6 +28,7 @@ public:
   bool isAlive(int face) const { return model_.mesh.faces(0, face) >= 0; }
   Index faces() const { return faces_; } ///< that are left
   Freedom freedom(int vertex) const { return freedom_[vertex]; }
+  void fix(int vertex) { freedom_[vertex] = Freedom::none; }
   /// Ascending, each once.
   std::vector<int> neighbors(int vertex) const;
 

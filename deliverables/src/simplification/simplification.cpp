@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kept_faces.h"
 #include "simplification/corner_table.h"
+#include "simplification/fixed_vertices.h"
 #include "simplification/quadric.h"
 #include <cmath>
 #include <fresco/core/parallel.h>
@@ -69,12 +70,16 @@ struct Collapse {
 
 class Simplifier {
 public:
-  Simplifier(TexturedMesh& model, const SimplificationOptions& options)
+  /// @param fixed V: vertices that stay; or none
+  Simplifier(TexturedMesh& model, const SimplificationOptions& options, const std::vector<bool>& fixed)
       : model_(model), mesh_(model.mesh), options_(options), table_(model), places_(mesh_.vertices.cast<double>()),
         quadrics_(mesh_.vertexCount()), version_(mesh_.vertexCount(), 0)
   {
     middle_ = 0.5 * (places_.rowwise().minCoeff() + places_.rowwise().maxCoeff());
     places_.colwise() -= middle_; // so that products of coordinates keep their digits
+    for (std::size_t v = 0; v < fixed.size(); ++v)
+      if (fixed[v])
+        table_.fix(v);
     for (Index f = 0; f < mesh_.faceCount(); ++f)
       if (table_.isAlive(f))
         addPlanes(f);
@@ -289,15 +294,13 @@ private:
   std::priority_queue<Entry> queue_;
   SimplificationFigures figures_;
 };
-} // namespace
-
-TexturedMesh simplifyModel(TexturedMesh model, const SimplificationOptions& options, SimplificationFigures* figures,
-                           const Progress& progress)
+TexturedMesh simplified(TexturedMesh model, const SimplificationOptions& options, const std::vector<bool>& fixed,
+                        SimplificationFigures* figures, const Progress& progress = {})
 {
   validate(model, options);
   if (model.texcoord_faces.cols() > 0)
     separateTexcoords(model);
-  const SimplificationFigures found = Simplifier(model, options).run(progress);
+  const SimplificationFigures found = Simplifier(model, options, fixed).run(progress);
   if (figures)
     *figures = found;
   std::vector<bool> keep(model.mesh.faceCount());
@@ -306,6 +309,21 @@ TexturedMesh simplifyModel(TexturedMesh model, const SimplificationOptions& opti
   keepFaces(keep, model);
   report(progress, "done", 1.0);
   return model;
+}
+} // namespace
+
+TriangleMesh deliverables::simplifyBetween(const std::vector<bool>& fixed, TriangleMesh mesh,
+                                           const SimplificationOptions& options, SimplificationFigures& figures)
+{
+  TexturedMesh model;
+  model.mesh = std::move(mesh);
+  return simplified(std::move(model), options, fixed, &figures).mesh;
+}
+
+TexturedMesh simplifyModel(TexturedMesh model, const SimplificationOptions& options, SimplificationFigures* figures,
+                           const Progress& progress)
+{
+  return simplified(std::move(model), options, {}, figures, progress);
 }
 
 TriangleMesh simplifyMesh(TriangleMesh mesh, const SimplificationOptions& options, SimplificationFigures* figures,
