@@ -115,7 +115,7 @@ std::string endSection(const Report& report, const ModelFiles& files)
   if (report.isWhole())
     return "";
   const auto end = std::find_if(std::begin(run_ends), std::end(run_ends),
-                                [&](const RunEnd& end) { return report.stages.back().name == end.stage; });
+                                [&](const RunEnd& known) { return report.stages.back().name == known.stage; });
   const std::string file = fs::path(files.*end->file).filename().string();
   return "<p>The run was asked to end with <a href=\"" + file + "\">" + file +
          "</a>; poses: <a href=\"poses.txt\">poses.txt</a>. <code>-resume</code> without <code>-until</code> goes "
