@@ -3,6 +3,7 @@
 #include "assembly/part_check.h"
 #include "assembly/scan_assembly.h"
 #include "graph/alias_check.h"
+#include "graph/equal_rooms.h"
 #include "registration/look_alike_scenes.h"
 #include <fresco/registration/core/point_to_plane_registration.h>
 #include <gtest/gtest.h>
@@ -238,6 +239,30 @@ TEST_F(PartChecks, WhatStandsInSpaceThatWasSeenThroughIsMisplaced)
   };
   EXPECT_FALSE(misplaced({0, 0, 0}));
   EXPECT_TRUE(misplaced({0.6, 0.6, 0}));
+}
+
+// Two scans that agree nearly everywhere tell their place in a building of equal rooms as little as one.
+TEST_F(PartChecks, WhoAgreesNearlyEverywhereIsAloneInABuildingOfEqualRooms)
+{
+  constexpr Index room_a = 0, room_c = 4, door_c = 5;
+  scene_.pairs.clear();
+  scene_.addPair(room_b, door_b, scene_.pose(room_b, door_b), 0.95);
+  const auto parted = [&](const ScanCluster& known) {
+    std::vector<ScanCluster> clusters = {clusterOf(scene_, {door_a, room_b, door_b}), clusterOf(scene_, {room_a}),
+                                         clusterOf(scene_, {room_c})};
+    partEqualRooms(scene_.input(), known, clusters);
+    return clusters;
+  };
+  EXPECT_EQ(parted({})[0].scans.size(), 3u); // nothing shows that rooms are equal
+  for (const Index other : {room_a, room_c, door_c})
+    scene_.addPair(room_b, other, Eigen::Isometry3d::Identity(), 0.95);
+  const std::vector<ScanCluster> clusters = parted({});
+  ASSERT_EQ(clusters.size(), 5u);
+  EXPECT_EQ(clusters[0].scans, (std::vector<Index>{door_a}));
+  EXPECT_EQ(clusters[3].refusal.reason, RefusalReason::repeats);
+  EXPECT_EQ(parted(clusterOf(scene_, {door_a, room_b, door_b}))[0].scans.size(), 3u);
+  scene_.pairs[0].hypotheses[0].check.overlap = 0.5;
+  EXPECT_EQ(parted({})[0].scans.size(), 3u);
 }
 
 // The scans in the first and the third room see nothing of each other; those at their doors do.
