@@ -18,7 +18,7 @@ Likeness likenessOf(const PairAlignment& pair, const GraphInput& input, const st
   const ScanCluster& cluster = clusters[a.cluster];
   Likeness likeness = Likeness::none;
   for (const VerifiedHypothesis& hypothesis : pair.hypotheses) {
-    if (hypothesis.check.overlap < one_room)
+    if (hypothesis.check.overlap < one_room || hypothesis.check.color) // colours tell rooms apart themselves
       continue;
     const bool together = a.cluster == b.cluster &&
                           poseDistance(cluster.poses[a.position].inverse() * cluster.poses[b.position],
