@@ -41,6 +41,28 @@ void check(const fresco::ModelOptions& options, const std::vector<std::string>& 
   for (const char* part : {"", "/scans", "/panoramas", "/images", "/cameras"})
     fresco::requireDistinct({folders[1]}, {folders[0] + part});
 }
+/// Options of the textured models and the pictures.
+void declareOutputs(fresco::Args& args, fresco::ModelOptions& options)
+{
+  args.option("texel", options.texel, "side of a texel, metres; 0 = as fine as photographs, panoramas or points");
+  args.option(
+      "tile_faces", options.tile_faces,
+      "most faces that are textured at a time, >= 0: a mesh of more gets pictures for each of its tiles; 0 = all, or "
+      "as many as memory holds");
+  args.option("atlas", options.atlas,
+              "largest side of a picture of the texture, 128..16384 pixels; a larger texture has several; 0 = 8192");
+  args.option("faces", options.faces, "most faces of model.glb, the light model, at least 1");
+  args.flag("lod", options.lod,
+            "also write OUT_DIR/tiles/tileset.json: the full model as 3D Tiles 1.1, of which a browser loads what it "
+            "shows");
+  args.flag("compress", options.compress, "compress model.glb by EXT_meshopt_compression, which not all programs read");
+  args.option("quality", options.quality, "JPEG quality of the texture's pictures, 1..100; 0 = PNG, without loss");
+  args.option(
+      "panorama_direction", options.panorama_direction,
+      "where the middle of a panorama looks: from the x axis of its scan counter-clockwise, degrees, -360..360");
+  args.flag("panorama_mirrored", options.panorama_mirrored, "panoramas go around counter-clockwise from left to right");
+  args.size("size", options.width, options.height, "size of the pictures, pixels");
+}
 } // namespace
 
 int main(int argc, char** argv)
@@ -88,23 +110,7 @@ int main(int argc, char** argv)
         "RGB-D what data sustain so many levels less than elsewhere is cut, at most 0.75; 0 = all stays closed");
     args.flag("no_optimize", options.optimize,
               "leave the vertices where the reconstruction puts them: rounded edges; always so for RGB-D", false);
-    args.option("texel", options.texel, "side of a texel, metres; 0 = as fine as photographs, panoramas or points");
-    args.option(
-        "tile_faces", options.tile_faces,
-        "most faces that are textured at a time, >= 0: a mesh of more gets pictures for each of its tiles; 0 = all, or "
-        "as many as memory holds");
-    args.option("atlas", options.atlas,
-                "largest side of a picture of the texture, 128..16384 pixels; a larger texture has several; 0 = 8192");
-    args.option("faces", options.faces, "most faces of model.glb, the light model, at least 1");
-    args.flag("compress", options.compress,
-              "compress model.glb by EXT_meshopt_compression, which not all programs read");
-    args.option("quality", options.quality, "JPEG quality of the texture's pictures, 1..100; 0 = PNG, without loss");
-    args.option(
-        "panorama_direction", options.panorama_direction,
-        "where the middle of a panorama looks: from the x axis of its scan counter-clockwise, degrees, -360..360");
-    args.flag("panorama_mirrored", options.panorama_mirrored,
-              "panoramas go around counter-clockwise from left to right");
-    args.size("size", options.width, options.height, "size of the pictures, pixels");
+    declareOutputs(args, options);
     fresco::declareColumns(args);
     args.settingsFile("settings",
                       "options from a file: lines \"NAME VALUE\"; OUT_DIR/settings.txt holds those of the last run");

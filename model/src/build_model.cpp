@@ -104,6 +104,8 @@ std::vector<Stage> stagesOf(const Job& job)
              options.panorama_mirrored, " ", options.tile_faces),
       {files.model_obj, files.full_glb}, makeTexture, {"texture"});
   add("light", concat(options.faces, " ", options.compress), {files.model_glb, files.viewer_glb}, makeLight);
+  if (options.lod)
+    add("tiles", "", {files.tiles}, makeTiles);
   add("pictures", concat(options.width, "x", options.height), pictureFiles(job), makePictures);
   const std::string last = lastStage(options);
   stages.erase(std::find_if(stages.begin(), stages.end(), [&](const Stage& stage) { return stage.name == last; }) + 1,

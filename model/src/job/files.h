@@ -17,7 +17,7 @@ struct ModelFiles {
   std::string points_ply = folder + "/points.ply", surface_ply = folder + "/surface.ply"; ///< of a run that ends there
   std::string poses = folder + "/poses.txt", mesh = folder + "/mesh.ply";
   std::string model_obj = folder + "/model.obj", model_glb = folder + "/model.glb";
-  std::string full_glb = folder + "/model_full.glb";
+  std::string full_glb = folder + "/model_full.glb", tiles = folder + "/tiles";
   std::string pairs = work + "/pairs.bin"; ///< what the search of pairs of scans found
   std::string registration_json = folder + "/registration.json", registration_html = folder + "/registration.html";
   std::string report_json = folder + "/report.json", report_html = folder + "/report.html";

@@ -127,6 +127,7 @@ std::string fileSection(const ModelFiles& files)
   static const std::pair<const char*, const char*> known[] = {
       {"model.glb", "textured model, for most viewers and game engines"},
       {"model_full.glb", "textured model with all details"},
+      {"tiles/tileset.json", "textured model in parts, for viewers of 3D Tiles"},
       {"model.obj", "textured model, with its .mtl and images beside it"},
       {"mesh.ply", "surface without texture"},
       {"plan.svg", "plan, for browsers and drawing programs"},

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <fresco/deliverables/core/detail_baking.h>
 #include <fresco/deliverables/core/model_file.h>
+#include <fresco/deliverables/core/tileset.h>
 #include <numeric>
 namespace fresco::model {
 namespace {
@@ -51,5 +52,25 @@ Figures makeLight(const Job& job, const Progress& progress)
   gltf.compress = false; // the viewer has no decoder
   writeViewerModel(std::move(light), gltf, job.files.viewer_glb);
   return figures;
+}
+
+Figures makeTiles(const Job& job, const Progress& progress)
+{
+  const std::string& folder = job.files.tiles;
+  std::filesystem::remove_all(folder); // an earlier run may have left more of them
+  TilesetOptions options;
+  options.threads = job.options.threads;
+  const std::vector<Tile> tiles = writeTileset(folder, readModel(job.files.full_glb).model, options, progress);
+  const auto megabytes = [&](const std::string& file) {
+    return 1e-6 * std::filesystem::file_size(folder + "/" + file);
+  };
+  double all = megabytes("tileset.json");
+  const double first = all + megabytes(tiles[0].file);
+  int depth = 0;
+  for (const Tile& tile : tiles) {
+    all += megabytes(tile.file);
+    depth = std::max(depth, tile.depth);
+  }
+  return {{"tiles", tiles.size()}, {"levels", depth + 1}, {"megabytes", all}, {"megabytes_of_first_view", first}};
 }
 } // namespace fresco::model

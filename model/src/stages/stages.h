@@ -63,6 +63,9 @@ Figures makeTexture(const Job& job, const Progress& progress);
 /// and `files.viewer_glb`, smaller still.
 Figures makeLight(const Job& job, const Progress& progress);
 
+/// The full model in parts for a browser: reads `files.full_glb`, writes into `files.tiles`.
+Figures makeTiles(const Job& job, const Progress& progress);
+
 /// Pictures of the model from inside and above: reads `files.model_obj`, writes PNG files into `files.snapshots`.
 /// @return with an array "pictures" of {file, title, textured, eye, look, angle} and the upright direction "up"
 Figures makePictures(const Job& job, const Progress& progress);

@@ -30,6 +30,7 @@ struct ModelOptions {
                                  ///< 0 = 8192
   int tile_faces = 0;            ///< most faces that are textured at a time; 0 = all, or as many as memory holds
   int faces = 100000;            ///< most faces of model.glb, the light model, >= 1
+  bool lod = false;              ///< also tiles/tileset.json: the full model as 3D Tiles, see TilesetOptions
   bool compress = false;         ///< model.glb: see GltfOptions::compress
   int quality = 0;               ///< JPEG quality of the texture's pictures, 1..100; 0 = PNG
   double panorama_direction = 0; ///< degrees counter-clockwise from the scan's x axis to the middle of its panorama
@@ -43,9 +44,9 @@ struct ModelOptions {
 
 /// What one stage cost and what it found.
 struct ModelStage {
-  std::string name;          ///< points, surface, optimization, features, matches, cameras, alignment, texture, light,
-                             ///< pictures
-  double seconds = 0;        ///< wall clock
+  std::string name;   ///< points, surface, optimization, features, matches, cameras, alignment, texture, light, tiles,
+                      ///< plan, pictures
+  double seconds = 0; ///< wall clock
   double cpu_seconds = 0;    ///< of all threads, and of programs that were run
   double peak_megabytes = 0; ///< resident memory of the process, highest during the stage
   bool resumed = false;      ///< taken over from an earlier run
