@@ -5,9 +5,9 @@
 #include <cstdlib>
 #include <cstring>
 #include <fcntl.h>
-#include <fresco/core/byte_hash.h>
 #include <fresco/core/require.h>
 #include <fresco/distributed/mpi_session.h>
+#include <fresco/io/byte_hash.h>
 #include <fresco/io/file.h>
 #include <fresco/io/packing.h>
 #include <link.h>

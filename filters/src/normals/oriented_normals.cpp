@@ -4,8 +4,8 @@
 #include "normals/view_direction.h"
 #include <algorithm>
 #include <cmath>
+#include <fresco/core/machine_memory.h>
 #include <fresco/core/parallel.h>
-#include <fresco/core/release.h>
 #include <fresco/core/require.h>
 #include <fresco/filters/core/normal_orientation.h>
 #include <fresco/filters/core/oriented_normals.h>

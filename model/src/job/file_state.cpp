@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "job/file_state.h"
-#include <fresco/core/byte_hash.h>
 #include <fresco/core/require.h>
+#include <fresco/io/byte_hash.h>
 #include <fstream>
 #include <optional>
 #include <sys/stat.h>

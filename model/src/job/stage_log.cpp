@@ -6,8 +6,8 @@
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
-#include <fresco/core/byte_hash.h>
 #include <fresco/core/require.h>
+#include <fresco/io/byte_hash.h>
 #include <fresco/io/file.h>
 #include <fresco/io/files_read.h>
 #include <fresco/io/json_text.h>

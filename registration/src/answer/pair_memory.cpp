@@ -2,8 +2,8 @@
 #include "answer/pair_memory.h"
 #include "graph/scan_exchange.h"
 #include <cstring>
-#include <fresco/core/byte_hash.h>
 #include <fresco/core/require.h>
+#include <fresco/io/byte_hash.h>
 namespace fresco::registration {
 namespace {
 constexpr char version[] = "fresco pairs 1"; // to be changed with what is packed, and with what decides

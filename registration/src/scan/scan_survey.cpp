@@ -2,9 +2,9 @@
 #include "scan/scan_survey.h"
 #include "scan/thinning.h"
 #include <algorithm>
-#include <fresco/core/byte_hash.h>
 #include <fresco/core/require.h>
 #include <fresco/core/statistics.h>
+#include <fresco/io/byte_hash.h>
 #include <fresco/io/packing.h>
 namespace fresco::registration {
 namespace {

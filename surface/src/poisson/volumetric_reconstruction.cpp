@@ -17,8 +17,8 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <fresco/core/machine_memory.h>
 #include <fresco/core/parallel.h>
-#include <fresco/core/release.h>
 #include <fresco/core/require.h>
 #include <fresco/core/statistics.h>
 #include <fresco/surface/core/mesh_trimming.h>

@@ -10,4 +10,11 @@ FRESCO_EXPORT std::size_t machineMemory();
 /// Gives memory that was freed, and that the allocator keeps for later, back to the machine. For use between stages that need
 /// different things: what many small arrays leave behind rarely serves a few large ones. Does nothing without glibc.
 FRESCO_EXPORT void returnFreedMemory();
+
+/// Empties a vector and gives its memory back, which `v = {}` and clear() do not.
+template <typename Vector>
+void releaseMemory(Vector& v)
+{
+  Vector().swap(v);
+}
 } // namespace fresco

@@ -4,11 +4,23 @@
 namespace fresco {
 /// Cauchy: 1 / (1 + s). @param s (residual / scale)^2, >= 0 @returns 0..1 (Zhang 1997, "Parameter estimation
 /// techniques", table 1; so the others)
-template <typename Scalar> constexpr Scalar cauchyWeight(Scalar s) { return 1 / (1 + s); }
+template <typename Scalar>
+constexpr Scalar cauchyWeight(Scalar s)
+{
+  return 1 / (1 + s);
+}
 
 /// Geman & McClure: 1 / (1 + s)^2. @param s (residual / scale)^2, >= 0 @returns 0..1
-template <typename Scalar> constexpr Scalar gemanMcClureWeight(Scalar s) { return 1 / ((1 + s) * (1 + s)); }
+template <typename Scalar>
+constexpr Scalar gemanMcClureWeight(Scalar s)
+{
+  return 1 / ((1 + s) * (1 + s));
+}
 
 /// Tukey's biweight: (1 - s)^2 within the scale, 0 from there on. @param s (residual / scale)^2, >= 0 @returns 0..1
-template <typename Scalar> constexpr Scalar tukeyWeight(Scalar s) { return s < 1 ? (1 - s) * (1 - s) : 0; }
+template <typename Scalar>
+constexpr Scalar tukeyWeight(Scalar s)
+{
+  return s < 1 ? (1 - s) * (1 - s) : 0;
+}
 } // namespace fresco

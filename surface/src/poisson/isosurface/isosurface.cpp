@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <array>
 #include <bitset>
+#include <fresco/core/machine_memory.h>
 #include <fresco/core/morton.h>
 #include <fresco/core/parallel.h>
-#include <fresco/core/release.h>
 namespace fresco::poisson {
 namespace {
 /// One part is what a thread takes at a time: small enough for an even share, few enough to join quickly. As many bricks

@@ -3,8 +3,8 @@
 #include "poisson/octree/bytes.h"
 #include <algorithm>
 #include <cstring>
+#include <fresco/core/machine_memory.h>
 #include <fresco/core/parallel.h>
-#include <fresco/core/release.h>
 #include <limits>
 #include <utility>
 namespace fresco::poisson {

@@ -5,9 +5,9 @@
 #include "poisson/octree/radix_sort.h"
 #include "poisson/octree/select.h"
 #include <algorithm>
+#include <fresco/core/machine_memory.h>
 #include <fresco/core/morton.h>
 #include <fresco/core/parallel.h>
-#include <fresco/core/release.h>
 #include <fresco/core/require.h>
 #include <limits>
 namespace fresco::poisson {

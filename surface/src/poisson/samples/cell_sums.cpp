@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <fresco/core/machine_memory.h>
 #include <fresco/core/morton.h>
-#include <fresco/core/release.h>
 namespace fresco::poisson {
 namespace {
 using Whole = CellSum::Whole;

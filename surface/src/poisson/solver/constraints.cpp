@@ -4,7 +4,7 @@
 #include "poisson/samples/shared_splat.h"
 #include "poisson/solver/transfer.h"
 #include <algorithm>
-#include <fresco/core/release.h>
+#include <fresco/core/machine_memory.h>
 #include <utility>
 namespace fresco::poisson {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <fresco/core/byte_hash.h>
+#include <fresco/io/byte_hash.h>
 #include <gtest/gtest.h>
 #include <set>
 #include <string>
