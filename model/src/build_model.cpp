@@ -53,7 +53,7 @@ void requirePrograms(const Job& job)
 {
   const ModelInput& input = job.input;
   if (input.findsCameras() && usesPictures(job))
-    requireStructureFromMotion(input.images.empty() ? input.folder : input.images);
+    requireStructureFromMotion(input.images.empty() ? input.folder : input.images, input.unplaced.size());
   if (!input.video.empty())
     requireVideoProgram(input.video);
 }

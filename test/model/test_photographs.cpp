@@ -105,12 +105,13 @@ TEST(StructureFromMotion, WithoutTheProgramThePackageIsNamed)
   const std::string path = std::getenv("PATH");
   setenv("PATH", "/nowhere", 1);
   try {
-    requireStructureFromMotion("images");
+    requireStructureFromMotion("images", 2);
     ADD_FAILURE();
   } catch (const std::runtime_error& error) {
     EXPECT_NE(std::string(error.what()).find("package colmap"), std::string::npos) << error.what();
   }
   setenv("PATH", path.c_str(), 1);
+  EXPECT_THROW(requireStructureFromMotion("images", 1), std::runtime_error); // with and without it
 }
 
 /// What is said if `colmap` is a script that says a line and fails.

@@ -55,8 +55,12 @@ double shareToldBy(const std::string& line, std::size_t count)
   return -1;
 }
 
-void requireStructureFromMotion(const std::string& images)
+void requireStructureFromMotion(const std::string& images, std::size_t count)
 {
+  if (count < 2)
+    throw std::runtime_error(
+        images +
+        ": the camera of one photograph cannot be found; it takes two at least that overlap, or none beside scans");
   if (findProgram("colmap").empty())
     throw std::runtime_error(images + ": photographs without cameras need the program colmap; Debian's package colmap "
                                       "has it (apt-get install colmap)");
@@ -69,7 +73,7 @@ StructureFromMotion::StructureFromMotion(std::string images, std::vector<std::st
 
 void StructureFromMotion::run(std::vector<std::string> words, const std::string& step, const Progress& progress) const
 {
-  requireStructureFromMotion(images_);
+  requireStructureFromMotion(images_, names_.size());
   double share = 0;
   words.insert(words.begin(), findProgram("colmap"));
   words.insert(words.end(), {"--database_path", database()});

@@ -28,8 +28,8 @@ private:
   int threads_;
 };
 
-/// @throws std::runtime_error with a line that tells what to install, if the program is not there
-void requireStructureFromMotion(const std::string& images);
+/// @throws std::runtime_error with a line that tells what is missing, the program or photographs: two at least
+void requireStructureFromMotion(const std::string& images, std::size_t count);
 
 /// Whether photographs are to share one camera: they are of one size, and none tells by EXIF what took it. Else colmap takes
 /// one for each kind that EXIF tells, and one for each photograph without.
