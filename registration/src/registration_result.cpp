@@ -147,12 +147,15 @@ void Description::describeScans(const Placement& placement)
 void Description::placeMain(const std::vector<Index>& group)
 {
   for (const Index i : group) {
-    if (loose_[i] && !started(i) && scan(i).hint.empty()) {
+    const bool held = started(i) && holds(options_.max_distance, scans_[i]);
+    if (loose_[i] && !held && scan(i).hint.empty()) {
       scan(i).refusal.reason = RefusalReason::loose;
       scan(i).problem =
           scan(i).free_motion
               ? "its surfaces leave a motion free, and nothing tells where along it the scan belongs"
               : concat("what it shares with other scans holds it only to ", scan(i).translation_deviation);
+      if (started(i))
+        scan(i).problem += concat("; its start pose may be off by ", options_.max_distance, " (max_distance)");
       continue;
     }
     scan(i).placed = true;

@@ -194,6 +194,22 @@ TEST(ScanRefinement, ScansThatSlideTogetherHaveAFreeMotion)
   }
 }
 
+// What no surface holds, a start pose does as far as it can be off: it places a scan only if that is little.
+TEST(ScanRefinement, WhatSlidesIsPlacedByAnExactStartPoseOnly)
+{
+  const ScannedScene niches = test::scanNiches();
+  ScanRegistrationOptions options = withinOneNiche();
+  const auto start = disturbed(niches, 0.005, 0.1);
+  for (const bool exact : {false, true}) {
+    options.max_distance = exact ? 0.02f : 0.4f;
+    const auto result = registerScans(niches.scans, start, options);
+    for (const Index i : {0, 1, 2, 3}) {
+      EXPECT_EQ(result.scans[i].placed, exact || i < 2) << i;
+      EXPECT_EQ(result.scans[i].refusal.reason, exact || i < 2 ? RefusalReason::none : RefusalReason::loose) << i;
+    }
+  }
+}
+
 // Other walls within the reach do not matter where the right ones are near.
 TEST(ScanRefinement, NearStartPosesDoNotDependOnTheReach)
 {

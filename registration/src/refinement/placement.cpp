@@ -216,7 +216,7 @@ void refineWithin(const Reach& reach, const std::vector<PreparedScan>& scans, co
   joint.max_distance = reach.distance;
   joint.first_level = reach.first_level;
   joint.anchors = placement.anchors.empty() ? std::vector<Index>{placement.holder} : placement.anchors;
-  joint.cuts = placement.anchors.empty();
+  joint.cuts = placement.anchors.empty(); // start poses tell which of two places a few voxels apart is meant
   joint.fixed = placement.fixed;
   const IsometryVector start = placement.poses;
   for (int round = 0; round < most_rounds; ++round) {
@@ -231,7 +231,7 @@ void refineWithin(const Reach& reach, const std::vector<PreparedScan>& scans, co
       break;
   }
   findFreeMotions(placement);
-  if (!placement.anchors.empty()) // start poses tell which place is meant
+  if (!placement.fixed.empty())
     return;
   // What hangs together by surfaces that hold it loosely: the larger part stays.
   std::vector<Index> loose;
@@ -260,11 +260,16 @@ double positionDeviation(const JointResult& joint, Index member)
   return std::sqrt(joint.covariances[member].bottomRightCorner<3, 3>().trace());
 }
 
-bool isLoose(const PreparedScan& scan, const Placement& placement, Index member)
+bool holds(double deviation, const PreparedScan& scan)
 {
   constexpr double most_deviation = 0.02; // of the scan's size: what is next to it would no longer fit
+  return deviation <= most_deviation * scan.size;
+}
+
+bool isLoose(const PreparedScan& scan, const Placement& placement, Index member)
+{
   return placement.free_motions[member] ||
-         (sawAround(scan) && positionDeviation(placement.joint, member) > most_deviation * scan.size);
+         (sawAround(scan) && !holds(positionDeviation(placement.joint, member), scan));
 }
 
 namespace {

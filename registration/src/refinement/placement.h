@@ -29,8 +29,10 @@ struct Placement {
 /// Standard deviation of the position of a member, length.
 double positionDeviation(const JointResult& joint, Index member);
 
-/// Whether the others hold a member's place too loosely to rely on: a motion is free, or, of a scan that saw around, the
-/// position may be off by a fiftieth of the scan's size.
+/// Whether a place that may be off by so much can be relied on.
+bool holds(double deviation, const PreparedScan& scan);
+
+/// Whether the others hold a member's place too loosely: a motion is free, or a scan that saw around may be off by more.
 bool isLoose(const PreparedScan& scan, const Placement& placement, Index member);
 
 /// Refines all members at once, then leaves out the pairs that contradict each other's free space and refines again,

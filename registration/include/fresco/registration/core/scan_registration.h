@@ -29,7 +29,7 @@ struct RegistrationHint {
 /// Registration of many scans: global alignment of scans without a start pose, then joint point-to-plane refinement.
 struct ScanRegistrationOptions {
   float voxel = 0.f;           ///< edge of the finest thinning cells, length; 0 = median range of the scans / 100
-  float max_distance = 0.f;    ///< how far start poses may be off where the scans overlap, length; 0 = 20 voxels
+  float max_distance = 0.f;    ///< how far start poses may be off, length; 0 = 20 voxels, too far to place what slides
   float min_overlap = 0.1f;    ///< share of a scan's points with a counterpart from which a pair is used, 0..1
   float max_violation = 0.04f; ///< share of a scan's points in space that the other saw through: above, a pair is wrong
   int max_iterations = 40;     ///< of the joint refinement, per resolution, >= 1
