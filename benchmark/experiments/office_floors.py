@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Registers generated office floors and compares with the truth: office_floors.py BIN_DIR WORK_DIR [options].
 
-Makes each floor with BIN_DIR/fresco_scan unless it is there, registers it without start poses and prints a line:
-placed, false (more than 5 cm or 1 degree off), worst error of the others, groups, processor seconds; at the end how errors
-compare with their deviations.
+Makes each floor with BIN_DIR/fresco_scan unless it is there, registers it, without start poses unless -disturbed, and
+prints a line: placed, false (more than 5 cm or 1 degree off), worst error of the others, groups, processor seconds; at the
+end how errors compare with their deviations.
 """
 import argparse
 import json
@@ -61,14 +61,14 @@ def degrees_about(axis, angle):
     return np.eye(3) + np.sin(np.radians(angle)) * K + (1 - np.cos(np.radians(angle))) * K @ K
 
 
-def write_disturbed(path, truth, seed):
-    """Start poses 2 cm and 0.5 degrees off the truth: what joint refinement makes of them, without the search."""
+def write_disturbed(path, truth, seed, off):
+    """Start poses off the truth by so many metres, and 5 degrees for each: what comes of them without the search."""
     random = np.random.default_rng(seed)
     with open(path, "w") as file:
         for T in truth:
             shift, axis = (v / np.linalg.norm(v) for v in random.normal(size=(2, 3)))
             D = np.eye(4)
-            D[:3, :3], D[:3, 3] = degrees_about(axis, 0.5), 0.02 * shift
+            D[:3, :3], D[:3, 3] = degrees_about(axis, 5 * off), off * shift
             file.write(" ".join(repr(float(x)) for x in (T @ D).ravel()) + "\n")
 
 
@@ -99,8 +99,8 @@ def run(args, seed):
                         str(seed), "-rooms", str(rooms), "-stations", str(stations), "-points",
                         str(args.points)] + args.scan.split(), check=True)
     command = [args.bin + "/fresco_register", folder + "/scans", "-o", folder + "/registered", "-quiet"]
-    if args.disturbed:
-        write_disturbed(folder + "/start.txt", read_poses(folder + "/poses.txt"), seed)
+    if args.disturbed is not None:
+        write_disturbed(folder + "/start.txt", read_poses(folder + "/poses.txt"), seed, args.disturbed)
         command += ["-poses", folder + "/start.txt"]
     seconds = processor_seconds(command + args.register.split())
     report = json.load(open(folder + "/registered/registration.json"))
@@ -126,7 +126,7 @@ def main():
     parser.add_argument("-stations", type=int, default=0, help="0 = 8 to 16")
     parser.add_argument("-points", type=int, default=20000)
     parser.add_argument("-scan", default="", help='further options of fresco_scan: -scan="-storeys 2" or -scan=-turned')
-    parser.add_argument("-disturbed", action="store_true", help="start near the true poses")
+    parser.add_argument("-disturbed", type=float, help="start so many metres off the true poses, and 5 degrees for each")
     parser.add_argument("-register", default="", help="options of fresco_register")
     args = parser.parse_args()
     first, last = map(int, re.fullmatch(r"(\d+)-(\d+)", args.seeds).groups())

@@ -155,7 +155,7 @@ void Description::placeMain(const std::vector<Index>& group)
               ? "its surfaces leave a motion free, and nothing tells where along it the scan belongs"
               : concat("what it shares with other scans holds it only to ", scan(i).translation_deviation);
       if (started(i))
-        scan(i).problem += concat("; its start pose may be off by ", options_.max_distance, " (max_distance)");
+        scan(i).problem += concat("; `none` has it searched; its start pose is good to ", options_.max_distance);
       continue;
     }
     scan(i).placed = true;
