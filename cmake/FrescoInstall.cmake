@@ -5,6 +5,7 @@ configure_package_config_file("${PROJECT_SOURCE_DIR}/cmake/frescoConfig.cmake.in
                               INSTALL_DESTINATION "${config_dir}")
 write_basic_package_version_file("${PROJECT_BINARY_DIR}/frescoConfigVersion.cmake" COMPATIBILITY SameMinorVersion)
 install(FILES "${PROJECT_BINARY_DIR}/frescoConfig.cmake" "${PROJECT_BINARY_DIR}/frescoConfigVersion.cmake"
+              "${PROJECT_SOURCE_DIR}/cmake/FindOpenCV.cmake"
         DESTINATION "${config_dir}" COMPONENT development)
 install(EXPORT frescoTargets NAMESPACE fresco:: DESTINATION "${config_dir}" COMPONENT development)
 install(FILES "${PROJECT_SOURCE_DIR}/package.xml" DESTINATION "${CMAKE_INSTALL_DATADIR}/fresco" COMPONENT development)

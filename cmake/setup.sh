@@ -1,9 +1,9 @@
-# Sourced by ./demo and ./check: installs what is missing on Debian 12 and builds into build/.
+# Sourced by ./demo, ./check and ./package: installs what is missing on Debian 12 and builds into build/.
 
 # For libraries and tools. PCL's package brings Boost and FLANN.
 fresco_packages=(
   g++ cmake ninja-build ccache pkg-config ca-certificates
-  libpcl-dev libvtk9-dev libopencv-dev libeigen3-dev libembree-dev
+  libpcl-dev libvtk9-dev libopencv-core-dev libopencv-features2d-dev libopencv-imgproc-dev libeigen3-dev libembree-dev
   libtinygltf-dev libjpeg-dev libpng-dev libwebp-dev zlib1g-dev liblzf-dev libmeshoptimizer-dev libpugixml-dev nlohmann-json3-dev
   libegl-dev libglew-dev libegl-mesa0 libgl1-mesa-dri
 )
@@ -14,6 +14,9 @@ fresco_check_packages=(
   libopenmpi-dev openmpi-bin python3-numpy
   pybind11-dev python3-dev python3-pytest python3-nbclient python3-ipykernel mypy
 )
+
+# For Debian packages, that of the Python module among them.
+fresco_package_packages=(dpkg-dev file pybind11-dev python3-dev python3-numpy)
 
 fresco_say() { printf '== %s\n' "$*" >&2; }
 
