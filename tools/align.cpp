@@ -46,11 +46,10 @@ void run(int argc, char** argv)
   args.option("images", images,
               "folder of the photographs: they are matched with the colours or intensities of the cloud, which finds "
               "places that shape alone does not tell");
-  args.option("min_support", options.min_support,
-              "least share of the sparse points on the surface and in sight of their cameras, above 0 and at most 1");
-  args.option(
-      "max_alias", options.max_alias,
-      "most that a second place may reach of the score of the best, else it is ambiguous; above 0 and at most 1");
+  args.option("min_support", options.min_support, Range::above(0).atMost(1),
+              "least share of the sparse points on the surface and in sight of their cameras");
+  args.option("max_alias", options.max_alias, Range::above(0).atMost(1),
+              "most that a second place may reach of the score of the best, else it is ambiguous");
   declareColumns(args);
   common.declare(args);
   args.note("Example: fresco_align room/cameras mesh.ply aligned");

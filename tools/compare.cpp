@@ -36,13 +36,13 @@ Options parse(int argc, char** argv)
   args.option("colored", options.colored,
               "mesh file (PLY) for MESH coloured by error: red = 0, green, blue = large; the distances are its field "
               "\"distance\"");
-  args.option("largest", options.largest,
-              "distance that is blue, in the unit of the meshes; 0 = the largest that occurs");
-  args.option("samples", options.distance.samples,
-              "also measure this many area-uniform surface samples of each mesh; 0 = vertices only");
-  args.option("normal_samples", options.distance.normal_samples,
-              "samples of each mesh for the angles between normals, unless -samples is given; 0 = no angles");
-  args.option("seed", options.seed, "of the samples, >= 0");
+  args.option("largest", options.largest, Range::above(0).zero("the largest that occurs"),
+              "distance that is blue, in the unit of the meshes");
+  args.option("samples", options.distance.samples, Range::atLeast(1).zero("vertices only"),
+              "also measure this many area-uniform surface samples of each mesh");
+  args.option("normal_samples", options.distance.normal_samples, Range::atLeast(1).zero("no angles"),
+              "samples of each mesh for the angles between normals, unless -samples is given");
+  args.option("seed", options.seed, Range::atLeast(0), "of the samples");
   args.flag("vertices", options.distance.vertex_to_vertex,
             "distance from vertex to nearest vertex instead of to the surface; meshes without faces are allowed");
   options.common.declare(args);
@@ -52,10 +52,6 @@ Options parse(int argc, char** argv)
   options.reference = files[1];
   requireDistinct({options.json, options.colored}, {options.mesh, options.reference});
   options.distance.threads = options.common.threads;
-  if (options.seed < 0 || options.largest < 0.f || options.common.threads < 0)
-    throw UsageError("-seed, -largest and -threads want a value of 0 or more");
-  if (options.distance.samples < 0 || options.distance.normal_samples < 0)
-    throw UsageError("-samples and -normal_samples want a value of 0 or more");
   if (!options.colored.empty() && extension(options.colored) != ".ply")
     throw UsageError("-colored writes PLY, not '" + options.colored + "'");
   options.distance.seed = options.seed;

@@ -22,34 +22,30 @@ struct CropOptions {
 
   void declare(Args& args)
   {
-    args.values("box", "X0 Y0 Z0 X1 Y1 Z1", "keep what lies in this box: two opposite corners, world coordinates",
-                [this](const std::vector<std::string>& words) {
-                  Eigen::Vector3d a, b;
-                  for (int axis = 0; axis < 3; ++axis) {
-                    a[axis] = Args::number("box", words[axis]);
-                    b[axis] = Args::number("box", words[axis + 3]);
-                  }
-                  if (!((a - b).array().abs() > 0).all())
-                    throw UsageError("-box: a side of the box has no length");
-                  const Eigen::Vector3d low = a.cwiseMin(b), high = a.cwiseMax(b);
-                  Eigen::Matrix2Xd base(2, 4);
-                  base << low.x(), high.x(), high.x(), low.x(), low.y(), low.y(), high.y(), high.y();
-                  region = {{base}, low.z(), high.z()};
-                });
+    args.numbers("box", "X0 Y0 Z0 X1 Y1 Z1", Range::any(),
+                 "keep what lies in this box: two opposite corners, world coordinates",
+                 [this](const std::vector<double>& given) {
+                   const Eigen::Vector3d a(&given[0]), b(&given[3]);
+                   if (!((a - b).array().abs() > 0).all())
+                     throw UsageError("-box: a side of the box has no length");
+                   const Eigen::Vector3d low = a.cwiseMin(b), high = a.cwiseMax(b);
+                   Eigen::Matrix2Xd base(2, 4);
+                   base << low.x(), high.x(), high.x(), low.x(), low.y(), low.y(), high.y(), high.y();
+                   region = {{base}, low.z(), high.z()};
+                 });
     args.option(
         "polygon", polygon,
         "keep what lies in the polygons of this file, seen from above; .geojson, .json: x y in metres; .svg: one "
         "unit a metre, y pointing down. One polygon in another is a hole");
-    const auto height = [&](const char* name, double& bound, const char* help) {
-      args.values(name, "Z", help,
-                  [name, &bound](const std::vector<std::string>& words) { bound = Args::number(name, words[0]); });
-    };
-    height("above", region.low, "keep what lies above this height");
-    height("below", region.high, "keep what lies below this height");
-    args.option("room", room.number, "keep a room, by its number in the plan that fresco_plan draws, at least 1");
-    args.option("margin", room.margin, "with -room: what is kept behind the lines of its walls, metres, >= 0");
+    args.option("above", region.low, Range::any(), "keep what lies above this height");
+    args.option("below", region.high, Range::any(), "keep what lies below this height");
+    args.option("room", room.number, Range::atLeast(1),
+                "keep a room, by its number in the plan that fresco_plan draws");
+    args.option("margin", room.margin, Range::atLeast(0),
+                "with -room: what is kept behind the lines of its walls, metres");
     declarePlan(args, plan);
-    args.option("quality", gltf.jpeg_quality, "JPEG quality of a texture's pictures, 1..100; 0 = PNG, without loss");
+    args.option("quality", gltf.jpeg_quality, Range::within(1, 100).zero("PNG, without loss"),
+                "JPEG quality of the texture's pictures");
   }
 };
 

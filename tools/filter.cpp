@@ -27,30 +27,29 @@ struct FilterOptions {
 
 void FilterOptions::declare(Args& args)
 {
+  const Range neighbors = Range::atLeast(1), sigma = Range::atLeast(0);
   args.values(
       "outliers", "K SIGMA",
       "remove points whose mean distance to their K neighbours exceeds the mean of all points by more than SIGMA "
-      "standard deviations",
-      [this](const std::vector<std::string>& words) {
-        outliers.k = static_cast<int>(std::clamp(Args::integer("outliers", words[0]), 0LL, 1000000LL));
-        outliers.sigma = static_cast<float>(Args::number("outliers", words[1]));
+      "standard deviations (K " +
+          neighbors.text() + ", SIGMA " + sigma.text() + ")",
+      [this, neighbors, sigma](const std::vector<std::string>& words) {
+        outliers.k = Args::integer("outliers", words[0], neighbors);
+        outliers.sigma = static_cast<float>(Args::number("outliers", words[1], sigma));
       });
   args.flag("relative", outliers.relative,
             "for -outliers: judge distances against those of the neighbours, so that sparse parts of a scan stay");
-  args.option(
-      "veil", mixed_pixels.angle,
-      "remove mixed pixels: the points in the air that a laser leaves at depth jumps. What a surface could join with "
-      "most of the "
-      "points next to it stays: the way to them leaves its beam at no less than this angle, degrees, above 0 and below "
-      "90; 20 is common, more removes more");
-  args.option("noise", mixed_pixels.noise, "for -veil: deviation of the ranges, metres; 0 = measured from the scan");
-  args.values("viewpoint", "X Y Z",
-              "for -veil: where the scanner stood; default: fields vp_x vp_y vp_z, else the header of the file",
-              [this](const std::vector<std::string>& words) {
-                for (int axis = 0; axis < 3; ++axis)
-                  viewpoint[axis] = Args::number("viewpoint", words[axis]);
-              });
-  args.option("voxel", cell, "keep one point per cube of this side, metres, > 0: the one nearest to the centroid");
+  args.option("veil", mixed_pixels.angle, Range::above(0).below(90),
+              "remove mixed pixels: the points in the air that a laser leaves at depth jumps. What a surface could "
+              "join with most of the points next to it stays: the way to them leaves its beam at no less than this "
+              "angle, degrees; 20 is common, more removes more");
+  args.option("noise", mixed_pixels.noise, Range::above(0).zero("measured from the scan"),
+              "for -veil: deviation of the ranges, metres");
+  args.numbers("viewpoint", "X Y Z", Range::any(),
+               "for -veil: where the scanner stood; default: fields vp_x vp_y vp_z, else the header of the file",
+               [this](const auto& given) { viewpoint = Eigen::Vector3d(given.data()); });
+  args.option("voxel", cell, Range::above(0),
+              "keep one point per cube of this side, metres: the one nearest to the centroid");
   args.flag("centroid", centroid, "for -voxel: move the point kept to the centroid");
   args.flag("keep_organized", keep_organized, "removed points become NaN in their place");
   args.flag("removed", removed, "write the points that would be removed instead");
@@ -58,18 +57,6 @@ void FilterOptions::declare(Args& args)
       "The steps run in the order veil, outliers, voxel; only those given run. Points that are not finite are always\n"
       "removed. Every field of the points that stay is kept.\n"
       "Example: fresco_filter scan.pcd clean.pcd -veil 20 -outliers 16 2 -voxel 0.005");
-}
-
-void validate(const Args& args, const FilterOptions& options)
-{
-  if (args.given("outliers") && !(options.outliers.k >= 1 && options.outliers.sigma >= 0))
-    throw UsageError("-outliers: K is below 1 or SIGMA negative");
-  if (!(options.mixed_pixels.angle > 0 && options.mixed_pixels.angle < 90))
-    throw UsageError("-veil: " + std::to_string(options.mixed_pixels.angle) + " is not above 0 and below 90 degrees");
-  if (!(options.mixed_pixels.noise >= 0))
-    throw UsageError("-noise: " + std::to_string(options.mixed_pixels.noise) + " is negative");
-  if (args.given("voxel") && !(options.cell > 0))
-    throw UsageError("-voxel: " + std::to_string(options.cell) + " is not above 0");
 }
 
 /// The points of a cloud that are left, with their places in it.
@@ -217,7 +204,6 @@ int main(int argc, char** argv)
     scan.declare(args);
     common.declare(args);
     const auto files = args.parse(argc, argv, 2);
-    validate(args, options);
     requireDistinct({files[1]}, {files[0]});
     options.outliers.threads = options.mixed_pixels.threads = common.threads;
     if (scan.number == 0 && extension(files[0]) == ".e57" && extension(files[1]) == ".e57")

@@ -7,6 +7,8 @@
 #include <fresco/model/build_model.h>
 #include <iostream>
 namespace {
+using fresco::Range;
+
 void print(const fresco::ModelReport& report, bool quiet)
 {
   for (const fresco::ModelStage& stage : report.stages) {
@@ -44,24 +46,23 @@ void check(const fresco::ModelOptions& options, const std::vector<std::string>& 
 /// Options of the textured models and the pictures.
 void declareOutputs(fresco::Args& args, fresco::ModelOptions& options)
 {
-  args.option("texel", options.texel, "side of a texel, metres; 0 = as fine as photographs, panoramas or points");
-  args.option(
-      "tile_faces", options.tile_faces,
-      "most faces that are textured at a time, >= 0: a mesh of more gets pictures for each of its tiles; 0 = all, or "
-      "as many as memory holds");
-  args.option("atlas", options.atlas,
-              "largest side of a picture of the texture, 128..16384 pixels; a larger texture has several; 0 = 8192");
-  args.option("faces", options.faces, "most faces of model.glb, the light model, at least 1");
+  args.option("texel", options.texel, Range::above(0).zero("as fine as photographs, panoramas or points"),
+              "side of a texel, metres");
+  args.option("tile_faces", options.tile_faces, Range::atLeast(1).zero("all, or as many as memory holds"),
+              "most faces that are textured at a time: a mesh of more gets pictures for each of its tiles");
+  args.option("atlas", options.atlas, Range::within(128, 16384).zero("8192"),
+              "largest side of a picture of the texture, pixels; a larger texture has several");
+  args.option("faces", options.faces, Range::atLeast(1), "most faces of model.glb, the light model");
   args.flag("lod", options.lod,
             "also write OUT_DIR/tiles/tileset.json: the full model as 3D Tiles 1.1, of which a browser loads what it "
             "shows");
   args.flag("compress", options.compress, "compress model.glb by EXT_meshopt_compression, which not all programs read");
-  args.option("quality", options.quality, "JPEG quality of the texture's pictures, 1..100; 0 = PNG, without loss");
-  args.option(
-      "panorama_direction", options.panorama_direction,
-      "where the middle of a panorama looks: from the x axis of its scan counter-clockwise, degrees, -360..360");
+  args.option("quality", options.quality, Range::within(1, 100).zero("PNG, without loss"),
+              "JPEG quality of the texture's pictures");
+  args.option("panorama_direction", options.panorama_direction, Range::within(-360, 360),
+              "where the middle of a panorama looks: from the x axis of its scan counter-clockwise, degrees");
   args.flag("panorama_mirrored", options.panorama_mirrored, "panoramas go around counter-clockwise from left to right");
-  args.size("size", options.width, options.height, "size of the pictures, pixels");
+  args.size("size", options.width, options.height, Range::within(120, 65536), "size of the pictures, pixels");
 }
 } // namespace
 
@@ -93,21 +94,21 @@ int main(int argc, char** argv)
               "tell what INPUT is taken for and what would be done, and how long it takes; write nothing");
     args.option("as", options.taken_as,
                 "what INPUT is taken for: scans, cloud, rgbd or photographs; empty = what it looks like");
-    args.option("depth_unit", options.depth_unit,
-                "RGB-D: what a unit of depth images of whole numbers stands for, metres; 0 = as the layout has it");
+    args.option("depth_unit", options.depth_unit, Range::above(0).zero("as the layout has it"),
+                "RGB-D: what a unit of depth images of whole numbers stands for, metres");
     args.option("until", options.until,
                 "stop at points (points.ply), surface (surface.ply) or mesh (mesh.ply: edges are sharp, no texture); "
                 "-resume goes on from there; empty = the whole model");
     args.flag("resume", options.resume, "go on after the last stage that an earlier run into OUT_DIR finished");
-    args.option("cell", options.cell,
-                "finest cell of the surface reconstruction, metres; 0 = 0.02 for scans, 3 pixels at the median depth "
-                "for RGB-D");
-    args.option("fuse", options.fuse, "RGB-D: cell in which the frames are fused, metres; 0 = as -cell");
-    args.option("bilateral", options.bilateral, "rounds of bilateral smoothing of the normals of scans, >= 0");
-    args.option(
-        "trim_levels", options.trim_levels,
-        "surface that no scan saw is cut off, but gaps of 4 x 4 cells so many octree levels coarser stay closed; of "
-        "RGB-D what data sustain so many levels less than elsewhere is cut, at most 0.75; 0 = all stays closed");
+    args.option("cell", options.cell, Range::above(0).zero("0.02 for scans, 3 pixels at the median depth for RGB-D"),
+                "finest cell of the surface reconstruction, metres");
+    args.option("fuse", options.fuse, Range::above(0).zero("as -cell"),
+                "RGB-D: cell in which the frames are fused, metres");
+    args.option("bilateral", options.bilateral, Range::atLeast(0),
+                "rounds of bilateral smoothing of the normals of scans");
+    args.option("trim_levels", options.trim_levels, Range::above(0).zero("all stays closed"),
+                "surface that no scan saw is cut off, but gaps of 4 x 4 cells so many octree levels coarser stay "
+                "closed; of RGB-D what data sustain so many levels less than elsewhere is cut, at most 0.75");
     args.flag("no_optimize", options.optimize,
               "leave the vertices where the reconstruction puts them: rounded edges; always so for RGB-D", false);
     declareOutputs(args, options);

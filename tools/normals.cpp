@@ -27,24 +27,23 @@ struct ToolOptions {
 
 void ToolOptions::declare(Args& args)
 {
-  args.option("k", normals.k, "neighbours of the plane fit, the point included, 3..1000");
-  args.option("radius", normals.radius, "instead of -k: neighbours within this distance, metres, > 0, but six of them");
-  args.values(
-      "viewpoint", "X Y Z",
+  args.option("k", normals.k, Range::within(3, 1000), "neighbours of the plane fit, the point included");
+  args.option("radius", normals.radius, Range::above(0),
+              "instead of -k: neighbours within this distance, metres, but six of them");
+  args.numbers(
+      "viewpoint", "X Y Z", Range::any(),
       "where the scanner stood; default: fields vp_x vp_y vp_z, else the header of the file, else normals are made "
       "to agree with each other and to point out of closed objects",
-      [this](const std::vector<std::string>& words) {
-        for (int axis = 0; axis < 3; ++axis)
-          viewpoint[axis] = Args::number("viewpoint", words[axis]);
-      });
+      [this](const auto& given) { viewpoint = Eigen::Vector3d(given.data()); });
   args.flag("propagate", propagate, "as if no viewpoint were known");
   args.flag("flip", flip, "turn all normals round at the end");
-  args.option("bilateral", smoothing.rounds, "rounds of bilateral smoothing of the normals; 0 = none");
-  args.option("sigma_d", smoothing.sigma_d,
-              "for -bilateral: deviation of the distance, metres; 0 = from the local sampling");
-  args.option("sigma_n", smoothing.sigma_n,
-              "for -bilateral: deviation of the angle between normals, degrees, above 0 and at most 180");
-  args.option("move", smoothing.move_rounds, "then move points along their normals, this many rounds, >= 0");
+  args.option("bilateral", smoothing.rounds, Range::atLeast(0), "rounds of bilateral smoothing of the normals");
+  args.option("sigma_d", smoothing.sigma_d, Range::above(0).zero("from the local sampling"),
+              "for -bilateral: deviation of the distance, metres");
+  args.option("sigma_n", smoothing.sigma_n, Range::above(0).atMost(180),
+              "for -bilateral: deviation of the angle between normals, degrees");
+  args.option("move", smoothing.move_rounds, Range::atLeast(0),
+              "then move points along their normals, this many rounds");
   args.flag("plain", plain,
             "plain plane fits: do not keep to one side of an edge, nor look for another one in -bilateral");
   args.flag("no_grid", no_grid, "organised clouds: search neighbours in space, not around the pixel");
@@ -62,16 +61,6 @@ void validate(const Args& args, const ToolOptions& options)
     throw UsageError("-k and -radius exclude each other");
   if (args.given("viewpoint") && options.propagate)
     throw UsageError("-viewpoint and -propagate exclude each other");
-  if (options.normals.k < 3)
-    throw UsageError("-k: " + std::to_string(options.normals.k) + " is below 3");
-  if (args.given("radius") && !(options.normals.radius > 0))
-    throw UsageError("-radius: " + std::to_string(options.normals.radius) + " is not above 0");
-  if (options.smoothing.rounds < 0 || options.smoothing.move_rounds < 0)
-    throw UsageError("-bilateral, -move: a number of rounds is negative");
-  if (!(options.smoothing.sigma_d >= 0))
-    throw UsageError("-sigma_d: " + std::to_string(options.smoothing.sigma_d) + " is negative");
-  if (!(options.smoothing.sigma_n > 0 && options.smoothing.sigma_n <= 180))
-    throw UsageError("-sigma_n: " + std::to_string(options.smoothing.sigma_n) + " is not in 0..180 degrees");
 }
 
 const pcl::PCLPointField* findField(const pcl::PCLPointCloud2& cloud, const std::string& name)

@@ -25,11 +25,11 @@ struct Request {
 void declare(Args& args, Request& request)
 {
   NormalFilteringOptions& options = request.options;
-  args.option("iterations", options.iterations, "at most, 1..8");
-  args.option("kappa1", options.smoothness_weight, "weight of smoothness, >= 0");
-  args.option("kappa2", options.tangential_weight, "weight of well-shaped triangles, >= 0");
-  args.option("tolerance", options.tolerance,
-              "ends when a step moves the vertices by less, RMS in mean edge lengths, >= 0");
+  args.option("iterations", options.iterations, Range::within(1, 8), "most iterations");
+  args.option("kappa1", options.smoothness_weight, Range::atLeast(0), "weight of smoothness");
+  args.option("kappa2", options.tangential_weight, Range::atLeast(0), "weight of well-shaped triangles");
+  args.option("tolerance", options.tolerance, Range::atLeast(0),
+              "ends when a step moves the vertices by less, RMS in mean edge lengths");
   args.flag("flip", options.flip, "flip edges so that they follow the creases");
   args.option("report", request.report, "file for the terms of each iteration and a summary, JSON");
   args.note("fresco_reconstruct scan.ply mesh.ply -depth 8\nfresco_optimize mesh.ply scan.ply sharp.ply");

@@ -26,19 +26,20 @@ struct Request {
 void declare(Args& args, Request& request)
 {
   declarePlan(args, request.plan);
-  args.values("sections", "AXIS STEP",
-              "also parallel sections of a mesh, each STEP metres along AXIS (x, y or z), as OUT_x+1.50.svg ...",
-              [&](const auto& words) {
-                request.axis = words[0];
-                request.step = Args::number("sections", words[1]);
-                if (words[0] != "x" && words[0] != "y" && words[0] != "z")
-                  throw UsageError("-sections: axis '" + words[0] + "' is none of x, y, z");
-                if (!(request.step > 0))
-                  throw UsageError("-sections: step " + words[1] + " is not above 0");
-              });
+  const Range step = Range::above(0);
+  args.values(
+      "sections", "AXIS STEP",
+      "also parallel sections of a mesh, each STEP metres along AXIS (x, y or z), as OUT_x+1.50.svg ... (STEP " +
+          step.text() + ")",
+      [&request, step](const auto& words) {
+        request.axis = words[0];
+        request.step = Args::number("sections", words[1], step);
+        if (words[0] != "x" && words[0] != "y" && words[0] != "z")
+          throw UsageError("-sections: axis '" + words[0] + "' is none of x, y, z");
+      });
   args.flag("ortho", request.ortho,
             "also what lies below the cut, seen from above, true to scale: OUT_ortho.png with OUT_ortho.pgw");
-  args.option("pixel", request.pixel, "of pictures, metres, > 0");
+  args.option("pixel", request.pixel, Range::above(0), "of pictures, metres");
 }
 
 Model readInput(const ScanPath& path)

@@ -37,25 +37,25 @@ std::size_t bytes(int megabytes) { return std::max(0, megabytes) * std::size_t{1
 void declareOptions(Args& args, Request& request)
 {
   VolumetricOptions& o = request.options;
-  args.option("depth", o.depth, "octree depth, 2..16; finest cell = cube side / 2^depth");
-  args.option("cell", o.cell_size,
-              "side of the finest cell, unit of the points, which sets the depth; 0 = from -depth");
-  args.option("point_weight", o.point_weight, "weight of passing through the points, >= 0; 0 = unscreened");
-  args.option("samples_per_node", o.samples_per_node,
-              "points that a cell needs to sustain its depth, > 0; more = smoother");
-  args.option("trim", o.trim,
-              "an octree depth: cut the surface away where the data sustain less than it; 0 = keep it closed");
-  args.option(
-      "trim_levels", o.trim_levels,
-      "octree levels: the same, but so many levels below the depth that the best-sampled quarter of the surface "
-      "reaches; 0 = keep it closed");
+  args.option("depth", o.depth, Range::within(2, 16), "octree depth; finest cell = cube side / 2^depth");
+  args.option("cell", o.cell_size, Range::above(0).zero("from -depth"),
+              "side of the finest cell, unit of the points, which sets the depth");
+  args.option("point_weight", o.point_weight, Range::above(0).zero("unscreened"),
+              "weight of passing through the points");
+  args.option("samples_per_node", o.samples_per_node, Range::above(0),
+              "points that a cell needs to sustain its depth; more = smoother");
+  args.option("trim", o.trim, Range::above(0).zero("keep it closed"),
+              "an octree depth: cut the surface away where the data sustain less than it");
+  args.option("trim_levels", o.trim_levels, Range::above(0).zero("keep it closed"),
+              "octree levels: the same, but so many levels below the depth that the best-sampled quarter of the "
+              "surface reaches");
   args.flag("confidence", o.confidence,
             "weight the points by their field `confidence`, else by the length of their normals");
   args.flag("free_space", request.free_space,
             "no surface where beams passed: IN has viewpoints, of up to 1000 stations; it is read once more");
-  args.option("scale", o.scale, "cube side / longest side of the points' bounding box, 1..100");
-  args.option("min_depth", o.min_depth, "the octree is complete down to this depth, 2..8");
-  args.option("iterations", o.iterations, "solver sweeps per octree depth, 1..1000");
+  args.option("scale", o.scale, Range::within(1, 100), "cube side / longest side of the points' bounding box");
+  args.option("min_depth", o.min_depth, Range::within(2, 8), "the octree is complete down to this depth");
+  args.option("iterations", o.iterations, Range::within(1, 1000), "solver sweeps per octree depth");
   args.flag("estimate", request.estimate,
             "print three numbers on stdout and stop, without writing OUT: MB of memory, MB of scratch files with this "
             "-memory, seconds to about a factor of two");
@@ -63,9 +63,8 @@ void declareOptions(Args& args, Request& request)
       "parts", request.parts,
       "of fresco_reconstruct_mpi: each rank writes its part as a mesh by itself, OUT_0000.ply ..., and the first an "
       "index of them, OUT.json");
-  args.option("memory", request.memory,
-              "MB to stay below, 256 or more: arrays that do not fit go to files in -scratch; the same bytes come out. "
-              "0 = all in memory");
+  args.option("memory", request.memory, Range::atLeast(ScratchSpace::least_memory / 1e6).zero("all in memory"),
+              "MB to stay below: arrays that do not fit go to files in -scratch; the same bytes come out");
   args.option("scratch", request.scratch, "folder for such files, on a fast disk; default: the folder of OUT");
 }
 
@@ -105,8 +104,6 @@ Request parse(int argc, char** argv, const std::string& program)
   }
   if (request.parts && program == "fresco_reconstruct")
     throw UsageError("-parts goes with fresco_reconstruct_mpi");
-  if (request.memory != 0 && bytes(request.memory) < ScratchSpace::least_memory)
-    throw UsageError(concat("-memory ", request.memory, " is not ", ScratchSpace::least_memory / 1000000, " or more"));
   if (!request.scratch.empty() && request.memory == 0)
     throw UsageError("-scratch goes with -memory");
   request.output = files.back();

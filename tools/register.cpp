@@ -44,15 +44,17 @@ Request parse(int argc, char** argv)
               "what is known of places, a line each: link A B, relative A B POSE, near A X Y [Z] R, choose A B NUMBER, "
               "apart A B, order; registration.html shows the lines that help");
   args.flag("resume", request.resume, "take what an earlier run into OUT_DIR found of pairs, whatever its hints were");
-  args.option("voxel", request.options.voxel, "finest thinning, unit of the points; 0 = from the data");
-  args.option("max_distance", request.options.max_distance,
-              "how far start poses may be off, unit of the points; 0 = 20 voxels");
-  args.option("min_overlap", request.options.min_overlap,
-              "share of a scan from which a pair of scans is used, above 0 and at most 1");
-  args.option("max_violation", request.options.max_violation,
-              "share of a scan in space that the other saw through from which a pair is wrong, 0..1");
+  args.option("voxel", request.options.voxel, Range::above(0).zero("from the data"),
+              "finest thinning, unit of the points");
+  args.option("max_distance", request.options.max_distance, Range::above(0).zero("20 voxels"),
+              "how far start poses may be off, unit of the points");
+  args.option("min_overlap", request.options.min_overlap, Range::above(0).atMost(1),
+              "share of a scan from which a pair of scans is used");
+  args.option("max_violation", request.options.max_violation, Range::within(0, 1),
+              "share of a scan in space that the other saw through from which a pair is wrong");
   args.flag("upright", request.options.upright, "all scanners stood upright to 10 degrees, z upwards");
-  args.option("iterations", request.options.max_iterations, "of the joint refinement per resolution, at least 1");
+  args.option("iterations", request.options.max_iterations, Range::atLeast(1),
+              "of the joint refinement per resolution");
   declareColumns(args);
   request.common.declare(args);
   args.note("example: fresco_register scans/*.pcd -o registered");

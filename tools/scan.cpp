@@ -12,21 +12,25 @@ using namespace fresco::simulation;
 namespace {
 void declare(Args& args, DatasetOptions& options, int& seed)
 {
-  args.option("stations", options.stations, "laser stations, 1..1000");
-  args.option("rooms", options.rooms, "of a storey of the scene office, 4..32; the seed makes the floor");
-  args.option("storeys", options.storeys, "of the scene office, 1..2; two with a stairwell and stations in it");
-  args.option("points", options.laser.points, "laser points per station, about, 100..100000000");
+  args.option("stations", options.stations, Range::within(1, 1000), "laser stations");
+  args.option("rooms", options.rooms, Range::within(4, 32),
+              "of a storey of the scene office; the seed makes the floor");
+  args.option("storeys", options.storeys, Range::within(1, 2),
+              "of the scene office; two with a stairwell and stations in it");
+  args.option("points", options.laser.points, Range::within(100, 1e8), "laser points per station, about");
   args.flag("turned", options.turned,
             "each scan in a frame turned arbitrarily, as of a scanner that knows no vertical");
-  args.option("noise", options.laser.noise,
-              "deviation of the range at 4 m, metres, 0..1; it grows with range and incidence");
+  args.option("noise", options.laser.noise, Range::within(0, 1),
+              "deviation of the range at 4 m, metres; it grows with range and incidence");
   args.flag("no_veil", options.laser.veil, "thin laser beams: no mixed pixels (veil points) at depth jumps", false);
-  args.option("max_range", options.laser.max_range, "of the laser, metres; 0 = 30 in rooms, without limit for meshes");
-  args.option("seed", seed, "of all random numbers; same seed, same bytes; >= 0");
-  args.size("images", options.width, options.height, "size of the photographs, pixels, 16..20000 each");
-  args.option("views", options.views, "photographs, 0..100000");
+  args.option("max_range", options.laser.max_range, Range::above(0).zero("30 in rooms, without limit for meshes"),
+              "of the laser, metres");
+  args.option("seed", seed, Range::atLeast(0), "of all random numbers; same seed, same bytes");
+  args.size("images", options.width, options.height, Range::within(16, 20000), "size of the photographs, pixels");
+  args.option("views", options.views, Range::within(0, 100000), "photographs");
   args.flag("panoramas", options.panoramas, "a panorama from each station, as panoramas/scan_NN.jpg");
-  args.option("panorama_height", options.panorama_height, "of the panoramas, twice as wide, pixels, 8..10000");
+  args.option("panorama_height", options.panorama_height, Range::within(8, 10000),
+              "of the panoramas, twice as wide, pixels");
   args.flag("e57", options.survey, "also scans, panoramas and photographs with their poses in one file, survey.e57");
   args.flag("intensity", options.laser.intensity,
             "scans get intensities in place of colours: reflectance times cosine of incidence / range^2");
@@ -34,32 +38,37 @@ void declare(Args& args, DatasetOptions& options, int& seed)
             "scans get a field label: 0 = of one surface, 1 = of several but within the noise of one, 2 = mixed pixel "
             "(veil point)");
   args.values("no_images", "", "no photographs", [](const auto&) {});
-  args.option("exposure", options.exposure_spread,
-              "spread of the photographs' brightness, 0..0.9; white balance a quarter of it");
-  args.option("sensor_noise", options.sensor_noise, "of the photographs, grey levels of 255, 0..100");
-  args.option("vignetting", options.vignetting, "light in the photographs' corners, of that in their middle, 0.1..1");
-  args.option("response", options.response, "strength of the photographs' S-shaped tone curve, 0..1; 0 = none");
-  args.option("blur", options.blur, "of the photographs, pixels (deviation), 0..20");
-  args.option("intruder", options.intruder, "somebody stands in every Nth photograph, >= 0; 0 = in none");
-  args.option("pose_noise", options.pose_noise, "deviation of the written cameras' positions, metres, 0..1");
-  args.option("turn_noise", options.turn_noise, "deviation of the written cameras' directions, degrees, 0..10");
-  args.option("photographed", options.photographed, "share of the scene along x that photographs show, 0.05..1");
-  args.option("sparse", options.sparse, "points in cameras/points3D.txt as structure from motion finds them, >= 0");
-  args.option("sparse_noise", options.sparse_noise, "deviation of these from the surface, metres, 0..1");
-  args.option("sparse_outliers", options.sparse_outliers, "share of these that is wrong, 0..1");
-  args.option(
-      "own_frame", options.own_frame,
-      "cameras/ gets a frame and a scale (0.01..100) of its own, made by this seed; own_frame.txt tells which; 0 "
-      "= that of poses.txt");
-  args.option("quality", options.jpeg_quality, "of the JPEG files, 1..100");
-  args.option(
-      "rgbd", options.rgbd_frames,
-      "frames of an RGB-D camera that is carried around, 0..100000, as rgbd/frame-NNNNNN.{color.jpg,depth.png}; "
-      "rgbd/poses.txt is the truth");
-  args.size("rgbd_size", options.rgbd_width, options.rgbd_height, "size of these images, pixels, 16..20000 each");
+  args.option("exposure", options.exposure_spread, Range::within(0, 0.9),
+              "spread of the photographs' brightness; white balance a quarter of it");
+  args.option("sensor_noise", options.sensor_noise, Range::within(0, 100), "of the photographs, grey levels of 255");
+  args.option("vignetting", options.vignetting, Range::within(0.1, 1),
+              "light in the photographs' corners, of that in their middle");
+  args.option("response", options.response, Range::within(0, 1).zero("none"),
+              "strength of the photographs' S-shaped tone curve");
+  args.option("blur", options.blur, Range::within(0, 20), "of the photographs, pixels (deviation)");
+  args.option("intruder", options.intruder, Range::atLeast(1).zero("in none"),
+              "somebody stands in every Nth photograph");
+  args.option("pose_noise", options.pose_noise, Range::within(0, 1),
+              "deviation of the written cameras' positions, metres");
+  args.option("turn_noise", options.turn_noise, Range::within(0, 10),
+              "deviation of the written cameras' directions, degrees");
+  args.option("photographed", options.photographed, Range::within(0.05, 1),
+              "share of the scene along x that photographs show");
+  args.option("sparse", options.sparse, Range::atLeast(0),
+              "points in cameras/points3D.txt as structure from motion finds them");
+  args.option("sparse_noise", options.sparse_noise, Range::within(0, 1), "deviation of these from the surface, metres");
+  args.option("sparse_outliers", options.sparse_outliers, Range::within(0, 1), "share of these that is wrong");
+  args.option("own_frame", options.own_frame, Range::atLeast(1).zero("that of poses.txt"),
+              "cameras/ gets a frame and a scale (0.01..100) of its own, made by this seed; own_frame.txt tells which");
+  args.option("quality", options.jpeg_quality, Range::within(1, 100), "of the JPEG files");
+  args.option("rgbd", options.rgbd_frames, Range::within(0, 100000),
+              "frames of an RGB-D camera that is carried around, as rgbd/frame-NNNNNN.{color.jpg,depth.png}; "
+              "rgbd/poses.txt is the truth");
+  args.size("rgbd_size", options.rgbd_width, options.rgbd_height, Range::within(16, 20000),
+            "size of these images, pixels");
   args.flag("truth_images", options.truth_images,
             "also photographs without exposure differences and noise, with the tone curve of -response (PNG)");
-  args.option("edge", options.max_edge, "longest side of a face of the rooms' truth, metres, 0.02..10");
+  args.option("edge", options.max_edge, Range::within(0.02, 10), "longest side of a face of the rooms' truth, metres");
   args.note("SCENE is conference_room, apartment (two rooms and a door), office (rooms at corridors) or a mesh file (" +
             readableExtensions(FileKind::mesh) +
             ").\n"
@@ -84,8 +93,6 @@ int main(int argc, char** argv)
     common.declare(args);
     const auto files = args.parse(argc, argv, 2);
     requireDistinct({files[1] + "/truth.ply"}, {files[0]});
-    if (seed < 0)
-      throw UsageError("-seed: " + std::to_string(seed) + " is negative");
     const std::vector<std::string> layouts = simulation::layoutNames();
     if (!layout.empty() && std::find(layouts.begin(), layouts.end(), layout) == layouts.end())
       throw UsageError("-layout: " + layout + " is none of " + listed(layouts, layouts.size()));

@@ -21,16 +21,19 @@ struct SimplifyOptions {
 
   void declare(Args& args)
   {
-    args.option("faces", faces,
-                "faces that are to be left, or most of a tile, at least 1; 0 = as few as -error allows");
-    args.option("error", error,
-                "most that a vertex may be off the surface it stands for (RMS), mesh units, >= 0; 0 = any");
+    args.option("faces", faces, Range::atLeast(1).zero("as few as -error allows"),
+                "faces that are to be left, or most of a tile");
+    args.option("error", error, Range::above(0).zero("any"),
+                "most that a vertex may be off the surface it stands for (RMS), mesh units");
     args.option("from", full,
                 "full model whose colours and normals are baked into a new atlas with a normal map; OUT is .glb");
-    args.option("texel", texel, "with -from: side of a texel, mesh units, >= 0; 0 = that of the full model");
-    args.option("atlas", atlas, "with -from: side of an atlas, 128..16384 pixels");
-    args.option("atlases", atlases, "with -from: most atlases, at least 1; texels are made larger until they suffice");
-    args.option("quality", quality, "JPEG quality of the pictures, 1..100; 0 = 90 with -from, else PNG without loss");
+    args.option("texel", texel, Range::above(0).zero("that of the full model"),
+                "with -from: side of a texel, mesh units");
+    args.option("atlas", atlas, Range::within(128, 16384), "with -from: side of an atlas, pixels");
+    args.option("atlases", atlases, Range::atLeast(1),
+                "with -from: most atlases; texels are made larger until they suffice");
+    args.option("quality", quality, Range::within(1, 100).zero("90 with -from, else PNG without loss"),
+                "JPEG quality of the pictures");
     args.flag("compress", compress, "compress OUT.glb by EXT_meshopt_compression, which not all programs read");
     args.option("to_world", to_world,
                 "file of 16 numbers, rows of the matrix that takes the model into the world: kept in the node of a "

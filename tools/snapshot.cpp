@@ -31,11 +31,6 @@ struct Request {
 
 using Model = std::variant<TriangleMesh, TexturedMesh, PointSet>;
 
-Eigen::Vector3d vector(const std::string& name, const std::vector<std::string>& words)
-{
-  return {Args::number(name, words[0]), Args::number(name, words[1]), Args::number(name, words[2])};
-}
-
 std::string joined(const std::vector<std::string>& words)
 {
   std::string text;
@@ -59,16 +54,6 @@ std::vector<Shading> parseShadings(const std::string& text)
   return shadings;
 }
 
-void setBackground(PictureOptions& picture, const std::vector<std::string>& words)
-{
-  for (std::size_t c = 0; c < 3; ++c) {
-    const long long value = Args::integer("background", words[c]);
-    if (value < 0 || value > 255)
-      throw UsageError("-background: " + words[c] + " is not in 0..255");
-    picture.background[c] = static_cast<std::uint8_t>(value);
-  }
-}
-
 void declareView(Args& args, Request& request)
 {
   args.option(
@@ -80,17 +65,15 @@ void declareView(Args& args, Request& request)
               "mesh of the room that -view inside or above is chosen for, so that pictures of several models are taken "
               "from one place (default: MODEL, which must have faces then)");
   const auto point = [&](const std::string& name, std::optional<Eigen::Vector3d>& value, const std::string& help) {
-    args.values(name, "X Y Z", help, [&value, name](const auto& words) { value = vector(name, words); });
+    args.numbers(name, "X Y Z", Range::any(), help,
+                 [&value](const auto& given) { value = Eigen::Vector3d(given.data()); });
   };
   point("eye", request.from.eye, "position of the eye, unit of the model; replaces -view");
-  point("look", request.from.look, "point in the middle of the picture, with -eye (default: middle of the model)");
-  point("up", request.from.up, "upright direction (default: 0 0 1; with -view inside and above: found from the model)");
-  args.values("angle", "DEG", "vertical opening angle, 1..170 degrees (default: 30; with -view inside: 62)",
-              [&](const auto& words) {
-                request.from.angle = Args::number("angle", words[0]);
-                if (!(*request.from.angle >= 1 && *request.from.angle <= 170))
-                  throw UsageError("option -angle: " + words[0] + " is out of range: 1..170");
-              });
+  point("look", request.from.look, "point in the middle of the picture, with -eye; default: middle of the model");
+  point("up", request.from.up, "upright direction; default: 0 0 1, with -view inside and above found from the model");
+  args.numbers("angle", "DEG", Range::within(1, 170),
+               "vertical opening angle, degrees; default: 30, with -view inside 62",
+               [&](const auto& given) { request.from.angle = given[0]; });
   args.flag("cull", request.picture.cull_back_faces,
             "leave out faces, and points with normals, seen from behind (always with -view above)");
 }
@@ -102,17 +85,24 @@ void declareLook(Args& args, Request& request)
               joined(shadingNames()) + " (default: gouraud); of several, each goes into its own file OUT_NAME",
               [&](const auto& words) { request.shadings = parseShadings(words[0]); });
   args.option("reference", request.reference, "mesh that error shading measures the distance to");
-  args.option("limit", picture.error_limit,
-              "distance that error shading paints blue, unit of the model; 0 = 99 % of the vertices lie below");
+  args.option("limit", picture.error_limit, Range::above(0).zero("99 % of the vertices lie below"),
+              "distance that error shading paints blue, unit of the model");
   args.option("unit", picture.unit, "unit of the model for the scale bar of error shading, for example m");
-  args.size("size", picture.width, picture.height, "pixels");
-  args.values("background", "R G B", "colour behind the model, 0..255 each (default: white)",
-              [&](const auto& words) { setBackground(picture, words); });
+  args.size("size", picture.width, picture.height, Range::within(1, 65536), "pixels");
+  const Range grey = Range::within(0, 255);
+  args.values("background", "R G B", "colour behind the model; default: white (" + grey.text() + ")",
+              [&picture, grey](const auto& words) {
+                for (std::size_t c = 0; c < 3; ++c)
+                  picture.background[c] = static_cast<std::uint8_t>(Args::integer("background", words[c], grey));
+              });
   args.flag("transparent", picture.transparent, "no background: PNG with alpha");
-  args.option("crease", picture.crease_angle, "edges that bend by more look sharp with gouraud, 0..180 degrees");
+  args.option("crease", picture.crease_angle, Range::within(0, 180),
+              "edges that bend by more look sharp with gouraud, degrees");
   args.flag("no_colors", picture.no_colors, "leave out the colours of vertices and points: the shape alone");
-  args.option("point_size", picture.point_size, "size of points, pixels, 0..1000; 0 = by their number");
-  args.option("oversampling", picture.oversampling, "pixels drawn per pixel along each side, 1..4: finer, slower");
+  args.option("point_size", picture.point_size, Range::within(0, 1000).zero("by their number"),
+              "size of points, pixels");
+  args.option("oversampling", picture.oversampling, Range::within(1, 4),
+              "pixels drawn per pixel along each side: finer, slower");
 }
 
 void checkRequest(const Request& request, const Args& args)

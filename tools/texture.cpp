@@ -44,42 +44,42 @@ void declare(Args& args, TextureOptions& options, ToolOptions& tool)
   args.option("points", tool.points,
               "cloud whose colours, else intensities, the texture is made of; of the options below it takes "
               "-no_exposure, -texel, -atlas and -border");
-  args.option("point_width", tool.from_points.width,
-              "with -points: deviation of the Gaussian in distances from one point to the next, 0.3..10");
-  args.option("point_rounds", tool.from_points.rounds,
-              "with -points: corrections by what the points differ from the texture, 0..20");
+  args.option("point_width", tool.from_points.width, Range::within(0.3, 10),
+              "with -points: deviation of the Gaussian in distances from one point to the next");
+  args.option("point_rounds", tool.from_points.rounds, Range::within(0, 20),
+              "with -points: corrections by what the points differ from the texture");
   args.flag("no_refine", options.refine, "take the cameras as they are given", false);
   args.flag("no_exposure", options.exposure, "leave exposure and white balance of the photographs as they are", false);
   args.flag("no_consistency", options.consistency, "do not avoid photographs that differ from what most show", false);
   args.flag("no_level", options.level, "leave the steps of colour at seams", false);
   args.flag("no_examples", tool.no_examples, "taken and ignored: unseen parts are always coloured smoothly");
-  args.option("blend_width", options.blend_width,
-              "pixels over which one photograph passes into the next at a seam, 0..100");
-  args.option("strip", options.blend_width, "old name of -blend_width, 0..100");
-  args.option("rounds", options.rounds,
-              "how often texels are corrected by all photographs, 0..100; not with -no_refine or -no_exposure");
-  args.option(
-      "keep_out", tool.keep_out,
-      "every Nth photograph (the Nth, 2Nth ...) is aligned with the others but not used, to judge by; 0 = none");
+  args.option("blend_width", options.blend_width, Range::within(0, 100),
+              "pixels over which one photograph passes into the next at a seam");
+  args.option("strip", options.blend_width, Range::within(0, 100), "old name of -blend_width");
+  args.option("rounds", options.rounds, Range::within(0, 100),
+              "how often texels are corrected by all photographs; not with -no_refine or -no_exposure");
+  args.option("keep_out", tool.keep_out, Range::atLeast(1).zero("none"),
+              "every Nth photograph (the Nth, 2Nth ...) is aligned with the others but not used, to judge by");
   args.option("cameras_out", tool.cameras_out, "folder for the cameras as used, a COLMAP text model; empty = none");
-  args.option("texel", options.texel, "side of a texel in mesh units; 0 = as fine as the photographs show each part");
-  args.option("atlas", options.atlas,
-              "largest side of an atlas, 128..16384 pixels; a larger texture has several; 0 = 8192");
+  args.option("texel", options.texel, Range::above(0).zero("as fine as the photographs show each part"),
+              "side of a texel in mesh units");
+  args.option("atlas", options.atlas, Range::within(128, 16384).zero("8192"),
+              "largest side of an atlas, pixels; a larger texture has several");
   args.option("uv", tool.uv,
               "texture coordinates: new, or keep those of MESH (.obj, .glb) and the sizes of its images");
-  args.option("quality", tool.quality, "JPEG quality of the texture's pictures, 1..100; 0 = PNG, without loss");
-  args.option("border", options.border, "texels around each chart against bleeding, 1..16");
-  args.option(
-      "smoothness", options.smoothness,
-      "how much fewer seams are worth against resolution, in bounding-box diagonals; 0 = best view of each face");
-  args.option("margin", options.margin, "pixels kept away from the outline of what stands in front, 0..100");
-  args.option("depth_tolerance", options.depth_tolerance,
-              "share of the typical distance by which occlusion is forgiven, 0..0.5");
-  args.option(
-      "tile_faces", options.tile_faces,
-      "most faces that are textured at a time, >= 0: a mesh of more gets atlases for each of its tiles; 0 = all, "
-      "or as many as memory holds");
-  args.option("memory", options.memory, "MB of photographs kept at a time, decoded or as grey copies, at least 1");
+  args.option("quality", tool.quality, Range::within(1, 100).zero("PNG, without loss"),
+              "JPEG quality of the texture's pictures");
+  args.option("border", options.border, Range::within(1, 16), "texels around each chart against bleeding");
+  args.option("smoothness", options.smoothness, Range::above(0).zero("best view of each face"),
+              "how much fewer seams are worth against resolution, in bounding-box diagonals");
+  args.option("margin", options.margin, Range::within(0, 100),
+              "pixels kept away from the outline of what stands in front");
+  args.option("depth_tolerance", options.depth_tolerance, Range::within(0, 0.5),
+              "share of the typical distance by which occlusion is forgiven");
+  args.option("tile_faces", options.tile_faces, Range::atLeast(1).zero("all, or as many as memory holds"),
+              "most faces that are textured at a time: a mesh of more gets atlases for each of its tiles");
+  args.option("memory", options.memory, Range::atLeast(1),
+              "MB of photographs kept at a time, decoded or as grey copies");
 }
 
 /// One camera per view: they may differ after refinement.
@@ -243,8 +243,6 @@ void run(int argc, char** argv)
     throw UsageError("-uv keep does not go with -tile_faces");
   if (tool.uv != "new" && (tool.uv != "keep" || options.texel > 0 || !tool.points.empty()))
     throw UsageError("-uv is new or keep, which goes with neither -texel nor -points");
-  if (tool.keep_out < 0)
-    throw UsageError("-keep_out must not be negative");
   options.threads = common.threads;
   if (!tool.points.empty())
     return textureFromPoints(files, tool, options, common.quiet);

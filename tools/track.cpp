@@ -26,12 +26,13 @@ Request parse(int argc, char** argv)
       "are 16 bit, millimetres.\n"
       "Writes poses.txt: world from camera, a line a frame in the order of the numbers, `none` where it was lost.");
   args.option("o", request.folder, "folder of the output, created; required");
-  args.option("nearest", request.options.nearest, "depths below are not used, metres, > 0");
-  args.option("farthest", request.options.farthest, "depths beyond are not used, metres, > 0");
+  args.option("nearest", request.options.nearest, Range::above(0), "depths below are not used, metres");
+  args.option("farthest", request.options.farthest, Range::above(0), "depths beyond are not used, metres");
   args.flag("registered", request.options.calibrate_color,
             "colour images are registered to the depth images: do not look for the colour camera's own calibration",
             false);
-  args.option("rounds", request.options.refinement_rounds, "alignments of all key frames that overlap, 0..10");
+  args.option("rounds", request.options.refinement_rounds, Range::within(0, 10),
+              "alignments of all key frames that overlap");
   request.common.declare(args);
   request.input = args.parse(argc, argv, 1)[0];
   if (request.folder.empty())

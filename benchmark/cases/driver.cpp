@@ -38,8 +38,8 @@ Options parse(int argc, char** argv)
       "fresco_benchmark [CASE...] [options]",
       "Runs the named cases (all without a name), each program as its own process, and prints a markdown table of\n"
       "wall and CPU time, peak memory and accuracy. Peers that are not installed are said to be absent.");
-  args.option("repeat", runner.repeat, "runs of each program, >= 1");
-  args.option("timeout", runner.timeout, "seconds a run may take, 0 = no limit");
+  args.option("repeat", runner.repeat, Range::atLeast(1), "runs of each program");
+  args.option("timeout", runner.timeout, Range::above(0).zero("no limit"), "seconds a run may take");
   args.option("cases", options.cases, "table of cases");
   args.option("data", runner.data, "folder of real data; the environment variable FRESCO_DATA sets the default");
   args.option("cache", runner.cache, "folder for inputs, made once, and outputs");

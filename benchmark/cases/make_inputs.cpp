@@ -30,13 +30,13 @@ Options parse(int argc, char** argv)
             "vertices: the vertices of a mesh with its angle-weighted vertex normals.\n"
             "surface: area-uniform samples of a mesh with the normals of its faces.\n"
             "scans: the scans of a folder of fresco_scan, in one frame by the true poses.");
-  args.option("count", options.count, "surface: number of samples");
-  args.option("noise", options.noise, "surface: deviation of Gaussian noise, % of the bounding box's diagonal");
-  args.option(
-      "neighbours", options.neighbours,
-      "normals by principal components of so many neighbours instead, turned to the side they are known to face; "
-      "always so for scans (default 16)");
-  args.option("seed", options.seed, "of samples and noise");
+  args.option("count", options.count, Range::atLeast(1), "surface: number of samples");
+  args.option("noise", options.noise, Range::atLeast(0),
+              "surface: deviation of Gaussian noise, % of the bounding box's diagonal");
+  args.option("neighbours", options.neighbours, Range::atLeast(3).zero("as they are; 16 for scans"),
+              "normals by principal components of so many neighbours instead, turned to the side they are known to "
+              "face; always so for scans");
+  args.option("seed", options.seed, Range::atLeast(0), "of samples and noise");
   options.common.declare(args);
   const std::vector<std::string> words = args.parse(argc, argv, 3);
   options.kind = words[0];

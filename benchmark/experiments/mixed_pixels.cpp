@@ -116,11 +116,11 @@ int main(int argc, char** argv)
               "how many one "
               "would find who knows the surfaces.");
     args.option("scene", name, "conference_room, apartment or a mesh file");
-    args.option("stations", stations, "laser stations");
-    args.option("points", laser.points, "laser points per station, about");
-    args.option("noise", laser.noise, "deviation of the range at 4 m, metres");
-    args.option("beam", laser.beam_radius, "radius of the beam at the exit, metres");
-    args.option("divergence", laser.divergence, "growth of the radius, radians");
+    args.option("stations", stations, Range::atLeast(1), "laser stations");
+    args.option("points", laser.points, Range::atLeast(100), "laser points per station, about");
+    args.option("noise", laser.noise, Range::atLeast(0), "deviation of the range at 4 m, metres");
+    args.option("beam", laser.beam_radius, Range::atLeast(0), "radius of the beam at the exit, metres");
+    args.option("divergence", laser.divergence, Range::atLeast(0), "growth of the radius, radians");
     common.declare(args);
     args.parse(argc, argv, 0);
     const ScannedRoom room(name, stations, common.threads);

@@ -109,10 +109,10 @@ int main(int argc, char** argv)
               "Angles between estimated and true normals of generated laser scans, beside edges and elsewhere.");
     args.option("scene", options.scene, "conference_room, apartment or a mesh file");
     args.flag("merged", options.merged, "all stations in one cloud; else each station for itself");
-    args.option("stations", options.stations, "laser stations");
-    args.option("points", options.points, "laser points per station, about");
-    args.option("k", options.k, "neighbours");
-    args.option("edge", options.edge, "metres to a crease that count as beside an edge");
+    args.option("stations", options.stations, Range::atLeast(1), "laser stations");
+    args.option("points", options.points, Range::atLeast(100), "laser points per station, about");
+    args.option("k", options.k, Range::within(3, 1000), "neighbours");
+    args.option("edge", options.edge, Range::above(0), "metres to a crease that count as beside an edge");
     common.declare(args);
     args.parse(argc, argv, 0);
     const ScannedRoom room(options.scene, options.stations, common.threads);

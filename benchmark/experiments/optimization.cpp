@@ -32,9 +32,10 @@ Request parse(int argc, char** argv)
       "Samples each model, once exact with its normals and once with noise and normals of 64 neighbours, reconstructs\n"
       "it, optimises the mesh, and prints the errors before and after. Without a MODEL: three shapes with sharp "
       "edges.");
-  args.option("count", request.count, "samples, > 0");
-  args.option("noise", request.noise, "deviation of Gaussian noise, % of the diagonal of the bounding box, > 0");
-  args.option("depth", request.depth, "octree depth of the reconstruction, 2..16");
+  args.option("count", request.count, Range::atLeast(1), "samples");
+  args.option("noise", request.noise, Range::above(0),
+              "deviation of Gaussian noise, % of the diagonal of the bounding box");
+  args.option("depth", request.depth, Range::within(2, 16), "octree depth of the reconstruction");
   args.flag("flip", request.flip, "with edge flips");
   args.option("keep", request.keep, "folder (must exist) for the meshes: NAME_before.ply, NAME_after.ply");
   request.common.declare(args);

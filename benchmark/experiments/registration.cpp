@@ -215,8 +215,9 @@ void run(int argc, char** argv)
   std::string overlap_file;
   PoseError tolerance{0.05, 1.0};
   args.option("overlaps", overlap_file, "pairs: file for the true overlaps, written; none by default");
-  args.option("distance", tolerance.distance, "converge: largest error that counts as right, metres");
-  args.option("degrees", tolerance.degrees, "converge: the same of the rotation");
+  args.option("distance", tolerance.distance, fresco::Range::above(0),
+              "converge: largest error that counts as right, metres");
+  args.option("degrees", tolerance.degrees, fresco::Range::above(0), "converge: the same of the rotation");
   const std::vector<std::string> words = args.parse(argc, argv, 4, 100000);
   const RegistrationInput input = fresco::benchmark::readRegistrationInput({words.begin() + 1, words.end()});
   std::cout << std::setprecision(3);

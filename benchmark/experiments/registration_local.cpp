@@ -201,8 +201,8 @@ void run(int argc, char** argv)
   int count = 5, threads = 1;
   bool all_points = false;
   std::string only;
-  args.option("starts", count, "disturbed poses, at least 1");
-  args.option("threads", threads, "of fresco and small_gicp, at least 1; PCL's methods have one");
+  args.option("starts", count, fresco::Range::atLeast(1), "disturbed poses");
+  args.option("threads", threads, fresco::Range::atLeast(1), "of fresco and small_gicp; PCL's methods have one");
   args.option("only", only, "methods whose names begin so; empty = all");
   args.flag("all_points", all_points, "PCL's methods also on all points");
   const RegistrationInput input = fresco::benchmark::readRegistrationInput(args.parse(argc, argv, 3, 3));

@@ -50,9 +50,10 @@ Options parse(int argc, char** argv)
   Options options;
   fresco::Args args("fresco_benchmark_peer_pcl_global_registration FOLDER POSES.txt [options]",
                     "PCL's registration of the scans FOLDER/*.pcd without start poses, for comparison.");
-  args.option("voxel", options.voxel, "edge of the cells that keep one point, metres, > 0");
-  args.option("iterations", options.iterations, "of the sample consensus per pair, at least 1");
-  args.option("min_overlap", options.min_overlap, "share of points with a counterpart from which a pair holds");
+  args.option("voxel", options.voxel, fresco::Range::above(0), "edge of the cells that keep one point, metres");
+  args.option("iterations", options.iterations, fresco::Range::atLeast(1), "of the sample consensus per pair");
+  args.option("min_overlap", options.min_overlap, fresco::Range::within(0, 1),
+              "share of points with a counterpart from which a pair holds");
   args.option("graph", options.graph, "errors of loops: lum, elch or none");
   const std::vector<std::string> words = args.parse(argc, argv, 2);
   if (options.graph != "lum" && options.graph != "elch" && options.graph != "none")

@@ -18,10 +18,10 @@ Options parse(int argc, char** argv)
 {
   Options options;
   fresco::Args args("fresco_benchmark_peer_pcl_poisson IN.ply OUT.ply [options]", "pcl::Poisson, for comparison.");
-  args.option("depth", options.depth, "octree depth");
-  args.option("threads", options.threads, "0 = all cores");
-  args.option("point_weight", options.point_weight, "weight of passing through the points");
-  args.option("samples_per_node", options.samples_per_node, "points per octree node, at least");
+  args.option("depth", options.depth, fresco::Range::within(1, 16), "octree depth");
+  args.option("threads", options.threads, fresco::Range::atLeast(1).zero("all cores"), "number of threads");
+  args.option("point_weight", options.point_weight, fresco::Range::atLeast(0), "weight of interpolation");
+  args.option("samples_per_node", options.samples_per_node, fresco::Range::above(0), "least points per node");
   const std::vector<std::string> files = args.parse(argc, argv, 2);
   options.input = files[0];
   options.output = files[1];

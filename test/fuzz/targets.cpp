@@ -256,16 +256,13 @@ void parseArgs(Bytes bytes, const std::string&)
   std::string text;
   bool on = false;
   Args args("fresco_x IN OUT [options]", "Does things.");
-  args.option("n", n, "whole number");
-  args.option("f", f, "number");
-  args.option("d", d, "number");
+  args.option("n", n, Range::any(), "whole number");
+  args.option("f", f, Range::above(0).atMost(1), "number");
+  args.option("d", d, Range::within(-2.5, 1e8).zero("none"), "number");
   args.option("text", text, "words");
   args.flag("on", on, "switch");
-  args.size("size", width, height, "of a picture");
-  args.values("xyz", "X Y Z", "numbers", [&](const auto& words) {
-    for (const std::string& word : words)
-      d = Args::number("xyz", word);
-  });
+  args.size("size", width, height, Range::within(1, 65536), "of a picture");
+  args.numbers("xyz", "X Y Z", Range::any(), "numbers", [&](const auto& given) { d = given[2]; });
   std::vector<std::string> words{"fresco_x"};
   for (std::size_t at = 0; at < bytes.size() && words.size() < 100;) {
     const std::size_t end = std::min(bytes.find('\n', at), bytes.size());
@@ -278,7 +275,7 @@ void parseArgs(Bytes bytes, const std::string&)
   try {
     const auto files = args.parse(static_cast<int>(pointers.size()), pointers.data(), 1, 3);
     expect(!files.empty() && files.size() <= 3, "too many or too few files");
-    expect(std::isfinite(f) && std::isfinite(d), "a number that is not finite");
+    expect(f > 0 && f <= 1 && std::isfinite(d), "a number out of its range");
     expect(width > 0 && height > 0, "a picture without pixels");
     requireDistinct({files.back(), text}, {files.begin(), files.end() - 1});
     expect(files.size() < 2 || files[0].empty() || files[0] != files.back(), "an output that is an input");

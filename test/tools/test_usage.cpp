@@ -4,7 +4,9 @@
 #include "tools/tool_runs.h"
 #include <chrono>
 #include <csignal>
+#include <fresco/core/require.h>
 #include <fresco/io/file.h>
+#include <iomanip>
 #include <nlohmann/json.hpp>
 #include <regex>
 #include <sstream>
@@ -22,38 +24,93 @@ void expectStatus(const std::string& folder, const std::string& command, int sta
   EXPECT_EQ(outcome.status, status) << command << "\n" << outcome.err;
 }
 
-/// Names of the options of a tool that take one number, from its help.
-std::vector<std::string> numberOptions(const std::string& help)
+/// An option that takes numbers, as the help of its tool shows it.
+struct NumberOption {
+  std::string name, range;         ///< range: none where the help says none
+  std::vector<std::string> beyond; ///< values next to the range, as they stand on a command line
+};
+
+/// What `bound` moved outwards by the least that matters is on a command line.
+std::string beyond(const std::string& placeholders, double bound, int direction)
 {
-  std::vector<std::string> names;
+  const bool whole = std::regex_match(placeholders, std::regex("N|WxH|R G B|K SIGMA"));
+  const std::string value =
+      concat(std::setprecision(12), bound + direction * (whole ? 1 : 0.001 + 0.001 * std::abs(bound)));
+  if (placeholders == "WxH")
+    return value + "x" + value;
+  std::istringstream words(placeholders);
+  std::string line;
+  for (std::string word; words >> word;)
+    line += " " + (word == "AXIS" ? "x" : word == "SIGMA" ? "1" : value);
+  return line;
+}
+
+NumberOption numberOption(const std::string& name, const std::string& placeholders, const std::string& text)
+{
+  static const std::string number = "(-?[0-9.]+)";
+  static const std::regex range("\\((?:[A-Z]+ )?(any number|" + number + "\\.\\." + number + "|(at least|above) " +
+                                number + "(?: and (below|at most) " + number + ")?)([^()]*)\\)$");
+  NumberOption option{name, "", {}};
+  std::smatch found;
+  if (!std::regex_search(text, found, range))
+    return option;
+  option.range = found[1];
+  const std::string low = found[2].str() + found[5].str(), high = found[3].str() + found[7].str();
+  const bool or_zero = found[8].str().rfind("; 0 = ", 0) == 0;
+  if (!low.empty())
+    option.beyond.push_back(beyond(placeholders, or_zero ? std::min(0., std::stod(low)) : std::stod(low), -1));
+  if (!high.empty())
+    option.beyond.push_back(beyond(placeholders, std::stod(high), 1));
+  return option;
+}
+
+/// Options of a tool that take numbers, from its help.
+std::vector<NumberOption> numberOptions(const std::string& help)
+{
+  const std::regex others("|TEXT|FILE|NAMES?(\\[.*)?");
+  std::vector<NumberOption> options;
   std::istringstream lines(help);
   for (std::string line; std::getline(lines, line);) {
-    std::istringstream words(line);
-    std::string name, kind;
-    if (words >> name >> kind && name[0] == '-' && line.rfind("  -", 0) == 0 && (kind == "N" || kind == "X"))
-      names.push_back(name);
+    if (line.rfind("  -", 0) != 0)
+      continue;
+    std::istringstream left(line.substr(0, 28));
+    std::string name, placeholders, word;
+    for (left >> name; left >> word;)
+      placeholders += (placeholders.empty() ? "" : " ") + word;
+    if (line.size() <= 28) // names that are too long have their text below
+      std::getline(lines, line);
+    if (!std::regex_match(placeholders, others))
+      options.push_back(numberOption(name, placeholders, line));
   }
-  return names;
+  return options;
+}
+
+TEST(Usage, EveryNumberHasARangeThatHoldsOrIsSaidToBeFree)
+{
+  const std::string folder = soundFolder();
+  for (const std::string& tool : tools()) {
+    const std::vector<NumberOption> options = numberOptions(run(folder, tool + " -h").out);
+    EXPECT_FALSE(options.empty()) << tool;
+    for (const NumberOption& option : options) {
+      EXPECT_FALSE(option.range.empty()) << tool << " " << option.name;
+      EXPECT_EQ(option.beyond.empty(), option.range == "any number") << tool << " " << option.name;
+      for (const std::string& value : option.beyond) {
+        const Outcome outcome = run(folder, tool + " " + option.name + " " + value);
+        EXPECT_EQ(outcome.status, 2) << tool << " " << option.name << " " << value;
+        EXPECT_NE(outcome.err.find("out of range: " + option.range), std::string::npos) << outcome.err;
+      }
+    }
+  }
 }
 
 TEST(Usage, NumbersOutOfRangeAreWrongBeforeAnythingIsRead)
 {
   const std::string folder = soundFolder();
-  for (const std::string& tool : tools()) {
-    const std::vector<std::string> options = numberOptions(run(folder, tool + " -h").out);
-    EXPECT_FALSE(options.empty()) << tool;
-    const std::string files = tool == "texture"    ? " missing missing missing out.obj"
-                              : tool == "optimize" ? " missing missing out.ply"
-                              : tool == "register" ? " missing.pcd -o out"
-                              : tool == "snapshot" ? " missing.ply out.png"
-                                                   : " missing.ply out.ply";
-    for (const std::string& option : options)
-      expectStatus(folder, tool + files + " " + option + " -1000000000", 2);
-  }
   expectStatus(folder, "filter missing.pcd out.pcd -voxel 0", 2);
   expectStatus(folder, "normals missing.pcd out.pcd -sigma_n 0", 2);
   expectStatus(folder, "register missing.pcd -o out -min_overlap 0", 2);
   expectStatus(folder, "model missing out -size 100x100", 2);
+  expectStatus(folder, "model missing out -size 130x130", 2);
   expectStatus(folder, "scan missing.ply out -images 10x1000", 2);
 }
 

@@ -100,7 +100,7 @@ inline const std::vector<std::string>& tools()
 {
   static const std::vector<std::string> all = {"scan",     "filter",  "normals", "register", "reconstruct",
                                                "optimize", "texture", "compare", "snapshot", "model",
-                                               "align",    "track",   "crop",    "simplify"};
+                                               "align",    "track",   "crop",    "simplify", "plan"};
   return all;
 }
 

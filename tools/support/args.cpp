@@ -11,7 +11,6 @@
 #include <iomanip>
 #include <iostream>
 #include <limits>
-#include <regex>
 #include <sstream>
 namespace fresco {
 namespace {
@@ -36,57 +35,18 @@ std::string shown(const T& value)
 /// Numbers that any option may hold, besides 0: their squares and ratios are far from the ends of floating point.
 constexpr double least_magnitude = 1e-12, most_magnitude = 1e12;
 
-struct Range {
-  double least = -most_magnitude, most = most_magnitude;
-  bool above_least = false, below_most = false; ///< without the end itself
-  bool or_zero = false;
-  std::string text; ///< as the help puts it
-
-  bool holds(double value) const
-  {
-    return (or_zero && value == 0) ||
-           (value >= least && value <= most && !(above_least && value == least) && !(below_most && value == most));
-  }
-};
-
-/// The range that the help of an option gives is the range that holds: "2..16", "> 0", ">= 0", "at least 1", "above 0
-/// and below 90", "above 0 and at most 1"; "0 = ..." allows 0 besides, and nothing below it.
-Range rangeOf(const std::string& help)
+void requireInRange(const std::string& name, double value, const std::string& word, const Range& range)
 {
-  static const std::string number = R"((-?\d+(?:\.\d+)?(?:e-?\d+)?))";
-  static const std::regex interval(number + R"(\.\.)" + number), least("(?:>=|at least) " + number),
-      above("(?:>|above) " + number), below("below " + number), at_most("at most " + number),
-      zero(R"((?:^|[ ;,(])0 = )");
-  Range range;
-  std::smatch found;
-  range.or_zero = std::regex_search(help, zero);
-  if (std::regex_search(help, found, interval)) {
-    range.least = std::stod(found[1]);
-    range.most = std::stod(found[2]);
-    range.text = found[0];
-    return range;
-  }
-  if (std::regex_search(help, found, least) || std::regex_search(help, found, above)) {
-    range.least = std::stod(found[1]);
-    range.above_least = found[0].str().rfind(">=", 0) != 0 && found[0].str().rfind("at", 0) != 0;
-    range.text = found[0];
-  }
-  if (range.or_zero && range.text.empty()) {
-    range.least = 0;
-    range.text = ">= 0";
-  }
-  if (std::regex_search(help, found, below) || std::regex_search(help, found, at_most)) {
-    range.most = std::stod(found[1]);
-    range.below_most = found[0].str()[0] == 'b';
-    range.text += (range.text.empty() ? "" : " and ") + found[0].str();
-  }
-  return range;
+  if (!range.holds(value))
+    throw UsageError(concat("option -", name, ": ", word, " is out of range: ", range.text()));
 }
 
-void requireInRange(const std::string& name, double value, const std::string& word, const std::string& help)
+/// A default that may not be given stands for "not given", and is not shown.
+template <typename T>
+std::string remarkOf(const Range& range, T value)
 {
-  if (const Range range = rangeOf(help); !range.holds(value))
-    throw UsageError(concat("option -", name, ": ", word, " is out of range: ", range.text));
+  const std::string text = shown(value); // 0.1, not what a float makes of it
+  return range.text() + (range.holds(std::stod(text)) && std::isfinite(value) ? "; default " + text : "");
 }
 
 bool isSameFile(const std::string& a, const std::string& b)
@@ -111,7 +71,7 @@ Args::Args(std::string synopsis, std::string description)
     : synopsis_(std::move(synopsis)), description_(std::move(description))
 {}
 
-double Args::number(const std::string& name, const std::string& text)
+double Args::number(const std::string& name, const std::string& text, const Range& range)
 {
   char* end = nullptr;
   const double value = std::strtod(text.c_str(), &end);
@@ -120,17 +80,21 @@ double Args::number(const std::string& name, const std::string& text)
   if (value != 0 && !(std::abs(value) >= least_magnitude && std::abs(value) <= most_magnitude))
     throw UsageError(concat("option -", name, ": ", text, " is out of range: 0, or of magnitude ", least_magnitude,
                             "..", most_magnitude));
+  requireInRange(name, value, text, range);
   return value;
 }
 
-long long Args::integer(const std::string& name, const std::string& text)
+int Args::integer(const std::string& name, const std::string& text, const Range& range)
 {
   char* end = nullptr;
   errno = 0;
   const long long value = std::strtoll(text.c_str(), &end, 10);
   if (text.empty() || *end != '\0' || errno != 0)
     throw UsageError("option -" + name + " wants a whole number, not '" + text + "'");
-  return value;
+  requireInRange(name, value, text, range);
+  if (value < std::numeric_limits<int>::min() || value > std::numeric_limits<int>::max())
+    throw UsageError("option -" + name + ": " + text + " is too large");
+  return static_cast<int>(value);
 }
 
 void Args::values(const std::string& name, const std::string& placeholders, const std::string& help,
@@ -139,58 +103,52 @@ void Args::values(const std::string& name, const std::string& placeholders, cons
   options_.push_back({name, placeholders, help, "", wordCount(placeholders), std::move(apply)});
 }
 
-void Args::option(const std::string& name, int& value, const std::string& help)
+void Args::numbers(const std::string& name, const std::string& placeholders, const Range& range,
+                   const std::string& help, std::function<void(const std::vector<double>&)> apply)
 {
-  values(name, "N", help, [name, help, &value](const auto& words) {
-    const long long number = integer(name, words[0]);
-    if (number < std::numeric_limits<int>::min() || number > std::numeric_limits<int>::max())
-      throw UsageError("option -" + name + ": " + words[0] + " is too large");
-    requireInRange(name, number, words[0], help);
-    value = number;
+  values(name, placeholders, help, [name, range, apply = std::move(apply)](const std::vector<std::string>& words) {
+    std::vector<double> given;
+    for (const std::string& word : words)
+      given.push_back(number(name, word, range));
+    apply(given);
   });
-  options_.back().shown_default = shown(value);
+  options_.back().remark = range.text();
 }
 
-void Args::option(const std::string& name, float& value, const std::string& help)
+void Args::option(const std::string& name, int& value, const Range& range, const std::string& help)
 {
-  values(name, "X", help, [name, help, &value](const auto& words) {
-    value = number(name, words[0]);
-    requireInRange(name, value, words[0], help);
-  });
-  options_.back().shown_default = shown(value);
+  values(name, "N", help, [name, range, &value](const auto& words) { value = integer(name, words[0], range); });
+  options_.back().remark = remarkOf(range, value);
 }
 
-void Args::option(const std::string& name, double& value, const std::string& help)
+void Args::option(const std::string& name, float& value, const Range& range, const std::string& help)
 {
-  values(name, "X", help, [name, help, &value](const auto& words) {
-    value = number(name, words[0]);
-    requireInRange(name, value, words[0], help);
-  });
-  options_.back().shown_default = shown(value);
+  numbers(name, "X", range, help, [&value](const auto& given) { value = static_cast<float>(given[0]); });
+  options_.back().remark = remarkOf(range, value);
+}
+
+void Args::option(const std::string& name, double& value, const Range& range, const std::string& help)
+{
+  numbers(name, "X", range, help, [&value](const auto& given) { value = given[0]; });
+  options_.back().remark = remarkOf(range, value);
 }
 
 void Args::option(const std::string& name, std::string& value, const std::string& help)
 {
   values(name, "TEXT", help, [&value](const auto& words) { value = words[0]; });
-  options_.back().shown_default = value;
+  options_.back().remark = value.empty() ? "" : "default " + value;
 }
 
-void Args::size(const std::string& name, int& width, int& height, const std::string& help)
+void Args::size(const std::string& name, int& width, int& height, const Range& range, const std::string& help)
 {
-  values(name, "WxH", help, [name, help, &width, &height](const auto& words) {
-    constexpr int most = 65536;
+  values(name, "WxH", help, [name, range, &width, &height](const auto& words) {
     const std::size_t cross = words[0].find('x');
     if (cross == std::string::npos)
       throw UsageError("option -" + name + " wants WIDTHxHEIGHT, not '" + words[0] + "'");
-    const long long w = integer(name, words[0].substr(0, cross)), h = integer(name, words[0].substr(cross + 1));
-    if (w < 1 || h < 1 || w > most || h > most)
-      throw UsageError("option -" + name + ": " + words[0] + " is not within 1x1 and 65536x65536");
-    for (const long long pixels : {w, h})
-      requireInRange(name, pixels, words[0], help);
-    width = w;
-    height = h;
+    width = integer(name, words[0].substr(0, cross), range);
+    height = integer(name, words[0].substr(cross + 1), range);
   });
-  options_.back().shown_default = shown(width) + "x" + shown(height);
+  options_.back().remark = concat(range.text(), " each; default ", width, "x", height);
 }
 
 void Args::flag(const std::string& name, bool& value, const std::string& help, bool given)
@@ -328,7 +286,7 @@ std::string Args::usage() const
   };
   for (const Option& option : options_) {
     const std::string left = "-" + option.name + (option.placeholders.empty() ? "" : " " + option.placeholders);
-    line(left, option.help + (option.shown_default.empty() ? "" : " (default " + option.shown_default + ")"));
+    line(left, option.help + (option.remark.empty() ? "" : " (" + option.remark + ")"));
   }
   line("-h", "this text");
   line("--version", "version of fresco and of the libraries that this tool loads");

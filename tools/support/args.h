@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+#include "support/range.h"
 #include <functional>
 #include <stdexcept>
 #include <string>
@@ -22,16 +23,19 @@ public:
   /// @param description what the tool does, one or more lines
   Args(std::string synopsis, std::string description);
 
-  /// Declares `-name value...`; the values given replace what the variables hold, which the help shows as the default.
-  /// @param help text with unit and range: "2..16", "> 0", ">= 0", "at least 1", "above 0 and below 90", "above 0 and at most 1", and where 0 has
-  ///        a meaning of its own "0 = ..."; a value outside of it is a UsageError. Beyond 1e12 and within 1e-12 of 0 none
-  ///        is allowed
-  void option(const std::string& name, int& value, const std::string& help);
-  void option(const std::string& name, float& value, const std::string& help);
-  void option(const std::string& name, double& value, const std::string& help);
+  /// Declares `-name value`; what is given replaces what the variable holds, which the help shows as the default.
+  /// @param range beyond it a value is a UsageError; the help shows it behind `help`. A default outside of it stands for
+  ///        "not given". Beyond 1e12 and within 1e-12 of 0 no number is allowed
+  /// @param help what it is, and its unit
+  void option(const std::string& name, int& value, const Range& range, const std::string& help);
+  void option(const std::string& name, float& value, const Range& range, const std::string& help);
+  void option(const std::string& name, double& value, const Range& range, const std::string& help);
   void option(const std::string& name, std::string& value, const std::string& help);
-  /// `-name WxH`: width and height of a picture, 1..65536 pixels each.
-  void size(const std::string& name, int& width, int& height, const std::string& help);
+  /// `-name A B C`: as many numbers as `placeholders` has words, each within `range`.
+  void numbers(const std::string& name, const std::string& placeholders, const Range& range, const std::string& help,
+               std::function<void(const std::vector<double>&)> apply);
+  /// `-name WxH`: width and height of a picture.
+  void size(const std::string& name, int& width, int& height, const Range& range, const std::string& help);
   /// `-name` without a value sets what is `given`.
   void flag(const std::string& name, bool& value, const std::string& help, bool given = true);
   /// `-name A B C`: exactly as many values as `placeholders` has words; `apply` gets them and may throw UsageError.
@@ -57,13 +61,13 @@ public:
   bool given(const std::string& name) const; ///< whether the option stood on the command line
   std::string usage() const;
 
-  static double number(const std::string& name,
-                       const std::string& text); ///< @throws UsageError unless 0 or of magnitude 1e-12..1e12
-  static long long integer(const std::string& name, const std::string& text); ///< @throws UsageError
+  /// @throws UsageError, also unless 0 or of magnitude 1e-12..1e12
+  static double number(const std::string& name, const std::string& text, const Range& range);
+  static int integer(const std::string& name, const std::string& text, const Range& range);
 
 private:
   struct Option {
-    std::string name, placeholders, help, shown_default;
+    std::string name, placeholders, help, remark; ///< remark: in parentheses behind the help
     std::size_t count;
     std::function<void(const std::vector<std::string>&)> apply;
     bool given = false;

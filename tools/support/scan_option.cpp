@@ -25,15 +25,9 @@ void declareColumns(Args& args)
 void ScanOption::declare(Args& args)
 {
   declareColumns(args);
-  args.option("scan", number,
-              "read one scan of a file of several (.e57, .ptx, .pts), in its own frame, from 1; 0 = all of them as one "
-              "cloud, in the frame of the file");
+  args.option("scan", number, Range::atLeast(1).zero("all of them as one cloud, in the frame of the file"),
+              "read one scan of a file of several (.e57, .ptx, .pts), in its own frame, by its number");
 }
 
-ScanPath ScanOption::of(const std::string& file) const
-{
-  if (number < 0)
-    throw UsageError("-scan: " + std::to_string(number) + " is negative");
-  return {file, number - 1};
-}
+ScanPath ScanOption::of(const std::string& file) const { return {file, number - 1}; }
 } // namespace fresco

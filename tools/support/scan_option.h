@@ -10,7 +10,6 @@ void declareColumns(Args& args);
 struct ScanOption {
   int number = 0; ///< from 1; 0 = all scans of the file as one cloud
   void declare(Args& args);
-  /// @throws UsageError if the number is negative
   ScanPath of(const std::string& file) const;
 };
 } // namespace fresco

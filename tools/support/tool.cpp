@@ -259,12 +259,10 @@ void hearReaders(const std::string& remark)
 void CommonOptions::declare(Args& args)
 {
   listenToReaders(hearReaders);
-  args.values("threads", "N", "number of threads, 0 = all cores; never changes the result (default 0)",
-              [this](const auto& words) {
-                const long long given = Args::integer("threads", words[0]);
-                if (given < 0 || given > 4096)
-                  throw UsageError("option -threads: " + words[0] + " is not within 0 and 4096");
-                threads = given;
+  const Range range = Range::within(1, 4096).zero("all cores");
+  args.values("threads", "N", "number of threads; never changes the result (" + range.text() + "; default 0)",
+              [this, range](const auto& words) {
+                threads = Args::integer("threads", words[0], range);
                 setDefaultThreads(threads); // for what has no option of its own, such as readers
               });
   args.values("quiet", "", "print nothing but errors", [this](const auto&) {

@@ -3,6 +3,7 @@
 #include "support/tool.h"
 #include "test_data.h"
 #include <chrono>
+#include <cmath>
 #include <csignal>
 #include <fresco/io/file.h>
 #include <thread>
@@ -34,13 +35,13 @@ Values parse(const std::vector<std::string>& words, std::size_t least = 2, std::
 {
   Values v;
   Args args("tool IN OUT", "For tests.");
-  args.option("depth", v.depth, "depth, 2..16");
-  args.option("weight", v.weight, "weight");
+  args.option("depth", v.depth, Range::within(2, 16), "depth");
+  args.option("weight", v.weight, Range::above(0).atMost(100).zero("none"), "weight");
   args.option("name", v.name, "name");
   args.flag("flip", v.flip, "flip");
-  args.values("eye", "X Y Z", "eye", [&](const auto& given) {
-    v.eye_x = Args::number("eye", given[0]);
-    v.eye_z = Args::number("eye", given[2]);
+  args.numbers("eye", "X Y Z", Range::any(), "eye", [&](const auto& given) {
+    v.eye_x = given[0];
+    v.eye_z = given[2];
   });
   Line line(words);
   v.files = args.parse(static_cast<int>(line.pointers.size()), line.pointers.data(), least, most);
@@ -68,6 +69,9 @@ TEST(Args, WrongUsageIsNamed)
                                                        {"a", "b", "-depth"},
                                                        {"a", "b", "-depth", "nine"},
                                                        {"a", "b", "-depth", "9.5"},
+                                                       {"a", "b", "-depth", "17"},
+                                                       {"a", "b", "-weight", "-1"},
+                                                       {"a", "b", "-eye", "1", "2", "1e13"},
                                                        {"a", "b", "-depth", "99999999999"},
                                                        {"a", "b", "-weight", "nan"},
                                                        {"a", "b", "-weight", ""},
@@ -77,12 +81,56 @@ TEST(Args, WrongUsageIsNamed)
     EXPECT_THROW(parse(line), UsageError) << line.back();
 }
 
+TEST(Args, RangesHoldWhatTheySay)
+{
+  struct Case {
+    Range range;
+    std::string text;
+    std::vector<double> held, refused;
+  };
+  const double tiny = 1e-9;
+  for (const Case& c : {Case{Range::any(), "any number", {-1e12, 0, 7}, {}},
+                        {Range::within(-2, 0.5), "-2..0.5", {-2, 0, 0.5}, {-2 - tiny, 0.5 + tiny}},
+                        {Range::within(100, 1e8), "100..100000000", {100, 1e8}, {0, 99}},
+                        {Range::atLeast(1), "at least 1", {1, 1e12}, {1 - tiny, 0, -1}},
+                        {Range::above(0), "above 0", {tiny, 1e12}, {0, -tiny}},
+                        {Range::above(0).atMost(1), "above 0 and at most 1", {tiny, 1}, {0, 1 + tiny}},
+                        {Range::above(0).below(90), "above 0 and below 90", {tiny, 90 - tiny}, {0, 90}},
+                        {Range::within(3, 9).zero("all"), "3..9; 0 = all", {0, 3, 9}, {tiny, 1, -3}}}) {
+    EXPECT_EQ(c.range.text(), c.text);
+    for (const double value : c.held)
+      EXPECT_TRUE(c.range.holds(value)) << c.text << ": " << value;
+    for (const double value : c.refused)
+      EXPECT_FALSE(c.range.holds(value)) << c.text << ": " << value;
+    EXPECT_FALSE(c.range.text() != "any number" && c.range.holds(NAN)) << c.text;
+  }
+}
+
+TEST(Args, HelpAndRefusalSayTheRange)
+{
+  float voxel = 0, share = 0.1f;
+  Args args("tool", "");
+  args.option("voxel", voxel, Range::above(0), "side");
+  args.option("share", share, Range::above(0).atMost(0.1), "part");
+  EXPECT_NE(args.usage().find("side (above 0)\n"), std::string::npos) << "a default that may not be given is shown";
+  EXPECT_NE(args.usage().find("part (above 0 and at most 0.1; default 0.1)\n"), std::string::npos) << args.usage();
+  Line good({"-share", "0.1"}), bad({"-voxel", "0"});
+  args.parse(3, good.pointers.data(), 0); // as written, not as rounded to a float
+  try {
+    args.parse(3, bad.pointers.data(), 0);
+    FAIL();
+  } catch (const UsageError& error) {
+    EXPECT_STREQ(error.what(), "option -voxel: 0 is out of range: above 0");
+  }
+}
+
 TEST(Args, HelpShowsEveryOptionWithItsDefault)
 {
   testing::internal::CaptureStdout();
   EXPECT_THROW(parse({"a", "-h"}), HelpShown);
   const std::string help = testing::internal::GetCapturedStdout();
-  for (const char* part : {"usage: tool IN OUT", "-depth N", "default 8", "-eye X Y Z", "-flip", "default none", "-h"})
+  for (const char* part :
+       {"usage: tool IN OUT", "-depth N", "(2..16; default 8)", "-eye X Y Z", "-flip", "default none", "-h"})
     EXPECT_NE(help.find(part), std::string::npos) << part << "\n" << help;
 }
 
@@ -92,8 +140,8 @@ std::string saidOf(const std::string& option)
   float voxel = 0;
   int depth = 8;
   Args args("tool IN OUT", "");
-  args.option("voxel", voxel, "length");
-  args.option("depth", depth, "2..16");
+  args.option("voxel", voxel, Range::above(0), "length");
+  args.option("depth", depth, Range::within(2, 16), "depth");
   args.values("outliers", "K SIGMA", "", [](const auto&) {});
   std::vector<std::string> words{"tool", "a", "b", option, "1"};
   std::vector<char*> argv;
