@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bindings.h"
 #include "call.h"
+#include <fresco/deliverables/core/model_file.h>
 namespace fresco::python {
 namespace {
 /// A function that reads a file or folder: read(path) gives what is in it.
@@ -57,11 +58,12 @@ void addPoints(const py::module_& module)
 void addMeshes(const py::module_& module)
 {
   addReader(module, "read_mesh", "readMesh", "TriangleMesh", [](const std::string& path) { return readMesh(path); });
-  addFunction(module, {"write_mesh", "writeMesh", {{"path", "Path"}, {"mesh", "TriangleMesh"}}, "None", "", false},
+  addFunction(module,
+              {"write_mesh", "writeMesh", {{"path", "Path"}, {"mesh", "TriangleMesh"}}, "None", "Also .glb.", false},
               [](const Call& call) {
                 const auto path = call.value<std::string>("path");
                 const auto mesh = lendMesh(call);
-                Call::access([&] { writeMesh(path, *mesh); });
+                Call::access([&] { writeModel(path, {{*mesh, {}, {}, {}, {}}, {}}); });
                 return py::none();
               });
   addReader(module, "read_textured_mesh", "readTexturedMesh", "TexturedMesh",

@@ -40,3 +40,10 @@ def test_importing_fresco_imports_no_open3d():
     import subprocess
     import sys
     subprocess.run([sys.executable, "-c", "import fresco, sys; assert 'open3d' not in sys.modules"], check=True)
+
+
+def test_meshes_are_written_as_gltf(tmp_path):
+    mesh = fresco.from_arrays([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])
+    fresco.write_mesh(tmp_path / "mesh.glb", mesh)
+    read = fresco.read_textured_mesh(tmp_path / "mesh.glb").mesh
+    assert read.is_watertight() and abs(read.volume - mesh.volume) < 1e-6
