@@ -34,8 +34,8 @@ void FilterOptions::declare(Args& args)
       "standard deviations (K " +
           neighbors.text() + ", SIGMA " + sigma.text() + ")",
       [this, neighbors, sigma](const std::vector<std::string>& words) {
-        outliers.k = Args::integer("outliers", words[0], neighbors);
-        outliers.sigma = static_cast<float>(Args::number("outliers", words[1], sigma));
+        outliers.k = Args::integer("outliers K", words[0], neighbors);
+        outliers.sigma = static_cast<float>(Args::number("outliers SIGMA", words[1], sigma));
       });
   args.flag("relative", outliers.relative,
             "for -outliers: judge distances against those of the neighbours, so that sparse parts of a scan stay");

@@ -33,7 +33,7 @@ void declare(Args& args, Request& request)
           step.text() + ")",
       [&request, step](const auto& words) {
         request.axis = words[0];
-        request.step = Args::number("sections", words[1], step);
+        request.step = Args::number("sections STEP", words[1], step);
         if (words[0] != "x" && words[0] != "y" && words[0] != "z")
           throw UsageError("-sections: axis '" + words[0] + "' is none of x, y, z");
       });

@@ -49,7 +49,7 @@ TEST(PlanTool, SaysWhatIsWrongAndWritesNothing)
   refuses("room.ply plan.svg -height nan", 2, "height");
   refuses("room.ply plan.txt", 2, "plan.txt");
   refuses("room.ply plan.svg -sections w 1", 2, "w");
-  refuses("room.ply plan.svg -sections x 0", 2, "step");
+  refuses("room.ply plan.svg -sections x 0", 2, "STEP");
   refuses("room.ply plan.svg -tolerance 0", 2, "tolerance");
   refuses("cloud.pcd plan.svg -quiet -sections x 1", 1, "cloud.pcd");
   refuses("cloud.pcd plan.svg -quiet -ortho", 1, "no colours");
