@@ -39,6 +39,8 @@ public:
     process_ = fork();
     if (process_ != 0)
       return;
+    for (const int stop : {SIGINT, SIGTERM, SIGHUP}) // not as whoever runs the tests has them
+      std::signal(stop, SIG_DFL);
     const int log = open(log_.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0666);
     dup2(log, STDERR_FILENO);
     dup2(open("/dev/null", O_WRONLY), STDOUT_FILENO);

@@ -206,15 +206,26 @@ TEST(Tool, StopsWhileAStepGoesOn)
   const auto start = std::chrono::steady_clock::now();
   const std::string folder = test::scratchFolder();
   for (const int stop : {SIGINT, SIGTERM, SIGHUP})
-    EXPECT_EXIT(runAndExit([&] {
-                  OutputFile file(folder + "/half");
-                  file.write("half");
-                  std::raise(stop);
-                  std::this_thread::sleep_for(std::chrono::minutes(5)); // a step that asks nobody
-                }),
+    EXPECT_EXIT((std::signal(stop, SIG_DFL), // not as whoever runs the tests has it
+                 runAndExit([&] {
+                   OutputFile file(folder + "/half");
+                   file.write("half");
+                   std::raise(stop);
+                   std::this_thread::sleep_for(std::chrono::minutes(5)); // a step that asks nobody
+                 })),
                 testing::ExitedWithCode(1), "^tool: cancelled\n$");
   EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(60));
   EXPECT_TRUE(std::filesystem::is_empty(folder));
+}
+
+TEST(Tool, HangUpThatIsIgnoredStopsNothing) // nohup
+{
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  EXPECT_EXIT((std::signal(SIGHUP, SIG_IGN), runAndExit([] {
+                 std::raise(SIGHUP);
+                 report(printProgress(true), "step", 0.5); // throws if it is to stop
+               })),
+              testing::ExitedWithCode(0), "^$");
 }
 
 TEST(Tool, QuietProgressPrintsNothing)
