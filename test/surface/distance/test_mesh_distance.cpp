@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "distance/mesh_distance_statistics.h"
 #include "surface/distance/distance_meshes.h"
 #include <fresco/surface/core/error_colors.h>
 #include <fresco/surface/core/mesh_distance.h>
@@ -127,6 +128,24 @@ TEST(MeshDistance, PercentileOfKnownShares)
   EXPECT_NEAR(result.normals_to_reference.share_above_20, 0.1, 1e-3);
   EXPECT_EQ(result.normals_to_reference.median, 0.0);
   EXPECT_NEAR(result.normals_to_reference.percentile95, 40.0, 1e-4);
+}
+
+TEST(MeshDistance, QuantilesAreLinearBetweenRanks)
+{
+  for (const int count : {1, 2, 5, 8, 100}) { // where a rank is whole, and where it is not
+    std::vector<double> angles;
+    const int odd_step = 7; // shares no factor with the counts: any order
+    for (int i = 0; i < count; ++i)
+      angles.push_back(count - 1 - i * odd_step % count);
+    for (const bool turned : {false, true}) {
+      const NormalDeviation found = distance::deviation(angles, turned);
+      const auto at = [&](double share) { return turned ? 180 - (1 - share) * (count - 1) : share * (count - 1); };
+      EXPECT_NEAR(found.median, at(0.5), 1e-12) << count;
+      EXPECT_NEAR(found.percentile95, at(0.95), 1e-12) << count;
+    }
+  }
+  EXPECT_TRUE(distance::mostlyOpposite({80, 101}));
+  EXPECT_FALSE(distance::mostlyOpposite({80, 99}));
 }
 
 TEST(MeshDistance, InsideOutIsSaid)
