@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "generator_scans.h"
+#include "layouts.h"
 #include "targets.h"
 #include <algorithm>
 #include <fresco/core/require.h>
@@ -301,6 +302,7 @@ GeneratedFile generated(const std::string& target, std::uint32_t seed)
                                                                                  {"points3d_text", points3dText},
                                                                                  {"points3d_binary", points3dBinary},
                                                                                  {"poses", poses},
+                                                                                 {"layout", layout},
                                                                                  {"colmap_text", colmapText},
                                                                                  {"colmap_binary", colmapBinary}};
   const auto found = all.find(target);

@@ -5,6 +5,7 @@
 #include "common/io/las_writer.h"
 #include "generator.h"
 #include "job/stage_log.h"
+#include "layouts.h"
 #include "targets.h"
 #include <filesystem>
 #include <fresco/core/image.h>
@@ -254,6 +255,8 @@ void writeSeeds(const std::string& folder)
       }));
   put("rgbd", "frame",
       parts(parts("585 0 2\n0 585 1.5\n0 0 1\n", "1 0 0 0.5\n0 1 0 .5\n0 0 1 -2e1\n0 0 0 1\n"), depthImage()));
+  for (const auto& [name, input] : layouts())
+    put("layout", name, input);
   put("stage_log", "record", stageLog(scratch));
   put("args", "words", "in.pcd\n-n\n5\n-f\n1e-3\n-xyz\n-1\n0\n.5\nout.ply\n-on\n--text\nword\n-size\n640x480");
   std::filesystem::remove_all(scratch);

@@ -3,6 +3,7 @@
 #include "common/io/e57_file.h"
 #include "input/model_input.h"
 #include "job/stage_log.h"
+#include "layouts.h"
 #include "support/args.h"
 #include <filesystem>
 #include <fresco/core/require.h>
@@ -32,15 +33,6 @@ void expect(bool ok, const std::string& what)
 {
   if (!ok)
     throw std::logic_error(what);
-}
-
-/// The first part of `bytes`; they then begin behind its separator.
-Bytes takePart(Bytes& bytes)
-{
-  const std::size_t end = bytes.find(separator);
-  const Bytes part = bytes.substr(0, end);
-  bytes.remove_prefix(end == Bytes::npos ? bytes.size() : end + separator.size());
-  return part;
 }
 
 /// Runs `read`; its errors must be those that the readers promise.
@@ -234,6 +226,42 @@ void readRgbd(Bytes bytes, const std::string& folder)
   });
 }
 
+void checkFrames(const RgbdFolder& room)
+{
+  validateCamera(room.camera);
+  for (const RgbdFrame& frame : room.frames) {
+    validateCamera(frame.color_camera);
+    expect(frame.T_world_camera.matrix().allFinite(), "a pose that is not finite");
+  }
+  expect(!room.frames.empty(), "no frame");
+}
+
+/// A folder for fresco_model, see layouts.h.
+void readLayout(Bytes bytes, const std::string& folder)
+{
+  const std::string path = folder + "/layout";
+  fs::remove_all(path);
+  makeFolder(path);
+  writeFolder(bytes, path);
+  readChecked(path, [&] {
+    const ModelInput input = readModelInput(path);
+    for (const CameraModel& camera : input.cameras.cameras)
+      validateCamera(camera);
+    for (const View& view : input.cameras.views)
+      expect(view.T_camera_world.matrix().allFinite(), "a pose that is not finite");
+    for (const Pose& pose : input.poses)
+      expect(!pose || pose->allFinite(), "a pose that is not finite");
+    for (const Panorama& panorama : input.panoramas)
+      expect(std::size_t(panorama.scan) < input.scans.size(), "a panorama of no scan");
+    for (const std::string& file : input.files())
+      expect(fs::is_regular_file(file), "a file that is not there: " + file);
+    if (input.rgbd)
+      checkFrames(*input.rgbd);
+    for (std::size_t f = 0; input.rgbd && f < input.rgbd->frames.size(); ++f)
+      readDepth(*input.rgbd, Index(f));
+  });
+}
+
 /// The record of a stage that an earlier run left.
 void readStageLog(Bytes bytes, const std::string& folder)
 {
@@ -285,6 +313,14 @@ void parseArgs(Bytes bytes, const std::string&)
 }
 } // namespace
 
+std::string_view takePart(std::string_view& bytes)
+{
+  const std::size_t end = bytes.find(separator);
+  const std::string_view part = bytes.substr(0, end);
+  bytes.remove_prefix(end == std::string_view::npos ? bytes.size() : end + separator.size());
+  return part;
+}
+
 const std::vector<Target>& targets()
 {
   static const std::vector<Target> all = {
@@ -306,6 +342,7 @@ const std::vector<Target>& targets()
       {"picture", readPicture},
       {"poses", readPoseFile},
       {"rgbd", readRgbd},
+      {"layout", readLayout},
       {"stage_log", readStageLog},
       {"args", parseArgs},
   };

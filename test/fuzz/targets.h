@@ -10,6 +10,9 @@ namespace fresco::fuzz {
 /// Stands between the files of an input that consists of several.
 inline constexpr std::string_view separator = "\n=====\n";
 
+/// The first part of `bytes`; they then begin behind its separator.
+std::string_view takePart(std::string_view& bytes);
+
 struct Target {
   std::string name; ///< also the folder of its seeds and findings
   /// Feeds the reader. @throws std::logic_error if it does what no reader may: another error than std::runtime_error

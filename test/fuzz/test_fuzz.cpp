@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What the fuzzer starts from and what it once found, read again.
 #include "generator.h"
+#include "input/model_input.h"
+#include "layouts.h"
 #include "seeds.h"
 #include "targets.h"
 #include "test_data.h"
@@ -98,6 +100,15 @@ TEST(Fuzz, GeneratedFilesAreValid)
   for (std::uint32_t seed = 0; seed < 50; ++seed) {
     writeFile(folder + "/a.glb", fuzz::generated("glb", seed).packed());
     EXPECT_NO_THROW(readTexturedMesh(folder + "/a.glb")) << seed;
+  }
+}
+
+TEST(Fuzz, LayoutsAreUnderstood)
+{
+  const std::string folder = test::scratchFolder();
+  for (const auto& [name, input] : fuzz::layouts()) {
+    fuzz::writeFolder(input, folder + "/" + name);
+    EXPECT_NO_THROW(model::readModelInput(folder + "/" + name)) << name;
   }
 }
 

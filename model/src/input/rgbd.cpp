@@ -111,8 +111,10 @@ RgbdFolder assembleRgbd(RgbdParts parts)
     for (RgbdFrame& frame : folder.frames)
       if (frame.color_camera.width == 0)
         frame.color_camera = of_color;
-      else
+      else {
+        validateCamera(frame.color_camera);
         frame.camera = resized(frame.color_camera, depth.width, depth.height);
+      }
     camera = resized(camera, depth.width, depth.height);
   } catch (const std::invalid_argument& error) {
     throw std::runtime_error(

@@ -83,7 +83,7 @@ std::vector<std::string> Survey::match(const std::string& pattern) const
   for (std::string wanted; std::getline(alternatives, wanted, '|');) {
     std::vector<std::string> names;
     if (wanted.find_first_of("*?[<") == std::string::npos && wanted.back() != '/') {
-      if (std::binary_search(files_.begin(), files_.end(), wanted, isNaturallyBefore))
+      if (holds(wanted))
         names = {wanted};
     } else if (wanted.back() == '/') {
       wanted.pop_back();
@@ -102,6 +102,11 @@ std::vector<std::string> Survey::match(const std::string& pattern) const
       return names;
   }
   return {};
+}
+
+bool Survey::holds(const std::string& name) const
+{
+  return std::binary_search(files_.begin(), files_.end(), name, isNaturallyBefore);
 }
 
 std::vector<std::pair<std::string, int>> Survey::kinds() const

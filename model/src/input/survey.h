@@ -23,6 +23,7 @@ public:
   /// "<points>", "<pictures>", "<depths>" and "<videos>" for the files of that sort, which may stand below folders: "images/<pictures>".
   std::vector<std::string> match(const std::string& pattern) const;
   bool has(const std::string& pattern) const { return !match(pattern).empty(); }
+  bool holds(const std::string& name) const; ///< that file: names that files tell are no patterns
 
   /// Sorts of files and how many there are, the most frequent first.
   std::vector<std::pair<std::string, int>> kinds() const;

@@ -27,7 +27,7 @@ RgbdParts readMatterport(const Survey& found, ModelInput&)
     frame.name = row[1];
     for (const auto& [folder, name, path] : {std::tuple{"undistorted_depth_images/", row[1], &frame.depth},
                                              std::tuple{"undistorted_color_images/", row[2], &frame.color}}) {
-      if (!found.has(folder + name))
+      if (!found.holds(folder + name))
         throw std::runtime_error(found.at(folder + name) + ": no such file, but " + parts.camera_file + " names it");
       *path = found.at(folder + name);
     }

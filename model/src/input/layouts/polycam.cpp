@@ -18,6 +18,9 @@ Pose readCameraFile(const std::string& path, RgbdFrame& frame)
     for (int r = 0; r < 3; ++r)
       for (int c = 0; c < 4; ++c)
         T(r, c) = json.at(concat("t_", r, c));
+    validateCamera(frame.color_camera);
+  } catch (const std::invalid_argument& error) {
+    throw std::runtime_error(path + ": " + error.what());
   } catch (const nlohmann::json::exception&) {
     throw std::runtime_error(path + ": wants width, height, fx, fy, cx, cy and t_00 to t_23 as numbers");
   }
@@ -38,11 +41,11 @@ RgbdParts readPolycam(const Survey& found, ModelInput& input)
   for (RgbdFrame& frame : parts.folder.frames) {
     const std::string file = cameras + "/" + frame.name + ".json",
                       trust = "keyframes/confidence/" + frame.name + ".png";
-    if (!found.has(file))
+    if (!found.holds(file))
       throw std::runtime_error(found.at(file) +
                                ": no such file, but its depth image is there: export the raw data again");
     parts.poses.push_back(readCameraFile(found.at(file), frame));
-    if (found.has(trust))
+    if (found.holds(trust))
       frame.confidence = found.at(trust);
   }
   parts.folder.camera = parts.folder.frames[0].color_camera;

@@ -17,7 +17,8 @@ std::vector<int> columnsOf(const std::string& path)
   if (const std::size_t colon = line.find(':'); line[0] == '#' && colon != std::string::npos)
     line.erase(0, colon + 1); // "# pano poses v1.0: ID; filename; ..."
   std::transform(line.begin(), line.end(), line.begin(), [](unsigned char c) { return std::tolower(c); });
-  const std::vector<std::string> names = cellsOf(line.substr(line.find_first_not_of("# ")));
+  line.erase(0, line.find_first_not_of("# "));
+  const std::vector<std::string> names = cellsOf(line);
   std::vector<int> columns;
   for (const auto& wanted : std::vector<std::vector<std::string>>{{"filename", "file", "image", "name"},
                                                                   {"pano_pos_x", "x", "tx"},
@@ -54,22 +55,24 @@ void readScannerExport(const Survey& found, std::optional<Reading>, ModelInput& 
       continue;
     const auto number = [&](int k) { return numberIn(path, row[columns[k]]); };
     const std::string& file = row[columns[0]];
-    const std::vector<std::string> place =
-        found.match(file + "|pano/" + file + "|panos/" + file + "|panorama/" + file + "|panoramas/" + file);
-    if (place.empty())
+    const char* const folders[] = {"", "pano/", "panos/", "panorama/", "panoramas/"};
+    const auto folder = std::find_if(std::begin(folders), std::end(folders),
+                                     [&](const std::string& each) { return found.holds(each + file); });
+    if (folder == std::end(folders))
       throw std::runtime_error(found.at(file) + ": no such panorama, but " + table + " names it");
+    const std::string place = *folder + file;
     const Pose pose = poseOf(path, {number(1), number(2), number(3)}, {number(4), number(5), number(6), number(7)});
     if (!pose)
       continue;
     if (input.cameras.cameras.empty()) {
-      const ImageSize first = readImageSize(found.at(place[0]));
+      const ImageSize first = readImageSize(found.at(place));
       if (first.width != 2 * first.height)
-        throw std::runtime_error(concat(found.at(place[0]), ": a panorama of ", first.width, "x", first.height,
+        throw std::runtime_error(concat(found.at(place), ": a panorama of ", first.width, "x", first.height,
                                         " pixels is not twice as wide as high"));
       input.cameras.cameras.push_back(sphericalCamera(first.width, first.height));
     }
     View view;
-    view.image = place[0];
+    view.image = place;
     view.T_camera_world = Eigen::Isometry3d(*pose * T_pano_camera).inverse();
     input.sensor_path.push_back(pose->topRightCorner<3, 1>());
     input.cameras.views.push_back(view);

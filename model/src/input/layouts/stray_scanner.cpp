@@ -48,7 +48,7 @@ RgbdParts readStrayScanner(const Survey& found, ModelInput& input)
     missing += pose == poses.end();
     parts.poses.push_back(pose == poses.end() ? std::nullopt : pose->second);
     const std::string trust = "confidence/" + frame.depth.substr(frame.depth.rfind('/') + 1);
-    if (found.has(trust))
+    if (found.holds(trust))
       frame.confidence = found.at(trust);
   }
   if (2 * missing >= parts.folder.frames.size())

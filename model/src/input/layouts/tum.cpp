@@ -72,7 +72,7 @@ RgbdParts readTum(const Survey& found, ModelInput& input)
     frame.name = depth;
     frame.color = found.at(color), frame.depth = found.at(depth);
     for (const std::string& name : {color, depth})
-      if (!found.has(name))
+      if (!found.holds(name))
         throw std::runtime_error(found.at(name) + ": no such file, but the lists of this TUM folder name it");
     parts.folder.frames.push_back(frame);
     const auto* row = rowAt(pose_at, time);
