@@ -57,6 +57,8 @@ TEST(NormalCandidateFeatures, CountNeighborsOnThePlane)
   const int all = 7 + 3 * 6; // inside, held, alike, other, in front, behind: of all neighbours
   const Features own = features.of({right, 0.2f, 1}), other = features.of({left, 0.2f, 0});
   const auto count = [](float logarithm) { return std::exp(logarithm) - 0.5f; };
+  const double within = std::erf(1.2 / std::sqrt(2.0)) * (9 * 6 - 1); // share of a normal distribution
+  EXPECT_NEAR(count(own[all]), within, 0.15 * within);
   EXPECT_NEAR(count(own[all + 1]), 9 * 6 - 1, 1); // rows -1 to 4
   EXPECT_NEAR(count(own[all + 2]), 9 * 6 - 1, 1);
   EXPECT_NEAR(count(own[all + 5]), 9 * 3, 1); // the other side falls away

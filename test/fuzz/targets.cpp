@@ -245,6 +245,7 @@ void readLayout(Bytes bytes, const std::string& folder)
   writeFolder(bytes, path);
   readChecked(path, [&] {
     const ModelInput input = readModelInput(path);
+    expect(!input.scans.empty() || input.rgbd || input.hasPictures() || !input.video.empty(), "nothing");
     for (const CameraModel& camera : input.cameras.cameras)
       validateCamera(camera);
     for (const View& view : input.cameras.views)

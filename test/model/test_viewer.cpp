@@ -230,6 +230,18 @@ TEST(Viewer, WhatItRefuses)
   EXPECT_THROW(viewerHtml(glb, options), std::invalid_argument);
 }
 
+TEST(Viewer, PhotographsAreInThePage)
+{
+  const std::string glb = boardBytes(scratchFolder()), bytes = "no picture", mark = "\"photograph\":\"data:image/jpeg;";
+  ViewerOptions options = before();
+  EXPECT_EQ(viewerHtml(glb, options).find(mark), std::string::npos);
+  options.places[0].photograph = bytes;
+  options.places[0].aspect = 1.5;
+  const std::string page = viewerHtml(glb, options);
+  EXPECT_NE(page.find(mark + "base64," + base64(bytes)), std::string::npos);
+  EXPECT_NE(page.find("\"aspect\":1.5"), std::string::npos);
+}
+
 TEST(Viewer, NamesCannotBreakOutOfThePage)
 {
   ViewerOptions options = before();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <Eigen/Geometry>
 #include <fresco/core/point_set.h>
+#include <fresco/core/point_table.h>
 #include <gtest/gtest.h>
 namespace {
 using namespace fresco;
@@ -81,5 +82,23 @@ TEST(PointSet, ValidateChecksCounts)
   EXPECT_NO_THROW(validatePointSet(set));
   set.viewpoints.resize(3, 4);
   EXPECT_THROW(validatePointSet(set), std::invalid_argument);
+}
+TEST(PointTable, FurtherColumnsAreFieldsOfAMesh)
+{
+  PointTable table;
+  for (const char* name : xyz_names)
+    table.addColumn(name, Scalar::float32);
+  table.addColumn("quality", Scalar::float32);
+  table.addColumn("uv", Scalar::float32, 2);
+  table.allocate(2);
+  for (Index row = 0; row < 2; ++row)
+    for (std::size_t k = 0; k < 6; ++k)
+      reinterpret_cast<float*>(table.data.data())[6 * row + k] = float(10 * row + k);
+  const TriangleMesh mesh = tableToMesh(table);
+  EXPECT_EQ(mesh.fields.size(), 3U);
+  for (const auto& [name, column] : {std::pair("quality", 3), std::pair("uv_0", 4), std::pair("uv_1", 5)}) {
+    ASSERT_EQ(mesh.fields.count(name), 1U) << name;
+    EXPECT_EQ(mesh.fields.at(name), Eigen::Vector2f(column, 10 + column));
+  }
 }
 } // namespace

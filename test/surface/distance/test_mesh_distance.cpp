@@ -72,6 +72,19 @@ TEST(MeshDistance, ShiftedPlanes)
     EXPECT_NEAR(distances[i], std::hypot(0.3, std::max(0.f, aside.vertices(0, i) - 4.f)), 1e-6);
 }
 
+TEST(MeshDistance, OneTriangleIsASurface)
+{
+  TriangleMesh one;
+  one.vertices = Points::Identity(3, 3);
+  one.faces = Faces(3, 1);
+  one.faces << 0, 1, 2;
+  const Eigen::Vector3f shift = Eigen::Vector3f::Constant(0.3f); // along its normal
+  const TriangleMesh other = moved(one, Eigen::Isometry3f(Eigen::Translation3f(shift)));
+  const MeshDistanceResult result = measureMeshDistance(other, one, withSamples(100));
+  expectAll(result.vertices.symmetric, shift.norm(), 1e-6);
+  expectAll(result.surface.symmetric, shift.norm(), 1e-6);
+}
+
 TEST(MeshDistance, CubeAndRoundedCube)
 {
   const double radius = 0.5;

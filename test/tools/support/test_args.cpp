@@ -228,7 +228,7 @@ TEST(Tool, HangUpThatIsIgnoredStopsNothing) // nohup
               testing::ExitedWithCode(0), "^$");
 }
 
-TEST(Tool, QuietProgressPrintsNothing)
+TEST(Tool, ProgressTellsEachStepOfAJobOnce)
 {
   testing::internal::CaptureStderr();
   EXPECT_TRUE(printProgress(true)("step", 0.5));
@@ -237,6 +237,7 @@ TEST(Tool, QuietProgressPrintsNothing)
   const Progress progress = printProgress(false);
   progress("solve", 0.25);
   progress("solve", 0.5);
-  EXPECT_NE(testing::internal::GetCapturedStderr().find("solve (25 %)\n"), std::string::npos);
+  progress("solve", 0.0); // of the next job
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "solve (25 %)\nsolve (0 %)\n");
 }
 } // namespace
