@@ -107,6 +107,7 @@ const Files& layouts()
                                {"sparse/0/images.txt", images},
                                {"sparse/0/points3D.txt", points3d},
                                {"dense/fused.ply", far_points}})},
+      {"photographs", packedFolder({{"images/left/a.png", "4x3"}, {"images/right/a.png", "4x3"}})},
       {"exported", packedFolder({{"a.obj", "mtllib a.mtl\nv 1 2 3\nv 2 2 3\nv 2 3 3\nf 1 2 3\n"},
                                  {"a.mtl", "newmtl a\n"},
                                  {"a.jpg", "4x3"}})},

@@ -32,6 +32,12 @@ bool isOfSort(const std::string& name, const std::string& sort, bool alone)
   return isReadable(name, FileKind::points) && (alone || !notes);
 }
 
+bool fits(const std::string& pattern, const std::string& name)
+{
+  return pattern.empty() == name.empty() && // '*' names a folder
+         fnmatch(pattern.c_str(), name.c_str(), FNM_PATHNAME | FNM_CASEFOLD) == 0;
+}
+
 /// Splits "images/<pictures>" at the last '/'.
 std::pair<std::string, std::string> parted(const std::string& name)
 {
@@ -87,15 +93,13 @@ std::vector<std::string> Survey::match(const std::string& pattern) const
         names = {wanted};
     } else if (wanted.back() == '/') {
       wanted.pop_back();
-      const auto fits = [&](const std::string& name) {
-        return fnmatch(wanted.c_str(), name.c_str(), FNM_PATHNAME | FNM_CASEFOLD) == 0;
-      };
-      std::copy_if(folders_.begin(), folders_.end(), std::back_inserter(names), fits);
+      std::copy_if(folders_.begin(), folders_.end(), std::back_inserter(names),
+                   [&](const std::string& name) { return fits(wanted, name); });
     } else {
       const auto [folder, last] = parted(wanted);
+      const bool of_sort = last[0] == '<';
       for (const std::string& name : files_)
-        if (last[0] == '<' ? parted(name).first == folder && isOfSort(name, last, is_file_)
-                           : fnmatch(wanted.c_str(), name.c_str(), FNM_PATHNAME | FNM_CASEFOLD) == 0)
+        if (of_sort ? fits(folder, parted(name).first) && isOfSort(name, last, is_file_) : fits(wanted, name))
           names.push_back(name);
     }
     if (!names.empty())

@@ -10,11 +10,7 @@ RgbdParts readMatterport(const Survey& found, ModelInput&)
   RgbdParts parts;
   parts.folder.depth_unit = 1.0 / 4000;
   parts.camera_file = found.at(found.match("undistorted_camera_parameters/*.conf")[0]);
-  const std::vector<std::string> colors = found.match("undistorted_color_images/<pictures>");
-  if (colors.empty())
-    throw std::runtime_error(found.at("undistorted_color_images") + ": no picture in it, but " + parts.camera_file +
-                             " is there: unpack the scan's undistorted_color_images.zip");
-  const ImageSize any = readImageSize(found.at(colors[0]));
+  const ImageSize any = readImageSize(found.at(found.match("undistorted_color_images/<pictures>")[0]));
   CameraModel camera{any.width, any.height};
   for (const auto& row : readTextRows(parts.camera_file)) {
     const auto number = [&](std::size_t k) { return numberIn(parts.camera_file, row.at(k)); };

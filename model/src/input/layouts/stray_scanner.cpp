@@ -29,9 +29,6 @@ RgbdParts readStrayScanner(const Survey& found, ModelInput& input)
   parts.folder.camera = readCameraMatrix(parts.camera_file, 3);
   if (found.has("rgb/<pictures>")) {
     parts.folder.frames = pairedFrames(found, "rgb/<pictures>", "depth/<depths>", input);
-  } else if (!found.holds("rgb.mp4")) {
-    throw std::runtime_error(found.at("rgb") +
-                             ": no picture in it, and no rgb.mp4 beside it: export the recording again");
   } else {
     parts.folder.camera.width = 1920, parts.folder.camera.height = 1440; // of the app's video
     input.video = found.at("rgb.mp4");
