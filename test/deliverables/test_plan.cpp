@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "deliverables/plan_shapes.h"
+#include "plan/outline.h"
 #include <fresco/deliverables/core/plan.h>
 #include <fresco/simulation/scene/scene.h>
 #include <gtest/gtest.h>
@@ -82,6 +83,27 @@ TEST(Plan, RoomsDoorsAndWindowsOfTwoRooms)
     }
   EXPECT_EQ(doors, (std::vector<int>{1, 1}));
   EXPECT_EQ(windows, (std::vector<int>{1, 0}));
+}
+
+TEST(Plan, ThreeWallsAreLeftWhereTheirNeighboursMeetBeforeTheFourth)
+{
+  const auto edge = [](const Eigen::Vector2d& from, const Eigen::Vector2d& to, const Eigen::Vector2d& point,
+                       const Eigen::Vector2d& direction) {
+    plan::OutlineEdge result;
+    result.from = from, result.to = to, result.point = point, result.direction = direction;
+    result.seen = true;
+    return result;
+  };
+  const std::vector<PlanWall> walls = plan::joinEdges(
+      {edge({0, 0}, {4, 0}, {0, 0}, {1, 0}), edge({4, 0}, {4, 0.08}, {4.03, 0}, {0, 1}), // beyond the corner
+       edge({4, 0.08}, {0, 3}, {0, 3}, {-0.8, 0.6}), edge({0, 3}, {0, 0}, {0, 3}, {0, -1})},
+      {}, plan::PlanePoints({}), {});
+  ASSERT_EQ(walls.size(), 3U);
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Eigen::Vector2d corners[] = {{0, 0}, {4, 0}, {0, 3}};
+    EXPECT_LT((walls[k].from - corners[k]).norm(), 1e-9);
+    EXPECT_LT((walls[k].to - corners[(k + 1) % 3]).norm(), 1e-9);
+  }
 }
 
 TEST(Plan, WallsKeepTheirAnglesWhereTheDataHaveThem)

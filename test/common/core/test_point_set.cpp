@@ -85,6 +85,7 @@ TEST(PointSet, ValidateChecksCounts)
 }
 TEST(PointTable, FurtherColumnsAreFieldsOfAMesh)
 {
+  using namespace core;
   PointTable table;
   for (const char* name : xyz_names)
     table.addColumn(name, Scalar::float32);
