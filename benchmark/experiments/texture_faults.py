@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Textures a generated room from photographs with faults of real cameras: texture_faults.py BIN_DIR JUDGE WORK_DIR [options].
 
-Makes each data set with BIN_DIR/fresco_scan unless it is there, keeps every 7th photograph out and prints a row per fault:
-PSNR and SSIM after gain of the kept-out views, against the pictures without noise, from the true cameras; the loss
-against the run without fault, over all and in the worst view. JUDGE renders a model: JUDGE MODEL.obj --cameras LIST.json
+Makes each data set with BIN_DIR/fresco_scan or fine_room.py unless it is there, keeps every 7th photograph out and prints
+a row per fault: PSNR and SSIM after gain of the kept-out views, against the pictures without noise, from the true
+cameras; the loss against the run without fault, over all and in the worst view. JUDGE renders a model: JUDGE MODEL.obj --cameras LIST.json
 --json OUT.json, as described in docs/measurements/texture.md.
 """
 import argparse
@@ -13,6 +13,7 @@ import os
 import resource
 import subprocess
 
+import fine_room
 import numpy as np
 from PIL import Image
 
@@ -59,17 +60,19 @@ def with_fringe(picture):
     return np.minimum(out, 255)
 
 
-FAULTS = [  # name, options of fresco_scan, deviation of the mesh's vertices in metres, what is done to the photographs
-    ("none", "", 0, None),
-    ("vignetting, corners at 60 %", "-vignetting 0.6", 0, None),
-    ("exposures x0.5 to x2, clipped", "-exposure 0.75", 0, None),
-    ("somebody stands in every 10th photograph", "-intruder 10", 0, None),
-    ("cameras off by 3 mm and 0.2 degrees", "-pose_noise 0.003 -turn_noise 0.2", 0, None),
-    ("blur of 1 pixel", "-blur 1", 0, None),
-    ("mesh off by 3 mm", "", 0.003, None),
-    ("black borders of undistortion", "", 0, with_border),
-    ("alpha of undistortion", "", 0, with_alpha),
-    ("exposures, violet fringe at what is clipped", "-exposure 0.75", 0, with_fringe),
+FAULTS = [  # name, options of fresco_scan and of fine_room (None: not there), deviation of the mesh's vertices in metres, what
+    # is done to the photographs
+    ("none", "", {}, 0, None),
+    ("vignetting, corners at 60 %", "-vignetting 0.6", None, 0, None),
+    ("exposures x0.5 to x2, clipped", "-exposure 0.75", {"exposure": 2}, 0, None),
+    ("somebody stands in every 10th photograph", "-intruder 10", None, 0, None),
+    ("cameras off by 3 mm and 0.2 degrees", "-pose_noise 0.003 -turn_noise 0.2", {"shift": 0.003, "turn": 0.2}, 0, None),
+    ("blur of 1 pixel", "-blur 1", None, 0, None),
+    ("mesh off by 3 mm", "", {}, 0.003, None),
+    ("black borders of undistortion", "", {}, 0, with_border),
+    ("alpha of undistortion", "", {}, 0, with_alpha),
+    ("exposures, violet fringe at what is clipped", "-exposure 0.75", {"exposure": 2}, 0, with_fringe),
+    ("every 3rd photograph moved by 4 pixels", None, {"blur": (4, 3)}, 0, None),
 ]
 
 
@@ -138,26 +141,37 @@ def change_photographs(folder, change):
     open(f"{folder}/cameras/images.txt", "w").write(lines.replace(".jpg", ".png"))
 
 
-def model_of(args, number):
-    """@return what the judge says of the fault's model, seconds"""
-    name, faults, deviation, change = FAULTS[number]
-    folder = os.path.join(args.work, f"data{number if faults or change else 0}")
-    if not os.path.exists(os.path.join(folder, "poses.txt")):
+def make(args, number):
+    """@return folder of the fault's data"""
+    name, faults, fine, deviation, change = FAULTS[number]
+    folder = os.path.join(args.work, f"data{number if faults or change or fine else 0}")
+    if os.path.exists(os.path.join(folder, "poses.txt")):
+        return folder
+    if args.fine:
+        fine_room.write_room(folder, args.views, *map(int, args.images.split("x")), args.seed, **fine)
+    else:
         run(f"{args.bin}/fresco_scan", "conference_room", folder, "-stations", 1, "-points", 100, "-views", args.views,
             "-images", args.images, "-truth_images", "-seed", args.seed, "-threads", args.threads, "-quiet", *faults.split())
-        if change:
-            change_photographs(folder, change)
+    if change:
+        change_photographs(folder, change)
+    return folder
+
+
+def model_of(args, number):
+    """@return what the judge says of the fault's model, seconds"""
+    folder, deviation = make(args, number), FAULTS[number][3]
     mesh = os.path.join(folder, "truth.ply")
     if deviation:
         write_noisy(mesh, deviation, mesh := os.path.join(args.work, "noisy.ply"))
     model = os.path.join(args.work, f"model{number}.obj")
     seconds = run(f"{args.bin}/fresco_texture", mesh, f"{folder}/cameras", f"{folder}/images", model, "-keep_out", KEEP_OUT,
-                  "-threads", args.threads, "-quiet", *args.options.split())
+                  "-cameras_out", os.path.join(args.work, f"cameras{number}"), "-threads", args.threads, "-quiet",
+                  *args.options.split())
     cameras = os.path.join(args.work, "cameras.json")
     write_list(cameras, os.path.join(args.work, "data0", "cameras"), os.path.abspath(os.path.join(folder, "truth_images")))
     verdict = os.path.join(args.work, f"verdict{number}.json")
     run(args.judge, model, "--cameras", "all=" + cameras, "--no-atlas", "--json", verdict,
-        *(["--save", os.path.join(args.work, f"pictures{number}")] if args.save else []))
+        *(["--save", os.path.join(args.work, f"pictures{number}"), "--save-diff"] if args.save else []))
     return json.load(open(verdict))["views"]["all"], seconds
 
 
@@ -168,6 +182,7 @@ def main():
     parser.add_argument("work")
     parser.add_argument("--views", type=int, default=35)
     parser.add_argument("--images", default="640x480")
+    parser.add_argument("--fine", action="store_true", help="the room of fine_room.py in place of the conference room")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--threads", type=int, default=1)
     parser.add_argument("--faults", default="", help="numbers with commas, 0 = none, which is always run; empty = all")
@@ -176,6 +191,7 @@ def main():
     args = parser.parse_args()
     os.makedirs(args.work, exist_ok=True)
     chosen = [int(n) for n in args.faults.split(",")] if args.faults else range(len(FAULTS))
+    chosen = [n for n in chosen if FAULTS[n][2 if args.fine else 1] is not None]
     print("| fault | PSNR after gain | SSIM after gain | detail | loss | worst view's loss | CPU |\n|---|---|---|---|---|---|---|")
     clean = None
     for number in sorted({0, *chosen}):
