@@ -148,6 +148,22 @@ TEST(Optimization, NoisySphereGetsNoFacets)
   EXPECT_LE(angle_after, angle_before);
 }
 
+TEST(Optimization, PointsThatAreNamedTwiceAreNoLessNoisy)
+{
+  PointSet once, twice;
+  once.points = test::sphere(1.f, 5).vertices;
+  std::mt19937 random(12);
+  std::normal_distribution<float> noise(0.f, 0.01f);
+  for (Index i = 0; i < once.size(); ++i)
+    once.points.col(i) *= 1.f + noise(random);
+  twice.points.resize(3, 2 * once.size());
+  twice.points << once.points, once.points;
+  const TriangleMesh mesh = test::sphere(1.f, 4);
+  const double expected = filterSurface(mesh, once).noise;
+  EXPECT_NEAR(expected, 0.01, 0.002);
+  EXPECT_NEAR(filterSurface(mesh, twice).noise, expected, 0.1 * expected);
+}
+
 TEST(Optimization, BendsOfAFewCellsStayRound)
 {
   for (const float noise : {0.f, 0.01f, 0.03f})

@@ -204,9 +204,6 @@ DataPoints findCorrespondences(const MeshGraph& graph, const Positions& x, const
   data.points.resize(3, count);
   data.normals.resize(3, set.hasNormals() ? count : 0);
   data.face.resize(count);
-  for (Index f = 0; f < graph.faceCount(); ++f)
-    for (int j = begin[f] + 1; j < begin[f + 1]; j += 2)
-      data.pairs.push_back(j);
   parallelFor(count, threads, [&](Index i) {
     const Index column = assigned.columns[order[i]];
     data.face[i] = assigned.faces[order[i]];
@@ -214,6 +211,10 @@ DataPoints findCorrespondences(const MeshGraph& graph, const Positions& x, const
     if (set.hasNormals())
       data.normals.col(i) = normal(column);
   });
+  for (Index f = 0; f < graph.faceCount(); ++f)
+    for (int j = begin[f] + 1; j < begin[f + 1]; ++j)
+      if (data.points.col(j) != data.points.col(j - 1))
+        data.pairs.push_back(j++);
   return data;
 }
 

@@ -128,7 +128,7 @@ void finish(const TriangleMesh& mesh, OptimizationProblem& problem, int threads,
   result.left_out_points = problem.data.left_out;
   result.turned_faces = problem.turned_faces;
   result.covered_vertices = std::count(covered.begin(), covered.end(), char{1});
-  undoWorsening(problem, threads);
+  undoWorsening(problem, result.noise / problem.frame.unit, threads);
   result.restored_vertices =
       repairInverted(problem.graph, problem.start, problem.coverage.nearness, problem.x, threads);
   result.mesh = movedMesh(mesh, problem, threads);

@@ -45,18 +45,17 @@ VertexValues<3> fitAround(const OptimizationProblem& problem, const FacePoints& 
   return fit;
 }
 
-// How much of the move of a vertex its data allow: all where they are no farther off than before, nothing where they
-// are by `worse`, or where there are none.
-float partByFit(const Eigen::Vector3f& fit)
+// How much of the move of a vertex its data allow: all where they are no farther off than before or than their noise
+// explains, nothing where they are by `worse`, or where there are none.
+float partByFit(const Eigen::Vector3f& fit, float explained)
 {
   // A surface with so many free parameters a vertex follows the noise of n data a vertex, which are nearer to it for
   // that by half of parameters / n. Smoothing may take as much. Measured: docs/measurements/optimization.md.
   constexpr double parameters = 1.0, most_worse = 0.25;
-  constexpr float exact = 0.01f; // mean edge lengths: what is nearer fits
   if (!(fit[2] > 0.f))
     return 0.f;
   const double worse = 1.0 + std::min(most_worse, 0.5 * parameters * corners / fit[2]);
-  return ramp((fit[1] + exact * fit[2]) / (fit[0] + exact * fit[2]), worse, 1.0);
+  return ramp(fit[1] / std::max(fit[0], explained * fit[2]), worse, 1.0);
 }
 
 // How much of the move of v does not lead away from all data, to where nothing says that there is a surface.
@@ -106,18 +105,19 @@ Eigen::VectorXf dataDistances(const MeshGraph& graph, const Positions& x, const 
   return distances;
 }
 
-void undoWorsening(OptimizationProblem& problem, int threads)
+void undoWorsening(OptimizationProblem& problem, double noise, int threads)
 {
-  constexpr int rings = 10, most_rings = 24; // that data are averaged over, more where they are sparse
-  constexpr int blend_rings = 2;
+  constexpr int rings = 10, most_rings = 24, blend_rings = 2; // of data, more where they are sparse; of parts
   followFaces(problem.graph, problem.x, problem.data, threads);
   const FacePoints lists = pointsOfFaces(problem.data, problem.graph.faceCount());
   VertexValues<3> fit = fitAround(problem, lists, threads);
   const double spacing = std::max(1.0, problem.coverage.spacing);
   average(problem.graph, fit, std::min<int>(most_rings, std::ceil(rings * spacing)), threads);
+  // The mean magnitude of Gaussian values is 0.8 of their deviation; what is nearer than 0.01 edges fits.
+  const float explained = std::max(0.01, 0.8 * noise);
   VertexValues<1> part(problem.graph.vertexCount());
   parallelFor(part.size(), threads,
-              [&](Index v) { part[v] = partByFit(fit.col(v)) * partBySupport(problem, lists, v); });
+              [&](Index v) { part[v] = partByFit(fit.col(v), explained) * partBySupport(problem, lists, v); });
   average(problem.graph, part, blend_rings, threads);
   parallelFor(part.size(), threads, [&](Index v) {
     // Data do not tell where a surface ends, so its boundary moves across it only.

@@ -5,7 +5,8 @@ namespace fresco::optimization {
 /// Distance of each datum from its face at x, mean edge lengths.
 Eigen::VectorXf dataDistances(const MeshGraph& graph, const Positions& x, const DataPoints& data, int threads);
 
-/// Vertices go back towards the start where the data around them are farther from the surface than they were there, and
-/// where they have moved away from all data. Finds the faces of the data anew.
-void undoWorsening(OptimizationProblem& problem, int threads);
+/// Vertices go back towards the start where the data around them are farther from the surface than they were there and
+/// than their noise explains, and where they have moved away from all data. Finds the faces of the data anew.
+/// @param noise deviation of the data, mean edge lengths
+void undoWorsening(OptimizationProblem& problem, double noise, int threads);
 } // namespace fresco::optimization
