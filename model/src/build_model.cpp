@@ -61,7 +61,9 @@ void requirePrograms(const Job& job)
 /// The steps of the chain, each with the options that its outputs depend on besides the steps before it.
 std::vector<Stage> stagesOf(const Job& job)
 {
-  const auto& [input, files, options, stage_options, ranks] = job;
+  const ModelInput& input = job.input;
+  const ModelFiles& files = job.files;
+  const ModelOptions& options = job.options;
   std::vector<Stage> stages;
   const auto add = [&](const char* name, const std::string& own, std::vector<std::string> outputs,
                        Figures (*make)(const Job&, const Progress&), const std::vector<std::string>& tools = {}) {

@@ -227,7 +227,7 @@ TEST(Folder, EmptyOnesGoAfterAnError)
 TEST(ReadFile, NamesWhatCannotBeRead)
 {
   const std::string folder = test::scratchFolder();
-  std::ofstream(folder + "/empty");
+  std::ofstream(folder + "/empty").flush();
   EXPECT_THROW(readFile(folder + "/missing"), std::runtime_error);
   EXPECT_THROW(readFile(folder), std::runtime_error);
   EXPECT_THROW(readFile(folder + "/empty"), std::runtime_error);
