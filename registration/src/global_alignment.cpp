@@ -258,14 +258,7 @@ void GlobalAligner::correctViewpoints()
   }
 }
 
-GraphInput GlobalAligner::graphInput() const
-{
-  GraphOptions options;
-  options.max_violation = options_.max_violation;
-  options.tolerance = 4.f * options_.voxel;
-  options.threads = options_.threads;
-  return {scans_, result_.pairs, options};
-}
+GraphInput GlobalAligner::graphInput() const { return {scans_, result_.pairs, graphOptions(options_)}; }
 
 // Without those scans between whose places nothing decides.
 ScanGraph GlobalAligner::decidedGraph() const
@@ -370,6 +363,11 @@ GlobalAlignment GlobalAligner::run(const Progress& progress)
 }
 
 } // namespace
+
+GraphOptions graphOptions(const ScanRegistrationOptions& options)
+{
+  return {options.max_violation, 4.f * options.voxel, options.threads};
+}
 
 GlobalAlignment alignGlobally(const AlignmentInput& input, const ScanRegistrationOptions& options,
                               const Progress& progress)

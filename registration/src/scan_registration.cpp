@@ -174,9 +174,7 @@ ScanRegistrationResult findPoses(const ScanSource& scans, const std::vector<Pose
   const AlignmentInput input{prepared, known, ranks};
   GlobalAlignment alignment =
       findClusters(input, options, memoryKey(survey, start, options), scans.memory, subProgress(progress, 0.3, 0.6));
-  GraphOptions graph_options;
-  graph_options.tolerance = 4.f * options.voxel;
-  partEqualRooms({prepared, alignment.pairs, graph_options}, known, alignment.graph.clusters);
+  partEqualRooms({prepared, alignment.pairs, graphOptions(options)}, known, alignment.graph.clusters);
   Index world_scan = -1;
   std::vector<std::string> said;
   if (!options.hints.empty() && !alignment.graph.clusters.empty()) {

@@ -248,7 +248,7 @@ TEST(ScanRefinement, FreeMotionsBesideThePlacedGroupAreTold)
   main.members = {3};
   main.poses = {scene().truth[0]};
   registration::refinePlacement(scans, options, main, {});
-  const auto result = registration::describeRegistration({scans, {}, options, {main, beside}, {}});
+  const auto result = registration::describeRegistration({scans, {}, options, {main, beside}, {}, {}, {}});
   EXPECT_TRUE(result.scans[3].placed);
   ASSERT_TRUE(result.scans[0].free_motion);
   EXPECT_FALSE(result.scans[0].placed);
