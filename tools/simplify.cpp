@@ -106,7 +106,7 @@ GltfModel baked(TexturedMesh model, const SimplifyOptions& options, const Common
     model = simplified(std::move(model), options, common);
   }
   const TexturedMesh full = readModel(options.full).model;
-  gltf.lit = !isTextured(full) && full.mesh.colors.cols() == 0;
+  gltf.lit = !isColored(full);
   LightModelOptions light;
   light.texel = options.texel;
   light.atlas = options.atlas;

@@ -7,6 +7,8 @@
 namespace fresco {
 bool isTextured(const TexturedMesh& model) { return (model.face_atlas.array() >= 0).any(); }
 
+bool isColored(const TexturedMesh& model) { return model.mesh.colors.cols() > 0 || isTextured(model); }
+
 std::optional<GltfModel> readModelIfAny(const std::string& path)
 {
   GltfModel read;

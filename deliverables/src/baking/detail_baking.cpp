@@ -9,6 +9,7 @@
 #include <fresco/core/parallel.h>
 #include <fresco/core/require.h>
 #include <fresco/deliverables/core/detail_baking.h>
+#include <fresco/deliverables/core/model_file.h>
 #include <fresco/deliverables/core/simplification.h>
 #include <fresco/texture/core/texture_layout.h>
 namespace fresco {
@@ -217,7 +218,7 @@ GltfModel bakeLightModel(TriangleMesh light, const TexturedMesh& full, const Lig
   for (; int(model.atlases.size()) > options.atlases; model = layOutTexture(light, layout))
     layout.texel *= 1.1;
   GltfModel baked = bakeDetail(std::move(model), full, {0, 4, 2, options.threads}, subProgress(progress, 0.2, 1));
-  if (full.mesh.colors.cols() == 0 && !(full.face_atlas.array() >= 0).any())
+  if (!isColored(full))
     for (Image& atlas : baked.model.atlases)
       atlas = Image(4, 4, 3, 200);
   return baked;

@@ -2,6 +2,7 @@
 #include "baking/full_surface.h"
 #include <algorithm>
 #include <cmath>
+#include <fresco/deliverables/core/model_file.h>
 namespace fresco::deliverables {
 namespace {
 /// Bilinear.
@@ -36,7 +37,7 @@ Eigen::Vector3f weightsOf(const TriangleMesh& mesh, const ClosestPoint& closest)
 FullSurface::FullSurface(const TexturedMesh& model, int threads)
     : model_(model), rays_(model.mesh), tree_(model.mesh, threads),
       normals_(model.mesh.normals.cols() > 0 ? model.mesh.normals : vertexNormals(model.mesh, threads)),
-      has_colors_(model.mesh.colors.cols() > 0 || (model.face_atlas.array() >= 0).any())
+      has_colors_(isColored(model))
 {}
 
 FullSurface::Point FullSurface::across(const Eigen::Vector3f& place, const Eigen::Vector3f& normal, float cage) const

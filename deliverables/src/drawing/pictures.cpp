@@ -170,7 +170,7 @@ ScaledPicture orthophoto(const TexturedMesh& model, const FloorPlan& plan, doubl
   const TriangleMesh& mesh = model.mesh;
   const bool textured = isTextured(model);
   textured ? validateTexturedMesh(model) : validateMesh(mesh);
-  require(textured || mesh.colors.cols() > 0, "orthophoto: the model has neither texture nor colours");
+  require(isColored(model), "orthophoto: the model has neither texture nor colours");
   DownwardView view(plan, pixel);
   for (Index f = 0; f < mesh.faceCount(); ++f) {
     Vector3d corners[3];

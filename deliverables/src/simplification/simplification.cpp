@@ -294,6 +294,7 @@ private:
   std::priority_queue<Entry> queue_;
   SimplificationFigures figures_;
 };
+
 TexturedMesh simplified(TexturedMesh model, const SimplificationOptions& options, const std::vector<bool>& fixed,
                         SimplificationFigures* figures, const Progress& progress = {})
 {

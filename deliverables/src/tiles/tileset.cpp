@@ -4,6 +4,7 @@
 #include <cmath>
 #include <fresco/core/require.h>
 #include <fresco/deliverables/core/detail_baking.h>
+#include <fresco/deliverables/core/model_file.h>
 #include <fresco/deliverables/core/tileset.h>
 #include <fresco/io/file.h>
 #include <fresco/io/json_text.h>
@@ -18,13 +19,14 @@ using Json = nlohmann::ordered_json;
 struct Part {
   TriangleMesh mesh;
   std::vector<int> shared;
+  int levels = 0; ///< of tiles below it
 };
 
 class Tiler {
 public:
   Tiler(std::string folder, TexturedMesh full, const TilesetOptions& options, const Progress& progress)
       : folder_(std::move(folder)), full_(std::move(full)), options_(options), progress_(progress),
-        tree_(quadtreeOf(full_.mesh, options.faces)), tiles_(tree_.quarters.size())
+        colored_(isColored(full_)), tree_(quadtreeOf(full_.mesh, options.faces)), tiles_(tree_.quarters.size())
   {
     texel_ = options.texel > 0 ? options.texel : typicalTexel(full_);
     if (texel_ == 0) // colours of vertices
@@ -45,36 +47,31 @@ private:
     return tree_.first_leaf[vertex] < quarter.first || tree_.last_leaf[vertex] > quarter.last;
   }
 
-  /// The faces of some leaves of the full mesh.
-  Part partOfFull(int first, int last)
+  /// Makes `below_` the faces of the quarter's leaves. @return Part::shared of its vertices
+  std::vector<int> takeBelow(const Quarter& quarter)
   {
-    Part part;
-    std::vector<int> number(full_.mesh.vertexCount(), -1), vertices;
-    std::vector<int> faces;
-    for (int leaf = first; leaf <= last; ++leaf)
+    std::vector<int> number(full_.mesh.vertexCount(), -1), vertices, faces, shared;
+    for (int leaf = quarter.first; leaf <= quarter.last; ++leaf)
       faces.insert(faces.end(), tree_.leaf_faces[leaf].begin(), tree_.leaf_faces[leaf].end());
-    part.mesh.faces.resize(3, faces.size());
+    below_.mesh.faces.resize(3, faces.size());
     for (std::size_t f = 0; f < faces.size(); ++f)
       for (int k = 0; k < 3; ++k) {
         const int v = full_.mesh.faces(k, faces[f]);
         if (number[v] < 0) {
           number[v] = int(vertices.size());
           vertices.push_back(v);
+          shared.push_back(tree_.first_leaf[v] < tree_.last_leaf[v] ? v : -1);
         }
-        part.mesh.faces(k, f) = number[v];
+        below_.mesh.faces(k, f) = number[v];
       }
-    part.mesh.vertices = full_.mesh.vertices(Eigen::all, vertices);
+    below_.mesh.vertices = full_.mesh.vertices(Eigen::all, vertices);
     if (full_.mesh.colors.cols() > 0)
-      part.mesh.colors = full_.mesh.colors(Eigen::all, vertices);
-    for (const int v : vertices)
-      part.shared.push_back(tree_.first_leaf[v] < tree_.last_leaf[v] ? v : -1);
-    below_.mesh = part.mesh; // what the tile's texture is baked from
+      below_.mesh.colors = full_.mesh.colors(Eigen::all, vertices);
     if (full_.texcoord_faces.cols() > 0) {
       below_.texcoord_faces = full_.texcoord_faces(Eigen::all, faces);
       below_.face_atlas = full_.face_atlas(faces);
     }
-    part.mesh.colors.resize(3, 0);
-    return part;
+    return shared;
   }
 
   /// Puts parts together at the vertices that they share.
@@ -85,6 +82,7 @@ private:
     std::vector<Eigen::Vector3f> vertices;
     std::vector<Eigen::Vector3i> faces;
     for (const Part& part : parts) {
+      all.levels = std::max(all.levels, part.levels + 1);
       std::vector<int> number(part.shared.size());
       for (std::size_t v = 0; v < number.size(); ++v) {
         number[v] = int(vertices.size());
@@ -118,7 +116,7 @@ private:
     part.mesh.fields.emplace("shared", std::move(numbers));
     SimplificationFigures figures;
     const SimplificationOptions options{options_.faces, 0, options_.threads};
-    Part light{simplifyBetween(fixed, std::move(part.mesh), options, figures), {}};
+    Part light{simplifyBetween(fixed, std::move(part.mesh), options, figures), {}, part.levels};
     error = figures.error;
     for (const float number : light.mesh.fields["shared"])
       light.shared.push_back(number > 0 ? list[std::size_t(number) - 1] : -1);
@@ -134,23 +132,22 @@ private:
     tile.children = quarter.children;
     Part part;
     if (quarter.children.empty()) {
-      part = partOfFull(quarter.first, quarter.last);
+      part.shared = takeBelow(quarter);
+      part.mesh.vertices = below_.mesh.vertices;
+      part.mesh.faces = below_.mesh.faces;
       write(tile, part.mesh, texel_, number);
       return part;
     }
     std::vector<Part> parts;
-    int levels = 0;
     for (const int child : quarter.children) {
       parts.push_back(make(child));
       tile.box.extend(tiles_[child].box);
       tile.error = std::max(tile.error, tiles_[child].error);
-      levels = std::max(levels, levels_[child]);
     }
-    levels_[number] = levels + 1;
-    partOfFull(quarter.first, quarter.last);
+    takeBelow(quarter);
     double error = 0;
     part = simplified(joined(parts), quarter, error);
-    const double texel = std::ldexp(texel_, levels + 1);
+    const double texel = std::ldexp(texel_, part.levels);
     tile.error += error + texel;
     write(tile, part.mesh, texel, number);
     return part;
@@ -172,7 +169,7 @@ private:
     tile.file = concat("tile_", number, ".glb");
     GltfOptions gltf; // floats: rounded positions would leave gaps between tiles
     gltf.jpeg_quality = options_.jpeg_quality;
-    gltf.lit = !(full_.face_atlas.array() >= 0).any() && full_.mesh.colors.cols() == 0;
+    gltf.lit = !colored_;
     if (!gltf.lit)
       baked.model.mesh.normals.resize(3, 0);
     writeGltf(folder_ + "/" + tile.file, baked, gltf);
@@ -182,11 +179,11 @@ private:
   TexturedMesh full_;
   const TilesetOptions& options_;
   const Progress& progress_;
+  bool colored_;
   Quadtree tree_;
   std::vector<Tile> tiles_;
-  TexturedMesh below_; ///< the part of the full model that a tile stands for
+  TexturedMesh below_; ///< the part of the full model that a tile stands for, which its texture is baked from
   double texel_;
-  std::unordered_map<int, int> levels_; ///< below a tile
   std::size_t written_ = 0;
 };
 

@@ -38,7 +38,7 @@ Figures makeLight(const Job& job, const Progress& progress)
   GltfOptions gltf;
   gltf.jpeg_quality = quality;
   gltf.compact = true;
-  gltf.lit = !isTextured(full) && full.mesh.colors.cols() == 0;
+  gltf.lit = !isColored(full);
   gltf.compress = job.options.compress;
   report(progress, "writing", 0.9);
   writeGltf(job.files.model_glb, light, gltf);

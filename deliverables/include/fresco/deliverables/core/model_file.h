@@ -14,8 +14,9 @@ FRESCO_EXPORT GltfModel readModel(const std::string& path);
 /// The same; nothing of a file that holds no faces: one of points alone, by its extension or its content.
 FRESCO_EXPORT std::optional<GltfModel> readModelIfAny(const std::string& path);
 
-/// Whether some face has a texture.
+/// Whether some face has a texture; whether there is one, or colours of vertices.
 FRESCO_EXPORT bool isTextured(const TexturedMesh& model);
+FRESCO_EXPORT bool isColored(const TexturedMesh& model);
 
 /// With its texture where there is one and the format holds it (.glb, .obj), normal maps in .glb only; else the mesh alone.
 /// @param options of .glb; of .obj, the quality of its pictures
