@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """How calm a surface is on large planes: angles of its faces from planes that are fitted to the points.
 
-POINTS is a PLY with normals in one frame. Planes of at least AREA m2 are found in it (RANSAC on points thinned to 5 cm,
+POINTS is what fresco_normals wrote, in one frame. Planes of at least AREA m2 are found in it (RANSAC on points thinned to 5 cm,
 3 cm from the plane, normals within 25 degrees). A face of a MESH counts if its middle lies within 5 cm of a plane, in a
 square of 10 cm whose eight neighbours hold points of the plane, too. Printed: area that counts, the median of the
 planes' own medians, median and 90 % of all such area, RMS distance from the plane.
@@ -10,30 +10,8 @@ planes' own medians, median and 90 % of all such area, RMS distance from the pla
 import argparse
 import numpy as np
 
-
-def read_ply(path):
-    with open(path, "rb") as file:
-        header = []
-        while not header or header[-1] != "end_header":
-            header.append(file.readline().decode().strip())
-        kinds = {"float": "<f4", "double": "<f8", "uchar": "u1", "int": "<i4", "uint": "<u4", "ushort": "<u2"}
-        counts, types, name = {}, {}, None
-        for line in header:
-            w = line.split()
-            if w[0] == "element":
-                name = w[1]
-                counts[name], types[name] = int(w[2]), []
-            elif w[0] == "property" and w[1] != "list":
-                types[name].append((w[2], kinds[w[1]]))
-            elif w[0] == "property":
-                types[name] += [("n", kinds[w[2]]), ("f", kinds[w[3]], 3)]
-        vertices = np.fromfile(file, types["vertex"], counts["vertex"])
-        faces = np.fromfile(file, types["face"], counts["face"])["f"] if "face" in types and counts["face"] else None
-    return vertices, faces
-
-
-def xyz(v, names="x y z"):
-    return np.stack([v[n] for n in names.split()], 1).astype(float)
+from held_out_points import positions, read_ply
+from room_surfaces import read_mesh
 
 
 def thin(points, normals, cell):
@@ -73,8 +51,8 @@ class Calm:
     """Angles, areas and offsets of the faces of a mesh that lie on planes."""
 
     def __init__(self, path):
-        v, f = read_ply(path)
-        v = xyz(v)
+        mesh = read_mesh(path)
+        v, f = np.asarray(mesh.vertices), np.asarray(mesh.triangles)
         corner = v[f[:, 0]]
         self.cross = np.cross(v[f[:, 1]] - corner, v[f[:, 2]] - corner)
         self.size = np.linalg.norm(self.cross, axis=1)
@@ -120,9 +98,9 @@ def main():
     parser.add_argument("meshes", nargs="+")
     parser.add_argument("--area", type=float, default=3)
     options = parser.parse_args()
-    vertices, _ = read_ply(options.points)
-    normals = "normal_x normal_y normal_z" if "normal_x" in vertices.dtype.names else "nx ny nz"
-    points, normals = thin(xyz(vertices), xyz(vertices, normals), 0.05)
+    vertices = read_ply(options.points)
+    normals = np.stack([vertices["n" + axis] for axis in "xyz"], 1).astype(float)
+    points, normals = thin(positions(vertices).astype(float), normals, 0.05)
     planes = planes_of(points, normals, options.area, np.random.default_rng(1))
     print(f"{len(planes)} planes, {sum(len(p[2]) for p in planes) * 0.0025:.0f} m2")
     for path in options.meshes:
