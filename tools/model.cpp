@@ -43,6 +43,23 @@ void check(const fresco::ModelOptions& options, const std::vector<std::string>& 
   for (const char* part : {"", "/scans", "/panoramas", "/images", "/cameras"})
     fresco::requireDistinct({folders[1]}, {folders[0] + part});
 }
+
+/// Options of what is made before the texture.
+void declareSurface(fresco::Args& args, fresco::ModelOptions& options)
+{
+  args.option("cell", options.cell, Range::above(0).zero("0.02 for scans, 3 pixels at the median depth for RGB-D"),
+              "finest cell of the surface reconstruction, metres");
+  args.option("fuse", options.fuse, Range::above(0).zero("as -cell"),
+              "RGB-D: cell in which the frames are fused, metres");
+  args.option("bilateral", options.bilateral, Range::atLeast(0),
+              "rounds of bilateral smoothing of the normals of scans");
+  args.option("trim_levels", options.trim_levels, Range::above(0).zero("all stays closed"),
+              "surface that no scan saw is cut off, but gaps of 4 x 4 cells so many octree levels coarser stay "
+              "closed; of RGB-D what data sustain so many levels less than elsewhere is cut, at most 0.75");
+  args.flag("no_optimize", options.optimize,
+            "leave the vertices where the reconstruction puts them: rounded edges; always so for RGB-D", false);
+}
+
 /// Options of the textured models and the pictures.
 void declareOutputs(fresco::Args& args, fresco::ModelOptions& options)
 {
@@ -100,17 +117,7 @@ int main(int argc, char** argv)
                 "stop at points (points.ply), surface (surface.ply) or mesh (mesh.ply: edges are sharp, no texture); "
                 "-resume goes on from there; empty = the whole model");
     args.flag("resume", options.resume, "go on after the last stage that an earlier run into OUT_DIR finished");
-    args.option("cell", options.cell, Range::above(0).zero("0.02 for scans, 3 pixels at the median depth for RGB-D"),
-                "finest cell of the surface reconstruction, metres");
-    args.option("fuse", options.fuse, Range::above(0).zero("as -cell"),
-                "RGB-D: cell in which the frames are fused, metres");
-    args.option("bilateral", options.bilateral, Range::atLeast(0),
-                "rounds of bilateral smoothing of the normals of scans");
-    args.option("trim_levels", options.trim_levels, Range::above(0).zero("all stays closed"),
-                "surface that no scan saw is cut off, but gaps of 4 x 4 cells so many octree levels coarser stay "
-                "closed; of RGB-D what data sustain so many levels less than elsewhere is cut, at most 0.75");
-    args.flag("no_optimize", options.optimize,
-              "leave the vertices where the reconstruction puts them: rounded edges; always so for RGB-D", false);
+    declareSurface(args, options);
     declareOutputs(args, options);
     fresco::declareColumns(args);
     args.settingsFile("settings",

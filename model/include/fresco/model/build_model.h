@@ -45,7 +45,7 @@ struct ModelOptions {
 /// What one stage cost and what it found.
 struct ModelStage {
   std::string name;   ///< points, surface, optimization, features, matches, cameras, alignment, texture, light, tiles,
-                      ///< plan, pictures
+                      ///< pictures
   double seconds = 0; ///< wall clock
   double cpu_seconds = 0;    ///< of all threads, and of programs that were run
   double peak_megabytes = 0; ///< resident memory of the process, highest during the stage
