@@ -3,7 +3,6 @@
 #include <fresco/core/camera.h>
 #include <fresco/core/image.h>
 #include <fresco/core/poses.h>
-#include <fresco/surface/core/depth_fusion.h>
 #include <string>
 #include <vector>
 namespace fresco::model {

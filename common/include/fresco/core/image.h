@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+#include <Eigen/Core>
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -28,4 +29,7 @@ struct Image16 {
   int width = 0, height = 0;
   std::vector<std::uint16_t> data;
 };
+
+/// height x width depths along the viewing axis, in the unit of the poses. 0, negative or not finite = none.
+using DepthImage = Eigen::Array<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 } // namespace fresco

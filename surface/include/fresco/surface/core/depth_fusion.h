@@ -3,14 +3,12 @@
 #include <Eigen/Geometry>
 #include <fresco/core/camera.h>
 #include <fresco/core/export.h>
+#include <fresco/core/image.h>
 #include <fresco/core/point_set.h>
 #include <fresco/core/progress.h>
 #include <functional>
 #include <vector>
 namespace fresco {
-/// height x width depths along the viewing axis, in the unit of the poses. 0, negative or not finite = none.
-using DepthImage = Eigen::Array<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-
 /// What a depth camera saw.
 struct DepthFrames {
   CameraModel camera;                            ///< without distortion
