@@ -6,6 +6,7 @@
 
 Names and comments come from here; types and defaults are the compiler's business. A struct of the headers needs nothing else
 to become a class of the module, nor does an option of it to become a keyword."""
+import keyword
 import re
 import sys
 from typing import NamedTuple
@@ -20,7 +21,8 @@ DepthFusionOptions DepthFusionResult MeshDistanceOptions MeshDistanceResult TwoS
 NormalDeviation TextureOptions TextureView TextureResult PlacedCamera PhotographFit PointTextureOptions PointTextureResult
 PointLook SimplificationOptions LightModelOptions GltfModel GltfOptions ModelOptions ModelReport ModelStage PictureOptions Viewpoint
 PointToPlaneOptions PointToPlaneResult CameraAlignmentOptions CameraAlignmentResult RgbdTrackingOptions
-RgbdTrackingResult""".split()
+RgbdTrackingResult PlanOptions PlanOpening PlanWall PlanRoom FloorPlan
+ScaledPicture""".split()
 # What a function is called in Python where it is not its name in C++ with underscores.
 RENAMED = {"reconstructVolumetric": "reconstruct", "filterSurface": "optimize",
            "measureMeshDistance": "compare", "withoutMixedPixels": "remove_mixed_pixels", "withoutOutliers": "remove_outliers",
@@ -179,7 +181,7 @@ def literal(text: str) -> str:
 
 def table(struct: Struct, structs: dict[str, Struct]) -> str:
     fields = (structs[struct.base].fields if struct.base else []) + struct.fields
-    visits = "".join(f'    visit("{f.name}", &{struct.name}::{f.name}, {literal(f.text)});\n' for f in fields)
+    visits = "".join(f'    visit("{f.name}{"_" * keyword.iskeyword(f.name)}", &{struct.name}::{f.name}, {literal(f.text)});\n' for f in fields)
     return (f"template <>\nstruct Fields<{struct.name}> {{\n"
             f'  static constexpr const char* name = "{struct.name}";\n'
             f"  static constexpr const char* text = {literal(struct.text)};\n"

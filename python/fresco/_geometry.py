@@ -269,6 +269,13 @@ class TexturedMeshBase(Record):
         return _picture(self) if len(self.mesh.vertices) else None
 
 
+class FloorPlanBase(Record):
+    __slots__ = ()
+
+    def _repr_svg_(self) -> str:
+        return str(_module().plan_svg(self))
+
+
 class Shown:
     """A picture that a notebook draws."""
 

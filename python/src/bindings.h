@@ -11,6 +11,7 @@ void addPoses(const pybind11::module_& module);
 void addSurface(const pybind11::module_& module);
 void addQueries(const pybind11::module_& module);
 void addTexture(const pybind11::module_& module);
+void addPlans(const pybind11::module_& module);
 void addDeliverables(const pybind11::module_& module);
 void addModel(const pybind11::module_& module);
 void addRendering(const pybind11::module_& module);

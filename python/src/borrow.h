@@ -35,6 +35,7 @@ template struct Expose<Points, &Storage<Points>::m_data, &Storage<Points>::m_col
 template struct Expose<Colors, &Storage<Colors>::m_data, &Storage<Colors>::m_cols>;
 template struct Expose<Faces, &Storage<Faces>::m_data, &Storage<Faces>::m_cols>;
 template struct Expose<Eigen::Matrix2Xf, &Storage<Eigen::Matrix2Xf>::m_data, &Storage<Eigen::Matrix2Xf>::m_cols>;
+template struct Expose<Eigen::Matrix2Xd, &Storage<Eigen::Matrix2Xd>::m_data, &Storage<Eigen::Matrix2Xd>::m_cols>;
 template struct Expose<Eigen::VectorXf, &Storage<Eigen::VectorXf>::m_data, &Storage<Eigen::VectorXf>::m_rows>;
 template struct Expose<Eigen::VectorXi, &Storage<Eigen::VectorXi>::m_data, &Storage<Eigen::VectorXi>::m_rows>;
 

@@ -73,7 +73,7 @@ public:
     Options options;
     Lender lender; // options hold no arrays
     Fields<Options>::visit([&](const char* name, auto member, const char*) {
-      if (named_.contains(name))
+      if (named_.contains(name) && !(isUnset(options.*member) && named_[name].is_none()))
         Convert<std::decay_t<decltype(options.*member)>>::fill(options.*member, named_[name], name, lender);
     });
     return options;
@@ -154,7 +154,12 @@ void addFunction(const py::module_& module, const Function& function, const Call
     for (const Argument& argument : function.arguments)
       if (argument.name == std::string(name))
         return;
-    options.push_back({name, Convert<Member>::annotation(), defaultText(defaults.*member), text});
+    const std::string type = Convert<Member>::annotation();
+    options.push_back({name,
+                       isUnset(defaults.*member) ? "Optional[" + type + "]"
+                       : type == "Doubles"       ? "ArrayLike"
+                                                 : type,
+                       defaultText(defaults.*member), text});
   });
   addFunction(module, function, options, Fields<Options>::text, body);
 }

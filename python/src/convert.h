@@ -279,7 +279,10 @@ struct Convert<Eigen::Matrix<Scalar, rows, columns>,
   }
   static std::string annotation()
   {
-    return std::is_same_v<Scalar, float> ? "Floats" : std::is_same_v<Scalar, int> ? "Ints" : "Bytes";
+    return std::is_same_v<Scalar, float>    ? "Floats"
+           : std::is_same_v<Scalar, double> ? "Doubles"
+           : std::is_same_v<Scalar, int>    ? "Ints"
+                                            : "Bytes";
   }
 };
 
@@ -351,10 +354,21 @@ struct Convert<T, std::enable_if_t<has_fields<T>>> {
   static std::string annotation() { return Fields<T>::name; }
 };
 
+/// Whether an option is a number that nobody has chosen, None in Python.
+template <typename T>
+bool isUnset(const T& value)
+{
+  if constexpr (std::is_floating_point_v<T>)
+    return std::isnan(value);
+  return false;
+}
+
 /// A default as it is written in Python.
 template <typename T>
 std::string defaultText(const T& value)
 {
+  if (isUnset(value))
+    return "None";
   if constexpr (std::is_same_v<T, float>) { // the shortest text that gives this float
     std::array<char, 32> text{};
     const auto end = std::to_chars(text.begin(), text.end(), value).ptr;
@@ -363,5 +377,13 @@ std::string defaultText(const T& value)
   } else {
     return py::repr(python::toPython(value));
   }
+}
+template <int rows>
+std::string defaultText(const Eigen::Matrix<double, rows, 1>& vector)
+{
+  std::string text;
+  for (const double value : vector)
+    text += (text.empty() ? "(" : ", ") + defaultText(value);
+  return text + ")";
 }
 } // namespace fresco::python

@@ -41,7 +41,7 @@ std::string stubText()
          "import numpy as np\n"
          "from numpy.typing import ArrayLike, NDArray\n\n"
          "from ._base import Record\n"
-         "from ._geometry import PointSetBase, TexturedMeshBase, TriangleMeshBase\n\n"
+         "from ._geometry import FloorPlanBase, PointSetBase, TexturedMeshBase, TriangleMeshBase\n\n"
          "Floats = NDArray[np.float32]\nDoubles = NDArray[np.float64]\nInts = NDArray[np.int32]\n"
          "Indices = NDArray[np.int64]\nBytes = NDArray[np.uint8]\n"
          "Path = Union[str, bytes, os.PathLike[Any]]\nProgress = Callable[[str, float], Any]\n\n"
@@ -77,6 +77,7 @@ PYBIND11_MODULE(_fresco, module)
   addQueries(module);
   addTexture(module);
   addDeliverables(module);
+  addPlans(module);
   addModel(module);
   addRendering(module);
   module.attr("__version__") = FRESCO_VERSION;

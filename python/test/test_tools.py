@@ -107,6 +107,30 @@ def test_deliverables(mesh_file, tool, tmp_path):
         fresco.crop(mesh, [outline[[0, 2, 1, 3]]])  # crosses itself
 
 
+def test_plans(room, mesh_file, tool, tmp_path):
+    tool("plan", mesh_file, tmp_path / "tool.svg", "-height", 1)
+    plan = fresco.draw_plan(fresco.read_mesh(mesh_file), height=1)
+    assert plan.height == 1 and plan.section and all(line.shape[1] == 2 for line in plan.section)
+    assert plan._repr_svg_() == fresco.plan_svg(plan) == (tmp_path / "tool.svg").read_text()
+    assert fresco.plan_json(plan) == (tmp_path / "tool.json").read_text()
+    assert fresco.plan_csv(plan) == (tmp_path / "tool.csv").read_text()
+    tool("plan", mesh_file, tmp_path / "tool.dxf", "-height", 1)
+    assert fresco.plan_dxf(plan) == (tmp_path / "tool.dxf").read_text()
+    drawn = fresco.plan_picture(plan, 0.05)
+    tool("plan", mesh_file, tmp_path / "tool.png", "-height", 1, "-pixel", 0.05)
+    assert np.array_equal(drawn.image, fresco.read_image(tmp_path / "tool.png"))
+    width, height = drawn.pixel * (np.array(drawn.image.shape[1::-1]) - 1)
+    x, y = drawn.first_pixel
+    assert x <= plan.low[0] and x + width >= plan.high[0] and y >= plan.high[1] and y - height <= plan.low[1]
+    cloud = fresco.read_points(room / "scans/scan_00.pcd")
+    shown = fresco.orthophoto(cloud, fresco.draw_plan(cloud), 0.1)
+    assert (shown.image < 255).any()
+    with pytest.raises(ValueError):
+        fresco.draw_plan(cloud, height=1e6)
+    with pytest.raises(ValueError):
+        fresco.plan_picture(plan, -1)
+
+
 def test_texture_from_points(room, mesh_file, tool, tmp_path):
     scan = room / "scans/scan_00.pcd"
     tool("texture", mesh_file, "-points", scan, tmp_path / "tool.glb", "-texel", 0.1)
