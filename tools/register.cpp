@@ -8,7 +8,7 @@
 #include <fresco/io/point_files.h>
 #include <fresco/io/point_io.h>
 #include <fresco/io/pose_file.h>
-#include <fresco/io/scan_file.h>
+#include <fresco/io/scan_writer.h>
 #include <fresco/registration/core/scan_registration.h>
 #include <fstream>
 namespace {
@@ -16,7 +16,7 @@ using namespace fresco;
 
 struct Request {
   std::vector<fresco::ScanPath> scans;
-  std::string folder, start_file, hint_file;
+  std::string folder, start_file, hint_file, e57, to_world;
   bool resume = false;
   ScanRegistrationOptions options;
   CommonOptions common;
@@ -44,6 +44,9 @@ Request parse(int argc, char** argv)
               "what is known of places, a line each: link A B, relative A B POSE, near A X Y [Z] R, choose A B NUMBER, "
               "apart A B, order; registration.html shows the lines that help");
   args.flag("resume", request.resume, "take what an earlier run into OUT_DIR found of pairs, whatever its hints were");
+  args.option("e57", request.e57, "write the placed scans into this file, each with its pose, all fields and pictures");
+  args.option("to_world", request.to_world,
+              "for -e57: a file of 16 numbers, row by row, from the frame of the result to that of the world");
   args.option("voxel", request.options.voxel, Range::above(0).zero("from the data"),
               "finest thinning, unit of the points");
   args.option("max_distance", request.options.max_distance, Range::above(0).zero("20 voxels"),
@@ -63,11 +66,14 @@ Request parse(int argc, char** argv)
     throw UsageError("-fixed needs -poses START.txt");
   if (request.folder.empty())
     throw UsageError("-o OUT_DIR is missing");
+  if (!request.e57.empty() && extension(request.e57) != ".e57")
+    throw UsageError(request.e57 + ": the extension must be .e57");
+  if (request.e57.empty() && !request.to_world.empty())
+    throw UsageError("-to_world needs -e57 FILE");
   std::vector<std::string> inputs = pointFilesIn(words);
   request.scans = scansOf(inputs, true);
-  inputs.push_back(request.start_file);
-  inputs.push_back(request.hint_file);
-  std::vector<std::string> outputs;
+  inputs.insert(inputs.end(), {request.start_file, request.hint_file, request.to_world});
+  std::vector<std::string> outputs = {request.e57};
   for (const char* name : {"registered.pcd", "poses.txt", "registration.json", "registration.html", "pairs.bin"})
     outputs.push_back(request.folder + "/" + name);
   requireDistinct(outputs, inputs);
@@ -99,7 +105,16 @@ PointSet withViewpoint(PointSet scan, const ScanResult& result)
   return scan;
 }
 
-void write(const Request& request, const ScanSource& files, const ScanRegistrationResult& result)
+void writeE57(const Request& request, const Pose& T_world_result, std::vector<Pose> poses)
+{
+  for (Pose& pose : poses)
+    if (pose && T_world_result)
+      pose = *T_world_result * *pose;
+  writeScansAt(request.e57, request.scans, poses);
+}
+
+void write(const Request& request, const ScanSource& files, const ScanRegistrationResult& result,
+           const Pose& T_world_result)
 {
   const ScanSource scans(files.count, [&](Index i) { return withViewpoint(files.read(i), result.scans[i]); });
   writePoints(request.folder + "/registered.pcd", mergeScans(scans, result.poses, request.common.threads));
@@ -108,6 +123,8 @@ void write(const Request& request, const ScanSource& files, const ScanRegistrati
   writeFile(request.folder + "/registration.html", registrationPage(result, request.options));
   if (files.memory != nullptr && !files.memory->used)
     writeFile(request.folder + "/pairs.bin", files.memory->bytes);
+  if (!request.e57.empty())
+    writeE57(request, T_world_result, result.poses);
 }
 
 // Not among the inputs of this run, which replaces it where it does not fit.
@@ -121,6 +138,7 @@ void run(int argc, char** argv)
 {
   const Request request = parse(argc, argv);
   const std::vector<Pose> start = startPoses(request);
+  const Pose T_world_result = request.to_world.empty() ? Pose() : readTransform(request.to_world);
   makeFolder(request.folder);
   const FolderLock lock(request.folder, "fresco_register");
   const Progress progress = printProgress(request.common.quiet);
@@ -138,7 +156,7 @@ void run(int argc, char** argv)
   if (placed == 0)
     throw std::runtime_error(request.options.names[0] + ": " + result.scans[0].problem + "; no scan could be placed");
   report(progress, "write", 0.9);
-  writeOutputs([&] { write(request, scans, result); });
+  writeOutputs([&] { write(request, scans, result, T_world_result); });
   report(progress, "done", 1.0);
   for (const std::string& warning : registrationWarnings(result, request.options))
     inform(request.common.quiet, "warning: " + warning);

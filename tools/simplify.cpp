@@ -65,12 +65,8 @@ GltfOptions gltfOptions(const SimplifyOptions& options)
   gltf.jpeg_quality = options.quality > 0 || options.full.empty() ? options.quality : 90;
   gltf.compact = true;
   gltf.compress = options.compress;
-  if (options.to_world.empty())
-    return gltf;
-  const std::vector<Pose> poses = readPoses(options.to_world);
-  if (poses.size() != 1 || !poses[0])
-    throw std::runtime_error(options.to_world + ": is not one matrix of 16 numbers");
-  gltf.T_world_model = *poses[0];
+  if (!options.to_world.empty())
+    gltf.T_world_model = readTransform(options.to_world);
   return gltf;
 }
 

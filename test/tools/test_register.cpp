@@ -5,6 +5,7 @@
 #include <fresco/io/file.h>
 #include <fresco/io/point_io.h>
 #include <fresco/io/pose_file.h>
+#include <fresco/io/scan_file.h>
 #include <nlohmann/json.hpp>
 #include <sys/wait.h>
 namespace fresco {
@@ -130,6 +131,32 @@ TEST(RegisterTool, HintsAreFollowedAndPairsAreNotSearchedAgain)
   EXPECT_EQ(run(folder + "/scans -o " + folder + "/none -hints " + folder + "/hints.txt"), 1);
   EXPECT_NE(message().find("hints.txt: line 1: no scan is called scam_1; there are scan_1.pcd"), std::string::npos);
   EXPECT_FALSE(std::filesystem::exists(folder + "/none"));
+}
+
+// What comes out as .e57 is where the poses and the given frame say.
+TEST(RegisterTool, PlacedScansAreWrittenInTheFrameOfTheWorld)
+{
+  const std::string folder = test::scratchFolder() + "_data";
+  makeFolder(folder);
+  const auto scene = test::scanTwoRooms(5000);
+  writePoints(folder + "/a.ply", scene.scans[0]);
+  writePoints(folder + "/b.ply", scene.scans[1]);
+  writePoses(folder + "/start.txt", {scene.truth[0].matrix(), scene.truth[1].matrix()});
+  const Eigen::Isometry3d T_world(Eigen::Translation3d(4e5, 5e6, 100) * Eigen::AngleAxisd(1, Eigen::Vector3d::UnitZ()));
+  writePoses(folder + "/world.txt", {T_world.matrix()});
+  const std::string words = folder + "/a.ply " + folder + "/b.ply -fixed -poses " + folder + "/start.txt -o " + folder;
+  ASSERT_EQ(run(words + "/out -e57 " + folder + "/all.e57 -to_world " + folder + "/world.txt"), 0) << message();
+  const std::vector<ScanInfo> scans = readScanInfos(folder + "/all.e57");
+  ASSERT_EQ(scans.size(), 2u);
+  for (int i = 0; i < 2; ++i) {
+    const Eigen::Isometry3d expected = T_world * scene.truth[i];
+    EXPECT_LT((scans[i].T_file_scan.matrix() - expected.matrix()).cwiseAbs().maxCoeff(), 1e-8);
+  }
+  EXPECT_EQ(readPoints(folder + "/all.e57").size(), scene.scans[0].size() + scene.scans[1].size());
+  EXPECT_EQ(run(words + "/none -to_world " + folder + "/world.txt"), 2);
+  EXPECT_EQ(run(words + "/none -e57 " + folder + "/all.las"), 2);
+  EXPECT_EQ(run(words + "/none -e57 " + folder + "/a.e57 -to_world " + folder + "/a.ply"), 1);
+  EXPECT_FALSE(std::filesystem::exists(folder + "/a.e57"));
 }
 
 TEST(RegisterTool, WrongUseAndBadInput)

@@ -41,6 +41,14 @@ std::vector<Pose> readPoses(const std::string& path)
   return poses;
 }
 
+Eigen::Matrix4d readTransform(const std::string& path)
+{
+  const std::vector<Pose> poses = readPoses(path);
+  if (poses.size() != 1 || !poses[0])
+    throw std::runtime_error(path + ": is not one matrix of 16 numbers");
+  return *poses[0];
+}
+
 void writePoses(const std::string& path, const std::vector<Pose>& poses)
 {
   OutputFile file(path);

@@ -95,6 +95,38 @@ TEST(ScanWriter, PosesFieldsAndPicturesOfE57Stay)
   EXPECT_FALSE(pictures[1].description.T_file_image);
 }
 
+// A survey at new poses: every field, the pictures with their scans, and coordinates of a country's grid.
+TEST(ScanWriter, ScansGoToTheirNewPosesWithTheirPictures)
+{
+  const std::string folder = test::scratchFolder();
+  const Eigen::Isometry3d before(Eigen::Translation3d(1, 2, 3) * Eigen::AngleAxisd(0.4, Eigen::Vector3d::UnitX()));
+  Eigen::Isometry3d after(Eigen::Translation3d(431000.25, 5.4e6, 12) * Eigen::AngleAxisd(2, Eigen::Vector3d::UnitZ()));
+  ScanPicture of_first, of_none;
+  of_first.bytes = of_none.bytes = "png";
+  of_first.description.scan = 1;
+  of_first.description.encoding = of_none.description.encoding = ScanImage::Encoding::png;
+  of_first.description.T_file_image = before * Eigen::Translation3d(0, 0, 1);
+  writeScans(folder + "/a.e57",
+             {{"left out", Eigen::Isometry3d::Identity(), cloudOfEveryType()}, {"kept", before, cloudOfEveryType()}},
+             {of_none, of_first});
+  writeCloud(folder + "/b.pcd", cloudOfEveryType());
+  const std::vector<ScanPath> scans = {{folder + "/a.e57", 0}, {folder + "/a.e57", 1}, {folder + "/b.pcd"}};
+  writeScansAt(folder + "/out.e57", scans, {Pose(), after.matrix(), before.matrix()});
+  const std::vector<PlacedCloud> back = readPlacedClouds(folder + "/out.e57");
+  ASSERT_EQ(back.size(), 2u);
+  EXPECT_EQ(back[0].name, "kept");
+  EXPECT_LT((back[0].T_file_scan->matrix() - after.matrix()).cwiseAbs().maxCoeff(), 1e-9);
+  EXPECT_LT((back[1].T_file_scan->matrix() - before.matrix()).cwiseAbs().maxCoeff(), 1e-12);
+  for (const PlacedCloud& cloud : back)
+    expectSameFields(cloudOfEveryType(), cloud.cloud);
+  const std::vector<ScanPicture> pictures = readScanPictures(folder + "/out.e57");
+  ASSERT_EQ(pictures.size(), 1u);
+  EXPECT_EQ(pictures[0].description.scan, 0);
+  const Eigen::Isometry3d T_scan_image = after.inverse() * *pictures[0].description.T_file_image;
+  EXPECT_LT((T_scan_image.translation() - Eigen::Vector3d(0, 0, 1)).norm(), 1e-8);
+  EXPECT_THROW(writeScansAt(folder + "/no.e57", scans, {}), std::invalid_argument);
+}
+
 TEST(ScanWriter, CloudsOfManyPointsComeBack)
 {
   const std::string folder = test::scratchFolder();

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+#include <fresco/core/poses.h>
 #include <fresco/io/cloud_file.h>
+#include <fresco/io/scan_file.h>
 #include <fresco/io/scan_images.h>
 namespace fresco {
 /// A scan to be written, in its own frame.
@@ -28,4 +30,11 @@ FRESCO_EXPORT std::vector<ScanPicture> readScanPictures(const std::string& path)
 /// @throws std::invalid_argument if a cloud has no x y z
 FRESCO_EXPORT void writeScans(const std::string& path, const std::vector<PlacedCloud>& scans,
                               const std::vector<ScanPicture>& pictures = {});
+
+/// writeScans() of those scans that have a pose (world from scan), with every field and the pictures of their files.
+/// Pictures move with the scan that they belong to; those of no scan, or of one without a pose, are left out.
+/// @throws std::runtime_error "PATH: reason"
+/// @throws std::invalid_argument if the number of poses is another one
+FRESCO_EXPORT void writeScansAt(const std::string& path, const std::vector<ScanPath>& scans,
+                                const std::vector<Pose>& poses);
 } // namespace fresco
