@@ -139,6 +139,11 @@ TEST(Colmap, EveryModelHasItsParameters)
   EXPECT_EQ(camera("1 SIMPLE_RADIAL_FISHEYE 64 48 50 32 24 .1").projection, CameraProjection::fisheye);
   EXPECT_EQ(camera("1 RADIAL_FISHEYE 64 48 50 32 24 .1 .2").fy, 50);
   EXPECT_EQ(camera("1 THIN_PRISM_FISHEYE 64 48 50 51 32 24 .1 .2 .3 .4 .5 .6 .7 .8").sy1, 0.8);
+  EXPECT_EQ(camera("1 FOV 64 48 50 51 32 24 .9").omega, 0.9);
+  const char* aria = "1 RAD_TAN_THIN_PRISM_FISHEYE 64 48 50 51 32 24 .1 .2 .3 .4 .5 .6 .7 .8 .01 .02 .03 .04";
+  EXPECT_EQ(camera(aria).k6, 0.6);
+  EXPECT_EQ(camera(aria).p2, 0.7);
+  EXPECT_EQ(camera(aria).sy1, 0.03);
   for (const char* bad :
        {"1 FISHEYE 64 48 50 32 24", "1 PINHOLE 64 48 50 32 24", "1 PINHOLE 0 48 50 51 32 24",
         "1 PINHOLE 64 48 -50 51 32 24", "1 PINHOLE 64 48 nan 51 32 24", "x", "2 PINHOLE 64 48 50 51 32 24"})

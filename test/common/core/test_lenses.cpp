@@ -10,7 +10,7 @@ namespace {
 using namespace fresco;
 
 struct Lens {
-  const char* model; ///< COLMAP's name
+  const char* model; ///< COLMAP's name; "" = it has none
   CameraModel camera;
   double widest; ///< radians from the axis up to which the model is one to one
 };
@@ -28,12 +28,22 @@ std::vector<Lens> lenses()
   fisheye.k1 = -0.03, fisheye.k2 = 0.005, fisheye.k3 = -8e-4, fisheye.k4 = 5e-5;
   CameraModel prism = fisheye;
   prism.p1 = 1e-3, prism.p2 = -5e-4, prism.sx1 = 1e-3, prism.sy1 = 2e-3;
+  CameraModel field = plane;
+  field.omega = 1.1;
+  CameraModel aria = prism;
+  aria.projection = CameraProjection::fisheye_in_turn;
+  aria.k5 = 4e-5, aria.k6 = -1e-5, aria.sx2 = -3e-4, aria.sy2 = 2e-4;
+  CameraModel frame = brown;
+  frame.k3 = 0.02, frame.r8 = -0.01, frame.skew = -0.7;
   return {{"PINHOLE", plane, 1.4},
           {"OPENCV", brown, 0.6},
           {"FULL_OPENCV", rational, 0.6},
           {"OPENCV_FISHEYE", fisheye, 1.9},
           {"THIN_PRISM_FISHEYE", prism, 1.5},
-          {"", sphericalCamera(4096, 2048), 4}};
+          {"FOV", field, 1.2},
+          {"RAD_TAN_THIN_PRISM_FISHEYE", aria, 1.5},
+          {"", sphericalCamera(4096, 2048), 4},
+          {"", frame, 0.6}};
 }
 
 /// Directions at most `widest` from the axis, of different lengths.
@@ -82,6 +92,17 @@ TEST(Lenses, ModelsAreThoseOfTheirDocumentation)
   const double v = angle * y / std::sqrt(r2), w = angle * x / std::sqrt(r2); // before distortion
   const double prism = v + v * (bent / angle - 1) + 2 * p.p2 * w * v + p.p1 * (a2 + 2 * v * v) + p.sy1 * a2;
   EXPECT_NEAR(project(p, q).y(), p.fy * prism + p.cy, 1e-9);
+  const CameraModel& d = all[5].camera;
+  const double r = std::sqrt(r2), angle_of_view = std::atan(2 * r * std::tan(d.omega / 2)) / d.omega;
+  EXPECT_NEAR(project(d, q).x(), d.fx * angle_of_view * x / r + d.cx, 1e-9);
+  EXPECT_NEAR(project(d, {1e-3, 0, 1}).x(), d.fx * std::atan(2e-3 * std::tan(d.omega / 2)) / d.omega + d.cx, 1e-9);
+  const CameraModel& s = all[6].camera;
+  const double scale = 1 + a2 * (s.k1 + a2 * (s.k2 + a2 * (s.k3 + a2 * (s.k4 + a2 * (s.k5 + a2 * s.k6)))));
+  const double a = w * scale, b = v * scale, t2 = a * a + b * b; // p0 of the files is p2 here, p1 is p1
+  EXPECT_NEAR(project(s, q).x(),
+              s.fx * (a + 2 * s.p1 * a * b + s.p2 * (t2 + 2 * a * a) + s.sx1 * t2 + s.sx2 * t2 * t2) + s.cx, 1e-9);
+  EXPECT_NEAR(project(s, q).y(),
+              s.fy * (b + 2 * s.p2 * a * b + s.p1 * (t2 + 2 * b * b) + s.sy1 * t2 + s.sy2 * t2 * t2) + s.cy, 1e-9);
 }
 
 TEST(Lenses, APanoramaSeesAllAround)
@@ -112,7 +133,7 @@ TEST(Lenses, ColmapFilesKeepEveryModel)
   const std::string folder = test::scratchFolder();
   CameraSet set;
   for (const Lens& lens : lenses())
-    if (lens.camera.projection != CameraProjection::spherical)
+    if (*lens.model)
       set.cameras.push_back(lens.camera);
   set.views.resize(1);
   set.views[0].image = "a.jpg";
@@ -125,7 +146,10 @@ TEST(Lenses, ColmapFilesKeepEveryModel)
     for (const Eigen::Vector3d& q : points(lenses()[i].widest))
       EXPECT_EQ(project(back.cameras[i], q), project(set.cameras[i], q));
   }
-  set.cameras[0] = sphericalCamera(200, 100);
-  EXPECT_THROW(writeColmap(folder, set), std::invalid_argument);
+  for (const Lens& lens : lenses())
+    if (!*lens.model) {
+      set.cameras[0] = lens.camera;
+      EXPECT_THROW(writeColmap(folder, set), std::invalid_argument);
+    }
 }
 } // namespace

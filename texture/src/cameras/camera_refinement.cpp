@@ -19,7 +19,7 @@ constexpr Index least_fit_matches = 20; // of a photograph, for a median
 auto numbersOf(const CameraModel& c)
 {
   return std::tie(c.width, c.height, c.fx, c.fy, c.cx, c.cy, c.k1, c.k2, c.p1, c.p2, c.k3, c.k4, c.k5, c.k6, c.sx1,
-                  c.sy1, c.projection);
+                  c.sy1, c.sx2, c.sy2, c.r8, c.omega, c.skew, c.projection);
 }
 
 CameraState stateOf(const TriangleMesh& mesh, const std::vector<ViewPart>& views)

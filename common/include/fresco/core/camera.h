@@ -9,28 +9,35 @@
 namespace fresco {
 /// How directions become places in the picture, before distortion.
 enum class CameraProjection {
-  perspective, ///< the plane z = 1
-  fisheye,     ///< equidistant: the distance from the middle is the angle from the axis, radians
-  spherical    ///< equirectangular: longitude to the right, latitude downwards, radians; the middle looks along z
+  perspective,     ///< the plane z = 1
+  fisheye,         ///< equidistant: the distance from the middle is the angle from the axis, radians
+  fisheye_in_turn, ///< the same, where tangential and prism terms bend what the radial ones have bent already
+  spherical        ///< equirectangular: longitude to the right, latitude downwards, radians; the middle looks along z
 };
 
-/// Camera with radial, tangential and thin prism distortion. Perspective: the models OPENCV and FULL_OPENCV of COLMAP;
-/// fisheye: OPENCV_FISHEYE and THIN_PRISM_FISHEYE; simpler models have zeros. Axes: x right, y down, z forward. Pixels:
-/// (0,0) is the upper left corner of the upper left pixel, whose centre lies at (0.5, 0.5).
+/// Camera with radial, tangential and thin prism distortion. Perspective: the models OPENCV, FULL_OPENCV and FOV of COLMAP
+/// and the frame camera of Metashape; fisheye: OPENCV_FISHEYE and THIN_PRISM_FISHEYE; in turn: RAD_TAN_THIN_PRISM_FISHEYE;
+/// simpler models have zeros. Axes: x right, y down, z forward. Pixels: (0,0) is the upper left corner of the upper left
+/// pixel, whose centre lies at (0.5, 0.5).
 struct CameraModel {
   int width = 0, height = 0;             ///< pixels
   double fx = 0, fy = 0, cx = 0, cy = 0; ///< pixels; spherical: pixels per radian
   double k1 = 0, k2 = 0, p1 = 0, p2 = 0; ///< distortion, dimensionless; none of a spherical camera
   double k3 = 0;                         ///< of r^6
-  double k4 = 0, k5 = 0, k6 = 0;         ///< perspective: of r^2, r^4, r^6 in the denominator; fisheye: k4 of r^8
-  double sx1 = 0, sy1 = 0;               ///< thin prism
+  double k4 = 0, k5 = 0, k6 = 0; ///< perspective: of r^2, r^4, r^6 in the denominator; fisheye: of r^8, r^10, r^12
+  double sx1 = 0, sy1 = 0;       ///< thin prism, of r^2
+  double sx2 = 0, sy2 = 0;       ///< the same of r^4
+  double r8 = 0;                 ///< perspective: of r^8
+  double omega =
+      0;           ///< perspective: angle of view that is bent to a plane, radians (Devernay & Faugeras 2001); 0 = none
+  double skew = 0; ///< pixels to the right for each unit downwards
   CameraProjection projection = CameraProjection::perspective;
 
   /// Whether it is anything but a pinhole camera.
   bool hasDistortion() const
   {
     bool bent = projection != CameraProjection::perspective; // without jumps: it is asked for every texel
-    for (const double value : {k1, k2, p1, p2, k3, k4, k5, k6, sx1, sy1})
+    for (const double value : {k1, k2, p1, p2, k3, k4, k5, k6, sx1, sy1, sx2, sy2, r8, omega, skew})
       bent |= value != 0;
     return bent;
   }

@@ -4,8 +4,8 @@
 #include <fresco/core/export.h>
 #include <string>
 namespace fresco {
-/// COLMAP model in `folder`: cameras.txt and images.txt, else cameras.bin and images.bin. All
-/// camera models but FOV. Views in the order of their image id.
+/// COLMAP model in `folder`: cameras.txt and images.txt, else cameras.bin and images.bin; rigs and frames, since COLMAP 3.12
+/// beside them, say nothing that the images do not. Views in the order of their image id.
 /// @throws std::runtime_error "PATH: reason" if missing, malformed, of another camera model or not finite
 FRESCO_EXPORT CameraSet readColmap(const std::string& folder);
 
@@ -16,6 +16,9 @@ FRESCO_EXPORT SparsePoints readColmapPoints(const std::string& folder);
 
 /// Text model (cameras.txt, images.txt, points3D.txt) into `folder`, which is created. Observations without a pixel are
 /// left out.
-/// @throws std::invalid_argument for a spherical camera, which COLMAP does not have
+/// @throws std::invalid_argument as requireColmapCameras()
 FRESCO_EXPORT void writeColmap(const std::string& folder, const CameraSet& set, const SparsePoints& points = {});
+
+/// @throws std::invalid_argument for a camera that COLMAP has no model for: a spherical one, with skew, or with r^8 in perspective
+FRESCO_EXPORT void requireColmapCameras(const CameraSet& set);
 } // namespace fresco

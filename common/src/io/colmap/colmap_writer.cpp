@@ -49,6 +49,12 @@ std::vector<std::string> writePoints(ListFile& list, const CameraSet& set, const
 }
 } // namespace
 
+void requireColmapCameras(const CameraSet& set)
+{
+  for (const CameraModel& camera : set.cameras)
+    io::lensModelOf(camera);
+}
+
 void writeColmap(const std::string& folder, const CameraSet& set, const SparsePoints& points)
 {
   makeFolder(folder);

@@ -4,11 +4,11 @@
 #include <fresco/core/require.h>
 namespace fresco::io {
 namespace {
-/// Those that are read: all but FOV.
 const std::vector<LensModel>& lensModels()
 {
   using M = CameraModel;
-  constexpr CameraProjection plane = CameraProjection::perspective, fisheye = CameraProjection::fisheye;
+  constexpr CameraProjection plane = CameraProjection::perspective, fisheye = CameraProjection::fisheye,
+                             in_turn = CameraProjection::fisheye_in_turn;
   static const std::vector<LensModel> all = {
       {"SIMPLE_PINHOLE", 0, plane, {&M::fx, &M::cx, &M::cy}},
       {"PINHOLE", 1, plane, {&M::fx, &M::fy, &M::cx, &M::cy}},
@@ -20,12 +20,18 @@ const std::vector<LensModel>& lensModels()
        6,
        plane,
        {&M::fx, &M::fy, &M::cx, &M::cy, &M::k1, &M::k2, &M::p1, &M::p2, &M::k3, &M::k4, &M::k5, &M::k6}},
+      {"FOV", 7, plane, {&M::fx, &M::fy, &M::cx, &M::cy, &M::omega}},
       {"SIMPLE_RADIAL_FISHEYE", 8, fisheye, {&M::fx, &M::cx, &M::cy, &M::k1}},
       {"RADIAL_FISHEYE", 9, fisheye, {&M::fx, &M::cx, &M::cy, &M::k1, &M::k2}},
       {"THIN_PRISM_FISHEYE",
        10,
        fisheye,
-       {&M::fx, &M::fy, &M::cx, &M::cy, &M::k1, &M::k2, &M::p1, &M::p2, &M::k3, &M::k4, &M::sx1, &M::sy1}}};
+       {&M::fx, &M::fy, &M::cx, &M::cy, &M::k1, &M::k2, &M::p1, &M::p2, &M::k3, &M::k4, &M::sx1, &M::sy1}},
+      {"RAD_TAN_THIN_PRISM_FISHEYE", // Project Aria's; its p0 stands where OpenCV has p2
+       11,
+       in_turn,
+       {&M::fx, &M::fy, &M::cx, &M::cy, &M::k1, &M::k2, &M::k3, &M::k4, &M::k5, &M::k6, &M::p2, &M::p1, &M::sx1,
+        &M::sx2, &M::sy1, &M::sy2}}};
   return all;
 }
 
@@ -64,7 +70,7 @@ const LensModel& lensModelOf(const CameraModel& camera)
   };
   const auto found = std::find_if(lensModels().begin(), lensModels().end(), has_all);
   if (found == lensModels().end())
-    throw std::invalid_argument("camera: COLMAP has no model for it");
+    throw std::invalid_argument("camera: COLMAP has no model of panoramas, of skew, or of r^8 in perspective");
   return *found;
 }
 } // namespace fresco::io
