@@ -2,8 +2,12 @@
 // Files that other programs write, made here from known pixels: every kind of sample gives the same pixels again.
 #include "common/io/image_samples.h"
 #include <algorithm>
+#include <array>
+#include <cstdio>
+#include <cstdlib>
 #include <fresco/core/camera.h>
 #include <fresco/core/require.h>
+#include <jpeglib.h>
 #include <map>
 #include <png.h>
 #include <webp/encode.h>
@@ -11,8 +15,8 @@ namespace {
 using namespace fresco;
 using namespace fresco::test::images;
 
-/// PNG by libpng.
-void putPng(const std::string& path, const Samples& samples, int type, int interlace)
+/// PNG by libpng. @param transparent_value that of the first pixel
+void putPng(const std::string& path, const Samples& samples, int type, int interlace, bool transparent_value = false)
 {
   std::string bytes;
   png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr, nullptr);
@@ -29,6 +33,15 @@ void putPng(const std::string& path, const Samples& samples, int type, int inter
     png_set_PLTE(png, info, palette.data(), palette.size());
     const std::uint8_t transparent = 0; // alpha is left out
     png_set_tRNS(png, info, &transparent, 1, nullptr);
+  }
+  if (transparent_value) {
+    png_color_16 value{};
+    const auto first = [&](int c) { return png_uint_16(samples.at(0, 0, c)); };
+    if (samples.channels == 1)
+      value.gray = first(0);
+    else
+      value.red = first(0), value.green = first(1), value.blue = first(2);
+    png_set_tRNS(png, info, nullptr, 0, &value);
   }
   png_write_info(png, info);
   if (samples.bits < 8)
@@ -132,6 +145,75 @@ TEST(Images, WebpAndBmp)
       });
       writeFile(folder + "/cut.bmp", file.substr(0, file.size() - 4));
       EXPECT_THROW(readImage(folder + "/cut.bmp"), std::runtime_error);
+    }
+}
+
+/// Grey or colours of which one value is transparent.
+TEST(Images, OneTransparentValueIsAlphaOfAPhotographAndLeftOutElsewhere)
+{
+  const std::string path = test::scratchFolder() + "/a.png";
+  const CameraModel camera{width, height, 50, 50, 26, 20, 0, 0, 0, 0};
+  for (const auto& [type, count] : std::map<int, int>{{PNG_COLOR_TYPE_GRAY, 1}, {PNG_COLOR_TYPE_RGB, 3}})
+    for (const int bits : {8, 16}) {
+      const Samples samples(count, bits);
+      putPng(path, samples, type, PNG_INTERLACE_NONE, true);
+      const auto expected = [&, count = count](int x, int y, int c) {
+        return int(samples.at(x, y, count < 3 ? 0 : c) >> (bits - 8));
+      };
+      expectColors(path, expected);
+      const Image image = readPhotograph(path, camera);
+      ASSERT_EQ(image.channels, 4);
+      for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) {
+          bool first = true; // the value of the first pixel is the transparent one
+          for (int c = 0; c < count; ++c)
+            first = first && samples.at(x, y, c) == samples.at(0, 0, c);
+          ASSERT_EQ(image.pixel(x, y)[3], first ? 0 : 255) << type << " " << bits;
+          for (int c = 0; c < 3; ++c)
+            ASSERT_EQ(image.pixel(x, y)[c], expected(x, y, c));
+        }
+    }
+}
+
+/// JPEG of one colour, by libjpeg. @param ink cyan, magenta, yellow, black @param adobe stores what is left without ink
+std::string cmykJpeg(const std::array<std::uint8_t, 4>& ink, J_COLOR_SPACE stored, bool adobe)
+{
+  jpeg_compress_struct jpeg{};
+  jpeg_error_mgr errors{};
+  jpeg.err = jpeg_std_error(&errors);
+  jpeg_create_compress(&jpeg);
+  unsigned char* bytes = nullptr;
+  unsigned long size = 0;
+  jpeg_mem_dest(&jpeg, &bytes, &size);
+  jpeg.image_width = width, jpeg.image_height = height, jpeg.input_components = 4, jpeg.in_color_space = JCS_CMYK;
+  jpeg_set_defaults(&jpeg);
+  jpeg_set_colorspace(&jpeg, stored);
+  jpeg_set_quality(&jpeg, 100, TRUE);
+  jpeg.write_Adobe_marker = adobe ? TRUE : FALSE;
+  jpeg_start_compress(&jpeg, TRUE);
+  std::vector<std::uint8_t> row;
+  for (int i = 0; i < 4 * width; ++i)
+    row.push_back(adobe ? 255 - ink[i % 4] : ink[i % 4]);
+  for (JSAMPROW rows = row.data(); jpeg.next_scanline < jpeg.image_height;)
+    jpeg_write_scanlines(&jpeg, &rows, 1);
+  jpeg_finish_compress(&jpeg);
+  std::string file(reinterpret_cast<const char*>(bytes), size);
+  jpeg_destroy_compress(&jpeg);
+  std::free(bytes);
+  return file;
+}
+
+/// Adobe's programs store ink inverted, and say so by their marker; others do not.
+TEST(Images, InkOfJpegBecomesColors)
+{
+  const std::string path = test::scratchFolder() + "/a.jpg";
+  for (const auto& [stored, adobe] : {std::pair(JCS_CMYK, true), {JCS_CMYK, false}, {JCS_YCCK, true}})
+    for (const std::array<std::uint8_t, 4> ink :
+         {std::array<std::uint8_t, 4>{0, 0, 0, 0}, {255, 40, 0, 0}, {30, 200, 90, 60}}) {
+      writeFile(path, cmykJpeg(ink, stored, adobe));
+      const Image image = readImage(path);
+      for (int c = 0; c < 3; ++c)
+        EXPECT_NEAR(image.pixel(20, 20)[c], (255 - ink[c]) * (255 - ink[3]) / 255.0, 3) << stored << adobe;
     }
 }
 

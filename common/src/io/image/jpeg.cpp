@@ -54,12 +54,13 @@ struct JpegReader {
   ImageSize size() const { return {int(jpeg.image_width), int(jpeg.image_height)}; }
 };
 
-/// One row of CMYK as Adobe's programs store it, 255 = no ink.
-void toRgb(const std::uint8_t* cmyk, std::uint8_t* rgb, int width)
+/// One row of CMYK. @param no_ink 255 as Adobe's programs store it, who leave their marker in the file, else 0
+void toRgb(const std::uint8_t* cmyk, std::uint8_t* rgb, int width, int no_ink)
 {
+  const auto left = [&](std::uint8_t ink) { return 255 - std::abs(ink - no_ink); };
   for (int x = 0; x < width; ++x)
     for (int c = 0; c < 3; ++c)
-      rgb[3 * x + c] = static_cast<std::uint8_t>(cmyk[4 * x + c] * cmyk[4 * x + 3] / 255);
+      rgb[3 * x + c] = static_cast<std::uint8_t>(left(cmyk[4 * x + c]) * left(cmyk[4 * x + 3]) / 255);
 }
 } // namespace
 
@@ -80,7 +81,7 @@ Image decodeJpeg(std::string_view bytes)
       JSAMPROW row = is_cmyk ? cmyk.data() : target;
       jpeg_read_scanlines(&jpeg, &row, 1);
       if (is_cmyk)
-        toRgb(cmyk.data(), target, image.width);
+        toRgb(cmyk.data(), target, image.width, jpeg.saw_Adobe_marker ? 255 : 0);
     }
     jpeg_finish_decompress(&jpeg);
   });

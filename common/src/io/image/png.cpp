@@ -64,6 +64,8 @@ private:
       png_set_gray_to_rgb(png_);
       if (!with_alpha)
         png_set_strip_alpha(png_);
+      else if (png_get_valid(png_, info_, PNG_INFO_tRNS))
+        png_set_tRNS_to_alpha(png_);
       readRows(rows);
     });
   }
