@@ -4,6 +4,7 @@
 #include <fresco/alignment/core/camera_alignment.h>
 #include <fresco/core/constants.h>
 #include <fresco/core/require.h>
+#include <fresco/io/camera_files.h>
 #include <fresco/io/colmap.h>
 #include <fresco/io/formats.h>
 #include <fresco/io/image_io.h>
@@ -39,10 +40,12 @@ void run(int argc, char** argv)
   CameraAlignmentOptions options;
   CommonOptions common;
   std::string images;
-  Args args("fresco_align CAMERAS_DIR MESH_OR_CLOUD OUT_CAMERAS_DIR [options]",
+  Args args("fresco_align CAMERAS MESH_OR_CLOUD OUT_CAMERAS_DIR [options]",
             "Brings the cameras of photographs, in a frame and scale of their own, into the frame of scans.\n"
-            "CAMERAS_DIR: a COLMAP model with points3D, text or binary. OUT_CAMERAS_DIR gets it as text.\n"
-            "Cameras that stand in the frame of the scans already are written as they are.");
+            "CAMERAS, with points: " +
+                cameraFormats() +
+                ".\nOUT_CAMERAS_DIR gets a COLMAP model as text.\n"
+                "Cameras that stand in the frame of the scans already are written as they are.");
   args.option("images", images,
               "folder of the photographs: they are matched with the colours or intensities of the cloud, which finds "
               "places that shape alone does not tell");
@@ -56,10 +59,11 @@ void run(int argc, char** argv)
   const auto files = args.parse(argc, argv, 3);
   requireDistinct({files[2]}, {files[0], files[1]});
   options.threads = common.threads;
-  CameraSet set = readColmap(files[0]);
-  SparsePoints points = readColmapPoints(files[0]);
+  CameraFile cameras = readCameraFile(files[0], images);
+  CameraSet& set = cameras.set;
+  SparsePoints& points = cameras.points;
   if (points.empty())
-    throw std::runtime_error(files[0] + ": no sparse points (points3D.txt or points3D.bin) in it");
+    throw std::runtime_error(files[0] + ": no sparse points in it (of COLMAP: points3D.txt or points3D.bin)");
   const PointSet surface = readSurface(files[1], common.threads);
   if (!images.empty())
     options.photograph = [&](Index view) {

@@ -3,6 +3,7 @@
 #include "support/tool.h"
 #include <algorithm>
 #include <fresco/core/require.h>
+#include <fresco/io/camera_files.h>
 #include <fresco/io/colmap.h>
 #include <fresco/io/file.h>
 #include <fresco/io/formats.h>
@@ -220,10 +221,10 @@ void run(int argc, char** argv)
   TextureOptions options;
   ToolOptions tool;
   CommonOptions common;
-  Args args("fresco_texture MESH CAMERAS_DIR IMAGES_DIR OUT [options], or MESH -points CLOUD OUT [options]",
+  Args args("fresco_texture MESH CAMERAS IMAGES_DIR OUT [options], or MESH -points CLOUD OUT [options]",
             "Textures a mesh from calibrated photographs, or from the points it was made of. MESH: " +
-                readableExtensions(FileKind::mesh) +
-                ".\nCAMERAS_DIR: a COLMAP model, text or binary.\n"
+                readableExtensions(FileKind::mesh) + ".\nCAMERAS: " + cameraFormats() +
+                ".\n"
                 "IMAGES_DIR: the photographs it names; masks/NAME.png in it or beside it is white where NAME.jpg is to "
                 "be used.\nOUT: .obj (with .mtl and .png beside it), .ply (with .png) or .glb. Beside it "
                 "NAME_mask.png:\n"
@@ -235,7 +236,7 @@ void run(int argc, char** argv)
   const std::vector<std::string> files = args.parse(argc, argv, 2, 4);
   if (files.size() != (tool.points.empty() ? 4 : 2))
     throw UsageError(concat("got ", files.size(), " file arguments; wanted: ",
-                            tool.points.empty() ? "MESH CAMERAS_DIR IMAGES_DIR OUT" : "MESH OUT beside -points"));
+                            tool.points.empty() ? "MESH CAMERAS IMAGES_DIR OUT" : "MESH OUT beside -points"));
   const std::string out = files.back();
   if (extension(out) != ".obj" && extension(out) != ".glb")
     throw UsageError(out + ": the output's extension must be .obj or .glb");
@@ -248,7 +249,9 @@ void run(int argc, char** argv)
     return textureFromPoints(files, tool, options, common.quiet);
   requireDistinct({out}, {files[0]}); // what else it is made of is known when it has been read
   const bool keep_uv = tool.uv == "keep";
-  const CameraSet set = readColmap(files[1]);
+  const CameraSet set = readCameraFile(files[1], files[2]).set;
+  if (!tool.cameras_out.empty())
+    requireColmapCameras(set);
   std::vector<TextureView> views = viewsOf(set, files[2]);
   requireOtherFiles(out, views, keep_uv ? filesNamedBy(files[0]) : std::vector<std::string>());
   for (std::size_t v = 0; v < views.size() && tool.keep_out > 0; ++v)

@@ -46,8 +46,8 @@ py::object alignFolder(const Call& call)
   AlignedCameras aligned;
   SparsePoints points;
   Call::access([&] {
-    aligned.cameras = readColmap(folder);
-    points = readColmapPoints(folder);
+    CameraFile file = readCameraFile(folder, images.value_or(""));
+    aligned.cameras = std::move(file.set), points = std::move(file.points);
     return true;
   });
   if (images)

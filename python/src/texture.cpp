@@ -5,7 +5,7 @@ namespace fresco::python {
 namespace {
 std::vector<TextureView> readViews(const std::string& cameras, const std::string& images)
 {
-  const CameraSet set = readColmap(cameras);
+  const CameraSet set = readCameraFile(cameras, images).set;
   std::vector<TextureView> views;
   for (const View& view : set.views) {
     TextureView& out = views.emplace_back();
@@ -27,7 +27,7 @@ void addTexture(const py::module_& module)
   addRecord<PointTextureResult>(module);
   addFunction(module,
               {"read_views",
-               "readColmap",
+               "readCameraFile",
                {{"cameras", "Path"}, {"images", "Path"}},
                "list[TextureView]",
                "The photographs are in the folder `images`; they are read when they are needed. Masks are found as "

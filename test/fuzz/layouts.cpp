@@ -28,6 +28,23 @@ const std::string scan = "3\n1 2 3 7\n4 5 6 8\n1 0 0 9\n";
 const std::string cameras = "1 PINHOLE 4 3 5 5 2 1.5\n", images = "1 1 0 0 0 0 0 1 1 a.png\n1 1 7\n",
                   points3d = "7 1 2 3 9 9 9 0.5 1 0\n";
 
+const std::string bundled = "1\n1 2 3 9 9 9 1 0 0 1 1\n";
+const std::string bundler = "# Bundle file v0.3\n1 1\n5 0.1 0\n1 0 0\n0 1 0\n0 0 1\n0 0 1\n" + bundled.substr(2);
+const std::string metashape =
+    "<document><chunk><sensors><sensor id='0'><resolution width='4' height='3'/><calibration "
+    "type='frame'><f>5</f><k1>.1</k1>"
+    "</calibration></sensor></sensors><cameras><camera id='0' sensor_id='0' label='a'><transform>1 0 0 0 0 1 0 0 0 0 1 "
+    "1 0 0 "
+    "0 1</transform></camera></cameras><transform><scale>2</scale></transform></chunk></document>";
+const std::string transforms = R"({"fl_x": 5, "k1": 0.1, "frames": [{"file_path": "a.png", "transform_matrix":
+  [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 1], [0, 0, 0, 1]]}]})";
+const std::string openmvg = R"({"sfm_data_version": "0.3",
+"views": [{"key": 0, "value": {"ptr_wrapper": {"data": {"filename": "a.png", "id_intrinsic": 0, "id_pose": 0}}}}],
+"intrinsics": [{"key": 0, "value": {"ptr_wrapper": {"data": {"width": 4, "height": 3, "focal_length": 5,
+"principal_point": [2, 1], "disto_k3": [0.1, 0, 0]}}}}],
+"extrinsics": [{"key": 0, "value": {"rotation": [[1, 0, 0], [0, 1, 0], [0, 0, 1]], "center": [0, 0, 1]}}],
+"structure": [{"key": 0, "value": {"X": [1, 2, 3], "observations": [{"key": 0, "value": {"x": [1, 1]}}]}}]})";
+
 /// Writes a picture of the size that the text tells. @return false if it tells none
 bool writePicture(const std::string& path, const std::string& text)
 {
@@ -107,6 +124,13 @@ const Files& layouts()
                                {"sparse/0/images.txt", images},
                                {"sparse/0/points3D.txt", points3d},
                                {"dense/fused.ply", far_points}})},
+      {"metashape", packedFolder({{"images/a.png", "4x3"}, {"cloud.ply", far_points}, {"cameras.xml", metashape}})},
+      {"bundler", packedFolder({{"a.png", "4x3"}, {"list.txt", "x/a.png 0 5\n"}, {"bundle.out", bundler}})},
+      {"nvm",
+       packedFolder({{"images/a.png", "4x3"}, {"model.nvm", "NVM_V3\n1\na.png\t5 1 0 0 0 0 0 1 .1 0\n" + bundled}})},
+      {"transforms",
+       packedFolder({{"images/a.png", "4x3"}, {"cloud.ply", far_points}, {"transforms.json", transforms}})},
+      {"openmvg", packedFolder({{"images/a.png", "4x3"}, {"sfm_data.json", openmvg}})},
       {"photographs", packedFolder({{"images/left/a.png", "4x3"}, {"images/right/a.png", "4x3"}})},
       {"exported", packedFolder({{"a.obj", "mtllib a.mtl\nv 1 2 3\nv 2 2 3\nv 2 3 3\nf 1 2 3\n"},
                                  {"a.mtl", "newmtl a\n"},

@@ -3,6 +3,7 @@
 #include "common/float_files.h"
 #include "test_data.h"
 #include "tools/layout_source.h"
+#include <fresco/io/camera_files.h>
 #include <fresco/simulation/sensors/layouts.h>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -29,6 +30,11 @@ const std::map<std::string, std::string>& expected()
       {"images", "input: 4 photographs and no scans"},
       {"colmap", "input: 1 file of one cloud, 4 photographs"},
       {"colmap_sparse", "input: 4 photographs and no scans"},
+      {"metashape", "input: 1 file of one cloud, 4 photographs\n"},
+      {"bundler", "input: 1 file of one cloud, 4 photographs\n"},
+      {"nvm", "input: 1 file of one cloud, 4 photographs\n"},
+      {"transforms", "input: 1 file of one cloud, 4 photographs\n"},
+      {"openmvg", "input: 1 file of one cloud, 4 photographs\n"},
       {"scanner_export", "input: 1 file of one cloud, 2 photographs"},
       {"seven_scenes", "input: 12 RGB-D frames\n"},
       {"tum", "input: 12 RGB-D frames (TUM RGB-D)"},
@@ -53,6 +59,33 @@ TEST_P(EachLayout, IsRecognisedBeforeAnyWork)
   EXPECT_EQ(outcome.out.rfind(expected().at(GetParam()), 0), 0u) << outcome.out;
   EXPECT_NE(outcome.out.find("\nwould do: "), std::string::npos) << outcome.out;
   EXPECT_FALSE(fs::exists(folder + "/out"));
+}
+
+/// Whatever program wrote them.
+TEST_F(Inputs, CamerasOfEachProgramShowTheSame)
+{
+  const CameraFile given = readCameraFile(sourceFolder() + "/cameras", sourceFolder() + "/images");
+  for (const char* layout : {"metashape", "bundler", "nvm", "transforms", "openmvg"}) {
+    const std::string folder = laidOut(layout) + "/x";
+    const auto [set, points] = readCameraFile(folder, folder + "/images");
+    ASSERT_EQ(set.views.size(), given.set.views.size()) << layout;
+    for (std::size_t v = 0; v < set.views.size(); ++v) {
+      const View &view = set.views[v], &wanted = given.set.views[v];
+      EXPECT_EQ(view.image, wanted.image) << layout;
+      for (const SparsePoint& point : given.points)
+        if (point.track[0].view == int(v)) {
+          EXPECT_LT((project(set.cameras[view.camera], view.T_camera_world * point.position) -
+                     project(given.set.cameras[wanted.camera], wanted.T_camera_world * point.position))
+                        .norm(),
+                    1e-6)
+              << layout;
+        }
+    }
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      EXPECT_LT((points[i].position - given.points[i].position).norm(), 1e-9) << layout;
+      EXPECT_LT((points[i].track[0].pixel - given.points[i].track[0].pixel).norm(), 1e-6) << layout;
+    }
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(All, EachLayout, testing::ValuesIn(simulation::layoutNames()),
@@ -103,7 +136,7 @@ TEST_P(WholeChain, MakesTheRoom)
 
 INSTANTIATE_TEST_SUITE_P(Some, WholeChain,
                          testing::Values("one_cloud", "cloud_utm", "cloud_normals", "cloud_trajectory", "cloud_times",
-                                         "matterpak", "colmap", "scanner_export"),
+                                         "matterpak", "colmap", "metashape", "bundler", "scanner_export"),
                          [](const auto& info) { return info.param; });
 
 /// Frames show the walls to some height only.

@@ -15,6 +15,9 @@ enum class Reading {
 };
 constexpr const char* reading_names[] = {"scans", "cloud", "rgbd", "photographs"};
 
+/// Files that may tell the cameras of photographs: readCameraFile() looks into them. With the names that Bundler has beside.
+constexpr const char* camera_files[] = {"*.xml", "*.out", "*.nvm", "*.json", "*list.txt"};
+
 /// How a program or device lays out what it exports. Each has a file in layouts/ and a row in the table of recognise.cpp.
 struct Layout {
   const char* name;                  ///< "TUM RGB-D"

@@ -4,9 +4,10 @@
 #include <algorithm>
 #include <filesystem>
 #include <fresco/core/require.h>
-#include <fresco/io/colmap.h>
+#include <fresco/io/camera_files.h>
 #include <fresco/io/file.h>
 #include <fresco/io/formats.h>
+#include <fresco/io/listed.h>
 #include <fresco/io/text_rows.h>
 #include <map>
 #include <set>
@@ -133,24 +134,35 @@ void takeUnplaced(ModelInput& input, const Survey& found, const std::string& ima
         concat(counted(input.unplaced.size(), "photograph"), " without cameras: the program colmap finds them"));
 }
 
-void takeCameras(ModelInput& input, const Survey& found, const std::string& model, const std::string& images)
+void takeCameras(ModelInput& input, const Survey& found, const std::string& cameras, const std::string& images)
 {
-  input.images = found.at(images);
-  input.camera_folder = model;
-  input.cameras = readColmap(model);
-  input.sparse = readColmapPoints(model);
-  for (const View& view : input.cameras.views)
-    if (!fs::exists(input.images + "/" + view.image))
-      throw std::runtime_error(input.images + "/" + view.image + ": no such photograph, but " + model + " names it");
-  input.found.push_back(concat(counted(input.cameras.views.size(), "photograph"), " with cameras (COLMAP model",
-                               input.sparse.empty() ? ")" : concat(" of ", input.sparse.size(), " points)")));
+  input.images = images.empty() ? found.path() : found.at(images);
+  input.camera_folder = cameras;
+  CameraFile file = readCameraFile(cameras, input.images);
+  input.cameras = std::move(file.set);
+  input.sparse = std::move(file.points);
+  input.found.push_back(concat(counted(input.cameras.views.size(), "photograph"), " with cameras (",
+                               fs::path(cameras).lexically_relative(found.path()).string(),
+                               input.sparse.empty() ? ")" : concat(", ", input.sparse.size(), " points)")));
 }
 
-void takePhotographs(ModelInput& input, const Survey& found, const std::string& cameras, const std::string& images)
+void takePhotographs(ModelInput& input, const Survey& found)
 {
-  if (fs::is_directory(found.at(cameras)))
-    takeCameras(input, found, found.at(cameras), images);
+  const std::string images = found.has("images/") ? "images" : "";
+  std::vector<std::string> cameras;
+  if (found.has("cameras/"))
+    cameras = {found.at("cameras")};
   else
+    for (const char* pattern : camera_files)
+      for (const std::string& name : found.match(pattern))
+        if (!cameraFileIn(found.at(name)).empty())
+          cameras.push_back(found.at(name));
+  if (cameras.size() > 1)
+    throw std::runtime_error(cameras[0] + " and " + listed({cameras.begin() + 1, cameras.end()}, 3) +
+                             ": several files of cameras: move all but one elsewhere");
+  if (!cameras.empty())
+    takeCameras(input, found, cameras[0], images);
+  else if (!images.empty())
     takeUnplaced(input, found, images);
 }
 

@@ -16,11 +16,11 @@ void takePoses(ModelInput& input, const Survey& found);
 /// The scans are parts of one cloud; trajectory.txt tells where the sensor was.
 void takeAsCloud(ModelInput& input, const Survey& found);
 
-/// Photographs of a COLMAP model, or where `cameras` is no folder all below `images`, to be placed.
-void takePhotographs(ModelInput& input, const Survey& found, const std::string& cameras, const std::string& images);
+/// The photographs of cameras/ or of a file of cameras; where there is none all below images/, to be placed.
+void takePhotographs(ModelInput& input, const Survey& found);
 void takeUnplaced(ModelInput& input, const Survey& found, const std::string& images);
-/// @throws std::runtime_error naming a photograph of the model that is not there
-void takeCameras(ModelInput& input, const Survey& found, const std::string& model, const std::string& images);
+/// @param cameras as readCameraFile() takes them @throws std::runtime_error naming a photograph that is not there
+void takeCameras(ModelInput& input, const Survey& found, const std::string& cameras, const std::string& images);
 
 /// Panoramas named as their scans. @throws std::runtime_error for one that is of no scan
 void takePanoramas(ModelInput& input, const Survey& found, const std::string& pattern);

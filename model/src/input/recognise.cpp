@@ -7,6 +7,12 @@
 #include <set>
 namespace fresco::model {
 namespace {
+std::vector<const char*> withCameras(std::vector<const char*> others)
+{
+  others.insert(others.end(), std::begin(camera_files), std::end(camera_files));
+  return others;
+}
+
 const std::vector<Layout>& layouts()
 {
   using R = Reading;
@@ -14,24 +20,25 @@ const std::vector<Layout>& layouts()
       {"scans in scans/",
        {R::scans, R::cloud},
        {"scans/"},
-       {"poses.txt", "trajectory.txt", "cameras/", "images/", "panoramas/", "masks/"},
+       withCameras({"poses.txt", "trajectory.txt", "cameras/", "images/", "panoramas/", "masks/"}),
        readScansFolder},
       {"scans or a cloud",
        {R::scans, R::cloud},
        {"<points>|*.laz"},
-       {"*.laz", "poses.txt", "trajectory.txt", "<pictures>", "images/", "panoramas/", "masks/"},
+       withCameras(
+           {"*.laz", "poses.txt", "trajectory.txt", "<pictures>", "cameras/", "images/", "panoramas/", "masks/"}),
        readFlatPoints},
       {"photographs in images/",
        {R::photographs},
        {"images/<pictures>|images/*/<pictures>"},
-       {"masks/"},
+       withCameras({"cameras/", "masks/"}),
        readPhotographsAlone},
-      {"photographs", {R::photographs}, {"<pictures>"}, {"masks/"}, readPhotographsAlone},
+      {"photographs", {R::photographs}, {"<pictures>"}, withCameras({"cameras/", "masks/"}), readPhotographsAlone},
       {"a video", {R::photographs}, {"<videos>"}, {}, readVideo},
       {"COLMAP project",
        {R::cloud, R::photographs},
        {"images/|dense/images/|dense/0/images/", "sparse/|dense/sparse/|dense/0/sparse/"},
-       {"dense/", "*.ply", "*.db", "stereo/", "*.sh", "masks/"},
+       withCameras({"dense/", "*.ply", "*.db", "stereo/", "*.sh", "masks/"}),
        readColmapProject},
       {"scanner export with a table of panoramas",
        {R::cloud},
@@ -41,7 +48,7 @@ const std::vector<Layout>& layouts()
       {"exported model with textures",
        {R::cloud},
        {"*.obj", "*.mtl"},
-       {"<points>", "<pictures>", "textures/", "trajectory.txt", "*.pdf"},
+       withCameras({"<points>", "<pictures>", "textures/", "trajectory.txt", "*.pdf", "cameras/", "images/"}),
        readExportedModel},
       {"7-Scenes RGB-D",
        {R::rgbd},
@@ -126,7 +133,10 @@ std::vector<Candidate> candidates(const Survey& found, std::optional<Reading> as
 }
 
 /// Any files of a sort: what lies beside the parts of another layout may be whatever else was made of them.
-bool isPlain(const Candidate& one) { return one.layout->marks.size() == 1 && one.layout->marks[0][0] == '<'; }
+bool isPlain(const Candidate& one)
+{
+  return one.layout->marks.size() == 1 && std::string(one.layout->marks[0]).find('<') != std::string::npos;
+}
 
 /// Whether all that `less` takes is taken by `more`, too, and more of it; of two that take the same, the one that asks for more.
 bool isPartOf(const Candidate& less, const Candidate& more)

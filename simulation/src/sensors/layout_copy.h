@@ -2,6 +2,7 @@
 #pragma once
 #include <Eigen/Geometry>
 #include <filesystem>
+#include <fresco/core/point_set.h>
 #include <fresco/core/poses.h>
 #include <fresco/core/require.h>
 #include <fresco/io/file.h>
@@ -43,6 +44,16 @@ inline std::string quaternionText(const Eigen::Matrix4d& T, const char* between)
   return concat(std::setprecision(12), T(0, 3), between, T(1, 3), between, T(2, 3), between, q.x(), between, q.y(),
                 between, q.z(), between, q.w());
 }
+
+/// All scans in the frame of poses.txt, without a word of where they were seen from.
+PointSet mergedCloud(const Copy& copy);
+
+/// A cloud with its photographs and their cameras.
+void writeMetashape(const Copy& copy);
+void writeBundler(const Copy& copy);
+void writeNvm(const Copy& copy);
+void writeTransforms(const Copy& copy);
+void writeOpenMvg(const Copy& copy);
 
 /// Layouts of RGB-D frames.
 void writeSevenScenes(const Copy& copy);

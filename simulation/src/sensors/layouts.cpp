@@ -21,19 +21,6 @@ void writeScansAs(const Copy& copy, const std::string& extension)
   }
 }
 
-/// All scans in the frame of poses.txt, without a word of where they were seen from.
-PointSet mergedCloud(const Copy& copy)
-{
-  PointSet all;
-  const std::vector<Pose> poses = copy.poses();
-  for (std::size_t k = 0; k < poses.size(); ++k) {
-    PointSet scan = readPoints(copy.scan(k));
-    scan.viewpoints.resize(3, 0);
-    appendPoints(all, transformPoints(scan, *poses[k]));
-  }
-  return all;
-}
-
 /// With normals to where each point was seen from, roughly: along the beam.
 PointSet cloudWithNormals(const Copy& copy)
 {
@@ -157,6 +144,11 @@ constexpr Writer writers[] = {
     {"images", [](const Copy& copy) { copy.folder("images", "images"); }},
     {"colmap", [](const Copy& copy) { writeColmapProject(copy, true); }},
     {"colmap_sparse", [](const Copy& copy) { writeColmapProject(copy, false); }},
+    {"metashape", writeMetashape},
+    {"bundler", writeBundler},
+    {"nvm", writeNvm},
+    {"transforms", writeTransforms},
+    {"openmvg", writeOpenMvg},
     {"scanner_export", writeScannerExport},
     {"seven_scenes", writeSevenScenes},
     {"tum", writeTum},
@@ -168,6 +160,18 @@ constexpr Writer writers[] = {
     {"matterport", writeMatterport},
 };
 } // namespace
+
+PointSet mergedCloud(const Copy& copy)
+{
+  PointSet all;
+  const std::vector<Pose> poses = copy.poses();
+  for (std::size_t k = 0; k < poses.size(); ++k) {
+    PointSet scan = readPoints(copy.scan(k));
+    scan.viewpoints.resize(3, 0);
+    appendPoints(all, transformPoints(scan, *poses[k]));
+  }
+  return all;
+}
 
 std::vector<std::string> layoutNames()
 {

@@ -8,6 +8,7 @@ void readExportedModel(const Survey& found, std::optional<Reading>, ModelInput& 
 {
   takeScans(input, found, cloudsIn(found));
   takeAsCloud(input, found);
+  takePhotographs(input, found);
   if (const std::size_t pictures = found.match("<pictures>").size(); pictures > 0)
     input.found.push_back(concat(counted(pictures, "picture"), ": textures and plans of the exported model, not used"));
 }

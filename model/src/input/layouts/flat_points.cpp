@@ -43,7 +43,7 @@ void readFlatPoints(const Survey& found, std::optional<Reading> asked, ModelInpu
         "each was seen from the origin of its frame (-as cloud: they are parts of one cloud in one frame)");
   if (found.isFile())
     return;
-  takePhotographs(input, found, "cameras", "images");
+  takePhotographs(input, found);
   takePanoramas(input, found, "panoramas/<pictures>");
   if (input.cameras.views.empty() && input.unplaced.empty() && input.panoramas.empty())
     takePicturesBeside(input, found);

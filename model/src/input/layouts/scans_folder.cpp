@@ -12,7 +12,7 @@ void readScansFolder(const Survey& found, std::optional<Reading> asked, ModelInp
   takePoses(input, found);
   if (asked == Reading::cloud)
     takeAsCloud(input, found);
-  takePhotographs(input, found, "cameras", "images");
+  takePhotographs(input, found);
   takePanoramas(input, found, "panoramas/<pictures>");
 }
 } // namespace fresco::model
