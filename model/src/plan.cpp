@@ -30,8 +30,11 @@ double pointsOf(const std::string& file)
   constexpr double bytes_a_point = 25; // of text, and of packed formats with colours
   if (holdsScans(file)) {
     double sum = 0;
-    for (const ScanInfo& scan : readScanInfos(file))
-      sum += double(scan.points);
+    try {
+      for (const ScanInfo& scan : readScanInfos(file))
+        sum += double(scan.points);
+    } catch (const std::runtime_error&) { // damaged: registration says so
+    }
     return sum;
   }
   std::string head(4096, '\0');

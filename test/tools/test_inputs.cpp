@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // fresco_model with every layout that docs/inputs.md lists, sound and with one thing wrong.
 #include "common/float_files.h"
+#include "common/io/e57_file.h"
 #include "test_data.h"
 #include "tools/layout_source.h"
 #include <fresco/io/camera_files.h>
@@ -312,6 +313,31 @@ TEST_F(Inputs, ScansWithoutOverlap)
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_NE(outcome.err.find("\nwarning: "), std::string::npos) << outcome.err;
   EXPECT_NE(get(folder + "/out/poses.txt").find("none"), std::string::npos);
+}
+
+/// An E57 of pictures alone, an empty and a truncated one among scans: the others are read, and a line tells of each.
+TEST_F(Inputs, FilesWithoutAScanDoNotCostTheOthers)
+{
+  const std::string folder = laidOut("flat_pcd"), x = folder + "/x/";
+  put(x + "pictures.e57", e57::fileOf({}));
+  put(x + "station3.pcd", get(x + "station1.pcd").substr(0, 3000));
+  put(x + "station4.e57", get(sourceFolder() + "/survey.e57").substr(0, 5000));
+  const Outcome dry = run(folder, "model x out -dry_run");
+  ASSERT_EQ(dry.status, 0) << dry.err;
+  EXPECT_NE(dry.err.find("pictures.e57: no scan in it: left out"), std::string::npos) << dry.err;
+  EXPECT_EQ(dry.out.find("input: 4 scans"), 0u) << dry.out;
+  const Outcome outcome = run(folder, "model x out -until points -cell 0.1");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  for (const char* name : {"station3.pcd", "station4.e57"})
+    EXPECT_NE(outcome.err.find(name), std::string::npos) << outcome.err;
+  const Outcome registered = run(folder, "register x/pictures.e57 x/station1.pcd x/station2.pcd -o reg");
+  EXPECT_EQ(registered.status, 0) << registered.err;
+  EXPECT_NE(registered.err.find("pictures.e57: no scan in it: left out"), std::string::npos) << registered.err;
+  for (const char* name : {"station1.pcd", "station2.pcd", "station3.pcd", "station4.e57"})
+    fs::remove(x + name);
+  const Outcome none = run(folder, "model x out -dry_run");
+  EXPECT_EQ(none.status, 1);
+  EXPECT_NE(none.err.find("pictures.e57: no scan in it"), std::string::npos) << none.err;
 }
 
 TEST_F(Inputs, StageOptionsAndSettingsReachTheStages)

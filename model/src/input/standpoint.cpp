@@ -98,6 +98,8 @@ Standpoint standpointOf(const ScanPath& scan)
   const Points points = sampleOf(scan, first);
   if (tellsViewpoint(first))
     return first.viewpoints.cols() == 1 ? Standpoint::origin : Standpoint::many;
+  if (points.cols() == 0)
+    throw std::runtime_error(scan.name() + ": no points in it");
   if (points.cols() < 2)
     return Standpoint::unknown;
   const Eigen::AlignedBox3f box(points.rowwise().minCoeff(), points.rowwise().maxCoeff());

@@ -9,7 +9,7 @@ enum class Standpoint { origin, many, unknown };
 
 /// What the file says of the sensor, else the points: almost nothing is hidden behind something else for one who stands where a
 /// scan was taken. Points farther from the origin than they extend, or all within 0.3 m of it, were not measured from there. Up to four million are read.
-/// @throws std::runtime_error as readPoints()
+/// @throws std::runtime_error as readPoints(), and if there is no point
 Standpoint standpointOf(const ScanPath& scan);
 
 /// Whether a set's viewpoints say something: PCL writes one at the origin into every PCD file, whatever it was seen from.

@@ -38,7 +38,8 @@ FRESCO_EXPORT bool holdsScans(const std::string& path);
 /// @throws std::runtime_error "PATH: reason" if it cannot be read, is malformed or has no scan
 FRESCO_EXPORT std::vector<ScanInfo> readScanInfos(const std::string& path);
 
-/// The scans in files of points: one each, or as many as a file that holdsScans() has.
+/// The scans in files of points: one each, or as many as a file that holdsScans() has. A file without a scan is left out, which
+/// listeners hear, where others have one.
 /// @param keep_broken a file that cannot be listed counts as one scan, whose reading then throws
 /// @throws std::runtime_error as readScanInfos()
 FRESCO_EXPORT std::vector<ScanPath> scansOf(const std::vector<std::string>& files, bool keep_broken = false);

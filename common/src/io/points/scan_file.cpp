@@ -42,21 +42,28 @@ std::vector<ScanInfo> readScanInfos(const std::string& path)
 std::vector<ScanPath> scansOf(const std::vector<std::string>& files, bool keep_broken)
 {
   std::vector<ScanPath> scans;
+  std::vector<std::string> without;
   for (const std::string& file : files) {
     std::vector<ScanInfo> infos(1);
     try {
       if (holdsScans(file))
-        infos = readScanInfos(file);
+        infos = openScans(file)->scans();
     } catch (const std::runtime_error&) {
       if (!keep_broken)
         throw;
     }
+    if (infos.empty())
+      without.push_back(file);
     if (infos.size() == 1 && !infos[0].has_pose)
       scans.push_back({file, -1});
     else
       for (Index i = 0; i < Index(infos.size()); ++i)
         scans.push_back({file, i});
   }
+  if (scans.empty() && !without.empty())
+    readScanInfos(without[0]); // which throws
+  for (const std::string& file : without)
+    io::namingFile(file, [] { io::remark("no scan in it: left out"); });
   return scans;
 }
 

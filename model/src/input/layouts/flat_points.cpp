@@ -6,19 +6,28 @@
 #include <fresco/core/require.h>
 namespace fresco::model {
 namespace {
-/// Whether the files are parts of a cloud rather than scans.
+/// Whether the files are parts of a cloud rather than scans. What is empty or damaged does not tell: those that read the points
+/// say so.
 bool isCloud(const Survey& found, const ModelInput& input)
 {
-  std::string scan, cloud;
+  std::string scan, cloud, problem;
   const std::size_t count = input.scans.size(), step = std::max<std::size_t>(1, count / 3);
   for (std::size_t s = 0; s < count; s += step) {
-    const Standpoint from = standpointOf(input.scans[s]);
+    Standpoint from;
+    try {
+      from = standpointOf(input.scans[s]);
+    } catch (const std::runtime_error& error) {
+      problem = error.what();
+      continue;
+    }
     if (from == Standpoint::origin ||
         (from == Standpoint::unknown && count > 1)) // what is in many files was scanned so
       scan = input.scans[s].name();
     else
       cloud = input.scans[s].name();
   }
+  if (scan.empty() && cloud.empty())
+    throw std::runtime_error(problem);
   if (!scan.empty() && !cloud.empty())
     throw std::runtime_error(concat(found.path(), ": ", scan, " was seen from its origin, ", cloud,
                                     " was not: say -as scans or -as cloud, or move one sort elsewhere"));
