@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "plan.h"
 #include "input/standpoint.h"
+#include "photographs/structure_from_motion.h"
 #include "stages/video.h"
 #include <algorithm>
 #include <array>
@@ -11,6 +12,7 @@
 #include <fresco/core/parallel.h>
 #include <fresco/core/require.h>
 #include <fresco/io/file.h>
+#include <fresco/io/image_io.h>
 #include <fstream>
 #include <set>
 namespace fresco::model {
@@ -81,6 +83,34 @@ double verticesOf(const Job& job, double points)
     return std::min(most, a_frame * double(job.input.rgbd->frames.size()));
   return std::min(most, job.input.is_cloud ? points / points_a_vertex : verticesOfScans(job));
 }
+/// Pixels of a photograph that is to be placed.
+double pixelsOf(const ModelInput& input)
+{
+  try {
+    const ImageSize size = input.unplaced.empty() ? ImageSize() : readImageSize(input.images + "/" + input.unplaced[0]);
+    return double(size.width) * size.height;
+  } catch (const std::runtime_error&) { // damaged: checkPhotographs() says so
+    return 0;
+  }
+}
+
+/// Seconds of one core in colmap.
+struct Placing {
+  double cpu = 0, most_cpu = 0;
+};
+
+/// By features, which pixels tell, and pairs: docs/measurements/model.md. How long photographs are tried before they have a
+/// place depends on what they show: ten times as long where they hardly overlap.
+Placing placingOf(double photographs, double pixels)
+{
+  constexpr double most_pixels = 3200 * 2400, most_features = 11000; // colmap scales to 3200, keeps 8192 places
+  constexpr double features_a_pixel = 4.5e-3, of_pixel = 1.6e-6, of_matched = 1.1e-4, of_placed = 1.2e-4, hard = 10;
+  const double used = std::min(pixels, most_pixels), features = std::min(features_a_pixel * used, most_features);
+  const double cpu =
+      photographs * of_pixel * used + of_matched * features * double(pairsToMatch(std::size_t(photographs)));
+  const double placed = of_placed * features * photographs;
+  return {cpu + placed, cpu + hard * placed};
+}
 } // namespace
 
 ModelPlan estimate(const Job& job)
@@ -100,8 +130,8 @@ ModelPlan estimate(const Job& job)
     }
   for (const PictureFile& picture : input.pictures())
     picture_bytes += bytesOf(picture.file);
-  const double kept = input.video.empty() || input.rgbd ? 0 : framesToKeep(input.video);
-  const double photographs = double(input.unplaced.size()) + kept;
+  const KeptFrames frames_kept = input.video.empty() || input.rgbd ? KeptFrames() : framesToKeep(input.video);
+  const double kept = frames_kept.count, photographs = double(input.unplaced.size()) + kept;
   constexpr double found_a_photograph = 100, bytes_a_photograph = 2e5; // of a room; of a frame of a video
   picture_bytes += bytes_a_photograph * kept;
   const bool pictured = input.hasPictures() || kept > 0;
@@ -121,12 +151,19 @@ ModelPlan estimate(const Job& job)
     cpu += 8e-5 * vertices + 1.4e-5 * std::min(points, most_averaged * vertices);
   double later = 2e8 + 800 * vertices;
   if (job.options.until.empty()) {
-    cpu += 2 + 1.2e-5 * vertices + 0.1 * photographs * std::min(photographs, 40.0);
+    cpu += 2 + 1.2e-5 * vertices;
     cpu += pictured ? 4e-6 * picture_bytes : 4e-5 * vertices + 6e-6 * std::min(points, most_painted);
     later += pictured ? 45 * std::min(picture_bytes, 1e8) : 250 * std::min(points, most_painted);
     disk += 300 * vertices + 6 * picture_bytes;
   }
-  plan.seconds = cpu / std::max(1.0, 0.7 * threadCount(job.options.threads));
+  const auto seconds = [&](double of_one_core) {
+    return of_one_core / std::max(1.0, 0.7 * threadCount(job.options.threads));
+  };
+  const Placing placing = job.options.until.empty() || input.scans.empty()
+                              ? placingOf(photographs, kept > 0 ? frames_kept.pixels : pixelsOf(input))
+                              : Placing();
+  plan.seconds = seconds(cpu + placing.cpu);
+  plan.most_seconds = seconds(cpu + placing.most_cpu);
   plan.memory = std::max(memory, later);
   plan.disk = disk;
   return plan;
@@ -159,8 +196,10 @@ std::string fresco::planSummary(const ModelPlan& plan)
   std::string text;
   for (const std::string& stage : plan.stages)
     text += (text.empty() ? "" : ", ") + stage;
-  const std::string time =
-      plan.seconds < 90 ? concat(rounded(plan.seconds), " s") : concat(rounded(plan.seconds / 60), " min");
+  const bool in_seconds = plan.most_seconds < 90;
+  const auto least = rounded(plan.seconds / (in_seconds ? 1 : 60)),
+             most = rounded(plan.most_seconds / (in_seconds ? 1 : 60));
+  const std::string time = concat(least, most > least ? concat(" to ", most) : "", in_seconds ? " s" : " min");
   return concat(text, "; ", rounded(plan.points), " raw points; about ", time, ", ", rounded(plan.memory / 1e6),
                 " MB of memory, ", rounded(plan.disk / 1e6), " MB of disk");
 }

@@ -14,7 +14,14 @@
 namespace fresco::model {
 namespace {
 namespace fs = std::filesystem;
+constexpr std::size_t most_exhaustive = 200; // 20,000 pairs: some hours; beyond, names tell what is near
+constexpr std::size_t overlap = 20;          // neighbours that each is matched with then
 } // namespace
+
+std::size_t pairsToMatch(std::size_t photographs)
+{
+  return photographs > most_exhaustive ? overlap * photographs : photographs * (photographs - 1) / 2;
+}
 
 bool isOneCamera(const std::string& images, const std::vector<std::string>& names, int threads)
 {
@@ -99,10 +106,9 @@ void StructureFromMotion::findFeatures(const Progress& progress) const
 
 void StructureFromMotion::matchFeatures(const Progress& progress) const
 {
-  constexpr std::size_t most_exhaustive = 200; // 20,000 pairs: an hour or two; beyond, names tell what is near
   std::vector<std::string> words{"exhaustive_matcher"};
   if (names_.size() > most_exhaustive)
-    words = {"sequential_matcher", "--SequentialMatching.overlap", "20"};
+    words = {"sequential_matcher", "--SequentialMatching.overlap", std::to_string(overlap)};
   words.insert(words.end(), {"--SiftMatching.use_gpu", "0", "--SiftMatching.num_threads", std::to_string(threads_)});
   run(words, "pairs of photographs", progress);
 }

@@ -31,6 +31,9 @@ private:
 /// @throws std::runtime_error with a line that tells what is missing, the program or photographs: two at least
 void requireStructureFromMotion(const std::string& images, std::size_t count);
 
+/// How many pairs of photographs are matched: all of up to 200, else the neighbours in order of names.
+std::size_t pairsToMatch(std::size_t photographs);
+
 /// Whether photographs are to share one camera: they are of one size, and none tells by EXIF what took it. Else colmap takes
 /// one for each kind that EXIF tells, and one for each photograph without.
 bool isOneCamera(const std::string& images, const std::vector<std::string>& names, int threads);

@@ -9,6 +9,7 @@
 #include <fresco/io/file.h>
 #include <fresco/io/image_io.h>
 #include <iomanip>
+#include <regex>
 namespace fresco::model {
 namespace {
 namespace fs = std::filesystem;
@@ -35,15 +36,16 @@ void requireVideoProgram(const std::string& video)
                 "ffmpeg)");
 }
 
-double framesToKeep(const std::string& video)
+KeptFrames framesToKeep(const std::string& video)
 {
-  double frames = 0;
+  KeptFrames frames;
   const auto hear = [&](const std::string& line) {
-    constexpr const char* said = "Duration: %d:%d:%d";
-    int hours = 0, minutes = 0, seconds = 0;
-    if (const std::size_t at = line.find("Duration: ");
-        at != std::string::npos && std::sscanf(line.c_str() + at, said, &hours, &minutes, &seconds) == 3)
-      frames = windows_a_second * (3600.0 * hours + 60.0 * minutes + seconds + 1);
+    static const std::regex length(R"(Duration: (\d+):(\d+):(\d+))"), size(R"(Video: .*, (\d+)x(\d+))");
+    std::smatch said;
+    if (std::regex_search(line, said, length))
+      frames.count = windows_a_second * (3600 * std::stod(said[1]) + 60 * std::stod(said[2]) + std::stod(said[3]) + 1);
+    if (std::regex_search(line, said, size))
+      frames.pixels = std::stod(said[1]) * std::stod(said[2]);
   };
   if (const std::string program = findProgram("ffmpeg"); !program.empty())
     try {

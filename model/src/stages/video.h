@@ -9,8 +9,12 @@ namespace fresco::model {
 /// @throws std::runtime_error with a line that tells what to install, if the program ffmpeg is not there
 void requireVideoProgram(const std::string& video);
 
+struct KeptFrames {
+  double count = 0, pixels = 0; ///< of each
+};
+
 /// How many frames of a video takeVideoFrames() keeps, about; 0 where ffmpeg does not tell its length.
-double framesToKeep(const std::string& video);
+KeptFrames framesToKeep(const std::string& video);
 
 /// Frames of ModelInput::video by the program ffmpeg, as JPEG into `files.video`: all that RGB-D frames name by their number, else
 /// the sharpest of each window of time.

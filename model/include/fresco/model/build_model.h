@@ -102,13 +102,15 @@ struct ModelPlan {
   std::vector<std::string> stages;   ///< in their order
   double points = 0;                 ///< raw, as the files announce
   double seconds = 0;                ///< wall clock
+  double most_seconds = 0;           ///< the same where photographs are to be placed that hardly overlap
   double memory = 0, disk = 0;       ///< bytes
 };
 
 /// Looks at the input and writes nothing. @throws as buildModel() for what it finds before its first stage
 FRESCO_EXPORT ModelPlan planModel(const ModelFolders& folders, const ModelOptions& options = {});
 
-/// "points, surface, texture; 876,000 points; about 3 min, 900 MB of memory, 120 MB of disk".
+/// "points, surface, texture; 876,000 points; about 3 min, 900 MB of memory, 120 MB of disk"; "3 to 6 min" where photographs are
+/// to be placed.
 FRESCO_EXPORT std::string planSummary(const ModelPlan& plan);
 
 /// One line with time, memory and figures of a stage.
