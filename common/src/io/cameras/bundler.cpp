@@ -41,19 +41,19 @@ std::vector<std::string> listedNames(const CameraFileBuilder& cameras, std::size
 }
 } // namespace
 
-void addPoints(Words& words, std::size_t count, const std::vector<int>& views, double down, CameraFileBuilder& cameras)
+void addPoints(Words& words, const PointRows& rows, CameraFileBuilder& cameras)
 {
-  for (std::size_t i = 0; i < count; ++i) {
+  for (std::size_t i = 0; i < rows.count; ++i) {
     const Eigen::Vector3d position = words.vector<3>(), color = words.vector<3>();
     std::vector<Observation> track;
     for (auto left = words.number<std::size_t>(); left > 0; --left) {
       const auto camera = words.number<std::size_t>();
       words.number(); // of its feature
       const Eigen::Vector2d place = words.vector<2>();
-      if (camera >= views.size())
-        throw std::runtime_error(concat("point ", i + 1, " names camera ", camera, " of ", views.size()));
-      if (const int view = views[camera]; view >= 0)
-        track.push_back({view, cameras.middleOf(view) + Eigen::Vector2d(place.x(), down * place.y())});
+      if (camera >= rows.views.size())
+        throw std::runtime_error(concat("point ", i + 1, " names camera ", camera, " of ", rows.views.size()));
+      if (const int view = rows.views[camera]; view >= 0)
+        track.push_back({view, cameras.middleOf(view) + Eigen::Vector2d(place.x(), rows.down * place.y())});
     }
     cameras.addPoint(position, color, track);
   }
@@ -76,6 +76,6 @@ void readBundler(const std::string& content, CameraFileBuilder& cameras)
     camera.fx = camera.fy = lens[0], camera.k1 = lens[1], camera.k2 = lens[2];
     views.push_back(placed ? cameras.addView(name, camera, withTurnedAxes(rigid(R, t))) : -1);
   }
-  addPoints(words, points, views, -1, cameras);
+  addPoints(words, {points, views, -1}, cameras);
 }
 } // namespace fresco::io

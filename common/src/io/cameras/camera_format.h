@@ -90,8 +90,13 @@ struct Words {
 };
 
 /// The points of Bundler and NVM: place, colour, and where which camera shows them, from the middle of the photograph.
-/// @param views number of each camera's view, or -1 @param down 1 if pixels count downwards, -1 upwards
-void addPoints(Words& words, std::size_t count, const std::vector<int>& views, double down, CameraFileBuilder& cameras);
+struct PointRows {
+  std::size_t count;
+  std::vector<int> views; ///< of each camera; -1 = none
+  double down;            ///< 1 if pixels count downwards, -1 upwards
+};
+
+void addPoints(Words& words, const PointRows& rows, CameraFileBuilder& cameras);
 
 inline Eigen::Matrix4d rigid(const Eigen::Matrix3d& R, const Eigen::Vector3d& t)
 {

@@ -49,6 +49,6 @@ void readNvm(const std::string& content, CameraFileBuilder& cameras)
     views.push_back(cameras.addView(name, camera, T));
   }
   const auto points = words.number<std::size_t>();
-  addPoints(words, points, views, 1, cameras);
+  addPoints(words, {points, views, 1}, cameras);
 }
 } // namespace fresco::io
