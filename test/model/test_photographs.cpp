@@ -9,6 +9,7 @@
 #include <chrono>
 #include <filesystem>
 #include <fresco/core/require.h>
+#include <fresco/model/build_model.h>
 #include <fstream>
 #include <iomanip>
 #include <map>
@@ -207,7 +208,8 @@ TEST(Video, TheSharpestFrameOfEachWindowIsKept)
   linesOf({findProgram("ffmpeg"), "-nostdin", "-framerate", "10", "-start_number", "100", "-i", folder + "/%d.png",
            "-c:v", "mjpeg", "-q:v", "2", video},
           folder + "/log.txt");
-  EXPECT_NEAR(framesToKeep(video), windows, 2.0);
+  EXPECT_NEAR(framesToKeep(video).count, windows, 2.0);
+  EXPECT_EQ(framesToKeep(video).pixels, 320 * 240);
   ModelInput input;
   input.video = video;
   const ModelFiles files{folder};
@@ -217,6 +219,28 @@ TEST(Video, TheSharpestFrameOfEachWindowIsKept)
   for (int w = 0; w < windows; ++w) // frame 0 of window 0, 1 of 1 ...
     EXPECT_TRUE(fs::exists(concat(files.video, "/", std::setfill('0'), std::setw(6), w * frames + w, ".jpg"))) << w;
   EXPECT_EQ(Index(input.unplaced.size()), figures["sharpest"].get<Index>());
+}
+
+/// What placing photographs is told to take, at least and at most.
+TEST(StructureFromMotion, LargerAndMorePhotographsAreToldToTakeLonger)
+{
+  const std::string folder = test::scratchFolder();
+  const auto told = [&](int count, int width) {
+    const std::string name = concat(folder, "/", count, "_", width);
+    makeFolder(name);
+    for (int k = 0; k < count; ++k)
+      writeImage(concat(name, "/", k, ".png"), Image(width, width));
+    const ModelPlan plan = planModel({name, folder + "/out"});
+    EXPECT_GE(plan.most_seconds, plan.seconds);
+    return std::pair(plan.seconds, plan.most_seconds);
+  };
+  const auto few = told(4, 200), more = told(8, 200), larger = told(4, 400);
+  for (const auto& longer : {more, larger}) {
+    EXPECT_GT(longer.first, few.first);
+    EXPECT_GT(longer.second, few.second);
+  }
+  for (std::size_t n = 2; n < 1000; ++n)
+    EXPECT_LE(pairsToMatch(n), n * (n - 1) / 2) << n;
 }
 
 TEST(StructureFromMotion, PhotographsOfARoomArePlaced)
