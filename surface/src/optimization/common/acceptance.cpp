@@ -52,7 +52,7 @@ float partByFit(const Eigen::Vector3f& fit, float explained)
 {
   // A surface with so many free parameters a vertex follows the noise of n data a vertex, which are nearer to it for
   // that by half of parameters / n. Smoothing may take as much. Measured: docs/measurements/optimization.md.
-  constexpr double parameters = 1.0, most_worse = 0.25;
+  constexpr double parameters = 1.0, most_worse = 1.0;
   if (!(fit[2] > 0.f))
     return 0.f;
   const double worse = 1.0 + std::min(most_worse, 0.5 * parameters * face_corners / fit[2]);
@@ -253,7 +253,7 @@ void keepTrusted(const OptimizationProblem& problem, Positions& move, int thread
       return;
     const Vector3d middle = problem.data.points.col(datum).cast<double>(), start = problem.start.col(v),
                    end = endDirection(problem, v);
-    const double radius = std::max(spacing, (start - middle).norm()) + 0.5 * spacing;
+    const double radius = std::max(spacing, (start - middle).norm()) + 2.0 * spacing;
     Vector3d to = problem.x.col(v) + move.col(v);
     to -= (to - start).dot(end) * end;
     if (const double length = (to - middle).norm(); length > radius)

@@ -3,7 +3,7 @@
 #include "optimization/common/problem.h"
 namespace fresco::optimization {
 /// Shortens moves that would end outside the trust radius: as far from the datum nearest at the start as the vertex
-/// was there, or data are apart, and half their distance. Beyond, nothing says that there is a surface. Data do not tell
+/// was there, or data are apart, and twice their distance. Beyond, nothing says that there is a surface. Data do not tell
 /// where a surface ends either, so a boundary moves across it only.
 void keepTrusted(const OptimizationProblem& problem, Positions& move, int threads);
 

@@ -34,7 +34,7 @@ void validate(const NormalFilteringOptions& options)
 // fandisk, exact and noisy: docs/measurements/optimization.md.
 TermWeights weightsFor(const OptimizationProblem& problem, double noise, const NormalFilteringOptions& options)
 {
-  constexpr double spacing_lengths = 0.5, noise_lengths = 10.0, noise_spacing_lengths = 7.0;
+  constexpr double spacing_lengths = 0.5, noise_lengths = 14.0, noise_spacing_lengths = 7.0;
   constexpr double robust_noises = 4.0; // of Gaussian noise one datum in 16,000 is farther off
   const double spacing = problem.coverage.spacing;
   const double length = spacing_lengths * std::max(1.0, spacing) +
