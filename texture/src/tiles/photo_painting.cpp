@@ -143,8 +143,8 @@ Points paintModel(const Job& job, ViewChoice& choice, const PaintedPart& part)
   const std::vector<Chart> charts = makeAtlas(patches, resolution, options, result, part.faces);
 
   steps.begin("seams", 0.7);
-  const Blend blend = blendViews({patches, candidates, choice.view, choice.photometry, choice.consistency.penalties},
-                                 {part.blend_rounds, options.level, options.threads, part.border});
+  Blend blend = blendViews({patches, candidates, choice.view, choice.photometry, choice.consistency.penalties},
+                           {part.blend_rounds, options.level, options.threads, part.border});
 
   steps.begin("painting", 0.8);
   const std::vector<TexelSlot> slots = texelSlots(charts, patches.size());
@@ -152,6 +152,8 @@ Points paintModel(const Job& job, ViewChoice& choice, const PaintedPart& part)
   const PaintSources sources{
       views.projectors, views.photos, choice.photometry, blend, candidates, choice.consistency.penalties, outlines};
   paintPhotographs(scene, sources, choice.view, part.patches, job);
+  blend = {}; // back-projection needs the memory
+  choice.surface.outlines = {};
 
   steps.begin("back-projection", 0.85);
   if (options.exposure)

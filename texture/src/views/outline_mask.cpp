@@ -51,11 +51,13 @@ OutlineMask::OutlineMask(const DepthMap& map, float reach, float step)
   DepthMap inverses = map;
   for (float& depth : inverses.depth)
     depth = 1 / depth;
+  std::vector<float> nearest(near_.size(), 0); // of several outlines
   const auto spread = [&](const Line& line) {
     const float between = 0.5f * (line.inverse(0) + line.inverse(1));
     for (int y = std::max(0, line.y + line.dy - radius); y <= std::min(height_ - 1, line.y + radius); ++y)
       for (int x = std::max(0, line.x + line.dx - radius); x <= std::min(width_ - 1, line.x + radius); ++x)
-        between_.emplace_back(cellAt(x, y, width_), between);
+        if (float& here = nearest[cellAt(x, y, width_)]; here < between)
+          here = between;
   };
   for (int y = 0; y < height_; ++y)
     for (int x = 0; x < width_; ++x)
@@ -63,15 +65,10 @@ OutlineMask::OutlineMask(const DepthMap& map, float reach, float step)
         if (const Line line{inverses, x, y, 1 - along, along};
             x + line.dx < width_ && y + line.dy < height_ && line.jumps(step))
           spread(line);
-  // of several outlines the nearest
-  std::sort(between_.begin(), between_.end(),
-            [](const auto& a, const auto& b) { return a.first != b.first ? a.first < b.first : a.second > b.second; });
-  between_.erase(
-      std::unique(between_.begin(), between_.end(), [](const auto& a, const auto& b) { return a.first == b.first; }),
-      between_.end());
+  for (std::size_t cell = 0; cell < nearest.size(); ++cell)
+    if ((near_[cell] = nearest[cell] > 0))
+      between_.emplace_back(cell, nearest[cell]);
   between_.shrink_to_fit();
-  for (const auto& cell : between_)
-    near_[cell.first] = true;
 }
 
 Eigen::Vector2i OutlineMask::cellUnder(const Eigen::Vector2f& pixel) const

@@ -6,6 +6,8 @@
 #include <limits>
 namespace fresco::texture {
 namespace {
+constexpr std::size_t most_labels = 16; // per patch, the best ones: the others lose by their cost anyway
+
 struct Label {
   int view;
   float cost;
@@ -20,7 +22,6 @@ struct Labels {
 
 Labels labelsOf(const PatchMesh& patches, const ViewCosts& costs)
 {
-  constexpr std::size_t most_labels = 16; // per patch, the best ones: the others lose by their cost anyway
   Labels out;
   out.begin.assign(1, 0);
   out.begin.reserve(patches.size() + 1);
@@ -102,16 +103,17 @@ private:
     int back = 0; // the side of `from` that it shares with i
     while (back < 2 && patches_.neighbors(back, from) != i)
       ++back;
-    float least = std::numeric_limits<float>::infinity();
-    for (Index l = labels_.begin[from]; l < labels_.begin[from + 1]; ++l)
-      least = std::min(least, labels_.list[l].cost + incoming(l, back));
-    Index k = labels_.begin[from];
+    float least = std::numeric_limits<float>::infinity(), others[most_labels]; // costs without what i says
+    const Index first = labels_.begin[from];
+    for (Index l = first; l < labels_.begin[from + 1]; ++l)
+      least = std::min(least, others[l - first] = labels_.list[l].cost + incoming(l, back));
+    Index k = first;
     for (Index l = labels_.begin[i]; l < labels_.begin[i + 1]; ++l) {
       while (k < labels_.begin[from + 1] && labels_.list[k].view < labels_.list[l].view)
         ++k;
       float message = edge;
       if (k < labels_.begin[from + 1] && labels_.list[k].view == labels_.list[l].view)
-        message = std::min(edge, labels_.list[k].cost + incoming(k, back) - least);
+        message = std::min(edge, others[k - first] - least);
       next_[3 * l + side] = damping * now_[3 * l + side] + (1 - damping) * message;
     }
   }
