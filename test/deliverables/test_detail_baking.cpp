@@ -154,6 +154,25 @@ TEST(DetailBaking, OfItselfAModelIsTheSame)
   EXPECT_NEAR(pixel[0], 127.5, 0.51);
 }
 
+// However large the pictures may be: more texels would hold nothing.
+TEST(DetailBaking, WithoutATextureNormalsAreAsFineAsFaces)
+{
+  const TexturedMesh full = untextured(test::withNoise(test::sphere(1, 5), 0.002f));
+  LightModelOptions options;
+  options.faces = 1000;
+  const auto texelsFor = [&](int atlas) {
+    options.atlas = atlas;
+    std::size_t texels = 0;
+    for (const Image& map : makeLightModel(full, options).normal_maps)
+      texels += std::size_t(map.width) * map.height;
+    return texels;
+  };
+  const std::size_t texels = texelsFor(4096), faces = full.mesh.faceCount();
+  EXPECT_EQ(texelsFor(2048), texels);
+  EXPECT_GT(texels, faces);
+  EXPECT_LT(texels, 4 * faces);
+}
+
 TEST(DetailBaking, ALightModelKeepsItsBounds)
 {
   TexturedMesh full = laidOut(test::withNoise(test::sphere(1, 5), 0.002f), 0.004);

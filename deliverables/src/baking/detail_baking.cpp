@@ -197,7 +197,7 @@ double typicalTexel(const TexturedMesh& model)
   for (const auto& [texel, area] : texels)
     if ((sum += area) >= total / 2)
       return texel;
-  return 0;
+  return model.mesh.faceCount() > 0 ? std::sqrt(surfaceArea(model.mesh) / model.mesh.faceCount()) : 0;
 }
 
 GltfModel bakeLightModel(TriangleMesh light, const TexturedMesh& full, const LightModelOptions& options,
@@ -207,17 +207,19 @@ GltfModel bakeLightModel(TriangleMesh light, const TexturedMesh& full, const Lig
   light.normals.resize(3, 0); // a full model may lend it some that are not its own
   light.colors.resize(3, 0);  // are baked
   light.fields.clear();
+  BakingOptions baking;
+  baking.threads = options.threads;
   TextureLayoutOptions layout;
   layout.atlas = options.atlas;
   layout.threads = options.threads;
   const double most = 0.8 * options.atlases * options.atlas * options.atlas; // packing leaves a fifth or less
-  layout.texel =
-      std::max({options.texel > 0 ? options.texel : typicalTexel(full), std::sqrt(surfaceArea(light) / most), 1e-9});
+  const double detail = typicalTexel(full) / (full.atlases.empty() ? baking.coarser : 1); // normals as fine as faces
+  layout.texel = std::max({options.texel > 0 ? options.texel : detail, std::sqrt(surfaceArea(light) / most), 1e-9});
   report(progress, "new atlas", 0.0);
   TexturedMesh model = layOutTexture(light, layout);
   for (; int(model.atlases.size()) > options.atlases; model = layOutTexture(light, layout))
     layout.texel *= 1.1;
-  GltfModel baked = bakeDetail(std::move(model), full, {0, 4, 2, options.threads}, subProgress(progress, 0.2, 1));
+  GltfModel baked = bakeDetail(std::move(model), full, baking, subProgress(progress, 0.2, 1));
   if (!isColored(full))
     for (Image& atlas : baked.model.atlases)
       atlas = Image(4, 4, 3, 200);

@@ -28,9 +28,7 @@ public:
       : folder_(std::move(folder)), full_(std::move(full)), options_(options), progress_(progress),
         colored_(isColored(full_)), tree_(quadtreeOf(full_.mesh, options.faces)), tiles_(tree_.quarters.size())
   {
-    texel_ = options.texel > 0 ? options.texel : typicalTexel(full_);
-    if (texel_ == 0) // colours of vertices
-      texel_ = std::max(std::sqrt(surfaceArea(full_.mesh) / full_.mesh.faceCount()), 1e-9);
+    texel_ = options.texel > 0 ? options.texel : std::max(typicalTexel(full_), 1e-9);
     below_.texcoords = std::move(full_.texcoords);
     below_.atlases = std::move(full_.atlases);
   }

@@ -29,7 +29,7 @@ FRESCO_EXPORT GltfModel bakeDetail(TexturedMesh light, const TexturedMesh& full,
 struct LightModelOptions {
   Index faces = 100000; ///< at most, >= 0; 0 = those of the full model
   double error = 0;     ///< see SimplificationOptions::error
-  double texel = 0;     ///< side of a texel, mesh units, >= 0; 0 = that of the full model, or as `atlases` allows
+  double texel = 0;     ///< side of a texel, mesh units, >= 0; 0 = what `full` holds, or as `atlases` allows
   int atlas = 4096;     ///< side of an atlas, 128..16384 pixels
   int atlases = 4;      ///< at most, >= 1: texels are made larger until they suffice
   int threads = 0;      ///< 0 = all cores; the result does not depend on it
@@ -49,6 +49,6 @@ FRESCO_EXPORT GltfModel makeLightModel(const TexturedMesh& full, const LightMode
 /// An RGB image of half as many pixels a side, rounded up, each the mean of four.
 FRESCO_EXPORT Image halfSize(const Image& image);
 
-/// Side of a texel on the surface, mesh units, of the typical face, by area; 0 where no face has a texture.
+/// Side of a texel on the surface, mesh units, of the typical face, by area; without a texture that of a square as large as a face.
 FRESCO_EXPORT double typicalTexel(const TexturedMesh& model);
 } // namespace fresco
