@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The parts of the optimiser: correspondences, solver, inverted faces, flips.
 #include "common/shapes.h"
-#include "optimization/common/acceptance.h"
+#include "optimization/common/inversion_guard.h"
 #include "optimization/normal_filtering/edge_flips.h"
 #include "optimization/normal_filtering/vertex_energy.h"
 #include "optimization/normal_filtering/vertex_solver.h"
@@ -125,7 +125,7 @@ TEST(OptimizationTerms, MovesThatInvertAreShortened)
   Eigen::Matrix3Xf normals = areaVectors(graph, x, 1).cast<float>();
   normals.colwise().normalize();
   Positions move = randomMove(x.cols(), 0.7, 1);
-  keepFacing(graph, x, normals, move, 1);
+  limitMoves(graph, x, normals, move, 1);
   const Eigen::Matrix3Xd after = areaVectors(graph, x + move, 1);
   for (Index f = 0; f < graph.faceCount(); ++f)
     EXPECT_GT(after.col(f).dot(normals.col(f).cast<double>()), 0.0);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "optimization/common/problem.h"
-#include "optimization/common/acceptance.h"
+#include "optimization/common/inversion_guard.h"
+#include "optimization/common/worsening_guard.h"
 #include <algorithm>
 #include <cmath>
 #include <fresco/core/machine_memory.h>
@@ -127,7 +128,7 @@ void finish(const TriangleMesh& mesh, OptimizationProblem& problem, int threads,
   result.left_out_points = problem.data.left_out;
   result.turned_faces = problem.turned_faces;
   result.covered_vertices = std::count(covered.begin(), covered.end(), char{1});
-  acceptFit(problem, result.noise / problem.frame.unit, threads);
+  undoWorsening(problem, result.noise / problem.frame.unit, threads);
   result.restored_vertices =
       repairInverted(problem.graph, problem.start, problem.coverage.nearness, problem.x, threads);
   result.mesh = movedMesh(mesh, problem, threads);

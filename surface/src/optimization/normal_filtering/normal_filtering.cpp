@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fresco/surface/core/normal_filtering.h>
 
-#include "optimization/common/acceptance.h"
+#include "optimization/common/inversion_guard.h"
 #include "optimization/normal_filtering/curved_data.h"
 #include "optimization/normal_filtering/edge_flips.h"
 #include "optimization/normal_filtering/face_normals.h"
@@ -56,6 +56,17 @@ double normalWeight(double noise)
   return exact_weight * cauchyWeight(ratio * ratio);
 }
 
+// Shortens moves that would end farther from the start than a datum may be off: where data contradict each other, as on
+// things not much larger than their noise, vertices would move on and draw the surface out into splinters.
+void keepNearStart(const OptimizationProblem& problem, Positions& move, int threads)
+{
+  parallelFor(move.cols(), threads, [&](Index v) {
+    const Eigen::Vector3d way = problem.x.col(v) + move.col(v) - problem.start.col(v);
+    if (const double length = way.norm(); length > outlier_distance)
+      move.col(v) = problem.start.col(v) + way * (outlier_distance / length) - problem.x.col(v);
+  });
+}
+
 NormalFilteringStep describe(const OptimizationProblem& problem, const QuadraticEnergy& energy, const Positions& move,
                              int threads)
 {
@@ -69,6 +80,16 @@ NormalFilteringStep describe(const OptimizationProblem& problem, const Quadratic
   step.tangential = terms.tangential;
   step.move = rmsMove(move, problem.coverage.vertex, threads);
   return step;
+}
+
+// Makes `move` shorter where all of it would raise the energy, which is quadratic along it.
+void keepEnergyDown(const OptimizationProblem& problem, const QuadraticEnergy& energy, const NormalFilteringStep& step,
+                    Positions& move, int threads)
+{
+  const double half = evaluate(energy, problem.graph, problem.x, 0.5 * move, threads).sum() - step.before;
+  const double whole = step.after - step.before; // of a t + b t^2, as is `half`
+  const double linear = 4.0 * half - whole, square = whole - linear;
+  move *= linear < 0.0 && square > 0.0 ? std::min(1.0, -linear / square) : 0.0;
 }
 
 // One iteration, of which `part` is done: less where it is near the tolerance. `noise` is that of the last one, and
@@ -95,12 +116,18 @@ NormalFilteringStep improve(OptimizationProblem& problem, const NormalFilteringO
   const QuadraticEnergy energy =
       makeEnergy(problem, lists, normals, residuals, weightsFor(problem, noise, options), threads);
   Positions move = solveMoves(energy, problem.graph, problem.x, solver_rounds, threads);
-  keepTrusted(problem, move, threads);
-  keepFacing(problem.graph, problem.x, normals, move, threads);
-  const NormalFilteringStep step = describe(problem, energy, move, threads);
+  keepNearStart(problem, move, threads);
+  const Eigen::VectorXf left = limitMoves(problem.graph, problem.x, normals, move, threads);
+  NormalFilteringStep step = describe(problem, energy, move, threads);
+  if (step.after > step.before) {
+    keepEnergyDown(problem, energy, step, move, threads);
+    step = describe(problem, energy, move, threads);
+  }
   part *= ramp(step.move, options.tolerance, 2.0 * options.tolerance + 1e-12);
   problem.x += part * move;
-  relaxInverted(problem.graph, static_cast<float>(part) * problem.coverage.nearness, problem.x, threads);
+  const Eigen::VectorXf relaxed = static_cast<float>(part) * problem.coverage.nearness;
+  relaxInverted(problem.graph, relaxed, problem.x, threads);
+  relaxStuck(problem.graph, relaxed, left, problem.x, threads);
   return step;
 }
 

@@ -27,7 +27,7 @@ struct NormalFilteringStep {
   double smoothness = 0; ///< squared slopes of the edges against the filtered normals
   double tangential = 0; ///< squared differences from the places that vertices slide to
   double before = 0;     ///< sum of the terms ahead of the step
-  double after = 0;      ///< sum of the terms after it; above `before` only where moves had to be shortened
+  double after = 0;      ///< sum of the terms after it; never above `before`
   double move = 0;       ///< RMS move of the vertices
 };
 

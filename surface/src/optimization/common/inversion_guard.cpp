@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "optimization/common/acceptance.h"
+#include "optimization/common/inversion_guard.h"
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -8,56 +8,6 @@
 namespace fresco::optimization {
 namespace {
 using Eigen::Vector3d;
-
-constexpr float face_corners = 3.f; // of a face: each datum counts at all
-
-template <int Rows>
-using VertexValues = Eigen::Matrix<float, Rows, Eigen::Dynamic>;
-
-// Each vertex takes the mean of its own and its neighbours' values, `rounds` times.
-template <int Rows>
-void average(const MeshGraph& graph, VertexValues<Rows>& values, int rounds, int threads)
-{
-  VertexValues<Rows> next(Rows, values.cols());
-  for (int round = 0; round < rounds; ++round) {
-    parallelFor(values.cols(), threads, [&](Index v) {
-      Eigen::Matrix<float, Rows, 1> sum = values.col(v);
-      for (const int e : edgesAround(graph, v))
-        sum += values.col(graph.otherVertex(e, v));
-      next.col(v) = sum / (1.f + edgesAround(graph, v).size());
-    });
-    values.swap(next);
-  }
-}
-
-// Sums over the data around each vertex: distance at the start, distance now, number.
-VertexValues<3> fitAround(const OptimizationProblem& problem, const FacePoints& lists, int threads)
-{
-  const Eigen::VectorXf now = dataDistances(problem.graph, problem.x, problem.data, threads);
-  VertexValues<3> fit = VertexValues<3>::Zero(3, problem.graph.vertexCount());
-  parallelFor(problem.graph.vertexCount(), threads, [&](Index v) {
-    for (const int f : facesAround(problem.graph, v))
-      for (int j = lists.begin[f]; j < lists.begin[f + 1]; ++j) {
-        const int i = lists.order[j];
-        if (std::max(problem.start_distance[i], now[i]) < outlier_distance)
-          fit.col(v) += Eigen::Vector3f(problem.start_distance[i], now[i], 1.f);
-      }
-  });
-  return fit;
-}
-
-// How much of the move of a vertex its data allow: all where they are no farther off than before or than their noise
-// explains, nothing where they are by `worse`, or where there are none.
-float partByFit(const Eigen::Vector3f& fit, float explained)
-{
-  // A surface with so many free parameters a vertex follows the noise of n data a vertex, which are nearer to it for
-  // that by half of parameters / n. Smoothing may take as much. Measured: docs/measurements/optimization.md.
-  constexpr double parameters = 1.0, most_worse = 1.0;
-  if (!(fit[2] > 0.f))
-    return 0.f;
-  const double worse = 1.0 + std::min(most_worse, 0.5 * parameters * face_corners / fit[2]);
-  return ramp(fit[1] / std::max(fit[0], explained * fit[2]), worse, 1.0);
-}
 
 // How much of `move` face f can take: all, or up to where nearly nothing is left of its area.
 double partAllowed(const MeshGraph& graph, const Positions& x, const Positions& move, const Vector3d& normal, Index f)
@@ -197,19 +147,17 @@ void putBack(const MeshGraph& graph, const Positions& start, NewlyInverted& inve
   }
 }
 
-// At a boundary vertex, the direction in which the surface of the start ends; zero elsewhere.
-Vector3d endDirection(const OptimizationProblem& problem, Index v)
+// Vertices inside the surface go to the middle of their neighbours, the share(v) of the way.
+template <typename Share>
+void relaxBy(const MeshGraph& graph, Positions& x, int threads, const Share& share)
 {
-  const MeshGraph& graph = problem.graph;
-  Vector3d sum = Vector3d::Zero();
-  if (graph.border[v])
-    for (const int f : facesAround(graph, v))
-      for (int k = 0; k < 3; ++k) {
-        const int a = graph.faces(k, f), b = graph.faces((k + 1) % 3, f);
-        if ((a == v || b == v) && graph.across(f, k) < 0)
-          sum += (problem.start.col(b) - problem.start.col(a)).cross(areaVector(graph, problem.start, f));
-      }
-  return sum.stableNormalized();
+  const Positions before = x;
+  parallelFor(graph.vertexCount(), threads, [&](Index v) {
+    if (graph.border[v] || edgesAround(graph, v).size() == 0)
+      return;
+    if (const double way = share(v); way > 0.0)
+      x.col(v) += way * (meanOfNeighbours(graph, before, v) - before.col(v));
+  });
 }
 
 // F, cosine of the angle between each face and the area-weighted mean of the faces around its corners, nearer to 0 the
@@ -234,57 +182,12 @@ Eigen::VectorXd facing(const MeshGraph& graph, const Positions& x, int threads)
 }
 } // namespace
 
-Eigen::VectorXf dataDistances(const MeshGraph& graph, const Positions& x, const DataPoints& data, int threads)
-{
-  Eigen::VectorXf distances(data.size());
-  parallelFor(data.size(), threads, [&](Index i) {
-    const Vector3d p = data.points.col(i).cast<double>();
-    distances[i] = offsetFrom(graph, x, data.face[i], footOn(graph, x, data.face[i], p), p).norm();
-  });
-  return distances;
-}
-
-void keepTrusted(const OptimizationProblem& problem, Positions& move, int threads)
-{
-  const double spacing = std::max(1.0, problem.coverage.spacing); // mean edge lengths
-  parallelFor(move.cols(), threads, [&](Index v) {
-    const int datum = problem.coverage.nearest[v];
-    if (datum < 0)
-      return;
-    const Vector3d middle = problem.data.points.col(datum).cast<double>(), start = problem.start.col(v),
-                   end = endDirection(problem, v);
-    const double radius = std::max(spacing, (start - middle).norm()) + 2.0 * spacing;
-    Vector3d to = problem.x.col(v) + move.col(v);
-    to -= (to - start).dot(end) * end;
-    if (const double length = (to - middle).norm(); length > radius)
-      to = middle + (to - middle) * (radius / length);
-    move.col(v) = to - problem.x.col(v);
-  });
-}
-
-void acceptFit(OptimizationProblem& problem, double noise, int threads)
-{
-  constexpr int rings = 10, most_rings = 24, blend_rings = 2; // of data, more where they are sparse; of parts
-  followFaces(problem.graph, problem.x, problem.data, threads);
-  const FacePoints lists = pointsOfFaces(problem.data, problem.graph.faceCount());
-  VertexValues<3> fit = fitAround(problem, lists, threads);
-  const double spacing = std::max(1.0, problem.coverage.spacing);
-  average(problem.graph, fit, std::min<int>(most_rings, std::ceil(rings * spacing)), threads);
-  // The mean magnitude of Gaussian values is 0.8 of their deviation; what is nearer than 0.01 edges fits.
-  const float explained = std::max(0.01, 0.8 * noise);
-  VertexValues<1> part(problem.graph.vertexCount());
-  parallelFor(part.size(), threads, [&](Index v) { part[v] = partByFit(fit.col(v), explained); });
-  average(problem.graph, part, blend_rings, threads);
-  parallelFor(part.size(), threads, [&](Index v) {
-    problem.x.col(v) = problem.start.col(v) + part[v] * (problem.x.col(v) - problem.start.col(v));
-  });
-}
-
-void keepFacing(const MeshGraph& graph, const Positions& x, const Eigen::Matrix3Xf& normals, Positions& move,
-                int threads)
+Eigen::VectorXf limitMoves(const MeshGraph& graph, const Positions& x, const Eigen::Matrix3Xf& normals, Positions& move,
+                           int threads)
 {
   constexpr int most_rounds = 40; // a vertex held back can invert a face of its neighbours, but not for long
   constexpr double all = 1.0 - 1e-6;
+  Eigen::VectorXf left = Eigen::VectorXf::Ones(graph.vertexCount());
   Eigen::VectorXd part = Eigen::VectorXd::Ones(graph.faceCount());
   const auto allow = [&](int f) {
     const Vector3d normal = normals.col(f).cast<double>();
@@ -308,6 +211,7 @@ void keepFacing(const MeshGraph& graph, const Positions& x, const Eigen::Matrix3
       for (const int f : facesAround(graph, v))
         least = std::min(least, part[f]);
       move.col(v) *= least;
+      left[v] *= static_cast<float>(least);
     });
     // Only the faces around vertices whose moves became shorter can allow less than they did.
     faces.clear();
@@ -316,6 +220,7 @@ void keepFacing(const MeshGraph& graph, const Positions& x, const Eigen::Matrix3
         faces.add(f);
     parallelFor(faces.numbers().size(), threads, [&](Index i) { allow(faces.numbers()[i]); });
   }
+  return left;
 }
 
 std::vector<char> invertedFaces(const MeshGraph& graph, const Positions& x, int threads)
@@ -331,16 +236,19 @@ void relaxInverted(const MeshGraph& graph, const Eigen::VectorXf& part, Position
 {
   constexpr double inverted = -0.4; // from 90 degrees to here the way grows from nothing to all
   const Eigen::VectorXd cosines = facing(graph, x, threads);
-  const Positions before = x;
-  parallelFor(graph.vertexCount(), threads, [&](Index v) {
-    if (graph.border[v] || edgesAround(graph, v).size() == 0)
-      return;
+  relaxBy(graph, x, threads, [&](Index v) {
     double least = 1.0;
     for (const int f : facesAround(graph, v))
       least = std::min(least, cosines[f]);
-    if (const double way = part[v] * ramp(least, 0.0, inverted); way > 0.0)
-      x.col(v) += way * (meanOfNeighbours(graph, before, v) - before.col(v));
+    return part[v] * ramp(least, 0.0, inverted);
   });
+}
+
+void relaxStuck(const MeshGraph& graph, const Eigen::VectorXf& part, const Eigen::VectorXf& left, Positions& x,
+                int threads)
+{
+  constexpr double hardly = 0.05; // of a move: what is left of it gains nothing
+  relaxBy(graph, x, threads, [&](Index v) { return part[v] * ramp(left[v], hardly, 0.0); });
 }
 
 Index repairInverted(const MeshGraph& graph, const Positions& start, const Eigen::VectorXf& part, Positions& x,
