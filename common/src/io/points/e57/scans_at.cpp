@@ -16,6 +16,7 @@ void writeScansAt(const std::string& path, const std::vector<ScanPath>& scans, c
   require(scans.size() == poses.size(), "writeScansAt: a pose for each scan is needed");
   std::vector<PlacedCloud> clouds;
   std::map<std::string, std::map<Index, Written>> written; // by file and scan
+  std::map<std::string, std::vector<ScanInfo>> infos;
   for (std::size_t i = 0; i < scans.size(); ++i) {
     if (!poses[i])
       continue;
@@ -25,7 +26,9 @@ void writeScansAt(const std::string& path, const std::vector<ScanPath>& scans, c
     entry = {Index(clouds.size()), T_world_scan};
     std::string name = scans[i].name();
     if (holdsScans(file) && scan >= 0) {
-      const ScanInfo info = readScanInfos(file)[scan];
+      if (infos.count(file) == 0)
+        infos[file] = readScanInfos(file);
+      const ScanInfo& info = infos[file].at(scan);
       entry.T_world_before = T_world_scan * info.T_file_scan.inverse();
       name = info.name.empty() ? name : info.name;
     }
