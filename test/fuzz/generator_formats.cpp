@@ -301,6 +301,7 @@ GeneratedFile generated(const std::string& target, std::uint32_t seed)
                                                                                  {"e57", e57},
                                                                                  {"points3d_text", points3dText},
                                                                                  {"points3d_binary", points3dBinary},
+                                                                                 {"cameras", cameras},
                                                                                  {"poses", poses},
                                                                                  {"layout", layout},
                                                                                  {"colmap_text", colmapText},

@@ -9,4 +9,5 @@ GeneratedFile las(Dice& dice);
 GeneratedFile e57(Dice& dice); ///< without checksums, as the target wants it
 GeneratedFile points3dText(Dice& dice);
 GeneratedFile points3dBinary(Dice& dice);
+GeneratedFile cameras(Dice& dice); ///< the extension of the file, then its text
 } // namespace fresco::fuzz

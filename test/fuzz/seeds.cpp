@@ -240,6 +240,8 @@ void writeSeeds(const std::string& folder)
   put("colmap_binary", "model", binaryColmap());
   for (const std::string target : {"points3d_text", "points3d_binary"})
     put(target, "points", generated(target, 1).packed());
+  for (std::uint32_t seed = 0; seed < 20; ++seed) // each program's at least once
+    put("cameras", std::to_string(seed), generated("cameras", seed).packed());
   for (const std::string type : {".png", ".jpg"})
     put("picture", type.substr(1), written("a" + type, [](const std::string& path) { writeImage(path, Image(5, 4)); }));
   put("picture", "depth", depthImage());

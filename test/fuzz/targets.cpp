@@ -5,8 +5,10 @@
 #include "job/stage_log.h"
 #include "layouts.h"
 #include "support/args.h"
+#include <algorithm>
 #include <filesystem>
 #include <fresco/core/require.h>
+#include <fresco/io/camera_files.h>
 #include <fresco/io/cloud_file.h>
 #include <fresco/io/colmap.h>
 #include <fresco/io/file.h>
@@ -139,23 +141,57 @@ void readObj(Bytes bytes, const std::string& folder)
     readChecked(folder, read);
 }
 
+void checkViews(const CameraSet& set)
+{
+  for (const View& view : set.views) {
+    expect(view.camera >= 0 && view.camera < static_cast<int>(set.cameras.size()), "a camera that is not there");
+    expect(view.T_camera_world.matrix().allFinite(), "a pose that is not finite");
+  }
+  for (const CameraModel& camera : set.cameras) {
+    validateCamera(camera);
+    if (camera.hasDistortion())
+      unproject(camera, {0.3 * camera.width, 0.7 * camera.height});
+  }
+}
+
+void checkTracks(const SparsePoints& points, std::size_t views)
+{
+  for (const SparsePoint& point : points) {
+    expect(point.position.allFinite() && std::isfinite(point.error), "a point that is not finite");
+    for (const Observation& seen : point.track)
+      expect(seen.view >= 0 && std::size_t(seen.view) < views, "a view that is not there");
+  }
+}
+
 /// Part one: cameras, part two: images.
 void readColmapModel(Bytes bytes, const std::string& folder, const std::string& kind)
 {
   store(folder + "/cameras" + kind, takePart(bytes));
   store(folder + "/images" + kind, bytes);
-  readChecked(folder, [&] {
-    const CameraSet set = readColmap(folder);
-    for (const View& view : set.views) {
-      expect(view.camera >= 0 && view.camera < static_cast<int>(set.cameras.size()), "a camera that is not there");
-      expect(view.T_camera_world.matrix().allFinite(), "a pose that is not finite");
-    }
-    for (const CameraModel& camera : set.cameras) {
-      expect(camera.width > 0 && camera.height > 0 && camera.fx > 0 && camera.fy > 0, "no camera");
-      if (camera.hasDistortion())
-        unproject(camera, {0.3 * camera.width, 0.7 * camera.height});
-    }
-  });
+  readChecked(folder, [&] { checkViews(readColmap(folder)); });
+}
+
+/// Part one: the extension, part two: the cameras of photographs a.jpg and b.jpg.
+void readCameras(Bytes bytes, const std::string& folder)
+{
+  const std::string extension(takePart(bytes)), images = folder + "/images";
+  const char* const known[] = {".xml", ".out", ".nvm", ".json"};
+  if (std::find(std::begin(known), std::end(known), extension) == std::end(known))
+    return;
+  if (!fs::exists(images + "/b.jpg")) {
+    makeFolder(images);
+    for (const char* name : {"a.jpg", "b.jpg"})
+      writeImage(images + "/" + name, Image(64, 48));
+    store(folder + "/list.txt", "a.jpg\nb.jpg\n");
+  }
+  const std::string path = folder + "/cameras" + extension;
+  store(path, bytes);
+  for (const std::string& photographs : {images, std::string()})
+    readChecked(folder, [&] {
+      const CameraFile file = readCameraFile(path, photographs);
+      checkViews(file.set);
+      checkTracks(file.points, file.set.views.size());
+    });
 }
 
 /// Part one: images, part two: points3D.
@@ -173,11 +209,7 @@ void readColmapTracks(Bytes bytes, const std::string& folder, const std::string&
   store(folder + "/points3D" + kind, bytes);
   readChecked(folder, [&] {
     const std::size_t views = readColmap(folder).views.size();
-    for (const SparsePoint& point : readColmapPoints(folder)) {
-      expect(point.position.allFinite() && std::isfinite(point.error), "a point that is not finite");
-      for (const Observation& seen : point.track)
-        expect(seen.view >= 0 && std::size_t(seen.view) < views, "a view that is not there");
-    }
+    checkTracks(readColmapPoints(folder), views);
   });
 }
 
@@ -340,6 +372,7 @@ const std::vector<Target>& targets()
       {"colmap_binary", [](Bytes bytes, const std::string& folder) { readColmapModel(bytes, folder, ".bin"); }},
       {"points3d_text", [](Bytes bytes, const std::string& folder) { readColmapTracks(bytes, folder, ".txt"); }},
       {"points3d_binary", [](Bytes bytes, const std::string& folder) { readColmapTracks(bytes, folder, ".bin"); }},
+      {"cameras", readCameras},
       {"picture", readPicture},
       {"poses", readPoseFile},
       {"rgbd", readRgbd},

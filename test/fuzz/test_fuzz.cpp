@@ -9,9 +9,11 @@
 #include <algorithm>
 #include <chrono>
 #include <fresco/core/parallel.h>
+#include <fresco/io/camera_files.h>
 #include <fresco/io/file.h>
 #include <fresco/io/mesh_io.h>
 #include <fresco/io/point_io.h>
+#include <set>
 namespace {
 using namespace fresco;
 namespace fs = std::filesystem;
@@ -101,6 +103,21 @@ TEST(Fuzz, GeneratedFilesAreValid)
     writeFile(folder + "/a.glb", fuzz::generated("glb", seed).packed());
     EXPECT_NO_THROW(readTexturedMesh(folder + "/a.glb")) << seed;
   }
+}
+
+TEST(Fuzz, GeneratedCamerasAreValid)
+{
+  const std::string folder = test::scratchFolder();
+  std::set<std::string> programs;
+  for (std::uint32_t seed = 0; seed < 50; ++seed) {
+    const std::string bytes = fuzz::generated("cameras", seed).packed();
+    std::string_view content = bytes;
+    const std::string path = folder + "/cameras" + std::string(fuzz::takePart(content));
+    programs.insert(std::string(content.substr(0, 12)));
+    fuzz::findTarget("cameras").run(bytes, folder); // which writes the photographs
+    EXPECT_NO_THROW(EXPECT_EQ(readCameraFile(path, folder + "/images").set.views.size(), 2u)) << content;
+  }
+  EXPECT_GE(programs.size(), 5u);
 }
 
 TEST(Fuzz, LayoutsAreUnderstood)
