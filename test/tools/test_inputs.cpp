@@ -4,6 +4,7 @@
 #include "common/io/e57_file.h"
 #include "test_data.h"
 #include "tools/layout_source.h"
+#include <fresco/core/require.h>
 #include <fresco/io/camera_files.h>
 #include <fresco/simulation/sensors/layouts.h>
 #include <map>
@@ -60,6 +61,33 @@ TEST_P(EachLayout, IsRecognisedBeforeAnyWork)
   EXPECT_EQ(outcome.out.rfind(expected().at(GetParam()), 0), 0u) << outcome.out;
   EXPECT_NE(outcome.out.find("\nwould do: "), std::string::npos) << outcome.out;
   EXPECT_FALSE(fs::exists(folder + "/out"));
+}
+
+/// A cloud cut in four: told without being asked, and a damaged tile costs no other.
+TEST_F(Inputs, TilesAreOneCloud)
+{
+  const std::string folder = laidOut("one_cloud");
+  const PointSet cloud = readPoints(folder + "/x/cloud.pcd");
+  const Eigen::Vector3f middle = cloud.points.rowwise().mean();
+  for (int tile = 0; tile < 4; ++tile) {
+    std::vector<Index> inside;
+    for (Index i = 0; i < cloud.size(); ++i)
+      if ((cloud.points(0, i) < middle.x()) + 2 * (cloud.points(1, i) < middle.y()) == tile)
+        inside.push_back(i);
+    PointSet part = selectPoints(cloud, inside);
+    part.viewpoints.resize(3, 0);
+    writePoints(concat(folder, "/x/tile_", tile, ".ply"), part);
+  }
+  fs::remove(folder + "/x/cloud.pcd");
+  const Outcome whole = run(folder, "model x out -until points");
+  EXPECT_NE((whole.out + whole.err).find("input: 4 files of one cloud"), std::string::npos) << whole.err;
+  const std::string tile = get(folder + "/x/tile_1.ply");
+  put(folder + "/x/tile_1.ply", tile.substr(0, tile.size() - 100));
+  const Outcome damaged = run(folder, "model x out2 -until points");
+  EXPECT_EQ(damaged.status, 0) << damaged.err;
+  EXPECT_NE((damaged.out + damaged.err).find("input: 4 files of one cloud"), std::string::npos) << damaged.err;
+  EXPECT_NE((damaged.out + damaged.err).find("left out: x/tile_1.ply: truncated"), std::string::npos) << damaged.err;
+  EXPECT_LT(readPoints(folder + "/out2/points.ply").size(), readPoints(folder + "/out/points.ply").size());
 }
 
 /// Whatever program wrote them.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+#include <Eigen/Geometry>
 #include <fresco/core/point_set.h>
 #include <fresco/io/scan_file.h>
 #include <string>
@@ -7,10 +8,15 @@ namespace fresco::model {
 /// From where the points of a scan were seen.
 enum class Standpoint { origin, many, unknown };
 
+struct Standing {
+  Standpoint from = Standpoint::unknown;
+  Eigen::AlignedBox3f box; ///< of the points, in the frame of the file; empty where these were not asked
+};
+
 /// What the file says of the sensor, else the points: almost nothing is hidden behind something else for one who stands where a
 /// scan was taken. Points farther from the origin than they extend, or all within 0.3 m of it, were not measured from there. Up to four million are read.
 /// @throws std::runtime_error as readPoints(), and if there is no point
-Standpoint standpointOf(const ScanPath& scan);
+Standing standpointOf(const ScanPath& scan);
 
 /// Whether a set's viewpoints say something: PCL writes one at the origin into every PCD file, whatever it was seen from.
 bool tellsViewpoint(const PointSet& set);

@@ -46,10 +46,11 @@ PointSet cloudOfPhotographs(const Job& job)
   return cloud;
 }
 
-/// Points spread evenly over the faces of a mesh, with their normals: a triangle's share by its area, at places of the
+/// Points spread evenly over the faces of a file's mesh, with their normals: a triangle's share by its area, at places of the
 /// sequence of Halton 1960.
-PointSet pointsOnFaces(const TriangleMesh& mesh)
+PointSet pointsOnFaces(const std::string& file)
 {
+  const TriangleMesh mesh = readMesh(file);
   constexpr double fewest = 3e5, most = 4e6, a_vertex = 10;
   const double area = surfaceArea(mesh), count = std::clamp(a_vertex * double(mesh.vertexCount()), fewest, most);
   const Points face_normals = faceNormals(mesh);
@@ -74,7 +75,7 @@ PointSet pointsOnFaces(const TriangleMesh& mesh)
     }
   }
   if (points.empty())
-    throw std::runtime_error("a mesh without area");
+    throw std::runtime_error(file + ": a mesh without area");
   PointSet set;
   set.origin = mesh.origin;
   set.points = Eigen::Map<const Points>(points[0].data(), 3, points.size());
@@ -123,6 +124,17 @@ PointSet readTimedPoints(const ScanPath& scan, const ModelInput& input, std::vec
   return set;
 }
 
+/// Points of a file of the cloud, or on the faces of its surface; none of one of several that is damaged.
+PointSet readPart(const ScanPath& scan, const ModelInput& input, std::vector<std::string>& warnings)
+try {
+  return holdsFaces(scan.file) ? pointsOnFaces(scan.file) : readTimedPoints(scan, input, warnings);
+} catch (const std::runtime_error& error) {
+  if (input.scans.size() == 1)
+    throw;
+  warnings.push_back(concat("left out: ", error.what()));
+  return {};
+}
+
 /// All files of the cloud in the frame of the world, near an origin that is the first point's: large coordinates stay exact.
 PointSet readCloud(const Job& job, std::vector<std::string>& warnings, const Progress& progress)
 {
@@ -132,8 +144,7 @@ PointSet readCloud(const Job& job, std::vector<std::string>& warnings, const Pro
   PointSet cloud;
   for (std::size_t s = 0; s < input.scans.size(); ++s) {
     report(progress, concat("file ", s + 1, " of ", input.scans.size()), 0.3 * double(s) / double(input.scans.size()));
-    const std::string& file = input.scans[s].file;
-    PointSet part = holdsFaces(file) ? pointsOnFaces(readMesh(file)) : readTimedPoints(input.scans[s], input, warnings);
+    PointSet part = readPart(input.scans[s], input, warnings);
     if (part.size() == 0 || !input.poses.at(s))
       continue;
     if (!tellsViewpoint(part))
@@ -148,7 +159,7 @@ PointSet readCloud(const Job& job, std::vector<std::string>& warnings, const Pro
     appendPoints(cloud, part);
   }
   if (cloud.size() == 0)
-    throw std::runtime_error(input.folder + ": no points");
+    throw std::runtime_error(input.folder + ": no points" + (warnings.empty() ? "" : ", " + warnings[0]));
   return cloud;
 }
 

@@ -6,16 +6,31 @@
 #include <fresco/core/require.h>
 namespace fresco::model {
 namespace {
+/// Whether files share hardly any ground. Scans lie over one another, each around the place that it was seen from.
+bool areTiles(const std::vector<Eigen::AlignedBox3f>& boxes)
+{
+  constexpr float shared = 0.25f; // of the smaller one: tiles are cut with a rim
+  const auto area = [](const Eigen::AlignedBox3f& box) { return box.isEmpty() ? 0 : box.sizes().head<2>().prod(); };
+  for (std::size_t a = 0; a < boxes.size(); ++a)
+    for (std::size_t b = 0; b < a; ++b)
+      if (!(area(boxes[a].intersection(boxes[b])) < shared * std::min(area(boxes[a]), area(boxes[b]))))
+        return false;
+  return boxes.size() > 1;
+}
+
 /// Whether the files are parts of a cloud rather than scans. What is empty or damaged does not tell: those that read the points
 /// say so.
 bool isCloud(const Survey& found, const ModelInput& input)
 {
   std::string scan, cloud, problem;
   const std::size_t count = input.scans.size(), step = std::max<std::size_t>(1, count / 3);
+  std::vector<Eigen::AlignedBox3f> boxes;
   for (std::size_t s = 0; s < count; s += step) {
     Standpoint from;
     try {
-      from = standpointOf(input.scans[s]);
+      const Standing standing = standpointOf(input.scans[s]);
+      from = standing.from;
+      boxes.push_back(standing.box);
     } catch (const std::runtime_error& error) {
       problem = error.what();
       continue;
@@ -28,6 +43,8 @@ bool isCloud(const Survey& found, const ModelInput& input)
   }
   if (scan.empty() && cloud.empty())
     throw std::runtime_error(problem);
+  if (areTiles(boxes))
+    return true;
   if (!scan.empty() && !cloud.empty())
     throw std::runtime_error(concat(found.path(), ": ", scan, " was seen from its origin, ", cloud,
                                     " was not: say -as scans or -as cloud, or move one sort elsewhere"));
