@@ -54,7 +54,6 @@ void declare(Args& args, TextureOptions& options, ToolOptions& tool)
   args.flag("no_level", options.level, "leave the steps of colour at seams", false);
   args.option("blend_width", options.blend_width, Range::within(0, 100),
               "pixels over which one photograph passes into the next at a seam");
-  args.option("strip", options.blend_width, Range::within(0, 100), "old name of -blend_width");
   args.option("rounds", options.rounds, Range::within(0, 100),
               "how often texels are corrected by all photographs; not with -no_refine or -no_exposure");
   args.option("keep_out", tool.keep_out, Range::atLeast(1).zero("none"),

@@ -139,8 +139,9 @@ ModelReport buildModel(const std::string& input_folder, const std::string& outpu
 ModelReport buildModel(const ModelFolders& folders, const ModelOptions& options, const Progress& progress,
                        Exchange& ranks)
 {
+  const StageOptions stages(options.threads, options.stage_options); // wrong ones are told before anything is read
   Job job{readModelInput(folders.input, options.taken_as, options.depth_unit), ModelFiles{folders.output}, options,
-          StageOptions(options.threads, options.stage_options), ranks};
+          stages, ranks};
   requireSameFiles(job.input.files(), folders.input, ranks);
   if (ranks.rank() > 0) {
     followStages(stagesOf(job), ranks, progress);
@@ -180,8 +181,9 @@ ModelReport buildModel(const ModelFolders& folders, const ModelOptions& options,
 ModelPlan planModel(const ModelFolders& folders, const ModelOptions& options)
 {
   Exchange alone;
+  const StageOptions stages(options.threads, options.stage_options);
   const Job job{readModelInput(folders.input, options.taken_as, options.depth_unit), ModelFiles{folders.output},
-                options, StageOptions(options.threads, options.stage_options), alone};
+                options, stages, alone};
   validate(job.input, options);
   ModelPlan plan = estimate(job);
   requireRoom(plan, job);

@@ -103,6 +103,29 @@ TEST(Usage, EveryNumberHasARangeThatHoldsOrIsSaidToBeFree)
   }
 }
 
+/// fresco_model -STAGE.OPTION takes what the tool of the stage takes, and says so before anything is read.
+TEST(Usage, OptionsOfStagesHaveTheRangesOfTheirTools)
+{
+  const std::string folder = soundFolder();
+  int same = 0;
+  for (const std::string tool :
+       {"register", "filter", "normals", "track", "reconstruct", "optimize", "align", "texture"}) {
+    const std::string known = run(folder, "model missing out -" + tool + ".none 1").err;
+    for (const NumberOption& option : numberOptions(run(folder, tool + " -h").out)) {
+      const std::string name = tool + "." + option.name.substr(1);
+      if (!std::regex_search(known, std::regex(" " + name + "[,\\n]")))
+        continue;
+      ++same;
+      for (const std::string& value : option.beyond) {
+        const Outcome outcome = run(folder, "model missing out -" + name + " " + value);
+        EXPECT_EQ(outcome.status, 1) << name << " " << value;
+        EXPECT_NE(outcome.err.find("out of range: " + option.range), std::string::npos) << outcome.err;
+      }
+    }
+  }
+  EXPECT_GT(same, 20);
+}
+
 TEST(Usage, NumbersOutOfRangeAreWrongBeforeAnythingIsRead)
 {
   const std::string folder = soundFolder();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "support/range.h"
 #include <cmath>
+#include <fresco/core/range.h>
 #include <fresco/core/require.h>
 #include <limits>
 namespace fresco {

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+#include <fresco/core/export.h>
 #include <string>
 namespace fresco {
 /// Numbers that an option may hold: what is checked, and how the help and a refusal put it.
-class Range {
+class FRESCO_EXPORT Range {
 public:
   static Range any();
   static Range within(double least, double most);
