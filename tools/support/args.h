@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include <fresco/core/range.h>
+#include <fresco/io/range.h>
 #include <functional>
 #include <stdexcept>
 #include <string>

@@ -2,9 +2,9 @@
 #include "stages/stage_options.h"
 #include <charconv>
 #include <cmath>
-#include <fresco/core/range.h>
 #include <fresco/core/require.h>
 #include <fresco/io/listed.h>
+#include <fresco/io/range.h>
 #include <functional>
 #include <variant>
 namespace fresco::model {

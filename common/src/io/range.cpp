@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <cmath>
-#include <fresco/core/range.h>
 #include <fresco/core/require.h>
+#include <fresco/io/range.h>
 #include <limits>
 namespace fresco {
 namespace {
