@@ -244,7 +244,7 @@ void writeSeeds(const std::string& folder)
     put("cameras", std::to_string(seed), generated("cameras", seed).packed());
   for (const std::string type : {".png", ".jpg"})
     put("picture", type.substr(1), written("a" + type, [](const std::string& path) { writeImage(path, Image(5, 4)); }));
-  for (const auto& [name, make] : {std::pair{"depth", depthImage}, {"tiff", tiff}, {"bmp", bmp}, {"webp", webp}})
+  for (const auto& [name, make] : {std::pair{"depth", &depthImage}, {"tiff", tiff}, {"bmp", bmp}, {"webp", webp}})
     put("picture", name, make());
   const test::Floats metres{3, 2, {1, 1.5f, 2, 0, -1, 1e9f}};
   put("picture", "pfm", test::pfmBytes(metres));
