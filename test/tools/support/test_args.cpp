@@ -2,6 +2,7 @@
 #include "support/args.h"
 #include "support/tool.h"
 #include "test_data.h"
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <csignal>

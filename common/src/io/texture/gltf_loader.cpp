@@ -68,6 +68,38 @@ try {
   *error = reason.what();
   return false;
 }
+bool tellExternalSize(std::size_t* bytes, std::string* error, const std::string& name, void* files)
+try {
+  *bytes = std::filesystem::file_size(fileBelow(static_cast<ExternalFiles*>(files)->folder, name));
+  return true;
+} catch (const std::runtime_error& reason) {
+  *error = reason.what();
+  return false;
+}
+
+/// tinygltf asks for sizes since 2.9; 2.5 of Debian 12 knows no such member.
+template <typename Callbacks>
+auto tellSizes(Callbacks& callbacks, int) -> decltype(void(callbacks.GetFileSizeInBytes))
+{
+  callbacks.GetFileSizeInBytes = tellExternalSize;
+}
+template <typename Callbacks>
+void tellSizes(Callbacks&, ...)
+{}
+
+tinygltf::FsCallbacks callbacksFor(ExternalFiles& files)
+{
+  tinygltf::FsCallbacks callbacks{};
+  callbacks.FileExists = [](const std::string&, void*) { return true; };
+  callbacks.ExpandFilePath = [](const std::string& path, void*) { return path; };
+  callbacks.ReadWholeFile = readExternalFile;
+  callbacks.WriteWholeFile = [](std::string*, const std::string&, const std::vector<unsigned char>&, void*) {
+    return false;
+  };
+  callbacks.user_data = &files;
+  tellSizes(callbacks, 0);
+  return callbacks;
+}
 } // namespace
 
 tinygltf::Model loadGltf(std::string_view content, const std::string& folder)
@@ -82,10 +114,7 @@ tinygltf::Model loadGltf(std::string_view content, const std::string& folder)
   tinygltf::TinyGLTF loader;
   loader.SetImageLoader(keepImageBytes, nullptr);
   ExternalFiles files{folder};
-  loader.SetFsCallbacks(
-      {[](const std::string&, void*) { return true; }, [](const std::string& path, void*) { return path; },
-       readExternalFile,
-       [](std::string*, const std::string&, const std::vector<unsigned char>&, void*) { return false; }, &files});
+  loader.SetFsCallbacks(callbacksFor(files));
   tinygltf::Model gltf;
   std::string error, warning;
   if (content.size() > std::numeric_limits<std::uint32_t>::max())
