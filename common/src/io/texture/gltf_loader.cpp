@@ -12,6 +12,7 @@ namespace {
 [[noreturn]] void fail(const std::string& reason) { throw std::runtime_error("glTF: " + reason); }
 
 /// The bytes of an image outside of the buffers; those inside are decoded later.
+// NOLINTNEXTLINE(readability-function-size): tinygltf sets the parameters
 bool keepImageBytes(tinygltf::Image* image, int, std::string*, std::string*, int, int, const unsigned char* bytes,
                     int size, void*)
 {
