@@ -115,6 +115,14 @@ std::vector<Stage> stagesOf(const Job& job)
   return stages;
 }
 
+/// @throws std::invalid_argument for wrong options of stages, before anything is read
+Job jobOf(const ModelFolders& folders, const ModelOptions& options, Exchange& ranks)
+{
+  const StageOptions stages(options.threads, options.stage_options);
+  return {readModelInput(folders.input, options.taken_as, options.depth_unit), ModelFiles{folders.output}, options,
+          stages, ranks};
+}
+
 /// What a run that ends early was asked for, as a file of its own.
 void deliver(const Job& job)
 {
@@ -139,9 +147,7 @@ ModelReport buildModel(const std::string& input_folder, const std::string& outpu
 ModelReport buildModel(const ModelFolders& folders, const ModelOptions& options, const Progress& progress,
                        Exchange& ranks)
 {
-  const StageOptions stages(options.threads, options.stage_options); // wrong ones are told before anything is read
-  Job job{readModelInput(folders.input, options.taken_as, options.depth_unit), ModelFiles{folders.output}, options,
-          stages, ranks};
+  Job job = jobOf(folders, options, ranks);
   requireSameFiles(job.input.files(), folders.input, ranks);
   if (ranks.rank() > 0) {
     followStages(stagesOf(job), ranks, progress);
@@ -181,9 +187,7 @@ ModelReport buildModel(const ModelFolders& folders, const ModelOptions& options,
 ModelPlan planModel(const ModelFolders& folders, const ModelOptions& options)
 {
   Exchange alone;
-  const StageOptions stages(options.threads, options.stage_options);
-  const Job job{readModelInput(folders.input, options.taken_as, options.depth_unit), ModelFiles{folders.output},
-                options, stages, alone};
+  const Job job = jobOf(folders, options, alone);
   validate(job.input, options);
   ModelPlan plan = estimate(job);
   requireRoom(plan, job);

@@ -7,14 +7,17 @@ namespace fresco::fuzz {
 namespace {
 const char* const photographs[] = {"a.jpg", "b.jpg"};
 
-/// Half a turn around an axis, or none, by rows.
+/// Half a turn around an axis, none around the fourth.
+int halfTurn(int axis, int row, int column) { return row != column ? 0 : axis == 3 || axis == row ? 1 : -1; }
+
+/// A half turn by rows.
 std::string rotation(Dice& dice, const char* between)
 {
   const int axis = dice.below(4);
   std::string text;
   for (int r = 0; r < 3; ++r)
     for (int c = 0; c < 3; ++c)
-      text += concat(r + c > 0 ? between : "", r != c ? 0 : axis == 3 || axis == r ? 1 : -1);
+      text += concat(r + c > 0 ? between : "", halfTurn(axis, r, c));
   return text;
 }
 
@@ -23,7 +26,7 @@ std::string place(Dice& dice, const char* between)
   return concat(dice.value(), between, dice.value(), between, dice.value());
 }
 
-/// World from camera by rows. @param row, turn what is around a row and between rows
+/// World from camera by rows. @param begin, end what is around a row @param between what is between numbers
 std::string matrix(Dice& dice, const char* begin, const char* end, const char* between)
 {
   const int axis = dice.below(4);
@@ -31,9 +34,9 @@ std::string matrix(Dice& dice, const char* begin, const char* end, const char* b
   for (int r = 0; r < 4; ++r)
     for (int c = 0; c < 4; ++c)
       text += concat(r + c > 0 ? between : "", c == 0 ? begin : "",
-                     r == 3 || r != c         ? (c == 3 ? (r == 3 ? 1 : dice.value()) : 0)
-                     : axis == 3 || axis == r ? 1
-                                              : -1,
+                     r < 3 && c == 3 ? dice.value()
+                     : r == 3        ? float(c == 3)
+                                     : float(halfTurn(axis, r, c)),
                      c == 3 ? end : "");
   return text;
 }

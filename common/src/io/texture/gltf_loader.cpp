@@ -6,6 +6,7 @@
 #include <fresco/core/point_table.h>
 #include <fresco/core/require.h>
 #include <fresco/io/file.h>
+#include <functional>
 #include <limits>
 namespace fresco::io {
 namespace {
@@ -54,28 +55,39 @@ struct ExternalFiles {
   std::uintmax_t bytes_left = std::numeric_limits<std::uint32_t>::max();
 };
 
-bool readExternalFile(std::vector<unsigned char>* bytes, std::string* error, const std::string& name, void* files)
+/// What a callback of tinygltf does; an error goes back as a text.
+bool answered(std::string* error, const std::function<void()>& what)
 try {
-  auto& [folder, bytes_left] = *static_cast<ExternalFiles*>(files);
-  const std::string path = fileBelow(folder, name);
-  std::error_code missing;
-  if (const std::uintmax_t size = std::filesystem::file_size(path, missing); !missing && size > bytes_left)
-    throw std::runtime_error(path + ": too large");
-  const std::string content = readFile(path);
-  bytes_left -= std::min<std::uintmax_t>(bytes_left, content.size());
-  bytes->assign(content.begin(), content.end());
+  what();
   return true;
 } catch (const std::runtime_error& reason) {
   *error = reason.what();
   return false;
 }
+
+bool readExternalFile(std::vector<unsigned char>* bytes, std::string* error, const std::string& name, void* files)
+{
+  return answered(error, [&] {
+    auto& [folder, bytes_left] = *static_cast<ExternalFiles*>(files);
+    const std::string path = fileBelow(folder, name);
+    std::error_code missing;
+    if (const std::uintmax_t size = std::filesystem::file_size(path, missing); !missing && size > bytes_left)
+      throw std::runtime_error(path + ": too large");
+    const std::string content = readFile(path);
+    bytes_left -= std::min<std::uintmax_t>(bytes_left, content.size());
+    bytes->assign(content.begin(), content.end());
+  });
+}
+
+/// 1 for a file that is not there: readExternalFile() says so.
 bool tellExternalSize(std::size_t* bytes, std::string* error, const std::string& name, void* files)
-try {
-  *bytes = std::filesystem::file_size(fileBelow(static_cast<ExternalFiles*>(files)->folder, name));
-  return true;
-} catch (const std::runtime_error& reason) {
-  *error = reason.what();
-  return false;
+{
+  return answered(error, [&] {
+    std::error_code missing;
+    *bytes = std::filesystem::file_size(fileBelow(static_cast<ExternalFiles*>(files)->folder, name), missing);
+    if (missing)
+      *bytes = 1;
+  });
 }
 
 /// tinygltf asks for sizes since 2.9; 2.5 of Debian 12 knows no such member.

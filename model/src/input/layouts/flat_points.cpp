@@ -26,17 +26,16 @@ bool isCloud(const Survey& found, const ModelInput& input)
   const std::size_t count = input.scans.size(), step = std::max<std::size_t>(1, count / 3);
   std::vector<Eigen::AlignedBox3f> boxes;
   for (std::size_t s = 0; s < count; s += step) {
-    Standpoint from;
+    Standing standing;
     try {
-      const Standing standing = standpointOf(input.scans[s]);
-      from = standing.from;
-      boxes.push_back(standing.box);
+      standing = standpointOf(input.scans[s]);
     } catch (const std::runtime_error& error) {
       problem = error.what();
       continue;
     }
-    if (from == Standpoint::origin ||
-        (from == Standpoint::unknown && count > 1)) // what is in many files was scanned so
+    boxes.push_back(standing.box);
+    if (standing.from == Standpoint::origin ||
+        (standing.from == Standpoint::unknown && count > 1)) // what is in many files was scanned so
       scan = input.scans[s].name();
     else
       cloud = input.scans[s].name();
