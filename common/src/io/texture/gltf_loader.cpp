@@ -79,22 +79,18 @@ bool readExternalFile(std::vector<unsigned char>* bytes, std::string* error, con
   });
 }
 
-/// 1 for a file that is not there: readExternalFile() says so.
-bool tellExternalSize(std::size_t* bytes, std::string* error, const std::string& name, void* files)
-{
-  return answered(error, [&] {
-    std::error_code missing;
-    *bytes = std::filesystem::file_size(fileBelow(static_cast<ExternalFiles*>(files)->folder, name), missing);
-    if (missing)
-      *bytes = 1;
-  });
-}
-
-/// tinygltf asks for sizes since 2.9; 2.5 of Debian 12 knows no such member.
+/// tinygltf asks for sizes since 2.9; 2.5 of Debian 12 knows no such member. That of a missing file is 1: readExternalFile() says so.
 template <typename Callbacks>
 auto tellSizes(Callbacks& callbacks, int) -> decltype(void(callbacks.GetFileSizeInBytes))
 {
-  callbacks.GetFileSizeInBytes = tellExternalSize;
+  callbacks.GetFileSizeInBytes = [](std::size_t* bytes, std::string* error, const std::string& name, void* files) {
+    return answered(error, [&] {
+      std::error_code missing;
+      const auto size =
+          std::filesystem::file_size(fileBelow(static_cast<ExternalFiles*>(files)->folder, name), missing);
+      *bytes = missing ? 1 : size;
+    });
+  };
 }
 template <typename Callbacks>
 void tellSizes(Callbacks&, ...)

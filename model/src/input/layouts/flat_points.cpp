@@ -34,11 +34,9 @@ bool isCloud(const Survey& found, const ModelInput& input)
       continue;
     }
     boxes.push_back(standing.box);
-    if (standing.from == Standpoint::origin ||
-        (standing.from == Standpoint::unknown && count > 1)) // what is in many files was scanned so
-      scan = input.scans[s].name();
-    else
-      cloud = input.scans[s].name();
+    const bool scanned_so = standing.from == Standpoint::unknown && count > 1; // as what is in many files
+    const bool from_origin = standing.from == Standpoint::origin || scanned_so;
+    (from_origin ? scan : cloud) = input.scans[s].name();
   }
   if (scan.empty() && cloud.empty())
     throw std::runtime_error(problem);
