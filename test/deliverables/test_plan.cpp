@@ -193,6 +193,37 @@ TEST(Plan, BeamsEndNoRoomAndLintelsDo)
   EXPECT_EQ(drawPlan(lintel.mesh()).rooms.size(), 2u);
 }
 
+TEST(Plan, LampsAboveFurnitureEndNoRoom)
+{
+  RoomBuilder b;
+  b.room({{0, 0}, {9, 0}, {9, 1.8}, {0, 1.8}}, 2.6);
+  const Vector2d corners[] = {{4, 0.6}, {4, 1.2}, {4.6, 1.2}, {4.6, 0.6}};
+  for (int k = 0; k < 4; ++k) {
+    b.wall(corners[k], corners[(k + 1) % 4], 2.3, 2.6);
+    b.wall(corners[k], corners[(k + 1) % 4], 0, 0.9);
+  }
+  const FloorPlan plan = drawPlan(b.mesh());
+  ASSERT_EQ(plan.rooms.size(), 1u);
+  EXPECT_NEAR(plan.rooms[0].area, 9 * 1.8, 1e-3);
+}
+
+TEST(Plan, WallsGoOnWhereTheirOtherFaceShowsThroughAGap)
+{
+  RoomBuilder b;
+  b.wall({0, 0}, {4, 0}, 0, 2.6), b.wall({4, 3}, {0, 3}, 0, 2.6), b.wall({0, 3}, {0, 0}, 0, 2.6);
+  b.openWall({4, 0}, {4, 3}, 2.6, {0.5, 2.5, 0, 2.6});
+  b.slabs({{0, 0}, {4, 0}, {4, 3}, {0, 3}}, 2.6);
+  b.room({{4.1, 0}, {7.1, 0}, {7.1, 3}, {4.1, 3}}, 2.6);
+  const FloorPlan plan = drawPlan(b.mesh());
+  ASSERT_EQ(plan.rooms.size(), 2u);
+  EXPECT_NEAR(plan.rooms[0].area, 12, 0.01);
+  EXPECT_NEAR(plan.rooms[1].area, 9, 1e-3);
+  double unseen = 0;
+  for (const PlanWall& wall : plan.rooms[0].walls)
+    unseen += wall.seen ? 0 : (wall.to - wall.from).norm();
+  EXPECT_NEAR(unseen, 2, 0.1); // told, not made up
+}
+
 TEST(Plan, WithoutCeilingRoomsEndAtNarrowPassages)
 {
   RoomBuilder b;

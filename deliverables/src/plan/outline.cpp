@@ -4,6 +4,7 @@
 #include <fresco/core/constants.h>
 #include <fresco/core/robust_weights.h>
 #include <fresco/core/statistics.h>
+#include <limits>
 #include <opencv2/imgproc.hpp>
 #include <optional>
 namespace fresco::plan {
@@ -290,6 +291,71 @@ void mergeEdges(std::vector<OutlineEdge>& edges, const std::vector<double>& dire
     k = next == 0 ? edges.size() : k;
   }
 }
+double distanceTo(const OutlineEdge& edge, const Vector2d& p)
+{
+  const Vector2d d = edge.to - edge.from;
+  const double t = d.squaredNorm() > 0 ? std::clamp(d.dot(p - edge.from) / d.squaredNorm(), 0.0, 1.0) : 0;
+  return (edge.from + t * d - p).norm();
+}
+
+double distanceTo(const std::vector<OutlineEdge>& edges, const Vector2d& p)
+{
+  double least = std::numeric_limits<double>::infinity();
+  for (const OutlineEdge& edge : edges)
+    least = std::min(least, distanceTo(edge, p));
+  return least;
+}
+
+/// Edges between two walls, on the lines of those walls; none if that moves them by more than a wall is thick.
+std::optional<std::vector<OutlineEdge>> continued(const OutlineEdge& before, const std::vector<OutlineEdge>& between,
+                                                  const OutlineEdge& after, const OutlineOptions& options)
+{
+  const auto piece = [](const OutlineEdge& wall, const Vector2d& from, const Vector2d& to) {
+    return OutlineEdge{from, to, wall.point, wall.direction};
+  };
+  const Vector2d from = onLine(before, before.to), to = onLine(after, after.from);
+  std::vector<OutlineEdge> line;
+  if (const auto corner = meeting(before, after))
+    line = {piece(before, from, *corner), piece(after, *corner, to)};
+  else if ((onLine(before, to) - to).norm() <= 2 * options.tolerance)
+    line = {piece(before, from, to)};
+  const auto far = [&](const OutlineEdge& edge, const std::vector<OutlineEdge>& others) {
+    return std::max(distanceTo(others, edge.from), distanceTo(others, edge.to)) > options.wall;
+  };
+  const auto inside = [&](const OutlineEdge& edge, const OutlineEdge& wall) { // then the wall is what lies behind
+    return edge.seen && edge.direction.dot(wall.direction) > 0.9 &&
+           leftOf(wall.direction).dot(edge.point - wall.point) > 2 * options.tolerance;
+  };
+  const auto moves = [&](const OutlineEdge& e) { return far(e, line) || inside(e, before) || inside(e, after); };
+  if (line.empty() || std::any_of(between.begin(), between.end(), moves) ||
+      std::any_of(line.begin(), line.end(), [&](const OutlineEdge& e) { return far(e, between); }))
+    return {};
+  const auto is_short = [&](const OutlineEdge& e) { return (e.to - e.from).dot(e.direction) < options.cell; };
+  line.erase(std::remove_if(line.begin(), line.end(), is_short), line.end());
+  return line;
+}
+
+/// Walls go on where nothing was seen, and where a step to what lies behind them has sides that nobody saw: there the other face
+/// of the wall shows through a gap.
+void continueWalls(std::vector<OutlineEdge>& edges, const OutlineOptions& options)
+{
+  const auto is_wall = [&](const OutlineEdge& edge) { return edge.seen && edge.length() >= options.wall / 2; };
+  std::rotate(edges.begin(), std::find_if(edges.begin(), edges.end(), is_wall), edges.end());
+  const std::size_t n = edges.size();
+  std::vector<OutlineEdge> whole;
+  for (std::size_t k = 0, next = 1; k < n; k = next++) {
+    whole.push_back(edges[k]);
+    for (std::size_t end = n; is_wall(edges[k]) && end > k + 1 && next == k + 1; --end) // the farthest that goes
+      if (is_wall(edges[end % n]) && !is_wall(edges[k + 1]) && !is_wall(edges[end - 1]))
+        if (const auto line =
+                continued(edges[k], {edges.begin() + k + 1, edges.begin() + end}, edges[end % n], options)) {
+          whole.insert(whole.end(), line->begin(), line->end());
+          next = end;
+        }
+  }
+  if (whole.size() > 2)
+    edges = whole;
+}
 } // namespace
 
 std::vector<PlanWall> joinEdges(std::vector<OutlineEdge> edges, const std::vector<double>& directions,
@@ -299,6 +365,7 @@ std::vector<PlanWall> joinEdges(std::vector<OutlineEdge> edges, const std::vecto
   for (OutlineEdge& edge : edges)
     straighten(edge, directions, samples, options);
   mergeEdges(edges, directions, samples, options);
+  continueWalls(edges, options);
   dropReversed(edges, options);
   mergeEdges(edges, directions, samples, options);
   const auto bends = bendsOf(edges, options);

@@ -15,6 +15,7 @@ struct OutlineEdge {
 
 struct OutlineOptions {
   double cell = 0.02, tolerance = 0.01; ///< metres
+  double wall = 0.2;                    ///< metres: thickness that a gap in the data may show of a wall
 };
 
 /// Pieces of a closed contour, each with a line fitted to the samples beside it.
@@ -24,8 +25,8 @@ std::vector<OutlineEdge> fitEdges(const Polyline& contour, const PlanePoints& sa
 /// Directions modulo 90 degrees that edges share within the tolerance, those of the most length first; degrees, 0..90.
 std::vector<double> mainDirections(const std::vector<OutlineEdge>& edges, double tolerance);
 
-/// Turns edges to main directions where that moves no end by more than the tolerance, joins those on one line, and ends
-/// them where their lines meet.
+/// Turns edges to main directions where that moves no end by more than the tolerance, joins those on one line, continues
+/// walls through gaps in the data and ends them where their lines meet.
 /// @return closed chain of walls
 std::vector<PlanWall> joinEdges(std::vector<OutlineEdge> edges, const std::vector<double>& directions,
                                 const PlanePoints& samples, const OutlineOptions& options);

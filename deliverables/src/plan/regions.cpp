@@ -70,6 +70,18 @@ cv::Mat occupied(const Grid& grid, const RegionInput& input, double low, double 
   return cells;
 }
 
+/// Cells with samples at every height from the floor up to the walls' own: nothing that hangs above furniture or people.
+cv::Mat standing(const Grid& grid, const RegionInput& input, double low)
+{
+  constexpr int slices = 8;
+  cv::Mat filled(grid.height, grid.width, CV_8U, cv::Scalar(0));
+  for (const Eigen::Vector3f& p : input.upright)
+    if (const double slice = slices * (p.z() - low) / (input.storey.wall_low - low); slice >= 0 && slice < slices)
+      if (const Index at = grid.at(p.x(), p.y()); at >= 0)
+        filled.data[at] = static_cast<std::uint8_t>(filled.data[at] | 1 << static_cast<int>(slice));
+  return filled == (1 << slices) - 1;
+}
+
 /// Where floor or ceiling were seen, without the holes under and over furniture.
 cv::Mat covered(const Grid& grid, const RegionInput& input)
 {
@@ -283,14 +295,14 @@ Regions findRegions(const RegionInput& input)
   const Grid& grid = found.grid;
   const cv::Mat seen = covered(grid, input);
   cv::Mat walls = occupied(grid, input, storey.wall_low, storey.wall_high);
-  const cv::Mat standing = occupied(grid, input, storey.floor + skirting, storey.height);
+  const cv::Mat furnished = occupied(grid, input, storey.floor + skirting, storey.height);
   RoomFinder finder(grid, input.door);
   if (storey.has_ceiling)
-    dropHanging(walls, standing, grid.cell);
+    dropHanging(walls, standing(grid, input, storey.floor + skirting), grid.cell);
   finder.find(seen & ~walls);
   if (storey.has_ceiling)
-    if (const cv::Mat open = beams(finder.rooms, standing, grid, input.door); cv::countNonZero(open) > 0) {
-      walls.setTo(0, open & ~standing);
+    if (const cv::Mat open = beams(finder.rooms, furnished, grid, input.door); cv::countNonZero(open) > 0) {
+      walls.setTo(0, open & ~furnished);
       finder.find(seen & ~walls);
     }
   cv::Mat below = occupied(grid, input, storey.height - cut_band, storey.height + cut_band);
