@@ -16,7 +16,7 @@ enum class HintKind { link, relative, near, choose, apart, order };
 
 /// What a person knows of the places of scans.
 struct RegistrationHint {
-  HintKind kind = HintKind::order;                     ///< see docs/registration.md#hints
+  HintKind kind = HintKind::order;                     ///< see docs/hints.md#the-hints-file
   Index a = 0, b = 0;                                  ///< scans; `near` and `order` have no b
   Eigen::Matrix4d T_a_b = Eigen::Matrix4d::Identity(); ///< of `relative`: scan a from scan b, off by up to max_distance
   Eigen::Vector3d place = Eigen::Vector3d::Zero();     ///< of `near`: of the scanner, in the frame of the placed scans
