@@ -226,6 +226,6 @@ def write_room(folder, views, width, height, seed=1, exposure=1.0, shift=0.0, tu
         lines.append(f"{k + 1} " + " ".join(f"{x:.12g}" for x in (*quaternion(R), *t)) + f" 1 view_{k:03}.jpg\n\n")
     open(f"{folder}/cameras/cameras.txt", "w").write(f"1 PINHOLE {width} {height} {focal} {focal} {width / 2} {height / 2}\n")
     open(f"{folder}/cameras/images.txt", "w").writelines(lines)
-    open(f"{folder}/cameras/points3D.txt", "w").close()
+    open(f"{folder}/cameras/points3D.txt", "w").write("# none\n")
     write_mesh(scene or surfaces(), f"{folder}/truth.ply")
     open(f"{folder}/poses.txt", "w").close()
