@@ -330,7 +330,7 @@ std::optional<std::vector<OutlineEdge>> continued(const OutlineEdge& before, con
   if (line.empty() || std::any_of(between.begin(), between.end(), moves) ||
       std::any_of(line.begin(), line.end(), [&](const OutlineEdge& e) { return far(e, between); }))
     return {};
-  const auto is_short = [&](const OutlineEdge& e) { return (e.to - e.from).dot(e.direction) < options.cell; };
+  const auto is_short = [&](const OutlineEdge& e) { return (e.to - e.from).dot(e.direction) < options.wall / 2; };
   line.erase(std::remove_if(line.begin(), line.end(), is_short), line.end());
   return line;
 }

@@ -134,7 +134,7 @@ PhotoConsistency photoConsistency(const PatchMesh& patches, const Candidates& ca
 {
   constexpr float most_octaves = 5;    // by difference: a view that alone shows the patch well keeps a chance
   constexpr float clipped_octaves = 6; // loses to all that are not; of these, the darkest says most
-  const float darkest = photometry.gains.row(1).maxCoeff();
+  const float darkest = photometry.gains.cols() > 0 ? photometry.gains.row(1).maxCoeff() : 1;
   constexpr float certain = 3 * one_octave,
                   certain_around = 45; // grey levels: few surfaces differ so by the light alone
   const int threads = input.options.threads;
