@@ -14,28 +14,9 @@ set(CMAKE_BUILD_WITH_INSTALL_RPATH ON)
 set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
 
 find_program(FRESCO_CCACHE ccache)
-if(FRESCO_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER) # which keeps objects of precompiled headers only if it is told so
-  set(CMAKE_CXX_COMPILER_LAUNCHER "${CMAKE_COMMAND}" -E env CCACHE_SLOPPINESS=pch_defines,time_macros "${FRESCO_CCACHE}")
+if(FRESCO_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
+  set(CMAKE_CXX_COMPILER_LAUNCHER "${FRESCO_CCACHE}")
 endif()
-
-# Headers of Eigen and of the standard library are read once per target. Without, files must name all that they use: the
-# builds with sanitizers hold them to that.
-option(FRESCO_PRECOMPILE "Precompile Eigen's headers" ON)
-function(fresco_precompile target)
-  get_target_property(sources ${target} SOURCES)
-  list(LENGTH sources count)
-  if(NOT FRESCO_PRECOMPILE OR FRESCO_SANITIZE OR count LESS 4) # fewer files do not pay for it
-    return()
-  endif()
-  foreach(source IN LISTS sources)
-    if(source MATCHES "_avx2") # other instructions than those of the precompiled ones
-      set_source_files_properties(${source} PROPERTIES SKIP_PRECOMPILE_HEADERS ON)
-    endif()
-  endforeach()
-  target_precompile_headers(${target} PRIVATE <algorithm> <array> <cmath> <functional> <map> <optional> <string> <vector>
-                            <Eigen/Dense> ${ARGN})
-  target_compile_options(${target} PRIVATE $<$<AND:$<COMPILE_LANGUAGE:CXX>,$<CXX_COMPILER_ID:GNU>>:-fpch-preprocess>)
-endfunction()
 
 # Warnings for our own targets only.
 add_library(fresco_warnings INTERFACE)
