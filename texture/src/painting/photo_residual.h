@@ -39,9 +39,6 @@ struct PhotoResidual {
   }
 };
 
-/// 0..1, how far a grey level is overexposed: the light may have been any brighter. The ramp keeps noise from showing.
-inline float clippedShare(float level) { return std::clamp((level - 242) / 8, 0.f, 1.f); }
-
 /// How many texels of a row can be taken as one, since together they are no wider than a pixel.
 /// @param steps of one texel, see PatchMap::steps()
 int texelsPerPixel(const Eigen::Matrix2f& steps);
