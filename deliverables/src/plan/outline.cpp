@@ -291,18 +291,15 @@ void mergeEdges(std::vector<OutlineEdge>& edges, const std::vector<double>& dire
     k = next == 0 ? edges.size() : k;
   }
 }
-double distanceTo(const OutlineEdge& edge, const Vector2d& p)
-{
-  const Vector2d d = edge.to - edge.from;
-  const double t = d.squaredNorm() > 0 ? std::clamp(d.dot(p - edge.from) / d.squaredNorm(), 0.0, 1.0) : 0;
-  return (edge.from + t * d - p).norm();
-}
 
 double distanceTo(const std::vector<OutlineEdge>& edges, const Vector2d& p)
 {
   double least = std::numeric_limits<double>::infinity();
-  for (const OutlineEdge& edge : edges)
-    least = std::min(least, distanceTo(edge, p));
+  for (const OutlineEdge& edge : edges) {
+    const Vector2d d = edge.to - edge.from;
+    const double t = d.squaredNorm() > 0 ? std::clamp(d.dot(p - edge.from) / d.squaredNorm(), 0.0, 1.0) : 0;
+    least = std::min(least, (edge.from + t * d - p).norm());
+  }
   return least;
 }
 
@@ -335,8 +332,8 @@ std::optional<std::vector<OutlineEdge>> continued(const OutlineEdge& before, con
   return line;
 }
 
-/// Walls go on where nothing was seen, and where a step to what lies behind them has sides that nobody saw: there the other face
-/// of the wall shows through a gap.
+/// Walls go on where nothing was seen, and where a step to what lies behind them has sides that nobody saw: there the
+/// other face of the wall shows through a gap.
 void continueWalls(std::vector<OutlineEdge>& edges, const OutlineOptions& options)
 {
   const auto is_wall = [&](const OutlineEdge& edge) { return edge.seen && edge.length() >= options.wall / 2; };
@@ -345,13 +342,16 @@ void continueWalls(std::vector<OutlineEdge>& edges, const OutlineOptions& option
   std::vector<OutlineEdge> whole;
   for (std::size_t k = 0, next = 1; k < n; k = next++) {
     whole.push_back(edges[k]);
-    for (std::size_t end = n; is_wall(edges[k]) && end > k + 1 && next == k + 1; --end) // the farthest that goes
-      if (is_wall(edges[end % n]) && !is_wall(edges[k + 1]) && !is_wall(edges[end - 1]))
-        if (const auto line =
-                continued(edges[k], {edges.begin() + k + 1, edges.begin() + end}, edges[end % n], options)) {
-          whole.insert(whole.end(), line->begin(), line->end());
-          next = end;
-        }
+    if (!is_wall(edges[k]) || next == n || is_wall(edges[next]))
+      continue;
+    for (std::size_t end = n; end > next; --end) { // the farthest wall that this one goes on to
+      if (!is_wall(edges[end % n]) || is_wall(edges[end - 1]))
+        continue;
+      if (const auto line = continued(edges[k], {edges.begin() + next, edges.begin() + end}, edges[end % n], options)) {
+        whole.insert(whole.end(), line->begin(), line->end());
+        next = end;
+      }
+    }
   }
   if (whole.size() > 2)
     edges = whole;

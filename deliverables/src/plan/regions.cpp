@@ -171,8 +171,8 @@ void dropHanging(cv::Mat& walls, const cv::Mat& standing, double cell)
 }
 
 /// What ends rooms below the ceiling although nothing stands beneath: cells where two rooms are nearest to each other
-/// across a passage wider than doors are. @param rooms per cell, 0 = none. @param standing what reaches down from there
-cv::Mat beams(const cv::Mat& rooms, const cv::Mat& standing, const Grid& grid, double door)
+/// across a passage wider than doors are. @param rooms per cell, 0 = none. @param furnished what stands up to the cut
+cv::Mat beams(const cv::Mat& rooms, const cv::Mat& furnished, const Grid& grid, double door)
 {
   constexpr double thickest = 0.6, jambs = 0.2; // metres
   cv::Mat distance, nearest, none = rooms == 0, wide, found(rooms.size(), CV_8U, cv::Scalar(0));
@@ -181,7 +181,7 @@ cv::Mat beams(const cv::Mat& rooms, const cv::Mat& standing, const Grid& grid, d
   for (int i = 0; i < static_cast<int>(rooms.total()); ++i)
     if (rooms.ptr<int>()[i] > 0)
       room_of[nearest.ptr<int>()[i]] = rooms.ptr<int>()[i];
-  cv::dilate(standing, wide, boxOf(2 * jambs, grid.cell));
+  cv::dilate(furnished, wide, boxOf(2 * jambs, grid.cell));
   std::map<std::pair<int, int>, std::vector<int>> passages; // cells
   for (int i = 0; i + grid.width < static_cast<int>(rooms.total()); ++i)
     for (const int next : {i + 1, i + grid.width}) {
