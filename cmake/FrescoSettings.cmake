@@ -13,10 +13,34 @@ set(CMAKE_INSTALL_RPATH_USE_LINK_PATH ON) # libraries outside of the system's fo
 set(CMAKE_BUILD_WITH_INSTALL_RPATH ON)
 set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
 
+# The compiler's cache keeps objects of precompiled headers only if it is told so. One program, as CMake's variable goes on to
+# builds of examples.
 find_program(FRESCO_CCACHE ccache)
 if(FRESCO_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
-  set(CMAKE_CXX_COMPILER_LAUNCHER "${FRESCO_CCACHE}")
+  file(CONFIGURE OUTPUT "${CMAKE_BINARY_DIR}/ccache" CONTENT "#!/bin/sh
+CCACHE_SLOPPINESS=pch_defines,time_macros exec '@FRESCO_CCACHE@' \"$@\"\n" @ONLY)
+  file(CHMOD "${CMAKE_BINARY_DIR}/ccache" PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
+  set(CMAKE_CXX_COMPILER_LAUNCHER "${CMAKE_BINARY_DIR}/ccache")
 endif()
+
+# Headers of Eigen and of the standard library are read once per target. Without, files must name all that they use: the
+# builds with sanitizers hold them to that.
+option(FRESCO_PRECOMPILE "Precompile Eigen's headers" ON)
+function(fresco_precompile target)
+  get_target_property(sources ${target} SOURCES)
+  list(LENGTH sources count)
+  if(NOT FRESCO_PRECOMPILE OR FRESCO_SANITIZE OR count LESS 4) # fewer files do not pay for it
+    return()
+  endif()
+  foreach(source IN LISTS sources)
+    if(source MATCHES "_avx2") # other instructions than those of the precompiled ones
+      set_source_files_properties(${source} PROPERTIES SKIP_PRECOMPILE_HEADERS ON)
+    endif()
+  endforeach()
+  target_precompile_headers(${target} PRIVATE <algorithm> <array> <cmath> <functional> <map> <optional> <string> <vector>
+                            <Eigen/Dense> ${ARGN})
+  target_compile_options(${target} PRIVATE $<$<AND:$<COMPILE_LANGUAGE:CXX>,$<CXX_COMPILER_ID:GNU>>:-fpch-preprocess>)
+endfunction()
 
 # Warnings for our own targets only.
 add_library(fresco_warnings INTERFACE)
