@@ -49,7 +49,7 @@ struct SimplifyOptions {
     if (tiles && (error > 0 || !full.empty() || compress || faces == 0))
       throw UsageError(files[1] + ": tiles take -faces and neither -error, -from nor -compress");
     if (faces == 0 && error == 0 && full.empty())
-      throw UsageError("one of -faces, -error, -from is needed");
+      throw UsageError("-faces above 0, -error or -from is needed");
     if (!glb && !tiles && (!full.empty() || !to_world.empty() || compress))
       throw UsageError(files[1] + ": the output's extension must be .glb with -from, -to_world and -compress");
     if (!glb && !tiles && !isWritable(files[1], FileKind::mesh) && !isWritable(files[1], FileKind::textured_mesh))
