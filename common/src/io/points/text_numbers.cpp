@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <fresco/core/require.h>
 #include <limits>
 #include <optional>
 #include <type_traits>
@@ -84,8 +83,7 @@ std::string_view TextScanner::word()
 std::string_view TextScanner::wordAcrossLines()
 {
   while (atLineEnd() || *at_ == '#') {
-    if (done())
-      throw std::runtime_error("data ends early");
+    expect(!done(), "data ends early");
     nextLine();
   }
   return word();
@@ -118,15 +116,6 @@ std::string_view TextScanner::restOfLineInPlace()
   return trimmed({begin, static_cast<std::size_t>(at_ - begin)}, blanks);
 }
 
-std::string_view TextScanner::bytes(std::size_t count)
-{
-  if (count > remaining())
-    throw std::runtime_error(concat("truncated: ", count, " bytes expected, ", remaining(), " left"));
-  const char* begin = at_;
-  at_ += count;
-  return {begin, count};
-}
-
 template <typename T>
 T parseNumber(std::string_view word)
 {
@@ -154,8 +143,7 @@ T parseNumber(std::string_view word)
   } else {
     if (const auto whole = wholeNumber<T>(digits))
       return *whole;
-    if (error == std::errc::result_out_of_range && last == end)
-      throw std::runtime_error(concat("'", word.substr(0, 40), "' is out of range"));
+    expect(error != std::errc::result_out_of_range || last != end, "'", word.substr(0, 40), "' is out of range");
   }
   failNumber(word);
 }

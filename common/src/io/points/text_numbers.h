@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+#include "io/files/expect.h"
 #include <charconv>
 #include <fresco/core/export.h>
 #include <fresco/io/file.h>
@@ -21,6 +22,7 @@ public:
 
   bool done() const { return at_ == end_; }
   std::size_t line() const { return line_; } ///< from 1
+  std::string_view rest() const { return {at_, remaining()}; }
   std::size_t remaining() const { return static_cast<std::size_t>(end_ - at_); }
 
   /// Skips blanks; true at the end of the line or text.
@@ -34,7 +36,12 @@ public:
   std::string_view restOfLineInPlace(); ///< the same, but stays before the end of the line
   void nextLine();
   /// The next `count` bytes as they are. @throws std::runtime_error if there are fewer
-  std::string_view bytes(std::size_t count);
+  std::string_view bytes(std::size_t count)
+  {
+    expect(count <= remaining(), "truncated: ", count, " bytes expected, ", remaining(), " left");
+    at_ += count;
+    return {at_ - count, count};
+  }
 
 private:
   const char* at_;
