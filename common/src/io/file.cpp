@@ -1,22 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "io/files/inputs.h"
+#include "io/points/file_window.h"
 #include <algorithm>
 #include <cctype>
-#include <cerrno>
-#include <cstring>
 #include <filesystem>
 #include <fresco/io/file.h>
 #include <fresco/io/files_read.h>
-#include <fstream>
 #include <map>
 #include <mutex>
 #include <optional>
 #include <sys/stat.h>
 namespace fresco {
 namespace {
-/// Bytes per call of the operating system: a process cannot end before the call under way has.
-constexpr std::size_t piece_size = std::size_t{8} << 20;
-
 [[noreturn]] void fail(const std::string& path, const std::string& reason)
 {
   throw std::runtime_error(path + ": " + reason);
@@ -80,26 +75,13 @@ std::string io::reasonNotToOpen(const std::string& path)
 }
 
 std::string readFile(const std::string& path)
-{
-  if (const std::string reason = io::reasonNotToOpen(path); !reason.empty())
-    fail(path, reason);
-  std::error_code error;
-  std::ifstream file(path, std::ios::binary);
-  if (!file)
-    fail(path, std::string("cannot be read (") + std::strerror(errno) + ")");
-  std::string content;
-  const auto size = std::filesystem::file_size(path, error);
-  content.resize(error ? 0 : size);
-  std::size_t done = 0;
-  while (file && done < content.size()) {
-    file.read(&content[done], static_cast<std::streamsize>(std::min(piece_size, content.size() - done)));
-    done += static_cast<std::size_t>(file.gcount());
-  }
-  content.resize(done);
-  if (content.empty())
-    fail(path, "the file is empty");
-  io::rememberInput(path);
+try {
+  const io::RandomAccessFile file(path);
+  std::string content(file.size(), '\0');
+  file.read(0, content.data(), content.size());
   return content;
+} catch (const std::runtime_error& error) {
+  fail(path, error.what());
 }
 
 std::string extension(const std::string& path)

@@ -1,19 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Every format of points and meshes. A new one is a row of the table below and, in docs/formats.md, a row of the list.
 #include "io/files/format_table.h"
+#include "io/mesh/mesh_formats.h"
 #include "io/mesh/obj.h"
 #include "io/mesh/ply.h"
-#include "io/mesh/stl.h"
-#include "io/mesh/vtk_file.h"
-#include "io/points/e57/e57.h"
-#include "io/points/las.h"
 #include "io/points/parse_file.h"
-#include "io/points/pcd.h"
+#include "io/points/point_formats.h"
 #include "io/points/row_file.h"
-#include "io/points/text_scans.h"
-#include "io/points/xyz.h"
 #include <algorithm>
 #include <fresco/io/mesh_io.h>
+#include <fresco/io/point_io.h>
+#include <numeric>
 namespace fresco {
 namespace io {
 namespace {
@@ -189,5 +186,28 @@ TriangleMesh readMesh(const std::string& path) { return io::formatToRead(path, F
 void writeMesh(const std::string& path, const TriangleMesh& mesh)
 {
   io::formatToWrite(path, FileKind::mesh).write_mesh(path, mesh);
+}
+
+PointSet readPoints(const std::string& path)
+{
+  if (extension(path) == ".ply") // its rows need not be copied before they are converted
+    return io::parseFile(path,
+                         [](std::string_view content) { return io::tableToPoints(io::parsePly(content).vertices); });
+  const io::PointTable table = io::readTable(path);
+  return io::namingFile(path, [&] { return io::tableToPoints(table); });
+}
+
+void writePoints(const std::string& path, const PointSet& set)
+{
+  if (extension(path) != ".ply") {
+    io::writeTable(path, io::pointsToTable(set));
+    return;
+  }
+  const auto part = [&](Index begin, Index end) {
+    std::vector<Index> rows(end - begin);
+    std::iota(rows.begin(), rows.end(), begin);
+    return io::pointsToTable(selectPoints(set, rows));
+  };
+  io::writePly(path, set.size(), part, Faces());
 }
 } // namespace fresco

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "io/points/text_numbers.h"
-#include <fresco/core/require.h>
 #include <fresco/io/pose_file.h>
 namespace fresco {
 namespace {
@@ -17,10 +16,8 @@ Pose parsePose(std::string_view line, const std::string& where)
     } catch (const std::runtime_error&) {
       throw std::runtime_error(concat(where, ": wants 16 numbers or the word none"));
     }
-  if (!word.empty())
-    throw std::runtime_error(concat(where, ": more than 16 numbers"));
-  if (!isRigid(T, 1e-3))
-    throw std::runtime_error(concat(where, ": not a rigid transform"));
+  expect(word.empty(), where, ": more than 16 numbers");
+  expect(isRigid(T, 1e-3), where, ": not a rigid transform");
   return T;
 }
 } // namespace
@@ -36,16 +33,14 @@ std::vector<Pose> readPoses(const std::string& path)
     if (line.find_first_not_of(" \t") != std::string_view::npos)
       poses.push_back(parsePose(line, concat(path, ": line ", number)));
   }
-  if (poses.empty())
-    throw std::runtime_error(path + ": no pose in it");
+  expect(!poses.empty(), path, ": no pose in it");
   return poses;
 }
 
 Eigen::Matrix4d readTransform(const std::string& path)
 {
   const std::vector<Pose> poses = readPoses(path);
-  if (poses.size() != 1 || !poses[0])
-    throw std::runtime_error(path + ": is not one matrix of 16 numbers");
+  expect(poses.size() == 1 && poses[0], path, ": is not one matrix of 16 numbers");
   return *poses[0];
 }
 

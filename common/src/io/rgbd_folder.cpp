@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "io/files/expect.h"
 #include <algorithm>
 #include <filesystem>
-#include <fresco/core/require.h>
 #include <fresco/io/image_io.h>
 #include <fresco/io/natural_order.h>
 #include <fresco/io/rgbd_folder.h>
@@ -39,12 +39,10 @@ RgbdFolderFiles listRgbdFolder(const std::string& folder)
     RgbdFrameFiles frame{file.substr(0, end), existing(".color.png"), entry.path().string(), existing(".pose.txt")};
     if (frame.color.empty())
       frame.color = stem + ".color.jpg";
-    if (!fs::exists(frame.color))
-      throw std::runtime_error(frame.color + ": no such file, but " + frame.depth + " is there");
+    expect(fs::exists(frame.color), frame.color, ": no such file, but ", frame.depth, " is there");
     result.frames.push_back(frame);
   }
-  if (result.frames.empty())
-    throw std::runtime_error(folder + ": no frame-*.depth.png in it");
+  expect(!result.frames.empty(), folder, ": no frame-*.depth.png in it");
   std::sort(result.frames.begin(), result.frames.end(),
             [](const auto& a, const auto& b) { return isNaturallyBefore(a.name, b.name); });
   result.camera = depthCamera(folder + "/camera-intrinsics.txt", result.frames.front().depth);

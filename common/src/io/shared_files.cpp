@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "io/files/expect.h"
 #include <algorithm>
 #include <filesystem>
-#include <fresco/core/require.h>
 #include <fresco/io/packing.h>
 #include <fresco/io/shared_files.h>
 namespace fresco {
@@ -14,8 +14,6 @@ void requireSameFiles(const std::vector<std::string>& files, const std::string& 
   }
   const auto all = gatherValues(ranks, own);
   const auto other = std::find_if(all.begin(), all.end(), [&](const auto& found) { return found != all[0]; });
-  if (other != all.end())
-    throw std::runtime_error(
-        concat(name, ": rank ", other - all.begin(), " finds other files or sizes there than rank 0"));
+  expect(other == all.end(), name, ": rank ", other - all.begin(), " finds other files or sizes there than rank 0");
 }
 } // namespace fresco

@@ -2,7 +2,6 @@
 #include "io/points/text_numbers.h"
 #include "io/points/text_table.h"
 #include <Eigen/Geometry>
-#include <fresco/core/require.h>
 #include <fresco/io/text_rows.h>
 namespace fresco {
 std::vector<std::string> cellsOf(std::string_view row)
@@ -37,8 +36,8 @@ Eigen::MatrixXd readMatrix(const std::string& path, int rows, int columns)
   for (const auto& row : readTextRows(path))
     for (const std::string& cell : row)
       numbers.push_back(numberIn(path, cell));
-  if (Index(numbers.size()) != Index{rows} * columns)
-    throw std::runtime_error(concat(path, ": wants ", rows, "x", columns, " numbers, has ", numbers.size()));
+  expect(Index(numbers.size()) == Index{rows} * columns, path, ": wants ", rows, "x", columns, " numbers, has ",
+         numbers.size());
   return Eigen::Map<const Eigen::Matrix<double, -1, -1, Eigen::RowMajor>>(numbers.data(), rows, columns);
 }
 
@@ -47,8 +46,7 @@ Pose rigidPose(const std::string& path, const Eigen::Matrix4d& T)
   constexpr double rounded = 0.02;
   if (!T.allFinite())
     return {};
-  if (!isRigid(T, rounded))
-    throw std::runtime_error(path + ": not a rigid transform");
+  expect(isRigid(T, rounded), path, ": not a rigid transform");
   Eigen::Matrix4d pose = T;
   pose.topLeftCorner<3, 3>() =
       Eigen::Quaterniond(Eigen::Matrix3d(T.topLeftCorner<3, 3>())).normalized().toRotationMatrix();

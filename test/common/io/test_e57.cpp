@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "common/io/e57_file.h"
 #include "common/io/test_io_data.h"
-#include "io/points/e57/e57.h"
+#include "io/points/point_formats.h"
 #include <fresco/core/constants.h>
 #include <fresco/io/point_io.h>
 #include <fresco/io/scan_images.h>

@@ -2,7 +2,7 @@
 // Files made to do harm: counts that wrap, sections twice, nesting, names of other people's files, and small files that
 // ask for much time or memory.
 #include "common/io/memory_limit.h"
-#include "io/points/pcd.h"
+#include "io/points/point_formats.h"
 #include "test_data.h"
 #include <chrono>
 #include <fresco/core/require.h>

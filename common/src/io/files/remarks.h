@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include <fresco/core/require.h>
+#include "io/files/expect.h"
 #include <fresco/io/reading.h>
 namespace fresco::io {
 /// While it lives, what this thread remarks is of the file `path`.

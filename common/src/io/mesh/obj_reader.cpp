@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <fresco/core/polygon_fans.h>
-#include <fresco/core/require.h>
 #include <limits>
 #include <unordered_map>
 namespace fresco::io {
@@ -37,8 +36,7 @@ public:
     } catch (const std::exception& error) {
       throw std::runtime_error(concat("line ", scanner_.line(), ": ", error.what()));
     }
-    if (content_.vertices.empty())
-      throw std::runtime_error("no vertices");
+    expect(!content_.vertices.empty(), "no vertices");
     if (has_lines_)
       remark("lines, points and faces of fewer than 3 corners are left out");
     finishColors();
@@ -115,8 +113,8 @@ private:
   static int absolute(std::int64_t index, std::size_t count)
   {
     const std::int64_t from_zero = index > 0 ? index - 1 : static_cast<std::int64_t>(count) + index;
-    if (index == 0 || from_zero < 0 || from_zero > std::numeric_limits<int>::max())
-      throw std::runtime_error(concat("index ", index, " is out of range"));
+    expect(index != 0 && from_zero >= 0 && from_zero <= std::numeric_limits<int>::max(), "index ", index,
+           " is out of range");
     return from_zero;
   }
 
@@ -207,9 +205,8 @@ private:
       for (std::size_t k = 0; k < 3; ++k) {
         const int indices[3] = {triangle.vertices[k], triangle.texcoords[k], triangle.normals[k]};
         for (int kind = 0; kind < 3; ++kind)
-          if (indices[kind] >= counts[kind] || (kind == 0 && indices[kind] < 0))
-            throw std::runtime_error(
-                concat("a face names element ", Index{indices[kind]} + 1, ", there are ", counts[kind]));
+          expect(indices[kind] < counts[kind] && (kind != 0 || indices[kind] >= 0), "a face names element ",
+                 Index{indices[kind]} + 1, ", there are ", counts[kind]);
       }
   }
 

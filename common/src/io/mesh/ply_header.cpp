@@ -3,7 +3,6 @@
 #include "io/mesh/ply.h"
 #include "io/points/text_numbers.h"
 #include <algorithm>
-#include <fresco/core/require.h>
 namespace fresco::io {
 namespace {
 constexpr struct {
@@ -41,14 +40,12 @@ PlyProperty parseProperty(TextScanner& scanner)
   std::string_view word = scanner.word();
   if (word == "list") {
     property.count_type = parseType(scanner.word());
-    if (!isInteger(*property.count_type))
-      throw std::runtime_error("PLY header: length of a list is no integer");
+    expect(isInteger(*property.count_type), "PLY header: length of a list is no integer");
     word = scanner.word();
   }
   property.type = parseType(word);
   property.name = scanner.word();
-  if (property.name.empty())
-    throw std::runtime_error("PLY header: property without a name");
+  expect(!property.name.empty(), "PLY header: property without a name");
   return property;
 }
 
@@ -72,8 +69,7 @@ bool parseLine(TextScanner& scanner, PlyHeader& header, bool& has_format)
   } else if (keyword == "element") {
     header.elements.push_back(parseElement(scanner));
   } else if (keyword == "property") {
-    if (header.elements.empty())
-      throw std::runtime_error("PLY header: property before any element");
+    expect(!header.elements.empty(), "PLY header: property before any element");
     header.elements.back().properties.push_back(parseProperty(scanner));
   } else if (keyword == "comment") {
     if (scanner.word() == "TextureFile")
@@ -110,17 +106,14 @@ std::size_t PlyElement::fixedSize() const
 PlyHeader parsePlyHeader(std::string_view content)
 {
   TextScanner scanner(content);
-  if (scanner.restOfLine() != "ply")
-    throw std::runtime_error("not a PLY file");
+  expect(scanner.restOfLine() == "ply", "not a PLY file");
   PlyHeader header;
   bool has_format = false;
   while (parseLine(scanner, header, has_format)) {
     scanner.nextLine();
-    if (scanner.done())
-      throw std::runtime_error("PLY header ends early");
+    expect(!scanner.done(), "PLY header ends early");
   }
-  if (!has_format)
-    throw std::runtime_error("PLY header: no format");
+  expect(has_format, "PLY header: no format");
   scanner.nextLine();
   header.size = content.size() - scanner.remaining();
   return header;

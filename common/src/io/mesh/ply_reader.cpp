@@ -8,116 +8,92 @@
 #include <cmath>
 #include <fresco/core/polygon_fans.h>
 #include <fresco/core/poses.h>
-#include <fresco/core/require.h>
 #include <limits>
 namespace fresco::io {
 namespace {
-[[noreturn]] void failEarly(const PlyElement& element)
-{
-  throw std::runtime_error(concat("truncated: ", element.count, " rows of '", element.name, "' do not fit"));
-}
-
-/// Values one after the other from the data of a binary file.
-template <bool Swap>
-class BinarySource {
+/// Values one after the other from the data of a file.
+class ValueReader {
 public:
-  explicit BinarySource(std::string_view data) : at_(data.data()), end_(data.data() + data.size()) {}
+  ValueReader(std::string_view data, PlyFormat format) : scanner_(data), format_(format) {}
+
+  bool isText() const { return format_ == PlyFormat::ascii; }
 
   template <typename T>
   T next()
   {
-    if (remaining() < sizeof(T))
-      throw std::runtime_error("truncated");
+    if (isText())
+      return parseNumber<T>(scanner_.wordAcrossLines());
+    expect(remaining() >= sizeof(T), "truncated");
+    const std::string_view stored = scanner_.bytes(sizeof(T));
+    if (format_ == PlyFormat::little_endian)
+      return loadScalar<T>(stored.data());
     char bytes[sizeof(T)];
-    std::copy(at_, at_ + sizeof(T), bytes);
-    if constexpr (Swap)
-      std::reverse(bytes, bytes + sizeof(T));
-    at_ += sizeof(T);
+    std::reverse_copy(stored.begin(), stored.end(), bytes);
     return loadScalar<T>(bytes);
   }
-  /// Rows without lists are in the file what they are in memory. @return where `bytes` of them begin, or nullptr
+  /// Rows without lists are in some files what they are in memory. @return where `bytes` of them begin, or nullptr
   const std::uint8_t* takeRows(std::size_t bytes)
   {
-    if (Swap || bytes > remaining())
-      return nullptr;
-    at_ += bytes;
-    return reinterpret_cast<const std::uint8_t*>(at_ - bytes);
+    const bool alike = format_ == PlyFormat::little_endian && bytes <= remaining();
+    return alike ? reinterpret_cast<const std::uint8_t*>(scanner_.bytes(bytes).data()) : nullptr;
   }
   /// Appends the rows that follow and are a list of three, as long as they are. @return their number
   std::uint64_t copyTriangles(std::uint64_t most, FaceCollector& collector)
   {
     constexpr std::size_t row_bytes = 1 + 3 * sizeof(int);
+    const std::string_view left = scanner_.rest();
     std::uint64_t rows = 0;
-    for (; !Swap && rows < most && remaining() >= row_bytes && *at_ == 3; ++rows, at_ += row_bytes)
-      collector.addTriangle(loadScalar<std::array<int, 3>>(at_ + 1));
+    if (format_ == PlyFormat::little_endian)
+      for (const char* at = left.data(); rows < most && left.size() / row_bytes > rows && *at == 3;
+           at += row_bytes, ++rows)
+        collector.addTriangle(loadScalar<std::array<int, 3>>(at + 1));
+    scanner_.bytes(rows * row_bytes);
     return rows;
   }
-  std::size_t remaining() const { return end_ - at_; }
-  static std::size_t leastBytes(const PlyElement& element) { return element.fixedSize(); }
-  static std::size_t leastItemBytes(Scalar type) { return scalarSize(type); }
-
-private:
-  const char* at_;
-  const char* end_;
-};
-
-/// Values one after the other from the data of an ASCII file.
-class TextSource {
-public:
-  explicit TextSource(std::string_view data) : scanner_(data) {}
-
-  template <typename T>
-  T next()
+  /// Bytes; the last word of a text needs no separator.
+  std::size_t remaining() const { return scanner_.remaining() + (isText() ? 1 : 0); }
+  std::size_t leastBytes(const PlyElement& element) const
   {
-    return parseNumber<T>(scanner_.wordAcrossLines());
+    return isText() ? 2 * element.properties.size() : element.fixedSize();
   }
-  static const std::uint8_t* takeRows(std::size_t) { return nullptr; }
-  static std::uint64_t copyTriangles(std::uint64_t, FaceCollector&) { return 0; }
-  /// The last word of a file needs no separator.
-  std::size_t remaining() const { return scanner_.remaining() + 1; }
-  static std::size_t leastBytes(const PlyElement& element) { return 2 * element.properties.size(); }
-  static std::size_t leastItemBytes(Scalar) { return 2; }
+  std::size_t leastItemBytes(Scalar type) const { return isText() ? 2 : scalarSize(type); }
 
 private:
   TextScanner scanner_;
+  const PlyFormat format_;
 };
 
 /// Length of a list, checked against the rest of the file.
-template <typename Source>
-std::size_t nextLength(Source& source, const PlyProperty& list)
+std::size_t nextLength(ValueReader& source, const PlyProperty& list)
 {
   return visitScalar(*list.count_type, [&](auto zero) -> std::size_t {
-    const auto raw = source.template next<decltype(zero)>();
-    const auto length = static_cast<std::int64_t>(raw);
-    if (length < 0 || static_cast<std::uint64_t>(length) > source.remaining() / Source::leastItemBytes(list.type))
-      throw std::runtime_error(concat("truncated: a list of ", length, " values does not fit"));
+    const auto length = static_cast<std::int64_t>(source.next<decltype(zero)>());
+    expect(length >= 0 && std::uint64_t(length) <= source.remaining() / source.leastItemBytes(list.type),
+           "truncated: a list of ", length, " values does not fit");
     return length;
   });
 }
 
-template <typename Source>
-void skipValues(Source& source, Scalar type, std::size_t count)
+void skipValues(ValueReader& source, Scalar type, std::size_t count)
 {
   visitScalar(type, [&](auto zero) {
     for (std::size_t i = 0; i < count; ++i)
-      source.template next<decltype(zero)>();
+      source.next<decltype(zero)>();
   });
 }
 
-template <typename Source>
-void skipProperty(Source& source, const PlyProperty& property)
+void skipProperty(ValueReader& source, const PlyProperty& property)
 {
   skipValues(source, property.type, property.count_type ? nextLength(source, property) : 1);
 }
 
-template <typename Source>
-void checkSize(const Source& source, const PlyElement& element)
+void checkSize(const ValueReader& source, const PlyElement& element)
 {
-  const std::size_t least = Source::leastBytes(element);
-  if (least > 0 && element.count > source.remaining() / least)
-    failEarly(element);
-  if (element.name == "face" && element.count > static_cast<std::uint64_t>(std::numeric_limits<int>::max()))
-    throw std::runtime_error(concat("too many rows of '", element.name, "'"));
+  const std::size_t least = source.leastBytes(element);
+  expect(least == 0 || element.count <= source.remaining() / least, "truncated: ", element.count, " rows of '",
+         element.name, "' do not fit");
+  expect(element.name != "face" || element.count <= std::uint64_t(std::numeric_limits<int>::max()),
+         "too many rows of '", element.name, "'");
 }
 
 /// Columns of the properties that are no lists.
@@ -127,13 +103,11 @@ PointTable layoutOf(const PlyElement& element)
   for (const PlyProperty& property : element.properties)
     if (!property.count_type)
       table.addColumn(standardName(property.name), property.type);
-  if (table.columns.empty())
-    throw std::runtime_error("vertices without properties");
+  expect(!table.columns.empty(), "vertices without properties");
   return table;
 }
 
-template <typename Source>
-PointTable readVertices(Source& source, const PlyElement& element)
+PointTable readVertices(ValueReader& source, const PlyElement& element)
 {
   PointTable table = layoutOf(element);
   table.rows = element.count;
@@ -150,18 +124,18 @@ PointTable readVertices(Source& source, const PlyElement& element)
         continue;
       }
       visitScalar(property.type, [&](auto zero) {
-        const auto value = source.template next<decltype(zero)>();
+        const auto value = source.next<decltype(zero)>();
         std::memcpy(at, &value, sizeof(value));
         at += sizeof(value);
       });
     }
-  if constexpr (std::is_same_v<Source, TextSource>)
+  if (source.isText())
     repackWholeNumbers(table);
   return table;
 }
 
-template <typename T, typename Source>
-void readList(Source& source, const PlyProperty& list, std::vector<T>& items)
+template <typename T>
+void readList(ValueReader& source, const PlyProperty& list, std::vector<T>& items)
 {
   items.resize(nextLength(source, list));
   visitScalar(list.type, [&](auto zero) {
@@ -170,7 +144,7 @@ void readList(Source& source, const PlyProperty& list, std::vector<T>& items)
       throw std::runtime_error("vertex indices are no integers");
     else
       for (T& item : items)
-        item = source.template next<Item>();
+        item = source.next<Item>();
   });
 }
 
@@ -213,8 +187,7 @@ bool isTexnumber(const PlyProperty& property)
   return !property.count_type && (property.name == "texnumber" || property.name == "texture_id");
 }
 
-template <typename Source>
-void readFaceProperty(Source& source, const PlyProperty& property, bool textured, TexturedRow& row)
+void readFaceProperty(ValueReader& source, const PlyProperty& property, bool textured, TexturedRow& row)
 {
   if (isIndexList(property))
     readList(source, property, row.corners);
@@ -222,15 +195,15 @@ void readFaceProperty(Source& source, const PlyProperty& property, bool textured
     readList(source, property, row.texcoords);
   else if (textured && isTexnumber(property))
     visitScalar(property.type, [&](auto zero) {
-      row.number = int(std::clamp<double>(source.template next<decltype(zero)>(), -1, std::numeric_limits<int>::max()));
+      row.number = int(std::clamp<double>(source.next<decltype(zero)>(), -1, std::numeric_limits<int>::max()));
     });
   else
     skipProperty(source, property);
 }
 
 /// @param textured content also gets texture coordinates
-template <typename Source>
-void readFaces(Source& source, const PlyElement& element, bool textured, FaceCollector& collector, PlyContent& content)
+void readFaces(ValueReader& source, const PlyElement& element, bool textured, FaceCollector& collector,
+               PlyContent& content)
 {
   const bool strips = element.name == "tristrips";
   const bool plain = !strips && !textured && element.properties.size() == 1 && isPlainIndexList(element.properties[0]);
@@ -270,8 +243,7 @@ void remarkOnOmissions(const PlyHeader& header)
     remark("left out: " + names);
 }
 
-template <typename Source>
-void skipElement(Source& source, const PlyElement& element)
+void skipElement(ValueReader& source, const PlyElement& element)
 {
   for (std::uint64_t row = 0; row < element.count && !element.properties.empty(); ++row)
     for (const PlyProperty& property : element.properties)
@@ -279,8 +251,7 @@ void skipElement(Source& source, const PlyElement& element)
 }
 
 /// First row of PCL's element `camera`: position, axes and the size of an organised cloud.
-template <typename Source>
-void readCamera(Source& source, const PlyElement& element, PointTable& sensor)
+void readCamera(ValueReader& source, const PlyElement& element, PointTable& sensor)
 {
   const PointTable camera = readVertices(source, element);
   const auto value = [&](const std::string& name, double missing) {
@@ -304,8 +275,7 @@ void readCamera(Source& source, const PlyElement& element, PointTable& sensor)
   sensor.height = static_cast<Index>(std::clamp(value("viewporty", 0), 0.0, 1e9));
 }
 
-template <typename Source>
-PlyContent readElements(Source source, const PlyHeader& header, bool textured)
+PlyContent readElements(ValueReader source, const PlyHeader& header, bool textured)
 {
   PlyContent content;
   content.textures = header.textures;
@@ -313,8 +283,7 @@ PlyContent readElements(Source source, const PlyHeader& header, bool textured)
   PointTable camera;
   for (const PlyElement& element : header.elements) {
     checkSize(source, element);
-    if (element.name == "vertex" && content.vertices.rows > 0)
-      throw std::runtime_error("two elements 'vertex'");
+    expect(element.name != "vertex" || content.vertices.rows == 0, "two elements 'vertex'");
     if (element.name == "vertex")
       content.vertices = readVertices(source, element);
     else if (element.name == "face" || element.name == "tristrips")
@@ -324,8 +293,7 @@ PlyContent readElements(Source source, const PlyHeader& header, bool textured)
     else
       skipElement(source, element);
   }
-  if (content.vertices.rows == 0)
-    throw std::runtime_error("no vertices");
+  expect(content.vertices.rows > 0, "no vertices");
   content.faces = collector.faces(content.vertices.rows);
   content.vertices.sensor = camera.sensor;
   if (camera.width * camera.height == content.vertices.rows)
@@ -337,11 +305,7 @@ PlyContent parse(std::string_view content, bool textured)
 {
   const PlyHeader header = parsePlyHeader(content);
   remarkOnOmissions(header);
-  const std::string_view data = content.substr(header.size);
-  if (header.format == PlyFormat::ascii)
-    return readElements(TextSource(data), header, textured);
-  return header.format == PlyFormat::little_endian ? readElements(BinarySource<false>(data), header, textured)
-                                                   : readElements(BinarySource<true>(data), header, textured);
+  return readElements({content.substr(header.size), header.format}, header, textured);
 }
 } // namespace
 

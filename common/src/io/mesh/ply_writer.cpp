@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "io/files/remarks.h"
 #include "io/mesh/ply.h"
+#include "io/points/row_file.h"
 #include "io/points/text_numbers.h"
 #include <algorithm>
 #include <cstring>
-#include <fresco/core/require.h>
 #include <fresco/io/file.h>
 #include <fresco/io/ply_rows.h>
 namespace fresco::io {
@@ -13,9 +13,8 @@ std::string propertyLines(const PointTable& table)
 {
   std::string lines;
   for (const Column& column : table.columns)
-    for (std::size_t k = 0; k < column.count; ++k)
-      lines += textOf("property ", plyTypeName(column.type), ' ', plainName(column.name),
-                      column.count > 1 ? textOf('_', k) : "", '\n');
+    for (const Column& value : singleValues(column))
+      lines += textOf("property ", plyTypeName(value.type), ' ', plainName(value.name), '\n');
   return lines;
 }
 

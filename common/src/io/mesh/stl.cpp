@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "io/mesh/stl.h"
+#include "io/mesh/mesh_formats.h"
 #include "io/mesh/vtk_arrays.h"
 #include "io/points/text_numbers.h"
 #include <algorithm>
 #include <cmath>
-#include <fresco/core/require.h>
 #include <fresco/io/file.h>
 #include <limits>
 #include <numeric>
@@ -26,8 +25,7 @@ Corners binaryCorners(std::string_view content)
 {
   const std::size_t room = content.size() < header_size ? 0 : (content.size() - header_size) / triangle_size;
   const std::size_t count = content.size() < header_size ? 1 : loadScalar<std::uint32_t>(&content[title_size]);
-  if (count > room)
-    throw std::runtime_error("truncated: the triangles do not fit into the file");
+  expect(count <= room, "truncated: the triangles do not fit into the file");
   Corners corners(9 * count);
   for (std::size_t i = 0; i < corners.size(); ++i) {
     const std::size_t normal = 3 * sizeof(float);
@@ -57,14 +55,12 @@ Corners textCorners(std::string_view content)
       for (int i = 0; i < 3; ++i)
         corners.push_back(parseNumber<double>(scanner.wordAcrossLines()));
     } else if (word == "endloop") {
-      if (corners.empty() || corners.size() % 9 != 0)
-        throw std::runtime_error(concat("line ", scanner.line(), ": a facet without three corners"));
+      expect(!corners.empty() && corners.size() % 9 == 0, "line ", scanner.line(), ": a facet without three corners");
     } else if (word != "outer" && word != "loop" && word != "endfacet") {
       throw std::runtime_error(concat("line ", scanner.line(), ": unknown word '", word.substr(0, 40), "'"));
     }
   }
-  if (!closed || corners.size() % 9 != 0)
-    throw std::runtime_error("truncated: the last line is not 'endsolid'");
+  expect(closed && corners.size() % 9 == 0, "truncated: the last line is not 'endsolid'");
   return corners;
 }
 
@@ -86,10 +82,10 @@ std::string triangleBytes(const TriangleMesh& mesh, Index f)
 TriangleMesh parseStl(std::string_view content)
 {
   const Corners corners = isText(content) ? textCorners(content) : binaryCorners(content);
-  if (!std::all_of(corners.begin(), corners.end(), [](double value) { return std::isfinite(value); }))
-    throw std::runtime_error("a coordinate is not finite");
-  if (corners.size() / 3 > std::numeric_limits<int>::max())
-    throw std::runtime_error(concat("more than ", std::numeric_limits<int>::max(), " corners"));
+  expect(std::all_of(corners.begin(), corners.end(), [](double value) { return std::isfinite(value); }),
+         "a coordinate is not finite");
+  expect(corners.size() / 3 <= std::numeric_limits<int>::max(), "more than ", std::numeric_limits<int>::max(),
+         " corners");
   TriangleMesh mesh = tableToMesh(tableOfRows({std::begin(xyz_names), std::end(xyz_names)}, corners));
   mesh.faces.resize(3, mesh.vertexCount() / 3);
   std::iota(mesh.faces.data(), mesh.faces.data() + mesh.faces.size(), 0);
@@ -98,8 +94,7 @@ TriangleMesh parseStl(std::string_view content)
   for (Index f = 0; f < welded.cols(); ++f)
     if (const auto face = welded.col(f); face[0] != face[1] && face[1] != face[2] && face[0] != face[2])
       kept.push_back(f);
-  if (kept.empty())
-    throw std::runtime_error("no triangles");
+  expect(!kept.empty(), "no triangles");
   mesh.faces = welded(Eigen::all, kept);
   return removeUnreferencedVertices(mesh);
 }
@@ -107,8 +102,8 @@ TriangleMesh parseStl(std::string_view content)
 void writeStl(const std::string& path, const TriangleMesh& mesh)
 {
   validateMesh(mesh);
-  if (mesh.faceCount() == 0 || mesh.faceCount() > std::numeric_limits<std::uint32_t>::max())
-    throw std::runtime_error(concat(path, ": STL has no place for ", mesh.faceCount(), " faces"));
+  expect(mesh.faceCount() != 0 && mesh.faceCount() <= std::numeric_limits<std::uint32_t>::max(), path,
+         ": STL has no place for ", mesh.faceCount(), " faces");
   OutputFile file(path);
   std::string header(header_size, '\0');
   header.replace(0, 10, "STL fresco");

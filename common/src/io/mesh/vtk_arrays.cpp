@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "io/mesh/vtk_arrays.h"
+#include "io/files/expect.h"
 #include <algorithm>
-#include <stdexcept>
 namespace fresco::io {
 namespace {
 std::vector<std::string> columnNames(const VtkArray& array)
@@ -22,8 +22,7 @@ std::vector<std::int64_t> VtkArray::integers() const
 {
   return visitScalar(type, [&](auto zero) {
     using T = decltype(zero);
-    if (std::is_floating_point_v<T>)
-      throw std::runtime_error("VTK: cell indices are no integers");
+    expect(!std::is_floating_point_v<T>, "VTK: cell indices are no integers");
     std::vector<std::int64_t> values(bytes.size() / sizeof(T));
     for (std::size_t i = 0; i < values.size(); ++i)
       values[i] = loadScalar<T>(bytes.data() + i * sizeof(T));
@@ -53,8 +52,8 @@ PointTable tableOfArrays(const VtkArray& points, const std::vector<VtkArray>& ar
   for (const VtkArray& array : arrays)
     place(array, columnNames(array));
   for (const auto& [array, column] : sources)
-    if (array->bytes.size() != points.tuples() * array->components * scalarSize(array->type))
-      throw std::runtime_error("VTK: '" + array->name.substr(0, 40) + "' has another number of tuples than the points");
+    expect(array->bytes.size() == points.tuples() * array->components * scalarSize(array->type), "VTK: '",
+           array->name.substr(0, 40), "' has another number of tuples than the points");
   table.allocate(points.tuples());
   for (const auto& [array, column] : sources) {
     const std::size_t bytes = array->components * scalarSize(array->type);

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "io/mesh/mesh_formats.h"
 #include "io/mesh/vtk_arrays.h"
-#include "io/mesh/vtk_file.h"
 #include "io/points/text_numbers.h"
 #include <algorithm>
 #include <fresco/core/polygon_fans.h>
-#include <fresco/core/require.h>
 namespace fresco::io {
 namespace {
 Scalar parseType(std::string_view word)
@@ -49,8 +48,7 @@ public:
     parseHeader();
     for (std::string_view word = nextKeyword(); !word.empty(); word = nextKeyword())
       parseSection(lowerCase(word));
-    if (points_.bytes.empty())
-      throw std::runtime_error("no points");
+    expect(!points_.bytes.empty(), "no points");
     MeshTable mesh{tableOfArrays(points_, arrays_), {}};
     mesh.faces = collector_.faces(mesh.vertices.rows);
     return mesh;
@@ -59,15 +57,13 @@ public:
 private:
   void parseHeader()
   {
-    if (lowerCase(scanner_.restOfLine()).rfind("# vtk datafile version", 0) != 0)
-      throw std::runtime_error("not a legacy VTK file");
+    expect(lowerCase(scanner_.restOfLine()).rfind("# vtk datafile version", 0) == 0, "not a legacy VTK file");
     scanner_.restOfLine(); // title
     const std::string storage = lowerCase(scanner_.restOfLine());
-    if (storage != "ascii" && storage != "binary")
-      throw std::runtime_error("VTK: neither ASCII nor BINARY");
+    expect(storage == "ascii" || storage == "binary", "VTK: neither ASCII nor BINARY");
     binary_ = storage == "binary";
-    if (lowerCase(nextKeyword()) != "dataset" || lowerCase(scanner_.wordAcrossLines()) != "polydata")
-      throw std::runtime_error("VTK: the dataset is not POLYDATA");
+    expect(lowerCase(nextKeyword()) == "dataset" && lowerCase(scanner_.wordAcrossLines()) == "polydata",
+           "VTK: the dataset is not POLYDATA");
   }
 
   /// Next word on whatever line, empty at the end of the file.
@@ -84,16 +80,14 @@ private:
   std::size_t nextCount()
   {
     const auto count = parseNumber<std::int64_t>(scanner_.wordAcrossLines());
-    if (count < 0)
-      throw std::runtime_error(concat("VTK: negative count ", count));
+    expect(count >= 0, "VTK: negative count ", count);
     return count;
   }
 
   void parseSection(const std::string& keyword)
   {
     if (keyword == "points") {
-      if (!points_.bytes.empty())
-        throw std::runtime_error("VTK: two sections POINTS");
+      expect(points_.bytes.empty(), "VTK: two sections POINTS");
       const std::size_t count = nextCount();
       const Scalar type = parseType(scanner_.wordAcrossLines());
       points_ = readArray("points", type, 3, count);
@@ -106,8 +100,8 @@ private:
     } else if (keyword == "point_data" || keyword == "cell_data") {
       tuples_ = nextCount();
       is_point_data_ = keyword == "point_data";
-      if (is_point_data_ && tuples_ != points_.tuples())
-        throw std::runtime_error(concat("VTK: POINT_DATA has ", tuples_, " tuples, which is not the number of points"));
+      expect(!is_point_data_ || tuples_ == points_.tuples(), "VTK: POINT_DATA has ", tuples_,
+             " tuples, which is not the number of points");
     } else if (keyword == "metadata") {
       scanner_.nextLine();
       while (!scanner_.restOfLine().empty()) {
@@ -149,8 +143,8 @@ private:
   {
     const std::string_view word = scanner_.word();
     const std::size_t components = word.empty() ? 1 : parseNumber<std::uint32_t>(word);
-    if (lowerCase(scanner_.wordAcrossLines()) != "lookup_table" || scanner_.word().empty())
-      throw std::runtime_error("VTK: SCALARS without LOOKUP_TABLE");
+    expect(lowerCase(scanner_.wordAcrossLines()) == "lookup_table" && !scanner_.word().empty(),
+           "VTK: SCALARS without LOOKUP_TABLE");
     return components;
   }
 
@@ -173,8 +167,8 @@ private:
   VtkArray readArray(const std::string& name, Scalar type, std::size_t components, std::size_t tuples)
   {
     const std::size_t least = binary_ ? scalarSize(type) : 2; // bytes per value; the last word needs no separator
-    if (components == 0 || components > 1000 || tuples > (scanner_.remaining() + 1) / (least * components))
-      throw std::runtime_error(concat("truncated: ", tuples, " tuples of '", name.substr(0, 40), "' do not fit"));
+    expect(components != 0 && components <= 1000 && tuples <= (scanner_.remaining() + 1) / (least * components),
+           "truncated: ", tuples, " tuples of '", name.substr(0, 40), "' do not fit");
     VtkArray array{name, type, components, {}};
     const std::size_t count = tuples * components;
     if (binary_)
@@ -212,8 +206,8 @@ private:
     const std::vector<std::int64_t> list = readArray("cells", Scalar::int32, 1, size).integers();
     std::size_t at = 0;
     for (std::size_t i = 0; i < cells; ++i) {
-      if (at >= list.size() || list[at] < 0 || static_cast<std::size_t>(list[at]) >= list.size() - at)
-        throw std::runtime_error("VTK: a cell does not fit into its list");
+      expect(at < list.size() && list[at] >= 0 && static_cast<std::size_t>(list[at]) < list.size() - at,
+             "VTK: a cell does not fit into its list");
       add(list.data() + at + 1, list[at]);
       at += static_cast<std::size_t>(list[at]) + 1;
     }
@@ -225,14 +219,13 @@ private:
     scanner_.wordAcrossLines();
     const Scalar offset_type = parseType(scanner_.wordAcrossLines());
     const std::vector<std::int64_t> offsets = readArray("offsets", offset_type, 1, count).integers();
-    if (lowerCase(scanner_.wordAcrossLines()) != "connectivity")
-      throw std::runtime_error("VTK: OFFSETS without CONNECTIVITY");
+    expect(lowerCase(scanner_.wordAcrossLines()) == "connectivity", "VTK: OFFSETS without CONNECTIVITY");
     const Scalar type = parseType(scanner_.wordAcrossLines());
     const std::vector<std::int64_t> corners = readArray("connectivity", type, 1, size).integers();
     for (std::size_t i = 1; i < offsets.size(); ++i) {
       const std::int64_t begin = offsets[i - 1], end = offsets[i];
-      if (begin < 0 || end < begin || end > static_cast<std::int64_t>(corners.size()))
-        throw std::runtime_error("VTK: a cell does not fit into its list");
+      expect(begin >= 0 && end >= begin && end <= static_cast<std::int64_t>(corners.size()),
+             "VTK: a cell does not fit into its list");
       add(corners.data() + begin, end - begin);
     }
   }

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "io/mesh/mesh_formats.h"
 #include "io/mesh/vtk_arrays.h"
-#include "io/mesh/vtk_file.h"
 #include "io/points/text_numbers.h"
 #include <algorithm>
-#include <fresco/core/require.h>
 #include <fresco/io/file.h>
 namespace fresco::io {
 namespace {
@@ -47,22 +46,25 @@ Arrays arraysOf(const std::string& path, const PointTable& table)
   return arrays;
 }
 
-/// Legacy VTK stores the high byte first.
-void appendSwapped(std::string& bytes, const std::uint8_t* value, std::size_t size)
+/// The values of an array, row by row. @param swapped the high byte first, as legacy VTK stores them
+std::string valuesOf(const PointTable& table, const ColumnArray& array, bool swapped)
 {
-  bytes.append(std::make_reverse_iterator(value + size), std::make_reverse_iterator(value));
+  const std::size_t size = scalarSize(array.type());
+  std::string bytes;
+  bytes.reserve(table.rows * array.components() * size + 1);
+  for (Index row = 0; row < table.rows; ++row)
+    for (const Column& column : array.columns) {
+      const std::size_t begin = bytes.size();
+      bytes.append(reinterpret_cast<const char*>(table.cell(row, column)), column.bytes());
+      for (std::size_t at = begin; swapped && at < bytes.size(); at += size)
+        std::reverse(&bytes[at], &bytes[at] + size);
+    }
+  return bytes;
 }
 
-/// The values of an array, row by row.
 std::string swappedBytes(const PointTable& table, const ColumnArray& array)
 {
-  std::string bytes;
-  bytes.reserve(table.rows * array.components() * scalarSize(array.type()) + 1);
-  for (Index row = 0; row < table.rows; ++row)
-    for (const Column& column : array.columns)
-      for (std::size_t k = 0; k < column.count; ++k)
-        appendSwapped(bytes, table.cell(row, column) + k * scalarSize(column.type), scalarSize(column.type));
-  return bytes + '\n';
+  return valuesOf(table, array, true) + '\n';
 }
 
 std::string encodeName(const std::string& name)
@@ -84,7 +86,8 @@ void writePolygons(OutputFile& file, const Faces& faces)
   bytes.reserve(16 * static_cast<std::size_t>(faces.cols()));
   for (Index f = 0; f < faces.cols(); ++f)
     for (const std::int32_t value : {3, faces(0, f), faces(1, f), faces(2, f)})
-      appendSwapped(bytes, reinterpret_cast<const std::uint8_t*>(&value), sizeof(value));
+      for (const int shift : {24, 16, 8, 0})
+        bytes += char(value >> shift);
   file.write(bytes + '\n');
 }
 
@@ -137,12 +140,7 @@ struct AppendedData {
   }
   std::string add(const PointTable& table, const ColumnArray& array)
   {
-    std::string bytes;
-    bytes.reserve(table.rows * array.components() * scalarSize(array.type()));
-    for (Index row = 0; row < table.rows; ++row)
-      for (const Column& column : array.columns)
-        bytes.append(reinterpret_cast<const char*>(table.cell(row, column)), column.bytes());
-    return add(array.name, array.type(), array.components(), std::move(bytes));
+    return add(array.name, array.type(), array.components(), valuesOf(table, array, false));
   }
 };
 

@@ -38,8 +38,7 @@ CloudFile readCloud(const std::string& path) { return readCloud(ScanPath{path});
 CloudFile readCloud(const ScanPath& path)
 {
   io::PointTable table = io::readTable(path);
-  if (table.rows == 0)
-    throw std::runtime_error(path.name() + ": no points");
+  expect(table.rows != 0, path.name(), ": no points");
   io::packColors(table);
   return fileOf(std::move(table));
 }

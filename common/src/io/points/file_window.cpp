@@ -6,13 +6,14 @@
 #include <cerrno>
 #include <cstring>
 #include <fcntl.h>
-#include <fresco/core/require.h>
-#include <stdexcept>
 #include <sys/stat.h>
 #include <unistd.h>
 namespace fresco::io {
 namespace {
 constexpr std::size_t window_size = std::size_t{1} << 20; // a line of a scan has some 100 bytes
+
+/// Bytes per call of the operating system: a process cannot end before the call under way has.
+constexpr std::size_t piece_size = std::size_t{8} << 20;
 } // namespace
 
 RandomAccessFile::RandomAccessFile(const std::string& path)
@@ -36,12 +37,11 @@ RandomAccessFile::~RandomAccessFile() { ::close(descriptor_); }
 
 void RandomAccessFile::read(std::uint64_t offset, void* to, std::size_t bytes) const
 {
-  if (offset > size_ || bytes > size_ - offset)
-    throw std::runtime_error(
-        concat("truncated: ", bytes, " bytes expected at ", offset, ", the file has ", size_, " bytes"));
+  expect(offset <= size_ && bytes <= size_ - offset, "truncated: ", bytes, " bytes expected at ", offset,
+         ", the file has ", size_, " bytes");
   auto* at = static_cast<char*>(to);
   while (bytes > 0) {
-    const ssize_t done = ::pread(descriptor_, at, bytes, offset);
+    const ssize_t done = ::pread(descriptor_, at, std::min(bytes, piece_size), offset);
     if (done < 0 && errno == EINTR)
       continue;
     if (done <= 0)
@@ -73,8 +73,7 @@ bool LineReader::next(std::string_view& text)
   std::size_t end = window_.find('\n', at_);
   while (end == std::string::npos) {
     const std::size_t searched = window_.size() - at_;
-    if (searched > window_size)
-      throw std::runtime_error(concat("line ", line_, ": longer than ", window_size, " bytes: not a text file"));
+    expect(searched <= window_size, "line ", line_, ": longer than ", window_size, " bytes: not a text file");
     if (!fill())
       break;
     end = window_.find('\n', searched);

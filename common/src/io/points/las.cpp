@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "io/points/las.h"
-#include "io/points/file_window.h"
 #include "io/points/las_fields.h"
+#include "io/points/point_formats.h"
+#include "io/points/row_file.h"
 #include <Eigen/Core>
 #include <algorithm>
-#include <fresco/core/require.h>
 #include <limits>
 namespace fresco::io {
 namespace {
@@ -22,22 +21,18 @@ LasHeader readHeader(const RandomAccessFile& file)
 {
   constexpr std::size_t oldest = 227, newest = 375;
   std::uint8_t bytes[newest] = {};
-  if (file.size() < oldest)
-    throw std::runtime_error("not a LAS file: too short");
+  expect(file.size() >= oldest, "not a LAS file: too short");
   file.read(0, bytes, std::min<std::uint64_t>(newest, file.size()));
-  if (std::memcmp(bytes, "LASF", 4) != 0)
-    throw std::runtime_error("not a LAS file: it does not begin with LASF");
+  expect(std::memcmp(bytes, "LASF", 4) == 0, "not a LAS file: it does not begin with LASF");
   const int major = bytes[24], minor = bytes[25];
-  if (major != 1 || minor > 4)
-    throw std::runtime_error(concat("version ", major, '.', minor, " of LAS is not known"));
+  expect(major == 1 && minor <= 4, "version ", major, '.', minor, " of LAS is not known");
   LasHeader header;
   constexpr int compressed = 0x80;
-  if ((bytes[104] & compressed) != 0)
-    throw std::runtime_error("compressed (LAZ): name it .laz");
+  expect((bytes[104] & compressed) == 0, "compressed (LAZ): name it .laz");
   header.format = bytes[104];
   header.record = loadScalar<std::uint16_t>(bytes + 105);
-  if (header.format > 10 || header.record < lasRecordBytes(header.format))
-    throw std::runtime_error(concat("points of format ", header.format, " in ", header.record, " bytes"));
+  expect(header.format <= 10 && header.record >= lasRecordBytes(header.format), "points of format ", header.format,
+         " in ", header.record, " bytes");
   header.records = loadScalar<std::uint16_t>(bytes + 94);
   header.record_count = loadScalar<std::uint32_t>(bytes + 100);
   header.data = loadScalar<std::uint32_t>(bytes + 96);
@@ -48,8 +43,8 @@ LasHeader readHeader(const RandomAccessFile& file)
     header.scale[axis] = loadScalar<double>(bytes + 131 + 8 * axis);
     header.offset[axis] = loadScalar<double>(bytes + 155 + 8 * axis);
   }
-  if (!header.scale.isFinite().all() || !header.offset.isFinite().all())
-    throw std::runtime_error("scale or offset of the coordinates is not finite");
+  expect(header.scale.isFinite().all() && header.offset.isFinite().all(),
+         "scale or offset of the coordinates is not finite");
   return header;
 }
 
@@ -107,9 +102,7 @@ public:
       : file_(path), header_(readHeader(file_)), fields_(fieldsOf(file_, header_))
   {
     const std::uint64_t left = file_.size() - std::min(header_.data, file_.size());
-    if (header_.points > left / header_.record)
-      throw std::runtime_error(concat("truncated: ", header_.points, " points of ", header_.record,
-                                      " bytes do not fit into ", left, " bytes"));
+    expectRows(header_.points, header_.record, left);
     ScanInfo info;
     info.points = points();
     info.intensity_limits = Eigen::Array2d(0, std::numeric_limits<std::uint16_t>::max());

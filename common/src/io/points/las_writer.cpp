@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "io/files/remarks.h"
-#include "io/points/las.h"
 #include "io/points/las_fields.h"
+#include "io/points/point_formats.h"
+#include "io/points/row_file.h"
 #include <algorithm>
 #include <cmath>
-#include <fresco/core/require.h>
 #include <fresco/io/file.h>
 namespace fresco::io {
 namespace {
@@ -46,13 +45,9 @@ public:
           std::find_if(fields_.begin(), fields_.end(), [&](const auto& f) { return f.name == column.name; });
       if (same != fields_.end() && (column.name != "intensity" || isWhole16(table, column)))
         continue;
-      for (std::size_t k = 0; k < column.count; ++k) {
-        Column one = column;
-        one.count = 1;
-        one.name += column.count > 1 ? concat('_', k) : "";
-        one.offset += k * scalarSize(column.type);
+      for (const Column& one : singleValues(column)) {
         extra_.push_back(one);
-        record_ += scalarSize(column.type);
+        record_ += one.bytes();
       }
     }
     require(record_ <= 65535, "too many fields for LAS");
@@ -64,8 +59,7 @@ public:
     for (const Column& column : extra_)
       descriptors += lasExtraDescriptor(column);
     const std::size_t more = extra_.empty() ? 0 : record_head + descriptors.size();
-    if (descriptors.size() > 65535)
-      throw std::runtime_error("too many fields for LAS");
+    expect(descriptors.size() <= 65535, "too many fields for LAS");
     std::string bytes(header_bytes + more, '\0');
     bytes.replace(0, 4, "LASF");
     put<std::uint16_t>(bytes, 6, 1 << 4); // coordinate systems as text
@@ -152,8 +146,7 @@ void writeLas(const std::string& path, PointTable table)
   namingFile(path, [&] {
     unpackColors(table);
     const auto xyz = findTriple(table, xyz_names);
-    if (!xyz)
-      throw std::runtime_error("no coordinates x y z");
+    expect(xyz.has_value(), "no coordinates x y z");
     const std::vector<bool> finite = finiteRows(table);
     const Index count = std::count(finite.begin(), finite.end(), true);
     if (count < table.rows)

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "io/points/las.h"
+#include "io/points/point_formats.h"
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
 #include <fcntl.h>
 #include <filesystem>
-#include <fresco/core/require.h>
 #include <fresco/io/file.h>
 #include <spawn.h>
 #include <sys/wait.h>
@@ -47,20 +46,17 @@ void runLaszip(const std::string& from, const std::string& to)
   pid_t process = 0;
   const int error = ::posix_spawnp(&process, "laszip", &actions, nullptr, arguments, environ);
   posix_spawn_file_actions_destroy(&actions);
-  if (error != 0)
-    throw std::runtime_error(laz_hint);
+  expect(error == 0, "compressed (LAZ): install the program laszip, which reads and writes it, or use .las");
   int status = 0;
   while (::waitpid(process, &status, 0) < 0 && errno == EINTR)
     ;
-  if (status != 0 || !std::filesystem::exists(to))
-    throw std::runtime_error("the program laszip could not convert it");
+  expect(status == 0 && std::filesystem::exists(to), "the program laszip could not convert it");
 }
 } // namespace
 
 std::unique_ptr<ScanReader> openLaz(const std::string& path)
 {
-  if (!std::filesystem::is_regular_file(path))
-    throw std::runtime_error("no such file");
+  expect(std::filesystem::is_regular_file(path), "no such file");
   const TemporaryFolder folder;
   runLaszip(path, folder.file("points.las"));
   return openLas(folder.file("points.las")); // which stays open

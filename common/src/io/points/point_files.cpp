@@ -4,7 +4,6 @@
 #include "io/points/scan_reader.h"
 #include <algorithm>
 #include <filesystem>
-#include <fresco/core/require.h>
 #include <fresco/io/formats.h>
 #include <fresco/io/point_files.h>
 #include <fresco/io/point_io.h>
@@ -173,9 +172,8 @@ private:
     return io::namingFile(source.path.name(), [&] {
       const Attributes own = attributesOf(table);
       const bool first = sources_.empty();
-      if (!first && own.normals != attributes_.normals)
-        throw std::runtime_error(own.normals ? "the points have normals, unlike those of the files before"
-                                             : "the points have no normals");
+      expect(first || own.normals == attributes_.normals,
+             own.normals ? "the points have normals, unlike those of the files before" : "the points have no normals");
       attributes_ = {own.normals, attributes_.colors && own.colors, attributes_.intensities && own.intensities,
                      attributes_.confidences && own.confidences};
       return isDouble(table);
@@ -240,8 +238,7 @@ std::vector<std::string> pointFilesIn(const std::vector<std::string>& words)
 {
   std::vector<std::string> files;
   for (const std::string& word : words) {
-    if (!std::filesystem::exists(word))
-      throw std::runtime_error(word + ": no such file");
+    expect(std::filesystem::exists(word), word, ": no such file");
     if (!std::filesystem::is_directory(word)) {
       files.push_back(word);
       continue;
@@ -250,8 +247,7 @@ std::vector<std::string> pointFilesIn(const std::vector<std::string>& words)
     for (const auto& entry : std::filesystem::directory_iterator(word))
       if (entry.is_regular_file() && isPointFile(entry.path()))
         inside.push_back(entry.path().string());
-    if (inside.empty())
-      throw std::runtime_error(word + ": no file of points in this folder");
+    expect(!inside.empty(), word, ": no file of points in this folder");
     std::sort(inside.begin(), inside.end());
     files.insert(files.end(), inside.begin(), inside.end());
   }

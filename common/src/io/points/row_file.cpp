@@ -3,7 +3,6 @@
 #include "io/files/format_table.h"
 #include "io/points/scan_reader.h"
 #include <algorithm>
-#include <fresco/core/require.h>
 namespace fresco::io {
 namespace {
 /// What begins with a header of that kind; nothing if it is malformed: reading it whole then says why.
@@ -34,9 +33,9 @@ std::optional<RowFile> RowFile::open(const std::string& path)
     if (!layout || layout->rows == 0 || layout->table.stride == 0)
       return {};
     const std::uint64_t available = file.size() - std::min(layout->offset, file.size());
-    if (available < layout->bytes_after || layout->rows > (available - layout->bytes_after) / layout->table.stride)
-      throw std::runtime_error(concat("truncated: ", layout->rows, " points of ", layout->table.stride,
-                                      " bytes do not fit into ", available, " bytes"));
+    expect(available >= layout->bytes_after && layout->rows <= (available - layout->bytes_after) / layout->table.stride,
+           "truncated: ", layout->rows, " points of ", layout->table.stride, " bytes do not fit into ", available,
+           " bytes");
     result.layout_ = std::move(layout->table);
     result.offset_ = layout->offset;
     result.rows_ = static_cast<Index>(layout->rows);
@@ -64,8 +63,7 @@ PointTable RowFile::read(Index begin, Index end) const
   PointTable table = layout_;
   table.allocate(end - begin);
   const RandomAccessFile file(path_);
-  if (file.size() != size_)
-    throw std::runtime_error("the file changed while it was read");
+  expect(file.size() == size_, "the file changed while it was read");
   file.read(offset_ + static_cast<std::uint64_t>(begin) * layout_.stride, table.data.data(), table.data.size());
   return table;
 }

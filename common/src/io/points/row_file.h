@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+#include "io/files/expect.h"
 #include "io/points/file_window.h"
 #include <fresco/core/point_table.h>
 #include <memory>
@@ -7,6 +8,13 @@
 #include <string>
 #include <string_view>
 namespace fresco::io {
+/// @throws std::runtime_error unless so many rows fit into what is left of a file
+inline void expectRows(std::uint64_t rows, std::size_t row_bytes, std::uint64_t available)
+{
+  expect(rows <= available / row_bytes, "truncated: ", rows, " points of ", row_bytes, " bytes do not fit into ",
+         available, " bytes");
+}
+
 /// Where the rows of a file begin that are in the file what they are in memory.
 struct RowLayout {
   PointTable table; ///< columns and bytes per row, without rows
@@ -18,6 +26,18 @@ struct RowLayout {
 /// files has something to say against it.
 std::optional<RowLayout> plyRows(std::string_view begin);
 std::optional<RowLayout> pcdRows(std::string_view begin);
+
+/// Each value of a column as a column of its own: NAME_0, NAME_1 ... where there are several.
+inline std::vector<Column> singleValues(const Column& column)
+{
+  std::vector<Column> values(column.count, column);
+  for (std::size_t k = 0; k < column.count; ++k) {
+    values[k].name += column.count > 1 ? concat('_', k) : "";
+    values[k].count = 1;
+    values[k].offset += k * scalarSize(column.type);
+  }
+  return values;
+}
 
 /// A file of rows of fixed size, read at any place. It is open only while it is read, since there may be thousands.
 class RowFile {

@@ -3,7 +3,6 @@
 #include "io/points/parse_file.h"
 #include "io/points/scan_reader.h"
 #include <algorithm>
-#include <fresco/core/require.h>
 #include <fresco/io/point_io.h>
 #include <fresco/io/scan_file.h>
 namespace fresco {
@@ -11,16 +10,14 @@ namespace {
 std::unique_ptr<io::ScanReader> openScans(const std::string& path)
 {
   const io::Format& format = io::formatToRead(path, FileKind::points);
-  if (!format.open_scans)
-    throw std::runtime_error(path + ": holds one cloud, there is no scan to choose");
+  expect(format.open_scans, path, ": holds one cloud, there is no scan to choose");
   return io::namingFile(path, [&] { return format.open_scans(path); });
 }
 
 void checkScan(const io::ScanReader& reader, Index scan)
 {
   const Index count = reader.scans().size();
-  if (scan < 0 || scan >= count)
-    throw std::runtime_error(concat("there is no scan ", scan + 1, ", the file has ", count));
+  expect(scan >= 0 && scan < count, "there is no scan ", scan + 1, ", the file has ", count);
 }
 } // namespace
 
@@ -34,8 +31,7 @@ bool holdsScans(const std::string& path)
 std::vector<ScanInfo> readScanInfos(const std::string& path)
 {
   const auto reader = openScans(path);
-  if (reader->scans().empty())
-    throw std::runtime_error(path + ": no scan in it");
+  expect(!reader->scans().empty(), path, ": no scan in it");
   return reader->scans();
 }
 

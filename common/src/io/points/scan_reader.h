@@ -6,7 +6,6 @@
 #include <fresco/io/scan_file.h>
 #include <memory>
 #include <new>
-#include <stdexcept>
 #include <string>
 #include <vector>
 namespace fresco::io {

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "io/points/scan_reader.h"
 #include <algorithm>
-#include <fresco/core/require.h>
 #include <limits>
-#include <stdexcept>
 namespace fresco::io {
 namespace {
 template <typename T>
@@ -184,8 +182,7 @@ PointTable readMergedTable(ScanReader& reader)
       });
   tellDamage(errors, !used.empty());
   errors.clear();
-  if (used.empty())
-    throw std::runtime_error("no points");
+  expect(!used.empty(), "no points");
   PointTable merged = sharedLayout(layouts);
   const bool sensors = std::all_of(used.begin(), used.end(), [&](Index i) { return scans[i].sensor.has_value(); });
   if (sensors && used.size() > 1)
@@ -197,8 +194,7 @@ PointTable readMergedTable(ScanReader& reader)
   for (const Index scan : used)
     attempt(scan, errors, [&] { done = appendScan(reader, scan, merged, done); });
   tellDamage(errors, done > 0);
-  if (done == 0)
-    throw std::runtime_error("no points");
+  expect(done != 0, "no points");
   merged.rows = done;
   merged.data.resize(done * merged.stride);
   if (sensors && used.size() == 1) {

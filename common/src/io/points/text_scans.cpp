@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "io/points/text_scans.h"
 #include "io/points/file_window.h"
+#include "io/points/point_formats.h"
 #include "io/points/text_numbers.h"
 #include "io/points/text_table.h"
 #include <algorithm>
@@ -32,13 +32,11 @@ std::vector<double> numbersOf(std::string_view line, std::size_t count)
 {
   Words words;
   TableDialect().split(line, words);
-  if (words.size() != count)
-    throw std::runtime_error(concat("wants ", count, " numbers"));
+  expect(words.size() == count, "wants ", count, " numbers");
   std::vector<double> numbers;
   for (const std::string_view word : words) {
     numbers.push_back(parseNumber<double>(word));
-    if (!std::isfinite(numbers.back()))
-      throw std::runtime_error("a number is not finite");
+    expect(std::isfinite(numbers.back()), "a number is not finite");
   }
   return numbers;
 }
@@ -48,8 +46,7 @@ std::string_view contentLine(LineReader& lines)
 {
   std::string_view line;
   do
-    if (!lines.next(line))
-      throw std::runtime_error("the file ends within the header of a station");
+    expect(lines.next(line), "the file ends within the header of a station");
   while (line.empty());
   return line;
 }
@@ -59,18 +56,16 @@ constexpr std::uint64_t least_line = 6;
 
 Index checkedCount(std::uint64_t count, const LineReader& lines)
 {
-  if (count > (lines.remaining() + 1) / least_line)
-    throw std::runtime_error(
-        concat(count, " points announced, but only ", lines.remaining(), " bytes are left in the file"));
+  expect(count <= (lines.remaining() + 1) / least_line, count, " points announced, but only ", lines.remaining(),
+         " bytes are left in the file");
   return count;
 }
 
 void checkWords(std::size_t words, const Block& block)
 {
-  if (words != block.words)
-    throw std::runtime_error(concat("wants ", block.words, " numbers"));
-  if (words != 3 && words != 4 && words != 6 && words != 7 && words != 9 && words != 10)
-    throw std::runtime_error(concat("a point has 3, 4, 6, 7, 9 or 10 numbers, not ", words));
+  expect(words == block.words, "wants ", block.words, " numbers");
+  expect(words == 3 || words == 4 || words == 6 || words == 7 || words == 9 || words == 10,
+         "a point has 3, 4, 6, 7, 9 or 10 numbers, not ", words);
 }
 
 /// use(line) for the lines of points up to a header or the end of the file, while it says so; errors name the line.
@@ -130,8 +125,7 @@ Eigen::Isometry3d poseOf(LineReader& lines, double& scale)
   const double size = std::cbrt(R.determinant());
   if (size > 0 && std::abs(size - 1) > rounded) // units, as of millimetres in a file of metres
     R /= scale = size;
-  if (!isRotation(R, rounded))
-    throw std::runtime_error("its matrix is no rotation");
+  expect(isRotation(R, rounded), "its matrix is no rotation");
   Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
   T.linear() = R.isIdentity(0) ? R : Eigen::Quaterniond(R).normalized().toRotationMatrix();
   T.translation() = M.row(3).head<3>();
@@ -201,8 +195,7 @@ protected:
       }
     }
     tellDamage(errors, hasPoints());
-    if (scans_.empty())
-      throw std::runtime_error(concat("no ", block_name_));
+    expect(!scans_.empty(), "no ", block_name_);
   }
 
   /// @param announced points, nothing where the file does not say
@@ -211,9 +204,9 @@ protected:
     info.points = measurePoints(lines, block);
     const std::string counts = concat(announced.value_or(0), " points announced, ", info.points, " there (line ",
                                       block.line + info.points, ")");
-    if (announced && (*announced > info.points || (*announced < info.points && block.rows > 0)))
-      throw std::runtime_error(counts);
-    if (announced && *announced < info.points)
+    const bool has_more = announced && *announced < info.points;
+    expect(!announced || *announced == info.points || (has_more && block.rows == 0), counts);
+    if (has_more)
       remark(counts);
     blocks_.push_back(block);
     scans_.push_back(std::move(info));

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <fresco/core/point_table.h>
-#include <fresco/core/require.h>
 #include <limits>
 #include <optional>
 namespace fresco::io {
@@ -99,11 +98,10 @@ TableDialect dialectOf(std::string_view content)
     TableDialect{true}.split(row, cells);
     if (cells.empty() || !std::all_of(cells.begin(), cells.end(), isNumber))
       continue;
-    if (isEitherWay(row))
-      throw std::runtime_error(concat("line ", line, ": '", row.substr(0, 40), "' may be ",
-                                      std::count(row.begin(), row.end(), ',') + 1, " whole numbers, or ",
-                                      (std::count(row.begin(), row.end(), ',') + 1) / 2,
-                                      " with decimal commas: put ';' or blanks between the columns"));
+    expect(!isEitherWay(row), "line ", line, ": '", row.substr(0, 40), "' may be ",
+           std::count(row.begin(), row.end(), ',') + 1, " whole numbers, or ",
+           (std::count(row.begin(), row.end(), ',') + 1) / 2,
+           " with decimal commas: put ';' or blanks between the columns");
     const auto count = decimalCells(row, any_comma);
     const bool is_count = rows == 0 && cells.size() == 1; // of points, before the first
     decimal = decimal && count && (is_count || (*count >= 3 && *count == width.value_or(*count)));

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "io/points/xyz.h"
-#include "io/files/remarks.h"
+#include "io/points/point_formats.h"
+#include "io/points/row_file.h"
 #include "io/points/text_numbers.h"
 #include "io/points/text_table.h"
 #include <algorithm>
 #include <optional>
+#include <utility>
 namespace fresco::io {
 namespace {
 /// The rows of a file, and what names their columns.
@@ -22,8 +23,7 @@ public:
         throw std::runtime_error(concat("line ", number, ": ", error.what()));
       }
     }
-    if (values_.empty())
-      throw std::runtime_error("no points");
+    expect(!values_.empty(), "no points");
     if (announced_ && *announced_ != values_.size() / width_)
       remark(concat(*announced_, " points announced, ", values_.size() / width_, " there"));
     return tableOfRows(names(), values_);
@@ -55,8 +55,8 @@ private:
       cells_.emplace_back(); // empty, behind the last separator
     if (width_ == 0)
       width_ = cells_.size();
-    if (cells_.size() < 3 || cells_.size() != width_)
-      throw std::runtime_error(concat(cells_.size(), " columns, expected ", std::max<std::size_t>(width_, 3)));
+    expect(cells_.size() >= 3 && cells_.size() == width_, cells_.size(), " columns, expected ",
+           std::max<std::size_t>(width_, 3));
     for (const std::string_view cell : cells_)
       values_.push_back(cellNumber(cell));
   }
@@ -71,16 +71,14 @@ private:
   std::vector<std::string> names() const
   {
     if (std::vector<std::string> told = textColumns(); !told.empty()) {
-      if (told.size() != width_)
-        throw std::runtime_error(concat("it has ", width_, " columns, but -columns names ", told.size()));
+      expect(told.size() == width_, "it has ", width_, " columns, but -columns names ", told.size());
       return told;
     }
     if (!header_.empty()) {
       std::vector<std::string> named = namesIn(header_);
-      if (named.size() != width_ || !hasPosition(named))
-        throw std::runtime_error(concat("the header '", header_.substr(0, 60), "' names ", named.size(), " columns",
-                                        hasPosition(named) ? "" : ", of which none is x, y or z", ", the rows have ",
-                                        width_, ": ", columns_hint));
+      expect(named.size() == width_ && hasPosition(named), "the header '", header_.substr(0, 60), "' names ",
+             named.size(), " columns", hasPosition(named) ? "" : ", of which none is x, y or z", ", the rows have ",
+             width_, ": ", columns_hint);
       return named;
     }
     if (!comment_.empty())
@@ -101,18 +99,13 @@ private:
   std::optional<std::uint64_t> announced_;
 };
 
-void writeRow(OutputFile& file, const PointTable& table, Index row, const char* between)
+std::vector<Column> valuesOfRows(const PointTable& table)
 {
-  const char* separator = "";
+  std::vector<Column> values;
   for (const Column& column : table.columns)
-    visitScalar(column.type, [&](auto zero) {
-      using T = decltype(zero);
-      for (std::size_t k = 0; k < column.count; ++k) {
-        file.write(textOf(separator, loadScalar<T>(table.cell(row, column) + k * sizeof(T))));
-        separator = between;
-      }
-    });
-  file.write("\n");
+    for (const Column& value : singleValues(column))
+      values.push_back(value);
+  return values;
 }
 } // namespace
 
@@ -128,15 +121,19 @@ void writeXyz(const std::string& path, PointTable table)
   const bool csv = extension(path) == ".csv";
   const char* const between = csv ? "," : " ";
   OutputFile file(path);
+  const std::vector<Column> columns = valuesOfRows(table);
   const char* separator = csv ? "" : "# ";
-  for (const Column& column : table.columns)
-    for (std::size_t k = 0; k < column.count; ++k) {
-      file.write(textOf(separator, plainName(column.name), column.count > 1 ? textOf('_', k) : ""));
-      separator = between;
-    }
+  for (const Column& column : columns)
+    file.write(textOf(std::exchange(separator, between), plainName(column.name)));
+  for (Index row = 0; row < table.rows; ++row) {
+    separator = "\n";
+    for (const Column& column : columns)
+      visitScalar(column.type, [&](auto zero) {
+        const auto value = loadScalar<decltype(zero)>(table.cell(row, column));
+        file.write(textOf(std::exchange(separator, between), value));
+      });
+  }
   file.write("\n");
-  for (Index row = 0; row < table.rows; ++row)
-    writeRow(file, table, row, between);
   file.commit();
 }
 } // namespace fresco::io

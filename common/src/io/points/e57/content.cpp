@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "io/points/e57/content.h"
+#include "io/files/expect.h"
 #include "io/points/e57/xml_values.h"
 #include <algorithm>
 #include <cmath>
-#include <fresco/core/require.h>
 #include <limits>
-#include <stdexcept>
 namespace fresco::io::e57 {
 int Field::bits() const
 {
@@ -52,15 +51,14 @@ Field fieldOf(pugi::xml_node node)
     field.type = precision == "single" ? Field::Type::single_float : Field::Type::double_float;
   } else if (type == "Integer" || type == "ScaledInteger") {
     field.type = type == "Integer" ? Field::Type::integer : Field::Type::scaled_integer;
-    field.minimum = integerAttribute(node, "minimum", std::numeric_limits<std::int64_t>::min());
-    field.maximum = integerAttribute(node, "maximum", std::numeric_limits<std::int64_t>::max());
-    field.scale = realAttribute(node, "scale", 1);
-    field.offset = realAttribute(node, "offset", 0);
-    if (field.maximum < field.minimum)
-      throw std::runtime_error(
-          concat("field ", field.name, ": maximum ", field.maximum, " is below minimum ", field.minimum));
-    if (!std::isfinite(field.scale) || !std::isfinite(field.offset))
-      throw std::runtime_error(concat("field ", field.name, ": scale or offset is not finite"));
+    field.minimum = attributeOf<std::int64_t>(node, "minimum", std::numeric_limits<std::int64_t>::min());
+    field.maximum = attributeOf<std::int64_t>(node, "maximum", std::numeric_limits<std::int64_t>::max());
+    field.scale = attributeOf<double>(node, "scale", 1);
+    field.offset = attributeOf<double>(node, "offset", 0);
+    expect(field.maximum >= field.minimum, "field ", field.name, ": maximum ", field.maximum, " is below minimum ",
+           field.minimum);
+    expect(std::isfinite(field.scale) && std::isfinite(field.offset), "field ", field.name,
+           ": scale or offset is not finite");
   } else if (type == "String")
     field.type = Field::Type::string;
   else
@@ -71,8 +69,7 @@ Field fieldOf(pugi::xml_node node)
 void addFields(pugi::xml_node structure, int depth, std::vector<Field>& fields)
 {
   constexpr std::size_t most_fields = 1000; // a packet has room for some 32,000 streams; writers use up to 20
-  if (depth > deepest_structure)
-    throw std::runtime_error("XML: structures within structures within the prototype");
+  expect(depth <= deepest_structure, "XML: structures within structures within the prototype");
   for (const pugi::xml_node node : structure.children()) {
     if (node.type() != pugi::node_element)
       continue;
@@ -80,25 +77,22 @@ void addFields(pugi::xml_node structure, int depth, std::vector<Field>& fields)
       addFields(node, depth + 1, fields);
     else
       fields.push_back(fieldOf(node));
-    if (fields.size() > most_fields)
-      throw std::runtime_error(concat("XML: more than ", most_fields, " fields"));
+    expect(fields.size() <= most_fields, "XML: more than ", most_fields, " fields");
   }
 }
 
 CompressedVector vectorOf(pugi::xml_node points)
 {
-  if (typeOf(points) != "CompressedVector")
-    throw std::runtime_error("XML: points are no CompressedVector");
+  expect(typeOf(points) == "CompressedVector", "XML: points are no CompressedVector");
   CompressedVector records;
-  records.physical_offset = sizeAttribute(points, "fileOffset");
-  records.count = sizeAttribute(points, "recordCount");
+  records.physical_offset = attributeOf<std::uint64_t>(points, "fileOffset");
+  records.count = attributeOf<std::uint64_t>(points, "recordCount");
   addFields(childNamed(points, "prototype"), 0, records.fields);
   for (const pugi::xml_node codec : childNamed(points, "codecs").children())
-    if (codec.type() == pugi::node_element && !childNamed(codec, "bitPackCodec"))
-      throw std::runtime_error("points are packed by another codec than bitPackCodec");
+    expect(codec.type() != pugi::node_element || childNamed(codec, "bitPackCodec"),
+           "points are packed by another codec than bitPackCodec");
   constexpr std::uint64_t most_points = std::uint64_t{1} << 48; // far above any file; keeps sums from overflowing
-  if (records.count > most_points)
-    throw std::runtime_error(concat("XML: ", records.count, " points"));
+  expect(records.count <= most_points, "XML: ", records.count, " points");
   return records;
 }
 
@@ -112,8 +106,7 @@ Eigen::Isometry3d poseOf(pugi::xml_node pose)
                              value(rotation, "z", 0));
   Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
   T.translation() = Eigen::Vector3d(value(translation, "x", 0), value(translation, "y", 0), value(translation, "z", 0));
-  if (!(q.norm() > 1e-6 && q.norm() < 1e6) || !T.translation().allFinite())
-    throw std::runtime_error("its pose is no rotation and translation");
+  expect(q.norm() > 1e-6 && q.norm() < 1e6 && T.translation().allFinite(), "its pose is no rotation and translation");
   T.linear() = q.normalized().toRotationMatrix();
   return T;
 }
@@ -132,8 +125,7 @@ Scan scanOf(pugi::xml_node node)
   scan.guid = textIn(node, "guid");
   scan.info.name = singleLine(textIn(node, "name"), longest_name);
   const pugi::xml_node points = childNamed(node, "points");
-  if (!points)
-    throw std::runtime_error("XML: it has no points");
+  expect(points, "XML: it has no points");
   scan.records = vectorOf(points);
   scan.info.points = scan.records.count;
   const bool spherical = !scan.records.find("cartesianX");
@@ -153,15 +145,16 @@ Scan scanOf(pugi::xml_node node)
 std::optional<Blob> blobIn(pugi::xml_node node, std::string_view name)
 {
   const pugi::xml_node blob = childNamed(node, name);
-  return blob ? std::optional(Blob{sizeAttribute(blob, "fileOffset"), sizeAttribute(blob, "length")}) : std::nullopt;
+  return blob ? std::optional(
+                    Blob{attributeOf<std::uint64_t>(blob, "fileOffset"), attributeOf<std::uint64_t>(blob, "length")})
+              : std::nullopt;
 }
 
 int pixels(pugi::xml_node node, const char* name)
 {
   const pugi::xml_node child = childNamed(node, name);
   const std::int64_t count = child ? integerOf(child) : 0;
-  if (count < 0 || count > 1 << 20)
-    throw std::runtime_error(concat("XML: ", name, ' ', count, " is out of range"));
+  expect(count >= 0 && count <= 1 << 20, "XML: ", name, ' ', count, " is out of range");
   return count;
 }
 
@@ -192,8 +185,7 @@ Image imageOf(pugi::xml_node node, const std::vector<Scan>& scans)
   said.scan = scan == scans.end() ? -1 : std::distance(scans.begin(), scan);
   const pugi::xml_node shown = representationOf(node, said.projection);
   const auto jpeg = blobIn(shown, "jpegImage"), png = blobIn(shown, "pngImage");
-  if (!jpeg && !png)
-    throw std::runtime_error("XML: it has neither jpegImage nor pngImage");
+  expect(jpeg || png, "XML: it has neither jpegImage nor pngImage");
   image.picture = jpeg ? *jpeg : *png;
   image.mask = blobIn(shown, "imageMask");
   said.encoding = jpeg ? ScanImage::Encoding::jpeg : ScanImage::Encoding::png;
@@ -217,9 +209,8 @@ std::string readXml(PagedFile& file, std::vector<std::string>& errors)
 {
   const Header& header = file.header();
   const std::uint64_t begin = file.logical(header.xml_offset);
-  if (header.xml_length == 0 || header.xml_length > file.size() - begin)
-    throw std::runtime_error(concat("truncated: the XML section has ", header.xml_length, " bytes, ",
-                                    file.size() - begin, " are left in the file"));
+  expect(header.xml_length != 0 && header.xml_length <= file.size() - begin, "truncated: the XML section has ",
+         header.xml_length, " bytes, ", file.size() - begin, " are left in the file");
   std::string text(header.xml_length, '\0');
   file.readDamaged(begin, text.data(), text.size(), errors);
   return text;
@@ -252,12 +243,10 @@ Content parseContent(PagedFile& file)
     error += ": what the file says of its scans may be wrong";
   pugi::xml_document document;
   const pugi::xml_parse_result parsed = document.load_buffer_inplace(text.data(), text.size());
-  if (!parsed)
-    throw std::runtime_error(content.errors.empty() ? concat("XML: ", parsed.description(), " at byte ", parsed.offset)
-                                                    : content.errors[0]);
+  expect(parsed, content.errors.empty() ? concat("XML: ", parsed.description(), " at byte ", parsed.offset)
+                                        : content.errors[0]);
   const pugi::xml_node root = document.document_element();
-  if (localName(root) != "e57Root")
-    throw std::runtime_error("XML: no e57Root");
+  expect(localName(root) == "e57Root", "XML: no e57Root");
   forEachChild(
       childNamed(root, "data3D"), "scan", [&](pugi::xml_node node) { content.scans.push_back(scanOf(node)); },
       [&](const std::string& reason) {

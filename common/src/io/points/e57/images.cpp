@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "io/points/e57/content.h"
 #include "io/points/scan_reader.h"
-#include <fresco/core/require.h>
 #include <fresco/io/file.h>
 #include <fresco/io/scan_images.h>
-#include <stdexcept>
 namespace fresco {
 namespace io::e57 {
 namespace {
@@ -15,12 +13,10 @@ std::string readBlob(PagedFile& file, const Blob& blob)
   const std::uint64_t begin = file.logical(blob.physical_offset);
   char header[header_bytes];
   file.read(begin, header, header_bytes);
-  if (header[0] != 0)
-    throw std::runtime_error(concat("damaged: no picture at offset ", blob.physical_offset));
+  expect(header[0] == 0, "damaged: no picture at offset ", blob.physical_offset);
   const std::uint64_t left = file.size() - begin - header_bytes;
-  if (blob.length == 0 || blob.length > left)
-    throw std::runtime_error(
-        concat("truncated: a picture of ", blob.length, " bytes, ", left, " are left in the file"));
+  expect(blob.length != 0 && blob.length <= left, "truncated: a picture of ", blob.length, " bytes, ", left,
+         " are left in the file");
   std::string bytes(blob.length, '\0');
   file.read(begin + header_bytes, bytes.data(), bytes.size());
   return bytes;
@@ -32,11 +28,10 @@ std::string imageBytes(const std::string& path, Index image, bool mask)
   return namingFile(path, [&] {
     PagedFile file(path);
     const Content content = parseContent(file);
-    if (image < 0 || image >= Index(content.images.size()))
-      throw std::runtime_error(concat("no picture ", image, ", the file has ", content.images.size()));
+    expect(image >= 0 && image < Index(content.images.size()), "no picture ", image, ", the file has ",
+           content.images.size());
     const Image& asked = content.images[image];
-    if (mask && !asked.mask)
-      throw std::runtime_error(concat("picture ", image, " has no mask"));
+    expect(!mask || asked.mask, "picture ", image, " has no mask");
     return readBlob(file, mask ? *asked.mask : asked.picture);
   });
 }

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "io/points/e57/paged_file.h"
+#include "io/files/expect.h"
 #include <algorithm>
 #include <array>
 #include <cstring>
 #include <fresco/core/point_table.h>
-#include <fresco/core/require.h>
-#include <stdexcept>
 namespace fresco::io::e57 {
 namespace {
 constexpr std::uint64_t pages_per_read = 128; // 128 kB: two data packets of the largest size
@@ -33,17 +32,13 @@ constexpr Tables tables = makeTables();
 Header readHeader(const RandomAccessFile& file)
 {
   char bytes[48];
-  if (file.size() < sizeof(bytes))
-    throw std::runtime_error("not an E57 file: too short");
+  expect(file.size() >= sizeof(bytes), "not an E57 file: too short");
   file.read(0, bytes, sizeof(bytes));
-  if (std::memcmp(bytes, "ASTM-E57", 8) != 0)
-    throw std::runtime_error("not an E57 file: it does not begin with ASTM-E57");
+  expect(std::memcmp(bytes, "ASTM-E57", 8) == 0, "not an E57 file: it does not begin with ASTM-E57");
   const auto version = loadScalar<std::uint32_t>(bytes + 8);
-  if (version != 1)
-    throw std::runtime_error(concat("version ", version, " of E57 is not known"));
+  expect(version == 1, "version ", version, " of E57 is not known");
   const auto stored_page_size = loadScalar<std::uint64_t>(bytes + 40);
-  if (stored_page_size != page_size)
-    throw std::runtime_error(concat("pages of ", stored_page_size, " bytes; E57 has ", page_size));
+  expect(stored_page_size == page_size, "pages of ", stored_page_size, " bytes; E57 has ", page_size);
   return {loadScalar<std::uint64_t>(bytes + 16), loadScalar<std::uint64_t>(bytes + 24),
           loadScalar<std::uint64_t>(bytes + 32)};
 }
@@ -75,19 +70,18 @@ std::uint32_t crc32c(const void* data, std::size_t bytes)
 
 PagedFile::PagedFile(const std::string& path) : file_(path), header_(readHeader(file_))
 {
-  if (header_.file_length > file_.size())
-    throw std::runtime_error(
-        concat("truncated: the header says ", header_.file_length, " bytes, the file has ", file_.size()));
-  if (header_.file_length % page_size != 0)
-    throw std::runtime_error(concat("the header says ", header_.file_length, " bytes, which are no whole pages"));
+  expect(header_.file_length <= file_.size(), "truncated: the header says ", header_.file_length,
+         " bytes, the file has ", file_.size());
+  expect(header_.file_length % page_size == 0, "the header says ", header_.file_length,
+         " bytes, which are no whole pages");
   pages_ = header_.file_length / page_size;
 }
 
 std::uint64_t PagedFile::logical(std::uint64_t physical) const
 {
   const std::uint64_t page = physical / page_size, within = physical % page_size;
-  if (page >= pages_ || within >= page_payload)
-    throw std::runtime_error(concat("offset ", physical, " lies beyond the end of the file or in a checksum"));
+  expect(page < pages_ && within < page_payload, "offset ", physical,
+         " lies beyond the end of the file or in a checksum");
   return page * page_payload + within;
 }
 
@@ -107,8 +101,7 @@ void PagedFile::load(std::uint64_t page)
       continue;
     }
     loaded_.resize(i * page_size); // what comes before is good and may be all that is wanted
-    if (i == 0)
-      throw std::runtime_error(damage);
+    expect(i != 0, damage);
     return;
   }
 }
@@ -124,9 +117,8 @@ void PagedFile::readDamaged(std::uint64_t offset, void* to, std::size_t bytes, s
 
 void PagedFile::read(std::uint64_t offset, void* to, std::size_t bytes)
 {
-  if (offset > size() || bytes > size() - offset)
-    throw std::runtime_error(concat("truncated: ", bytes, " bytes expected, ", offset < size() ? size() - offset : 0,
-                                    " before the end of the file"));
+  expect(offset <= size() && bytes <= size() - offset, "truncated: ", bytes, " bytes expected, ",
+         offset < size() ? size() - offset : 0, " before the end of the file");
   auto* at = static_cast<char*>(to);
   while (bytes > 0) {
     const std::uint64_t page = offset / page_payload;

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "io/points/e57/vector_reader.h"
+#include "io/files/expect.h"
 #include <algorithm>
 #include <fresco/core/point_table.h>
-#include <fresco/core/require.h>
-#include <stdexcept>
 namespace fresco::io::e57 {
 namespace {
 constexpr std::size_t header_bytes = 32; // of a section
@@ -88,17 +87,14 @@ VectorReader::VectorReader(PagedFile& file, const CompressedVector& records)
   std::uint8_t header[header_bytes];
   file.read(begin, header, header_bytes);
   const auto length = loadScalar<std::uint64_t>(header + 8);
-  if (header[0] != 1)
-    throw std::runtime_error(concat("damaged: no compressed vector at offset ", records.physical_offset));
-  if (length < header_bytes || length > file.size() - begin)
-    throw std::runtime_error(concat("truncated: the section at offset ", records.physical_offset, " has ", length,
-                                    " bytes, ", file.size() - begin, " are left in the file"));
+  expect(header[0] == 1, "damaged: no compressed vector at offset ", records.physical_offset);
+  expect(length >= header_bytes && length <= file.size() - begin, "truncated: the section at offset ",
+         records.physical_offset, " has ", length, " bytes, ", file.size() - begin, " are left in the file");
   packet_ = file.logical(loadScalar<std::uint64_t>(header + 16));
   end_ = begin + length;
   const std::uint64_t bits = std::max(bitsPerRecord(records.fields), least_bits_per_record);
-  if (left_ / 8 > length / bits + 1)
-    throw std::runtime_error(
-        concat("truncated: ", left_, " points of ", bits, " bits do not fit into ", length, " bytes"));
+  expect(left_ / 8 <= length / bits + 1, "truncated: ", left_, " points of ", bits, " bits do not fit into ", length,
+         " bytes");
   for (std::size_t f = 0; f < streams_.size(); ++f) {
     streams_[f].append(nullptr, 0);
     if (records.fields[f].type == Field::Type::scaled_integer) {
@@ -125,14 +121,13 @@ bool VectorReader::holds(std::size_t field, std::size_t records) const
 
 void VectorReader::readPacket()
 {
-  if (packet_ >= end_ || end_ - packet_ < 4)
-    throw std::runtime_error(
-        concat("truncated: the points end early, ", left_, " of ", records_.count, " are missing"));
+  expect(packet_ < end_ && end_ - packet_ >= 4, "truncated: the points end early, ", left_, " of ", records_.count,
+         " are missing");
   std::uint8_t head[4];
   file_.read(packet_, head, sizeof(head));
   const std::size_t length = std::size_t{loadScalar<std::uint16_t>(head + 2)} + 1;
-  if (head[0] > empty_packet || length % 4 != 0 || length > end_ - packet_)
-    throw std::runtime_error(concat("damaged: a packet of type ", int{head[0]}, " and ", length, " bytes"));
+  expect(head[0] <= empty_packet && length % 4 == 0 && length <= end_ - packet_, "damaged: a packet of type ",
+         int{head[0]}, " and ", length, " bytes");
   if (head[0] == data_packet) {
     buffer_.resize(length);
     file_.read(packet_, buffer_.data(), length);
@@ -145,13 +140,11 @@ void VectorReader::readPacket()
 void VectorReader::distribute(std::size_t length)
 {
   const std::size_t count = length < 6 ? 0 : loadScalar<std::uint16_t>(buffer_.data() + 4);
-  if (count != streams_.size())
-    throw std::runtime_error(concat("damaged: a packet of ", count, " streams, expected ", streams_.size()));
+  expect(count == streams_.size(), "damaged: a packet of ", count, " streams, expected ", streams_.size());
   std::size_t at = 6 + 2 * count;
   for (std::size_t f = 0; f < count; ++f) {
     const std::size_t bytes = 6 + 2 * f + 2 <= length ? loadScalar<std::uint16_t>(buffer_.data() + 6 + 2 * f) : length;
-    if (at > length || bytes > length - at)
-      throw std::runtime_error("damaged: a packet is shorter than its streams");
+    expect(at <= length && bytes <= length - at, "damaged: a packet is shorter than its streams");
     streams_[f].append(buffer_.data() + at, bytes);
     at += bytes;
   }
@@ -205,8 +198,7 @@ void VectorReader::requireEnd()
   while (packet_ + head <= end_)
     readPacket();
   for (std::size_t f = 0; f < streams_.size(); ++f)
-    if (8 * streams_[f].size - streams_[f].bit >= 8)
-      throw std::runtime_error(concat("damaged: there is more of field ", records_.fields[f].name, " than its ",
-                                      records_.count, " records"));
+    expect(8 * streams_[f].size - streams_[f].bit < 8, "damaged: there is more of field ", records_.fields[f].name,
+           " than its ", records_.count, " records");
 }
 } // namespace fresco::io::e57

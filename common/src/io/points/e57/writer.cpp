@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "io/points/e57/e57.h"
 #include "io/points/e57/paged_file.h"
+#include "io/points/point_formats.h"
+#include "io/points/row_file.h"
 #include "io/points/text_numbers.h"
 #include <algorithm>
 #include <cmath>
 #include <fresco/core/pcl_cloud_table.h>
-#include <fresco/core/require.h>
 #include <fresco/io/scan_writer.h>
 #include <limits>
 namespace fresco::io::e57 {
@@ -39,21 +39,26 @@ std::string poseXml(const Eigen::Isometry3d& T)
 
 std::string guidOf(Index scan) { return textOf("fresco-scan-", scan + 1); }
 
+/// Whole numbers of a type as E57 has them: 64 bits are taken for signed ones.
+template <typename T>
+using Limits = std::numeric_limits<std::conditional_t<std::is_same_v<T, std::uint64_t>, std::int64_t, T>>;
+
 /// A field of the records and where its values come from.
 struct Stream {
   std::string name;
-  Column column;
-  int bits = 0;             ///< of a value: 8, 16, 32 or 64
-  std::int64_t minimum = 0; ///< of whole numbers
-  bool is_float = false;
+  Column column; ///< with one value
 
+  std::size_t bits() const { return 8 * column.bytes(); }
   std::string xml() const
   {
-    if (is_float)
-      return "<" + name + " type=\"Float\"" + (bits == 32 ? " precision=\"single\"" : "") + "/>\n";
-    const std::uint64_t range = bits == 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << bits) - 1;
-    return textOf("<", name, " type=\"Integer\" minimum=\"", minimum, "\" maximum=\"",
-                  std::int64_t(std::uint64_t(minimum) + range), "\"/>\n");
+    return visitScalar(column.type, [&](auto zero) {
+      using T = decltype(zero);
+      if constexpr (std::is_floating_point_v<T>)
+        return textOf("<", name, " type=\"Float\"", sizeof(T) == 4 ? " precision=\"single\"" : "", "/>\n");
+      else
+        return textOf("<", name, " type=\"Integer\" minimum=\"", std::int64_t(Limits<T>::min()), "\" maximum=\"",
+                      std::int64_t(Limits<T>::max()), "\"/>\n");
+    });
   }
 };
 
@@ -109,20 +114,8 @@ std::vector<Stream> streamsOf(const PointTable& table)
 {
   std::vector<Stream> streams;
   for (const Column& column : table.columns)
-    for (std::size_t k = 0; k < column.count; ++k) {
-      Stream stream{fieldName(column.name) + (column.count > 1 ? textOf('_', k) : std::string()), column};
-      stream.column.offset += k * scalarSize(column.type);
-      stream.column.count = 1;
-      stream.bits = int(8 * scalarSize(column.type));
-      visitScalar(column.type, [&](auto zero) {
-        using T = decltype(zero);
-        stream.is_float = std::is_floating_point_v<T>;
-        if constexpr (std::is_integral_v<T>) // 64 bits are taken for signed ones
-          stream.minimum = std::is_same_v<T, std::uint64_t> ? std::numeric_limits<std::int64_t>::min()
-                                                            : std::int64_t(std::numeric_limits<T>::min());
-      });
-      streams.push_back(stream);
-    }
+    for (const Column& value : singleValues(column))
+      streams.push_back({fieldName(column.name) + value.name.substr(column.name.size()), value});
   return streams;
 }
 
@@ -133,10 +126,10 @@ std::string packed(const PointTable& table, const Stream& stream, Index begin, I
   forEachValue(
       table, stream.column, 0,
       [&](Index, auto value) {
-        auto stored = value;
-        if constexpr (std::is_integral_v<decltype(value)>)
-          stored = decltype(value)(std::uint64_t(value) - std::uint64_t(stream.minimum));
-        bytes.append(reinterpret_cast<const char*>(&stored), sizeof(stored));
+        using T = decltype(value);
+        if constexpr (std::is_integral_v<T>)
+          value = T(std::uint64_t(value) - std::uint64_t(Limits<T>::min()));
+        bytes.append(reinterpret_cast<const char*>(&value), sizeof(value));
       },
       begin, end);
   return bytes;
@@ -291,7 +284,7 @@ private:
     bytes_ += raw(std::uint64_t{1}) + raw(std::uint64_t{0}) + raw(physical(begin + 32)) + raw(std::uint64_t{0});
     std::size_t bits = finite ? 2 : 0;
     for (const Stream& stream : streams)
-      bits += stream.bits;
+      bits += stream.bits();
     constexpr std::size_t payload = 60000; // a packet has 65536 bytes at most
     const std::size_t head = 6 + 2 * (streams.size() + 1);
     require(head + bits + 8 < payload, "too many fields for E57");

@@ -2,8 +2,6 @@
 #include "io/points/e57/xml_values.h"
 #include "io/points/text_numbers.h"
 #include <algorithm>
-#include <fresco/core/require.h>
-#include <stdexcept>
 namespace fresco::io::e57 {
 namespace {
 template <typename T>
@@ -16,11 +14,6 @@ try {
                                   std::is_floating_point_v<T> ? "number" : "whole number of 64 bits"));
 }
 
-template <typename T>
-T attributeOf(pugi::xml_node node, const char* name)
-{
-  return numberOf<T>(node.attribute(name).value(), concat(singleLine(node.name()), ' ', name));
-}
 } // namespace
 
 std::string_view localName(pugi::xml_node node)
@@ -47,8 +40,7 @@ pugi::xml_node childNamed(pugi::xml_node node, std::string_view name)
 std::string_view typeOf(pugi::xml_node node)
 {
   const pugi::xml_attribute type = node.attribute("type");
-  if (!type)
-    throw std::runtime_error(concat("XML: ", singleLine(node.name()), " has no type"));
+  expect(type, "XML: ", singleLine(node.name()), " has no type");
   return type.value();
 }
 
@@ -60,26 +52,23 @@ std::int64_t integerOf(pugi::xml_node node)
 double realOf(pugi::xml_node node)
 {
   if (typeOf(node) == "ScaledInteger")
-    return double(integerOf(node)) * realAttribute(node, "scale", 1) + realAttribute(node, "offset", 0);
+    return double(integerOf(node)) * attributeOf<double>(node, "scale", 1) + attributeOf<double>(node, "offset", 0);
   return numberOf<double>(node.child_value(), singleLine(node.name()));
 }
 
-double realAttribute(pugi::xml_node node, const char* name, double otherwise)
+template <typename T>
+T attributeOf(pugi::xml_node node, const char* name, std::optional<T> otherwise)
 {
-  return node.attribute(name) ? attributeOf<double>(node, name) : otherwise;
+  const pugi::xml_attribute attribute = node.attribute(name);
+  if (!attribute && otherwise)
+    return *otherwise;
+  expect(attribute, "XML: ", singleLine(node.name()), " has no ", name);
+  return numberOf<T>(attribute.value(), concat(singleLine(node.name()), ' ', name));
 }
 
-std::int64_t integerAttribute(pugi::xml_node node, const char* name, std::int64_t otherwise)
-{
-  return node.attribute(name) ? attributeOf<std::int64_t>(node, name) : otherwise;
-}
-
-std::uint64_t sizeAttribute(pugi::xml_node node, const char* name)
-{
-  if (!node.attribute(name))
-    throw std::runtime_error(concat("XML: ", singleLine(node.name()), " has no ", name));
-  return attributeOf<std::uint64_t>(node, name);
-}
+template double attributeOf(pugi::xml_node, const char*, std::optional<double>);
+template std::int64_t attributeOf(pugi::xml_node, const char*, std::optional<std::int64_t>);
+template std::uint64_t attributeOf(pugi::xml_node, const char*, std::optional<std::uint64_t>);
 
 std::optional<double> realIn(pugi::xml_node node, std::string_view name)
 {

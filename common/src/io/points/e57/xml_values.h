@@ -23,11 +23,10 @@ std::string_view typeOf(pugi::xml_node node);
 double realOf(pugi::xml_node node); ///< of a Float, Integer or ScaledInteger
 std::int64_t integerOf(pugi::xml_node node);
 
-/// @param otherwise where the attribute is missing
+/// A number of type double, std::int64_t or std::uint64_t. @param otherwise where it is missing; nothing: it must be there
 /// @throws std::runtime_error naming the element and the attribute
-double realAttribute(pugi::xml_node node, const char* name, double otherwise);
-std::int64_t integerAttribute(pugi::xml_node node, const char* name, std::int64_t otherwise);
-std::uint64_t sizeAttribute(pugi::xml_node node, const char* name); ///< must be there
+template <typename T>
+T attributeOf(pugi::xml_node node, const char* name, std::optional<T> otherwise = {});
 
 /// Of the child of that name; nothing if it is missing.
 std::optional<double> realIn(pugi::xml_node node, std::string_view name);
