@@ -50,8 +50,7 @@ void addPoints(Words& words, const PointRows& rows, CameraFileBuilder& cameras)
       const auto camera = words.number<std::size_t>();
       words.number(); // of its feature
       const Eigen::Vector2d place = words.vector<2>();
-      if (camera >= rows.views.size())
-        throw std::runtime_error(concat("point ", i + 1, " names camera ", camera, " of ", rows.views.size()));
+      expect(camera < rows.views.size(), "point ", i + 1, " names camera ", camera, " of ", rows.views.size());
       if (const int view = rows.views[camera]; view >= 0)
         track.push_back({view, cameras.middleOf(view) + Eigen::Vector2d(place.x(), rows.down * place.y())});
     }

@@ -73,8 +73,7 @@ io::CameraFileBuilder::CameraFileBuilder(const std::string& path, std::string im
 {
   if (images_.empty())
     return;
-  if (!fs::is_directory(images_))
-    throw std::runtime_error("the folder of its photographs, " + images_ + ", is not there");
+  expect(fs::is_directory(images_), "the folder of its photographs, ", images_, ", is not there");
   for (fs::recursive_directory_iterator entry(images_), end; entry != end; ++entry)
     if (entry->is_directory() && entry->path().filename() == "masks") // which are named as what they mask
       entry.disable_recursion_pending();
@@ -111,8 +110,7 @@ std::string io::CameraFileBuilder::nameBelow(const std::string& told) const
 
 CameraModel io::CameraFileBuilder::cameraOf(const std::string& photograph) const
 {
-  if (images_.empty())
-    throw std::runtime_error("does not tell how large the photographs are: their folder is needed (-images)");
+  expect(!images_.empty(), "does not tell how large the photographs are: their folder is needed (-images)");
   const ImageSize size = readImageSize(images_ + "/" + nameBelow(photograph));
   CameraModel camera{size.width, size.height};
   camera.cx = 0.5 * size.width, camera.cy = 0.5 * size.height;
@@ -123,8 +121,7 @@ int io::CameraFileBuilder::addView(const std::string& photograph, const CameraMo
                                    const Eigen::Matrix4d& T_camera_world)
 {
   const Pose T = rigidPose("photograph " + photograph, T_camera_world);
-  if (!T)
-    throw std::runtime_error("photograph " + photograph + ": its pose is not finite");
+  expect(T.has_value(), "photograph ", photograph, ": its pose is not finite");
   try {
     validateCamera(camera);
   } catch (const std::invalid_argument& error) {
@@ -142,8 +139,7 @@ int io::CameraFileBuilder::addView(const std::string& photograph, const CameraMo
 void io::CameraFileBuilder::addPoint(const Eigen::Vector3d& position, const Eigen::Vector3d& color,
                                      const std::vector<Observation>& track)
 {
-  if (!isInReach(position))
-    throw std::runtime_error("a point is not finite or too far away");
+  expect(isInReach(position), "a point is not finite or too far away");
   SparsePoint point;
   point.position = position;
   point.color = color.array().isFinite().select(color.array(), 0).max(0).min(255).cast<std::uint8_t>();
@@ -159,8 +155,8 @@ Eigen::Vector2d io::CameraFileBuilder::middleOf(int view) const
 
 CameraFile io::CameraFileBuilder::take()
 {
-  if (file_.set.views.empty())
-    throw std::runtime_error("no photograph in it has a pose: align the photographs first, then export their cameras");
+  expect(!file_.set.views.empty(),
+         "no photograph in it has a pose: align the photographs first, then export their cameras");
   return std::move(file_);
 }
 
@@ -182,15 +178,13 @@ CameraFile readCameraFile(const std::string& path, const std::string& images)
     throw std::runtime_error(path + (files.empty() ? ": no cameras in it that are read: " + cameraFormats()
                                                    : ": several files of cameras: say which: " + listed(files, 3)));
   }
-  if (file.empty() && !fs::exists(path))
-    throw std::runtime_error(path + ": no such file or folder of cameras");
-  if (file.empty())
-    throw std::runtime_error(path + ": no cameras that are read: " + cameraFormats());
+  expect(!file.empty() || fs::exists(path), path, ": no such file or folder of cameras");
+  expect(!file.empty(), path, ": no cameras that are read: ", cameraFormats());
   if (fs::is_directory(file)) {
     CameraFile found{readColmap(file), readColmapPoints(file)};
     for (const View& view : found.set.views)
-      if (!images.empty() && !fs::exists(images + "/" + view.image))
-        throw std::runtime_error(images + "/" + view.image + ": no such photograph, but " + file + " names it");
+      expect(images.empty() || fs::exists(images + "/" + view.image), images, "/", view.image,
+             ": no such photograph, but ", file, " names it");
     return found;
   }
   const std::string content = readFile(file);

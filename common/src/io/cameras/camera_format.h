@@ -2,7 +2,6 @@
 #pragma once
 #include "io/points/text_numbers.h"
 #include <fresco/core/poses.h>
-#include <fresco/core/require.h>
 #include <fresco/io/camera_files.h>
 #include <map>
 #include <optional>

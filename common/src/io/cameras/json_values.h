@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+#include "io/files/expect.h"
 #include <Eigen/Core>
 #include <cstdint>
-#include <fresco/core/require.h>
 #include <nlohmann/json.hpp>
 #include <string>
 namespace fresco::io {
@@ -12,16 +12,14 @@ using Json = nlohmann::json;
 inline Json parsedJson(const std::string& content)
 {
   Json json = Json::parse(content, nullptr, false);
-  if (!json.is_object())
-    throw std::runtime_error("truncated or damaged JSON: write it again");
+  expect(json.is_object(), "truncated or damaged JSON: write it again");
   return json;
 }
 
 /// @throws std::runtime_error "`where` has no `key`"
 inline const Json& memberOf(const Json& json, const char* key, const std::string& where)
 {
-  if (!json.is_object() || !json.contains(key))
-    throw std::runtime_error(concat(where, " has no ", key, ": write it again"));
+  expect(json.is_object() && json.contains(key), where, " has no ", key, ": write it again");
   return json[key];
 }
 
@@ -42,8 +40,7 @@ Eigen::Matrix<double, count, 1> numbersOf(const Json& json, const std::string& w
         add(value);
     else
       add(row);
-  if (found != count)
-    throw std::runtime_error(concat(where, " wants ", count, count == 1 ? " number" : " numbers"));
+  expect(found == count, where, " wants ", count, count == 1 ? " number" : " numbers");
   return numbers;
 }
 
@@ -52,15 +49,13 @@ inline std::int64_t wholeOf(const Json& json, const std::string& where)
 {
   constexpr double most = 1LL << 53;
   const double value = numbersOf<1>(json, where)[0];
-  if (!(value >= 0 && value <= most))
-    throw std::runtime_error(where + " is no whole number");
+  expect(value >= 0 && value <= most, where, " is no whole number");
   return std::int64_t(value);
 }
 
 inline std::string stringOf(const Json& json, const std::string& where)
 {
-  if (!json.is_string())
-    throw std::runtime_error(where + " wants a text");
+  expect(json.is_string(), where, " wants a text");
   return json;
 }
 } // namespace fresco::io

@@ -40,12 +40,12 @@ CameraModel cameraIn(pugi::xml_node sensor)
   const int width = size.attribute("width").as_int(), height = size.attribute("height").as_int();
   if (type == "spherical" && width == 2 * height && height > 0)
     return sphericalCamera(width, height);
-  if (type != "frame" && type != "fisheye" && type != "equidistant_fisheye")
-    throw std::runtime_error(where + ": a camera of type '" + type + "' is none of frame, fisheye, spherical");
-  if (width <= 0 || height <= 0 || !said.child("f"))
-    throw std::runtime_error(where + " has no resolution or calibration with f" + cure + " after the alignment");
-  if (numberIn(said, "p3", 0) != 0 || numberIn(said, "p4", 0) != 0)
-    throw std::runtime_error(where + ": p3 and p4 are not read: optimise the cameras without them and export again");
+  expect(type == "frame" || type == "fisheye" || type == "equidistant_fisheye", where, ": a camera of type '", type,
+         "' is none of frame, fisheye, spherical");
+  expect(width > 0 && height > 0 && said.child("f"), where, " has no resolution or calibration with f", cure,
+         " after the alignment");
+  expect(numberIn(said, "p3", 0) == 0 && numberIn(said, "p4", 0) == 0, where,
+         ": p3 and p4 are not read: optimise the cameras without them and export again");
   CameraModel camera{width, height};
   camera.fy = numberIn(said, "f", 0), camera.fx = camera.fy + numberIn(said, "b1", 0);
   camera.skew = numberIn(said, "b2", 0);
@@ -66,8 +66,7 @@ Similarity similarityIn(pugi::xml_node transform)
   if (const pugi::xml_node translation = transform.child("translation"))
     T.t = numbersIn<3>(translation, "translation");
   T.scale = numberIn(transform, "scale", 1);
-  if (!isRotation(T.R, 1e-4) || !(T.scale > 0) || !isInReach(T.t))
-    throw std::runtime_error(std::string("the transform of the chunk is none") + cure);
+  expect(isRotation(T.R, 1e-4) && T.scale > 0 && isInReach(T.t), "the transform of the chunk is none", cure);
   return T;
 }
 
@@ -111,14 +110,12 @@ void readMetashape(const std::string& content, CameraFileBuilder& cameras)
       ++without;
       continue;
     }
-    if (name.empty())
-      throw std::runtime_error(concat("camera ", camera.attribute("id").value(), " has no label", cure));
+    expect(!name.empty(), "camera ", camera.attribute("id").value(), " has no label", cure);
     if (known.count(sensor) == 0) {
       const pugi::xml_node node = document.find_node([&](pugi::xml_node each) {
         return std::string_view(each.name()) == "sensor" && sensor == each.attribute("id").value();
       });
-      if (!node)
-        throw std::runtime_error("photograph " + name + " names sensor " + sensor + ", which is not there" + cure);
+      expect(node, "photograph ", name, " names sensor ", sensor, ", which is not there", cure);
       known[sensor] = cameraIn(node);
     }
     cameras.addView(name, known[sensor], poseIn(camera, said, name));

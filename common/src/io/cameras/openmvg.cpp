@@ -87,8 +87,7 @@ void readOpenMvg(const std::string& content, CameraFileBuilder& cameras)
     const auto pose = poses.find(wholeOf(memberOf(view, "id_pose", where), where));
     if (pose == poses.end())
       continue;
-    if (lens == lenses.end())
-      throw std::runtime_error(where + " names an intrinsic that is not there: write it again");
+    expect(lens != lenses.end(), where, " names an intrinsic that is not there: write it again");
     const Eigen::Matrix3d R =
         Eigen::Matrix<double, 3, 3, Eigen::RowMajor>(member<9>(*pose->second, "rotation", where).data());
     const Eigen::Vector3d center = member<3>(*pose->second, "center", where);

@@ -41,8 +41,8 @@ CameraModel cameraIn(const Said& said, const std::string& name, const CameraFile
   if (model == "EQUIRECTANGULAR" && camera.width == 2 * camera.height && camera.height > 0)
     return sphericalCamera(camera.width, camera.height);
   const bool fisheye = model == "OPENCV_FISHEYE" || said.isTrue("is_fisheye");
-  if (!fisheye && model != "OPENCV" && model != "PINHOLE" && model != "SIMPLE_PINHOLE" && model != "PERSPECTIVE")
-    throw std::runtime_error("camera_model " + model + " is none of PINHOLE, OPENCV, OPENCV_FISHEYE, EQUIRECTANGULAR");
+  expect(fisheye || model == "OPENCV" || model == "PINHOLE" || model == "SIMPLE_PINHOLE" || model == "PERSPECTIVE",
+         "camera_model ", model, " is none of PINHOLE, OPENCV, OPENCV_FISHEYE, EQUIRECTANGULAR");
   const auto focal = [&](const char* key, const char* angle, int side, double otherwise) {
     return said.find(key)     ? said.number(key)
            : said.find(angle) ? 0.5 * side / std::tan(0.5 * said.number(angle))
@@ -50,8 +50,7 @@ CameraModel cameraIn(const Said& said, const std::string& name, const CameraFile
   };
   camera.fx = focal("fl_x", "camera_angle_x", camera.width, 0);
   camera.fy = focal("fl_y", "camera_angle_y", camera.height, camera.fx);
-  if (camera.fx == 0)
-    throw std::runtime_error("frame " + name + " has neither fl_x nor camera_angle_x: write it again");
+  expect(camera.fx != 0, "frame ", name, " has neither fl_x nor camera_angle_x: write it again");
   camera.cx = said.number("cx", 0.5 * camera.width), camera.cy = said.number("cy", 0.5 * camera.height);
   camera.k1 = said.number("k1"), camera.k2 = said.number("k2"), camera.k3 = said.number("k3");
   camera.p1 = said.number("p1"), camera.p2 = said.number("p2");
@@ -74,8 +73,7 @@ void readTransforms(const std::string& content, CameraFileBuilder& cameras)
     const std::string name = stringOf(memberOf(frame, "file_path", "a frame"), "file_path");
     const auto numbers = numbersOf<16>(memberOf(frame, "transform_matrix", "frame " + name), "transform_matrix");
     const Eigen::Matrix4d T = Eigen::Matrix<double, 4, 4, Eigen::RowMajor>(numbers.data());
-    if (!isRigid(T, 0.02))
-      throw std::runtime_error("frame " + name + ": its transform_matrix is not rigid");
+    expect(isRigid(T, 0.02), "frame ", name, ": its transform_matrix is not rigid");
     cameras.addView(name, cameraIn(Said(frame, json), name, cameras), withTurnedAxes(T.inverse()));
   }
 }

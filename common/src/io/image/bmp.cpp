@@ -30,14 +30,13 @@ Image decodeBmp(std::string_view bytes)
   const bool is_plain = header.compression == plain || (header.compression == with_masks && header.bits == 32 &&
                                                         header.file.number(54, 4) == 0xff0000);
   const bool has_palette = header.bits == 1 || header.bits == 4 || header.bits == 8;
-  if (!is_plain || (!has_palette && header.bits != 24 && header.bits != 32))
-    throw std::runtime_error(
-        concat("BMP: ", header.bits, " bits with compression ", header.compression, " are not supported"));
+  expect(is_plain && (has_palette || header.bits == 24 || header.bits == 32), "BMP: ", header.bits,
+         " bits with compression ", header.compression, " are not supported");
   const ImageSize size = bmpSize(bytes);
   const std::size_t first = header.file.number(10, 4),
                     row_bytes = (std::size_t{header.bits} * size.width + 31) / 32 * 4;
-  if (first > bytes.size() || (bytes.size() - first) / row_bytes < static_cast<std::size_t>(size.height))
-    throw std::runtime_error("the image is truncated or damaged");
+  expect(first <= bytes.size() && (bytes.size() - first) / row_bytes >= static_cast<std::size_t>(size.height),
+         "the image is truncated or damaged");
   const std::size_t palette = info + header.file.number(info, 4), entry = header.is_short ? 3 : 4;
   Image image(size.width, size.height, 3);
   for (int y = 0; y < size.height; ++y)

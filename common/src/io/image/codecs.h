@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+#include "io/files/expect.h"
 #include <csetjmp>
-#include <fresco/core/require.h>
 #include <fresco/io/image_io.h>
 /// One reader per format, of the bytes of a file that begins as its format wants. Sizes are those that the header tells,
 /// 0 where it tells none. Readers give 8-bit RGB: of 16 bits the high byte, grey repeated, alpha left out, CMYK converted

@@ -17,8 +17,7 @@ int lengthOf(std::string_view word)
 {
   constexpr double longest = 1 << 20; // pixels
   const auto value = parseNumber<double>(word);
-  if (!(value >= 1 && value <= longest && value == std::floor(value)))
-    throw std::runtime_error("an image of an impossible size");
+  expect(value >= 1 && value <= longest && value == std::floor(value), "an image of an impossible size");
   return int(value);
 }
 
@@ -48,9 +47,9 @@ FloatLayout npyLayout(std::string_view bytes)
   const std::string_view shape = after("'shape': (");
   const std::size_t comma = shape.find(','), end = shape.find(')');
   const bool is_double = !after("'<f8'").empty();
-  if ((!is_double && after("'<f4'").empty()) || after("'fortran_order': False").empty() ||
-      end == std::string_view::npos || comma >= end)
-    throw std::runtime_error("NPY: no array of rows of floats (f4 or f8, low byte first)");
+  expect((is_double || !after("'<f4'").empty()) && !after("'fortran_order': False").empty() &&
+             end != std::string_view::npos && comma < end,
+         "NPY: no array of rows of floats (f4 or f8, low byte first)");
   out.bytes = is_double ? 8 : 4;
   out.size.height = lengthOf(TextScanner(shape.substr(0, comma)).word());
   out.size.width = lengthOf(TextScanner(shape.substr(comma + 1, end - comma - 1)).word());
@@ -60,8 +59,8 @@ FloatLayout npyLayout(std::string_view bytes)
 FloatImage decoded(std::string_view bytes, const FloatLayout& layout)
 {
   const std::size_t width = layout.size.width, height = layout.size.height;
-  if (layout.begin > bytes.size() || bytes.size() - layout.begin < width * height * layout.bytes)
-    throw std::runtime_error("the image is truncated or damaged");
+  expect(layout.begin <= bytes.size() && bytes.size() - layout.begin >= width * height * layout.bytes,
+         "the image is truncated or damaged");
   FloatImage image{int(width), int(height), std::vector<float>(width * height)};
   const HeaderNumbers numbers{bytes, layout.low_first};
   for (std::size_t i = 0; i < image.data.size(); ++i) {

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <filesystem>
 #include <fresco/core/camera.h>
-#include <fresco/core/require.h>
 #include <fresco/io/file.h>
 namespace fresco {
 namespace {
@@ -45,9 +44,9 @@ ImageSize sizeOf(std::string_view bytes, const ImageFormat& format)
 {
   const ImageSize size = format.size(bytes);
   constexpr std::size_t always = 1 << 24; // pixels: images of one colour are small
-  if (size.width <= 0 || size.height <= 0 ||
-      std::size_t{1} * size.width * size.height > std::max(always, format.pixels_per_byte * bytes.size()))
-    throw std::runtime_error("the image is truncated or damaged");
+  expect(size.width > 0 && size.height > 0 &&
+             std::size_t{1} * size.width * size.height <= std::max(always, format.pixels_per_byte * bytes.size()),
+         "the image is truncated or damaged");
   return size;
 }
 
@@ -69,8 +68,7 @@ Image decodeImage(std::string_view bytes)
 {
   const ImageFormat& format = formatOf(bytes);
   sizeOf(bytes, format);
-  if (!format.decode)
-    throw std::runtime_error("holds depths (floats), no picture");
+  expect(format.decode, "holds depths (floats), no picture");
   return format.decode(bytes);
 }
 
@@ -83,9 +81,8 @@ Image readImage(const std::string& path) { return io::parseFile(path, decodeImag
 
 void requireImageSize(const ImageSize& size, const CameraModel& camera)
 {
-  if (size.width != camera.width || size.height != camera.height)
-    throw std::runtime_error(
-        concat("is ", size.width, "x", size.height, " pixels, its camera has ", camera.width, "x", camera.height));
+  expect(size.width == camera.width && size.height == camera.height, "is ", size.width, "x", size.height,
+         " pixels, its camera has ", camera.width, "x", camera.height);
 }
 
 Image readImage(const std::string& path, const CameraModel& camera)
@@ -112,8 +109,7 @@ Image16 readImage16(const std::string& path)
     const ImageFormat& format = formatOf(bytes);
     sizeOf(bytes, format);
     Image16 image = format.decode16 ? format.decode16(bytes) : Image16();
-    if (image.data.empty())
-      throw std::runtime_error("not a 16-bit image with one channel");
+    expect(!image.data.empty(), "not a 16-bit image with one channel");
     return image;
   });
 }
@@ -135,8 +131,7 @@ DepthFile readDepthFile(const std::string& path)
     }
     if (!file.in_metres && format.decode16)
       file.image = format.decode16(bytes);
-    if (file.image.data.empty())
-      throw std::runtime_error("no depth image: wanted are 16 bits with one channel, or floats");
+    expect(!file.image.data.empty(), "no depth image: wanted are 16 bits with one channel, or floats");
     return file;
   };
   return io::parseFile(path, decode);

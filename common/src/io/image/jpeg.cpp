@@ -29,29 +29,35 @@ struct ErrorHandler : jpeg_error_mgr {
   }
 };
 
+/// A structure of the library, empty at first, that is destroyed whatever happens.
+template <typename Struct, void (*destroy)(Struct*)>
+struct Owned : Struct {
+  explicit Owned(ErrorHandler& handler) : Struct{} { this->err = &handler; }
+  ~Owned() { destroy(this); }
+  Owned(const Owned&) = delete;
+  Owned& operator=(const Owned&) = delete;
+};
+
 /// An open file, its header read.
 struct JpegReader {
   ErrorHandler handler;
-  jpeg_decompress_struct jpeg{};
+  Owned<jpeg_decompress_struct, jpeg_destroy_decompress> jpeg{handler};
 
   explicit JpegReader(std::string_view bytes)
   {
-    jpeg.err = &handler;
-    try {
-      callLibrary(handler.errors, [&] {
-        jpeg_create_decompress(&jpeg);
-        jpeg_mem_src(&jpeg, reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size());
-        jpeg_read_header(&jpeg, TRUE);
-      });
-    } catch (...) {
-      jpeg_destroy_decompress(&jpeg);
-      throw;
-    }
+    callLibrary(handler.errors, [&] {
+      jpeg_create_decompress(&jpeg);
+      jpeg_mem_src(&jpeg, reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size());
+      jpeg_read_header(&jpeg, TRUE);
+    });
   }
-  ~JpegReader() { jpeg_destroy_decompress(&jpeg); }
-  JpegReader(const JpegReader&) = delete;
-  JpegReader& operator=(const JpegReader&) = delete;
   ImageSize size() const { return {int(jpeg.image_width), int(jpeg.image_height)}; }
+};
+
+struct JpegBytes {
+  unsigned char* begin = nullptr;
+  unsigned long size = 0;
+  ~JpegBytes() { std::free(begin); }
 };
 
 /// One row of CMYK. @param no_ink 255 as Adobe's programs store it, who leave their marker in the file, else 0
@@ -91,37 +97,24 @@ Image decodeJpeg(std::string_view bytes)
 std::vector<std::uint8_t> encodeJpeg(const Image& image, int quality)
 {
   ErrorHandler handler;
-  jpeg_compress_struct jpeg{};
-  jpeg.err = &handler;
-  unsigned char* bytes = nullptr;
-  unsigned long size = 0;
-  const auto cleanUp = [&] {
-    jpeg_destroy_compress(&jpeg);
-    std::free(bytes);
-  };
-  try {
-    callLibrary(handler.errors, [&] {
-      jpeg_create_compress(&jpeg);
-      jpeg_mem_dest(&jpeg, &bytes, &size);
-      jpeg.image_width = image.width;
-      jpeg.image_height = image.height;
-      jpeg.input_components = image.channels;
-      jpeg.in_color_space = image.channels == 1 ? JCS_GRAYSCALE : image.channels == 3 ? JCS_RGB : JCS_EXT_RGBX;
-      jpeg_set_defaults(&jpeg);
-      jpeg_set_quality(&jpeg, quality, TRUE);
-      jpeg_start_compress(&jpeg, TRUE);
-      while (jpeg.next_scanline < jpeg.image_height) {
-        JSAMPROW row = const_cast<std::uint8_t*>(image.pixel(0, static_cast<int>(jpeg.next_scanline)));
-        jpeg_write_scanlines(&jpeg, &row, 1);
-      }
-      jpeg_finish_compress(&jpeg);
-    });
-    std::vector<std::uint8_t> result(bytes, bytes + size);
-    cleanUp();
-    return result;
-  } catch (...) {
-    cleanUp();
-    throw;
-  }
+  JpegBytes bytes;
+  Owned<jpeg_compress_struct, jpeg_destroy_compress> jpeg(handler);
+  callLibrary(handler.errors, [&] {
+    jpeg_create_compress(&jpeg);
+    jpeg_mem_dest(&jpeg, &bytes.begin, &bytes.size);
+    jpeg.image_width = image.width;
+    jpeg.image_height = image.height;
+    jpeg.input_components = image.channels;
+    jpeg.in_color_space = image.channels == 1 ? JCS_GRAYSCALE : image.channels == 3 ? JCS_RGB : JCS_EXT_RGBX;
+    jpeg_set_defaults(&jpeg);
+    jpeg_set_quality(&jpeg, quality, TRUE);
+    jpeg_start_compress(&jpeg, TRUE);
+    while (jpeg.next_scanline < jpeg.image_height) {
+      JSAMPROW row = const_cast<std::uint8_t*>(image.pixel(0, static_cast<int>(jpeg.next_scanline)));
+      jpeg_write_scanlines(&jpeg, &row, 1);
+    }
+    jpeg_finish_compress(&jpeg);
+  });
+  return {bytes.begin, bytes.begin + bytes.size};
 }
 } // namespace fresco::io

@@ -167,9 +167,8 @@ Layout layoutOf(const Table& table)
   const bool is_depth = format == floating && out.bits == 32 && out.samples == 1 && out.photometric <= black_is_zero;
   const bool is_known = std::count(known.begin(), known.end(), out.compression) > 0 &&
                         out.photometric <= palette_colors && (is_picture || (is_depth && out.predictor <= 3));
-  if (!is_known)
-    throw std::runtime_error(concat("TIFF: compression ", out.compression, ", ", out.bits, " bits, photometric ",
-                                    out.photometric, " is not supported: save the image as PNG"));
+  expect(is_known, "TIFF: compression ", out.compression, ", ", out.bits, " bits, photometric ", out.photometric,
+         " is not supported: save the image as PNG");
   constexpr std::uint32_t longest = 1 << 20; // pixels
   const auto is_possible = [](std::uint32_t length) { return length > 0 && length <= longest; };
   if (!is_possible(out.width) || !is_possible(out.height) || !is_possible(out.part_width) ||
@@ -250,8 +249,7 @@ Image decodeTiff(std::string_view bytes)
 {
   const Table table(bytes);
   const Layout layout = layoutOf(table);
-  if (layout.bits == 32)
-    throw std::runtime_error("TIFF: holds depths (floats), no picture");
+  expect(layout.bits != 32, "TIFF: holds depths (floats), no picture");
   Image image(layout.width, layout.height, 3);
   const std::size_t colors = std::size_t{1} << layout.bits;
   forEachSample(table, layout, [&](std::uint32_t x, std::uint32_t y, std::uint32_t sample, std::uint32_t value) {

@@ -17,8 +17,8 @@ Image decodeWebp(std::string_view bytes)
 {
   const ImageSize size = webpSize(bytes);
   Image image(size.width, size.height, 3);
-  if (!WebPDecodeRGBInto(begin(bytes), bytes.size(), image.data.data(), image.data.size(), 3 * image.width))
-    throw std::runtime_error("the image is truncated or damaged");
+  expect(WebPDecodeRGBInto(begin(bytes), bytes.size(), image.data.data(), image.data.size(), 3 * image.width),
+         "the image is truncated or damaged");
   return image;
 }
 } // namespace fresco::io

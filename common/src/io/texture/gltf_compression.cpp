@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // EXT_meshopt_compression: Kapoulkine et al., Khronos' registry of extensions.
 #include "io/texture/gltf_compression.h"
+#include "io/files/expect.h"
 #include <cstring>
 #include <fresco/core/point_table.h>
-#include <fresco/core/require.h>
 #include <meshoptimizer.h>
 #include <nlohmann/json.hpp>
 namespace fresco::io {
@@ -11,8 +11,6 @@ namespace {
 using Json = nlohmann::json;
 const char* const extension_name = "EXT_meshopt_compression";
 constexpr std::uint32_t json_chunk = 0x4e4f534a, binary_chunk = 0x004e4942, magic = 0x46546c67; // glTF 2.0, section 4.4
-
-[[noreturn]] void fail(const std::string& reason) { throw std::runtime_error("glTF: " + reason); }
 
 struct Glb {
   Json json;
@@ -22,12 +20,11 @@ struct Glb {
 Glb opened(std::string_view glb)
 {
   const auto number = [&](std::size_t at) { return loadScalar<std::uint32_t>(glb.data() + at); };
-  if (glb.size() < 20 || number(0) != magic || number(16) != json_chunk || number(12) > glb.size() - 20)
-    fail("not binary glTF");
+  expect(glb.size() >= 20 && number(0) == magic && number(16) == json_chunk && number(12) <= glb.size() - 20,
+         "glTF: not binary glTF");
   const std::size_t end = 20 + std::size_t(number(12));
   Glb opened{Json::parse(glb.substr(20, end - 20), nullptr, false), {}};
-  if (!opened.json.is_object())
-    fail("its JSON cannot be read");
+  expect(opened.json.is_object(), "glTF: its JSON cannot be read");
   if (glb.size() >= end + 8 && number(end + 4) == binary_chunk)
     opened.data = glb.substr(end + 8, std::min<std::size_t>(number(end), glb.size() - end - 8));
   return opened;
@@ -118,17 +115,16 @@ struct CompressedView {
 void validate(const CompressedView& view)
 {
   const bool is_index = view.mode == "TRIANGLES" || view.mode == "INDICES";
-  if (is_index ? view.stride != 2 && view.stride != 4 : view.stride % 4 != 0 || view.stride == 0 || view.stride > 256)
-    fail("a compressed view has elements of a size that does not exist");
-  if ((!is_index && view.mode != "ATTRIBUTES") || (view.mode == "TRIANGLES" && view.count % 3 != 0))
-    fail("a compressed view of an unknown kind");
+  expect(is_index ? view.stride == 2 || view.stride == 4
+                  : view.stride % 4 == 0 && view.stride != 0 && view.stride <= 256,
+         "glTF: a compressed view has elements of a size that does not exist");
+  expect((is_index || view.mode == "ATTRIBUTES") && (view.mode != "TRIANGLES" || view.count % 3 == 0),
+         "glTF: a compressed view of an unknown kind");
   const bool fits = view.filter == "NONE" ||
                     (!is_index && ((view.filter == "OCTAHEDRAL" && (view.stride == 4 || view.stride == 8)) ||
                                    (view.filter == "QUATERNION" && view.stride == 8) || view.filter == "EXPONENTIAL"));
-  if (!fits)
-    fail("a compressed view with an unknown filter");
-  if (view.count > 1024 * view.bytes.size() / view.stride)
-    fail("a compressed view is too short");
+  expect(fits, "glTF: a compressed view with an unknown filter");
+  expect(view.count <= 1024 * view.bytes.size() / view.stride, "glTF: a compressed view is too short");
 }
 
 std::string decoded(const CompressedView& view)
@@ -143,8 +139,7 @@ std::string decoded(const CompressedView& view)
     error = meshopt_decodeIndexBuffer(out.data(), view.count, view.stride, bytes, view.bytes.size());
   else
     error = meshopt_decodeIndexSequence(out.data(), view.count, view.stride, bytes, view.bytes.size());
-  if (error != 0)
-    fail("a compressed view is damaged");
+  expect(error == 0, "glTF: a compressed view is damaged");
   if (view.filter == "OCTAHEDRAL")
     meshopt_decodeFilterOct(out.data(), view.count, view.stride);
   else if (view.filter == "QUATERNION")
@@ -157,8 +152,8 @@ std::string decoded(const CompressedView& view)
 std::string_view partOf(std::string_view data, const Json& view)
 {
   const std::size_t at = view.value("byteOffset", std::size_t{0}), length = view.at("byteLength");
-  if (view.at("buffer") != 0 || at > data.size() || length > data.size() - at)
-    fail("a view reaches beyond the file");
+  expect(view.at("buffer") == 0 && at <= data.size() && length <= data.size() - at,
+         "glTF: a view reaches beyond the file");
   return data.substr(at, length);
 }
 
@@ -239,8 +234,8 @@ try {
       view["extensions"].erase(extension_name);
     } else
       bytes = partOf(data, view);
-    if (plain.size() + bytes.size() > std::numeric_limits<std::int32_t>::max())
-      fail("more than 2 GiB when it is unpacked");
+    expect(plain.size() + bytes.size() <= std::numeric_limits<std::int32_t>::max(),
+           "glTF: more than 2 GiB when it is unpacked");
     view["buffer"] = 0;
     view["byteOffset"] = plain.size();
     view["byteLength"] = bytes.size();
@@ -253,6 +248,6 @@ try {
       json[list].erase(std::remove(json[list].begin(), json[list].end(), extension_name), json[list].end());
   return closed(json, std::move(plain));
 } catch (const Json::exception&) {
-  fail("its compressed views cannot be read");
+  throw std::runtime_error("glTF: its compressed views cannot be read");
 }
 } // namespace fresco::io

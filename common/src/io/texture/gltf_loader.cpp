@@ -1,17 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "io/texture/gltf_loader.h"
+#include "io/files/expect.h"
 #include "io/texture/gltf_compression.h"
 #include <algorithm>
 #include <filesystem>
 #include <fresco/core/point_table.h>
-#include <fresco/core/require.h>
 #include <fresco/io/file.h>
 #include <functional>
 #include <limits>
 namespace fresco::io {
 namespace {
-[[noreturn]] void fail(const std::string& reason) { throw std::runtime_error("glTF: " + reason); }
-
 /// The bytes of an image outside of the buffers; those inside are decoded later.
 // NOLINTNEXTLINE(readability-function-size): tinygltf sets the parameters
 bool keepImageBytes(tinygltf::Image* image, int, std::string*, std::string*, int, int, const unsigned char* bytes,
@@ -41,10 +39,9 @@ void checkJson(std::string_view json)
     depth += c == '{' || c == '[' ? 1 : c == '}' || c == ']' ? -1 : 0;
     objects += c == '{' ? 1 : 0;
     values += c == ',' ? 1 : 0;
-    if (depth > deepest)
-      fail(concat("nested more than ", deepest, " deep"));
-    if (objects > most_objects || values > most_values)
-      fail(concat("more than ", most_objects, " objects or ", most_values, " values"));
+    expect(depth <= deepest, "glTF: nested more than ", deepest, " deep");
+    expect(objects <= most_objects && values <= most_values, "glTF: more than ", most_objects, " objects or ",
+           most_values, " values");
   }
 }
 
@@ -114,8 +111,7 @@ tinygltf::FsCallbacks callbacksFor(ExternalFiles& files)
 tinygltf::Model loadGltf(std::string_view content, const std::string& folder)
 {
   constexpr std::size_t header = 20; // the header of the file and that of its first chunk, the JSON
-  if (content.size() < header)
-    fail("not binary glTF");
+  expect(content.size() >= header, "glTF: not binary glTF");
   checkJson(content.substr(header, loadScalar<std::uint32_t>(content.data() + 12)));
   std::string plain;
   if (isCompressedGlb(content))
@@ -126,11 +122,11 @@ tinygltf::Model loadGltf(std::string_view content, const std::string& folder)
   loader.SetFsCallbacks(callbacksFor(files));
   tinygltf::Model gltf;
   std::string error, warning;
-  if (content.size() > std::numeric_limits<std::uint32_t>::max())
-    fail("larger than the 4 GiB that binary glTF can hold");
+  expect(content.size() <= std::numeric_limits<std::uint32_t>::max(),
+         "glTF: larger than the 4 GiB that binary glTF can hold");
   const auto* bytes = reinterpret_cast<const unsigned char*>(content.data());
   if (!loader.LoadBinaryFromMemory(&gltf, &error, &warning, bytes, content.size()))
-    fail(error.empty() ? "not binary glTF" : error.substr(0, error.find('\n')));
+    throw std::runtime_error("glTF: " + (error.empty() ? "not binary glTF" : error.substr(0, error.find('\n'))));
   return gltf;
 }
 } // namespace fresco::io

@@ -6,19 +6,16 @@
 #include <algorithm>
 #include <cmath>
 #include <fresco/core/point_table.h>
-#include <fresco/core/require.h>
+#include <fresco/io/byte_hash.h>
 #include <fresco/io/image_io.h>
 #include <limits>
 #include <unordered_map>
 namespace fresco::io {
 namespace {
-[[noreturn]] void fail(const std::string& reason) { throw std::runtime_error("glTF: " + reason); }
-
 template <typename T>
 const T& at(const std::vector<T>& items, int index, const char* what)
 {
-  if (index < 0 || std::size_t(index) >= items.size())
-    fail(concat("there is no ", what, ' ', index));
+  expect(index >= 0 && std::size_t(index) < items.size(), "glTF: there is no ", what, ' ', index);
   return items[index];
 }
 
@@ -29,8 +26,7 @@ Scalar componentType(int type)
       {TINYGLTF_COMPONENT_TYPE_SHORT, Scalar::int16},         {TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT, Scalar::uint16},
       {TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT, Scalar::uint32}, {TINYGLTF_COMPONENT_TYPE_FLOAT, Scalar::float32}};
   const auto found = types.find(type);
-  if (found == types.end())
-    fail(concat("unknown component type ", type));
+  expect(found != types.end(), "glTF: unknown component type ", type);
   return found->second;
 }
 
@@ -39,9 +35,9 @@ std::string_view viewBytes(const tinygltf::Model& gltf, int index, std::size_t o
 {
   const tinygltf::BufferView& view = at(gltf.bufferViews, index, "buffer view");
   const std::vector<unsigned char>& data = at(gltf.buffers, view.buffer, "buffer").data;
-  if (view.byteOffset > data.size() || view.byteLength > data.size() - view.byteOffset || offset > view.byteLength ||
-      length > view.byteLength - offset)
-    fail(concat("truncated: buffer view ", index, " does not fit into its buffer"));
+  expect(view.byteOffset <= data.size() && view.byteLength <= data.size() - view.byteOffset &&
+             offset <= view.byteLength && length <= view.byteLength - offset,
+         "glTF: truncated: buffer view ", index, " does not fit into its buffer");
   return {reinterpret_cast<const char*>(data.data()) + view.byteOffset + offset, length};
 }
 
@@ -51,13 +47,13 @@ Eigen::MatrixXd readAccessor(const tinygltf::Model& gltf, int index, int compone
   const tinygltf::Accessor& accessor = at(gltf.accessors, index, "accessor");
   const Scalar type = componentType(accessor.componentType);
   const int stored = tinygltf::GetNumComponentsInType(accessor.type);
-  if (stored < components || accessor.sparse.isSparse)
-    fail(concat("accessor ", index, " is not of the kind that its use asks for"));
+  expect(stored >= components && !accessor.sparse.isSparse, "glTF: accessor ", index,
+         " is not of the kind that its use asks for");
   const tinygltf::BufferView& view = at(gltf.bufferViews, accessor.bufferView, "buffer view");
   const std::size_t element = scalarSize(type) * stored;
   const std::size_t stride = view.byteStride == 0 ? element : view.byteStride;
-  if (accessor.count == 0 || stride < element || accessor.count > view.byteLength / stride + 1)
-    fail(concat("truncated: accessor ", index, " of ", accessor.count, " elements does not fit"));
+  expect(accessor.count != 0 && stride >= element && accessor.count <= view.byteLength / stride + 1,
+         "glTF: truncated: accessor ", index, " of ", accessor.count, " elements does not fit");
   const char* bytes =
       viewBytes(gltf, accessor.bufferView, accessor.byteOffset, (accessor.count - 1) * stride + element).data();
   Eigen::MatrixXd values(components, accessor.count);
@@ -90,13 +86,7 @@ Image readImageOf(const tinygltf::Model& gltf, const tinygltf::Image& source)
 }
 
 struct PositionHash {
-  std::size_t operator()(const std::array<float, 3>& p) const
-  {
-    std::uint64_t hash = 0;
-    for (const float value : p)
-      hash = (hash ^ loadScalar<std::uint32_t>(&value)) * 0x9E3779B97F4A7C15ULL;
-    return hash ^ (hash >> 32);
-  }
+  std::size_t operator()(const std::array<float, 3>& p) const { return hashBytes(p.data(), sizeof(p)); }
 };
 
 /// Joins the primitives of a scene.
@@ -118,8 +108,7 @@ public:
       return;
     }
     const Eigen::MatrixXd positions = attribute(primitive, "POSITION", 3);
-    if (positions.cols() == 0)
-      fail("a primitive has no positions");
+    expect(positions.cols() != 0, "glTF: a primitive has no positions");
     const std::vector<int> vertices = addVertices(primitive, T_scene_mesh, positions);
     const int atlas = atlasOf(primitive);
     const Eigen::MatrixXd texcoords = atlas < 0 ? Eigen::MatrixXd() : textureCoordinates(primitive);
@@ -135,8 +124,7 @@ public:
 
   GltfModel take()
   {
-    if (faces_.empty())
-      fail("no triangles");
+    expect(!faces_.empty(), "glTF: no triangles");
     if (!normal_maps_.empty())
       normal_maps_.resize(model_.atlases.size());
     TriangleMesh& mesh = model_.mesh;
@@ -168,8 +156,7 @@ private:
   Eigen::MatrixXd read(int accessor, int components)
   {
     const std::size_t count = at(gltf_.accessors, accessor, "accessor").count;
-    if (count > elements_left_)
-      fail("its meshes repeat the same data more often than there is room for");
+    expect(count <= elements_left_, "glTF: its meshes repeat the same data more often than there is room for");
     elements_left_ -= count;
     return readAccessor(gltf_, accessor, components);
   }
@@ -212,8 +199,8 @@ private:
     } else {
       const Eigen::MatrixXd indices = read(primitive.indices, 1);
       for (Index i = 0; i < indices.cols(); ++i) {
-        if (!(indices(0, i) >= 0 && indices(0, i) < positions))
-          fail(concat("a triangle names vertex ", indices(0, i), ", there are ", positions));
+        expect(indices(0, i) >= 0 && indices(0, i) < positions, "glTF: a triangle names vertex ", indices(0, i),
+               ", there are ", positions);
         corners.push_back(indices(0, i));
       }
     }
@@ -224,8 +211,7 @@ private:
   static std::vector<std::size_t> triangleCorners(std::vector<std::size_t> corners, int mode)
   {
     if (mode != TINYGLTF_MODE_TRIANGLE_STRIP && mode != TINYGLTF_MODE_TRIANGLE_FAN) {
-      if (corners.size() % 3 != 0)
-        fail("the number of indices is no multiple of 3");
+      expect(corners.size() % 3 == 0, "glTF: the number of indices is no multiple of 3");
       return corners;
     }
     std::vector<std::size_t> triangles;
@@ -266,8 +252,7 @@ private:
   {
     const std::size_t texcoords = texcoords_.size() - first_texcoord;
     for (std::size_t i = 0; i < corners.size(); ++i) {
-      if (atlas >= 0 && corners[i] >= texcoords)
-        fail("fewer texture coordinates than positions");
+      expect(atlas < 0 || corners[i] < texcoords, "glTF: fewer texture coordinates than positions");
       faces_.push_back(vertices[corners[i]]);
       texcoord_faces_.push_back(atlas < 0 ? -1 : first_texcoord + int(corners[i]));
       if (i % 3 == 0)
@@ -352,8 +337,7 @@ std::vector<PlacedMesh> collectMeshes(const tinygltf::Model& gltf, const tinyglt
   for (auto node = scene.nodes.rbegin(); node != scene.nodes.rend(); ++node)
     open.emplace_back(*node, T_model_scene);
   for (std::size_t visited = 0; !open.empty(); ++visited) {
-    if (visited + open.size() > gltf.nodes.size() + 1)
-      fail("the nodes of the scene are no tree");
+    expect(visited + open.size() <= gltf.nodes.size() + 1, "glTF: the nodes of the scene are no tree");
     const auto [index, T_scene_parent] = open.back();
     open.pop_back();
     const tinygltf::Node& node = at(gltf.nodes, index, "node");
@@ -371,8 +355,8 @@ GltfModel parseGlb(std::string_view content, const std::string& folder)
 {
   const tinygltf::Model gltf = loadGltf(content, folder);
   for (const std::string& name : gltf.extensionsRequired)
-    if (name.find("compression") != std::string::npos)
-      fail("compressed by the extension " + name + ", which is not read");
+    expect(name.find("compression") == std::string::npos, "glTF: compressed by the extension ", name,
+           ", which is not read");
   const std::vector<PlacedMesh> meshes = collectMeshes(gltf, at(gltf.scenes, std::max(gltf.defaultScene, 0), "scene"));
   ModelBuilder builder(gltf, content.size());
   const Eigen::Vector3d origin = meshes.empty() ? Eigen::Vector3d::Zero() : meshes[0].T_scene_mesh.translation().eval();

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "io/files/expect.h"
 #include "io/texture/gltf_compression.h"
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <fresco/core/require.h>
 #include <fresco/io/file.h>
 #include <limits>
 #include <sstream>
@@ -19,6 +19,14 @@ const Eigen::Matrix3d R_gltf_model = (Eigen::Matrix3d() << 1, 0, 0, 0, 0, 1, 0, 
 struct StoredImages {
   std::vector<std::uint8_t> colors, normals; ///< normals: empty = none
 };
+
+/// What glTF calls a type. Its vectors are called by their length.
+template <typename T>
+constexpr int component_type = std::is_same_v<T, float>           ? TINYGLTF_COMPONENT_TYPE_FLOAT
+                               : std::is_same_v<T, std::int16_t>  ? TINYGLTF_COMPONENT_TYPE_SHORT
+                               : std::is_same_v<T, std::uint16_t> ? TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT
+                                                                  : TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT;
+static_assert(TINYGLTF_TYPE_VEC2 == 2 && TINYGLTF_TYPE_VEC3 == 3 && TINYGLTF_TYPE_VEC4 == 4);
 
 bool isUnit(const Eigen::Vector3f& normal) { return std::abs(normal.squaredNorm() - 1.f) < 1e-3f; }
 bool isFraction(const Eigen::Vector2f& at) { return at.minCoeff() >= 0 && at.maxCoeff() <= 1; }
@@ -139,74 +147,77 @@ private:
     return gltf_.bufferViews.size() - 1;
   }
 
-  /// @return its number
-  template <typename T>
-  int addAccessor(const std::vector<T>& values, int component_type, int type)
+  /// @tparam T of a component @param type of an element @return its number
+  template <typename T, typename Element>
+  int addAccessor(const std::vector<Element>& values, int type)
   {
     const bool is_index = type == TINYGLTF_TYPE_SCALAR;
     tinygltf::Accessor accessor;
-    accessor.bufferView = addView(values.data(), values.size() * sizeof(T),
+    accessor.bufferView = addView(values.data(), values.size() * sizeof(Element),
                                   is_index ? TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER : TINYGLTF_TARGET_ARRAY_BUFFER);
-    const std::size_t element =
-        tinygltf::GetComponentSizeInBytes(component_type) * tinygltf::GetNumComponentsInType(type);
-    if (element != sizeof(T)) // vertices begin at multiples of four bytes
-      gltf_.bufferViews.back().byteStride = sizeof(T);
-    accessor.componentType = component_type;
+    if (sizeof(T) * tinygltf::GetNumComponentsInType(type) !=
+        sizeof(Element)) // vertices begin at multiples of four bytes
+      gltf_.bufferViews.back().byteStride = sizeof(Element);
+    accessor.componentType = component_type<T>;
     accessor.type = type;
     accessor.count = values.size();
     gltf_.accessors.push_back(accessor);
     return gltf_.accessors.size() - 1;
   }
 
-  /// Values -1..1 or 0..1 as integers that stand for them.
-  /// @tparam stored components of an element in the file, of which the last ones may be none
+  /// Values -1..1 or 0..1 as floats, or as integers that stand for them.
+  /// @tparam T of the integers @tparam stored components of an element in the file, of which the last ones may be none
   template <typename T, int stored, int components>
-  int addNormalized(const std::vector<Eigen::Matrix<float, components, 1>>& values, int component_type, int type)
+  int addFractions(const std::vector<Eigen::Matrix<float, components, 1>>& values, bool as_integers)
   {
-    using Element = std::array<T, stored>;
+    if (!as_integers)
+      return addAccessor<float>(values, components);
     constexpr float largest = std::numeric_limits<T>::max();
-    std::vector<Element> elements;
+    std::vector<std::array<T, stored>> elements;
     for (const auto& value : values) {
-      Element& element = elements.emplace_back();
+      auto& element = elements.emplace_back();
       for (int k = 0; k < components; ++k)
         element[k] = std::lround(std::min(std::max(value[k], std::is_signed_v<T> ? -1.f : 0.f), 1.f) * largest);
     }
-    const int accessor = addAccessor(elements, component_type, type);
+    const int accessor = addAccessor<T>(elements, components);
     gltf_.accessors[accessor].normalized = true;
+    return accessor;
+  }
+
+  template <typename T, typename Element>
+  int addBounded(const std::vector<Element>& values)
+  {
+    const int accessor = addAccessor<T>(values, TINYGLTF_TYPE_VEC3);
+    std::vector<double>&low = gltf_.accessors[accessor].minValues, &high = gltf_.accessors[accessor].maxValues;
+    low.assign(3, std::numeric_limits<double>::infinity());
+    high.assign(3, -std::numeric_limits<double>::infinity());
+    for (const auto& value : values)
+      for (int axis = 0; axis < 3; ++axis) {
+        low[axis] = std::min<double>(low[axis], value[axis]);
+        high[axis] = std::max<double>(high[axis], value[axis]);
+      }
     return accessor;
   }
 
   int addPositions(const std::vector<Eigen::Vector3f>& positions)
   {
-    const auto addBounded = [&](const auto& values, int component_type) {
-      const int accessor = addAccessor(values, component_type, TINYGLTF_TYPE_VEC3);
-      std::vector<double>&low = gltf_.accessors[accessor].minValues, &high = gltf_.accessors[accessor].maxValues;
-      low.assign(3, std::numeric_limits<double>::infinity());
-      high.assign(3, -std::numeric_limits<double>::infinity());
-      for (const auto& value : values)
-        for (int axis = 0; axis < 3; ++axis) {
-          low[axis] = std::min<double>(low[axis], value[axis]);
-          high[axis] = std::max<double>(high[axis], value[axis]);
-        }
-      return accessor;
-    };
     if (!options_.compact)
-      return addBounded(positions, TINYGLTF_COMPONENT_TYPE_FLOAT);
+      return addBounded<float>(positions);
     std::vector<std::array<std::uint16_t, 4>> steps;
     for (const Eigen::Vector3f& position : positions) {
       const Eigen::Vector3d at = (position.cast<double>() - low_) / step_;
       steps.push_back({std::uint16_t(std::lround(at.x())), std::uint16_t(std::lround(at.y())),
                        std::uint16_t(std::lround(at.z())), 0});
     }
-    return addBounded(steps, TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT);
+    return addBounded<std::uint16_t>(steps);
   }
 
   int addIndices(const GltfPart& part)
   {
     if (part.positions.size() > 65535)
-      return addAccessor(part.indices, TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT, TINYGLTF_TYPE_SCALAR);
+      return addAccessor<std::uint32_t>(part.indices, TINYGLTF_TYPE_SCALAR);
     const std::vector<std::uint16_t> shorter(part.indices.begin(), part.indices.end());
-    return addAccessor(shorter, TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT, TINYGLTF_TYPE_SCALAR);
+    return addAccessor<std::uint16_t>(shorter, TINYGLTF_TYPE_SCALAR);
   }
 
   void addPrimitive(const GltfPart& part)
@@ -215,25 +226,16 @@ private:
     primitive.mode = TINYGLTF_MODE_TRIANGLES;
     primitive.attributes["POSITION"] = addPositions(part.positions);
     if (!part.normals.empty() && std::all_of(part.normals.begin(), part.normals.end(), isUnit))
-      primitive.attributes["NORMAL"] =
-          options_.compact
-              ? addNormalized<std::int16_t, 4>(part.normals, TINYGLTF_COMPONENT_TYPE_SHORT, TINYGLTF_TYPE_VEC3)
-              : addAccessor(part.normals, TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_VEC3);
+      primitive.attributes["NORMAL"] = addFractions<std::int16_t, 4>(part.normals, options_.compact);
     if (!part.tangents.empty())
-      primitive.attributes["TANGENT"] =
-          options_.compact
-              ? addNormalized<std::int16_t, 4>(part.tangents, TINYGLTF_COMPONENT_TYPE_SHORT, TINYGLTF_TYPE_VEC4)
-              : addAccessor(part.tangents, TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_VEC4);
+      primitive.attributes["TANGENT"] = addFractions<std::int16_t, 4>(part.tangents, options_.compact);
     // With JPEG, 16 bits: a tenth of a texel in an atlas of 6,500.
-    const bool coarse = options_.compact || options_.jpeg_quality > 0;
-    if (!part.texcoords.empty() && coarse && std::all_of(part.texcoords.begin(), part.texcoords.end(), isFraction))
-      primitive.attributes["TEXCOORD_0"] =
-          addNormalized<std::uint16_t, 2>(part.texcoords, TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT, TINYGLTF_TYPE_VEC2);
-    else if (!part.texcoords.empty())
-      primitive.attributes["TEXCOORD_0"] =
-          addAccessor(part.texcoords, TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_VEC2);
+    const bool coarse = (options_.compact || options_.jpeg_quality > 0) &&
+                        std::all_of(part.texcoords.begin(), part.texcoords.end(), isFraction);
+    if (!part.texcoords.empty())
+      primitive.attributes["TEXCOORD_0"] = addFractions<std::uint16_t, 2>(part.texcoords, coarse);
     if (!part.colors.empty()) {
-      const int colors = addAccessor(part.colors, TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT, TINYGLTF_TYPE_VEC4);
+      const int colors = addAccessor<std::uint16_t>(part.colors, TINYGLTF_TYPE_VEC4);
       gltf_.accessors[colors].normalized = true;
       primitive.attributes["COLOR_0"] = colors;
     }
@@ -288,15 +290,14 @@ void writeGlb(const std::string& path, const GltfScene& scene, const GltfOptions
   builder.addParts(-1, {});
   const tinygltf::Model& gltf = builder.finish();
   // The header of the format counts bytes with 32 bits; one MiB is left for the JSON part.
-  if (gltf.buffers[0].data.size() > std::numeric_limits<std::uint32_t>::max() - (std::size_t{1} << 20))
-    throw std::runtime_error(path + ": the model is larger than the 4 GiB that binary glTF can hold");
+  expect(gltf.buffers[0].data.size() <= std::numeric_limits<std::uint32_t>::max() - (std::size_t{1} << 20), path,
+         ": the model is larger than the 4 GiB that binary glTF can hold");
   FileStreambuf buffer(file);
   std::ostream plain(&buffer);
   std::ostringstream packed;
   std::ostream& stream = options.compress ? packed : plain;
   stream.exceptions(std::ios::badbit | std::ios::failbit);
-  if (!tinygltf::TinyGLTF().WriteGltfSceneToStream(&gltf, stream, false, true))
-    throw std::runtime_error(path + ": cannot be written as glTF");
+  expect(tinygltf::TinyGLTF().WriteGltfSceneToStream(&gltf, stream, false, true), path, ": cannot be written as glTF");
   if (options.compress)
     file.write(compressedGlb(packed.str()));
   file.commit();

@@ -5,7 +5,6 @@
 #include "io/texture/texture_io.h"
 #include <algorithm>
 #include <filesystem>
-#include <fresco/core/require.h>
 #include <fresco/io/image_io.h>
 #include <fresco/io/mesh_io.h>
 #include <map>

@@ -35,8 +35,7 @@ void takeVertexTexcoords(const PointTable& vertices, const std::array<Column, 2>
 void takeFaceTexcoords(const PlyContent& ply, TexturedMesh& model)
 {
   const Index corners = ply.texcoords.size() / 2;
-  if (corners != model.mesh.faces.size())
-    throw std::runtime_error("texture coordinates beside triangle strips");
+  expect(corners == model.mesh.faces.size(), "texture coordinates beside triangle strips");
   model.texcoords = Eigen::Map<const Eigen::Matrix2Xf>(ply.texcoords.data(), 2, corners);
   for (Index i = 0; i < corners; ++i)
     model.texcoord_faces.data()[i] = int(i);
