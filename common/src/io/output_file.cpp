@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "io/files/expect.h"
 #include "io/files/inputs.h"
 #include <algorithm>
 #include <cerrno>
@@ -6,7 +7,6 @@
 #include <cstring>
 #include <fcntl.h>
 #include <filesystem>
-#include <fresco/core/require.h>
 #include <fresco/io/file.h>
 #include <fresco/io/unfinished_files.h>
 #include <mutex>
@@ -39,8 +39,7 @@ std::optional<struct stat> replaced(const std::string& path)
     fail(path, "is a folder, not a file to write to");
   if (found.st_mode == 0)
     return {};
-  if (!S_ISREG(found.st_mode))
-    fail(path, "is a link, a device or a pipe: only a file may be replaced");
+  expect(S_ISREG(found.st_mode), path, ": is a link, a device or a pipe: only a file may be replaced");
   return found;
 }
 
@@ -310,8 +309,7 @@ OutputGroup::~OutputGroup()
 void OutputGroup::requireNoInputs() const
 {
   for (const Stored& file : unfinished().stored)
-    if (io::wasRead(file.path))
-      fail(file.path, "is an input, too, and inputs are not replaced");
+    expect(!io::wasRead(file.path), file.path, ": is an input, too, and inputs are not replaced");
 }
 
 void OutputGroup::commit()
@@ -335,8 +333,8 @@ void makeFolder(const std::string& path)
   for (fs::path at = path; !at.empty() && !fs::exists(at, error); at = at.parent_path())
     missing.push_back(at.string());
   fs::create_directories(path, error);
-  if (error || !fs::is_directory(path))
-    fail(path, "the folder cannot be made (" + (error ? error.message() : "a file of that name is there") + ")");
+  expect(!error && fs::is_directory(path), path, ": the folder cannot be made (",
+         error ? error.message() : "a file of that name is there", ")");
   if (::access(path.c_str(), W_OK | X_OK) != 0)
     fail(path, std::string("the folder cannot be written to (") + std::strerror(errno) + ")");
   const Lock lock(unfinished().mutex);

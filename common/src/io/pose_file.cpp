@@ -11,11 +11,7 @@ Pose parsePose(std::string_view line, const std::string& where)
     return {};
   Eigen::Matrix4d T;
   for (int i = 0; i < 16; ++i, word = words.word())
-    try {
-      T(i / 4, i % 4) = io::parseNumber<double>(word);
-    } catch (const std::runtime_error&) {
-      throw std::runtime_error(concat(where, ": wants 16 numbers or the word none"));
-    }
+    T(i / 4, i % 4) = io::parseNumberOr<double>(word, where, ": wants 16 numbers or the word none");
   expect(word.empty(), where, ": more than 16 numbers");
   expect(isRigid(T, 1e-3), where, ": not a rigid transform");
   return T;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "io/files/expect.h"
+#include "io/points/scan_reader.h"
 #include <algorithm>
 #include <filesystem>
 #include <fresco/io/image_io.h>
@@ -15,11 +15,7 @@ CameraModel depthCamera(const std::string& path, const std::string& depth)
   const Eigen::MatrixXd K = readMatrix(path, 3, 3);
   const ImageSize first = readImageSize(depth);
   CameraModel camera{first.width, first.height, K(0, 0), K(1, 1), K(0, 2) + 0.5, K(1, 2) + 0.5, 0, 0, 0, 0};
-  try {
-    validateCamera(camera);
-  } catch (const std::invalid_argument& error) {
-    throw std::runtime_error(path + ": " + error.what());
-  }
+  io::namingFile(path, [&] { validateCamera(camera); });
   return camera;
 }
 } // namespace

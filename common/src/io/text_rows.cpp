@@ -23,11 +23,7 @@ std::vector<std::vector<std::string>> readTextRows(const std::string& path)
 
 double numberIn(const std::string& path, const std::string& cell)
 {
-  try {
-    return io::parseNumber<double>(cell);
-  } catch (const std::runtime_error&) {
-    throw std::runtime_error(path + ": '" + cell + "' is no number");
-  }
+  return io::parseNumberOr<double>(cell, path, ": '", cell, "' is no number");
 }
 
 Eigen::MatrixXd readMatrix(const std::string& path, int rows, int columns)

@@ -122,11 +122,7 @@ int io::CameraFileBuilder::addView(const std::string& photograph, const CameraMo
 {
   const Pose T = rigidPose("photograph " + photograph, T_camera_world);
   expect(T.has_value(), "photograph ", photograph, ": its pose is not finite");
-  try {
-    validateCamera(camera);
-  } catch (const std::invalid_argument& error) {
-    throw std::runtime_error("photograph " + photograph + ": " + error.what());
-  }
+  namingFile("photograph " + photograph, [&] { validateCamera(camera); });
   View view;
   view.image = nameBelow(photograph);
   view.camera = int(file_.set.cameras.size());

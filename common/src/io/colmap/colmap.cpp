@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "io/colmap/colmap_rows.h"
 #include "io/colmap/lens_models.h"
+#include "io/points/scan_reader.h"
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -49,11 +50,7 @@ CameraModel readCamera(ColmapRows& rows, const char* wanted)
     camera.*lens.parameters[i] = p[i];
   if (lens.parameters[1] != &CameraModel::fy)
     camera.fy = camera.fx;
-  try {
-    validateCamera(camera);
-  } catch (const std::invalid_argument& error) {
-    rows.fail(error.what());
-  }
+  io::namingFile(rows.where(), [&] { validateCamera(camera); });
   return camera;
 }
 

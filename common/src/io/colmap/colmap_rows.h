@@ -41,11 +41,8 @@ public:
   {
     if (binary_)
       return stored<Binary>();
-    try {
-      return parseNumber<Text>(words_.word());
-    } catch (const std::runtime_error&) {
-      fail(concat("wants ", wanted));
-    }
+    const std::string_view word = words_.word();
+    return parseNumberOr<Text>(word, path_, ": line ", line_, ": wants ", wanted);
   }
   template <int count>
   Eigen::Matrix<double, count, 1> numbers(const char* wanted)

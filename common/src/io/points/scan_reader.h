@@ -39,6 +39,18 @@ protected:
 /// Remarks on the parts of a file that cannot be read. @throws std::runtime_error with the first unless there are others
 void tellDamage(const std::vector<std::string>& errors, bool others);
 
+/// use(); what cannot be read of `what` goes to `errors`, to be told later, and does not cost the rest.
+/// @return whether it could be read
+template <typename Use>
+bool attempt(const std::string& what, std::vector<std::string>& errors, const Use& use)
+try {
+  use();
+  return true;
+} catch (const std::runtime_error& error) {
+  errors.push_back(what + ": " + error.what());
+  return false;
+}
+
 /// use(); every error is a std::runtime_error "PATH: reason".
 template <typename Use>
 auto namingFile(const std::string& path, const Use& use) -> decltype(use())

@@ -128,16 +128,7 @@ void moveRows(PointTable& table, NameTriple names, Index begin, Index end, const
   }
 }
 
-/// read(); what cannot be read of scan `scan` is told later and does not cost the others.
-template <typename Read>
-void attempt(Index scan, std::vector<std::string>& errors, const Read& read)
-{
-  try {
-    read();
-  } catch (const std::runtime_error& error) {
-    errors.push_back(concat("scan ", scan + 1, ": ", error.what()));
-  }
-}
+std::string nameOf(Index scan) { return concat("scan ", scan + 1); }
 
 /// One scan into the rows of `merged` from `begin` on. @return the row behind its last
 Index appendScan(ScanReader& reader, Index scan, PointTable& merged, Index begin)
@@ -175,7 +166,7 @@ PointTable readMergedTable(ScanReader& reader)
   std::vector<std::string> errors;
   for (Index i = 0; i < Index(scans.size()); ++i)
     if (scans[i].points > 0)
-      attempt(i, errors, [&] {
+      attempt(nameOf(i), errors, [&] {
         layouts.push_back(reader.open(i));
         used.push_back(i);
         rows += scans[i].points;
@@ -192,7 +183,7 @@ PointTable readMergedTable(ScanReader& reader)
   merged.allocate(rows);
   Index done = 0;
   for (const Index scan : used)
-    attempt(scan, errors, [&] { done = appendScan(reader, scan, merged, done); });
+    attempt(nameOf(scan), errors, [&] { done = appendScan(reader, scan, merged, done); });
   tellDamage(errors, done > 0);
   expect(done != 0, "no points");
   merged.rows = done;

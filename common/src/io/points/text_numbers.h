@@ -55,6 +55,15 @@ private:
 template <typename T>
 FRESCO_EXPORT T parseNumber(std::string_view word);
 
+/// The same with a message of the caller's. @throws std::runtime_error with all `parts` joined
+template <typename T, typename... Parts>
+T parseNumberOr(std::string_view word, const Parts&... parts)
+try {
+  return parseNumber<T>(word);
+} catch (const std::runtime_error&) {
+  throw std::runtime_error(concat(parts...));
+}
+
 /// The shortest text that is read back as the same value, in any locale.
 template <typename T>
 std::string numberText(T value)

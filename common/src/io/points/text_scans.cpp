@@ -185,10 +185,7 @@ protected:
       if (line.empty())
         continue;
       lines.unread();
-      try {
-        read(lines);
-      } catch (const std::runtime_error& error) {
-        errors.push_back(concat(block_name_, ' ', scans_.size() + 1, ": ", error.what()));
+      if (!attempt(concat(block_name_, ' ', scans_.size() + 1), errors, [&] { read(lines); })) {
         blocks_.emplace_back();
         scans_.resize(blocks_.size());
         skipBlock(lines);

@@ -92,17 +92,6 @@ std::vector<std::string> librariesIn(const std::string& folder, const std::strin
   return files;
 }
 
-/// Result of `read`, which reads a file that `path` names: errors say who wanted it.
-template <typename Read>
-auto readFor(const std::string& path, const Read& read)
-{
-  try {
-    return read();
-  } catch (const std::runtime_error& error) {
-    throw std::runtime_error(path + ": " + error.what());
-  }
-}
-
 /// Image file of each material name, "" for a material without one.
 std::map<std::string, std::string> readLibraries(const std::string& path, const ObjContent& obj)
 {
@@ -110,13 +99,12 @@ std::map<std::string, std::string> readLibraries(const std::string& path, const 
   const std::string folder = fs::path(path).parent_path().string();
   for (const std::string& entry : obj.libraries)
     for (const std::string& library : librariesIn(folder, entry))
-      readFor(path, [&] {
+      namingFile(path, [&] { // who wanted it
         const std::string file = fileBelow(folder, library);
         // Images lie beside the library, but not outside of the model's folder.
         const fs::path place = fs::path(library).parent_path();
         for (const auto& [name, map] : parseMtl(readFile(file)))
           images[name] = map.empty() ? "" : fileBelow(folder, (place / imageName(map)).string());
-        return true;
       });
   return images;
 }
@@ -137,7 +125,7 @@ std::vector<int> readAtlases(const std::string& path, const ObjContent& obj, std
     }
     const auto [entry, is_new] = known.emplace(file->second, atlases.size());
     if (is_new)
-      atlases.push_back(readFor(path, [&] { return readImage(file->second); }));
+      atlases.push_back(namingFile(path, [&] { return readImage(file->second); }));
     of_material.push_back(entry->second);
   }
   return of_material;

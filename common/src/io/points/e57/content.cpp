@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "io/points/e57/content.h"
-#include "io/files/expect.h"
 #include "io/points/e57/xml_values.h"
+#include "io/points/scan_reader.h"
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -216,21 +216,14 @@ std::string readXml(PagedFile& file, std::vector<std::string>& errors)
   return text;
 }
 
-/// add(child) for each child of a vector. What cannot be read is told, and odd(reason, number) stands in for it.
-template <typename Add, typename Odd>
-void forEachChild(pugi::xml_node vector, const char* what, const Add& add, const Odd& odd)
+/// add(child) for each child of a vector.
+template <typename Add>
+void forEachChild(pugi::xml_node vector, const char* what, std::vector<std::string>& errors, const Add& add)
 {
   int number = 0;
-  for (const pugi::xml_node child : vector.children()) {
-    if (child.type() != pugi::node_element)
-      continue;
-    ++number;
-    try {
-      add(child);
-    } catch (const std::runtime_error& error) {
-      odd(concat(what, ' ', number, ": ", error.what()));
-    }
-  }
+  for (const pugi::xml_node child : vector.children())
+    if (child.type() == pugi::node_element)
+      attempt(concat(what, ' ', ++number), errors, [&] { add(child); });
 }
 } // namespace
 
@@ -247,16 +240,12 @@ Content parseContent(PagedFile& file)
                                         : content.errors[0]);
   const pugi::xml_node root = document.document_element();
   expect(localName(root) == "e57Root", "XML: no e57Root");
-  forEachChild(
-      childNamed(root, "data3D"), "scan", [&](pugi::xml_node node) { content.scans.push_back(scanOf(node)); },
-      [&](const std::string& reason) {
-        content.scans.emplace_back();
-        content.errors.push_back(reason);
-      });
-  forEachChild(
-      childNamed(root, "images2D"), "picture",
-      [&](pugi::xml_node node) { content.images.push_back(imageOf(node, content.scans)); },
-      [&](const std::string& reason) { content.errors.push_back(reason); });
+  forEachChild(childNamed(root, "data3D"), "scan", content.errors, [&](pugi::xml_node node) {
+    content.scans.emplace_back(); // without points unless it can be read
+    content.scans.back() = scanOf(node);
+  });
+  forEachChild(childNamed(root, "images2D"), "picture", content.errors,
+               [&](pugi::xml_node node) { content.images.push_back(imageOf(node, content.scans)); });
   return content;
 }
 } // namespace fresco::io::e57

@@ -6,14 +6,11 @@ namespace fresco::io::e57 {
 namespace {
 template <typename T>
 T numberOf(const char* text, const std::string& where)
-try {
+{
   const std::string_view word = trimmed(text);
-  return word.empty() ? T(0) : parseNumber<T>(word);
-} catch (const std::runtime_error&) {
-  throw std::runtime_error(concat("XML: ", where, ": '", singleLine(text), "' is no ",
-                                  std::is_floating_point_v<T> ? "number" : "whole number of 64 bits"));
+  constexpr const char* wanted = std::is_floating_point_v<T> ? "number" : "whole number of 64 bits";
+  return word.empty() ? T(0) : parseNumberOr<T>(word, "XML: ", where, ": '", singleLine(text), "' is no ", wanted);
 }
-
 } // namespace
 
 std::string_view localName(pugi::xml_node node)
