@@ -54,13 +54,11 @@ CameraModel readCamera(ColmapRows& rows, const char* wanted)
   return camera;
 }
 
-/// Quaternion w x y z, which need not be normalised, and translation.
-Eigen::Isometry3d readPose(ColmapRows& rows, const char* wanted)
+/// @param q quaternion w x y z, which need not be normalised
+Eigen::Isometry3d poseOf(const Eigen::Vector4d& q, const Eigen::Vector3d& translation, const std::string& where)
 {
-  const Eigen::Vector4d q = rows.numbers<4>(wanted);
-  const Eigen::Vector3d translation = rows.numbers<3>(wanted);
-  if (!(q.allFinite() && q.norm() > 1e-6 && q.cwiseAbs().maxCoeff() < 1e6 && isInReach(translation)))
-    rows.fail("the pose is not finite, too far away or has no rotation");
+  expect(q.allFinite() && q.norm() > 1e-6 && q.cwiseAbs().maxCoeff() < 1e6 && isInReach(translation), where,
+         ": the pose is not finite, too far away or has no rotation");
   Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
   T.linear() = Eigen::Quaterniond(q[0], q[1], q[2], q[3]).normalized().toRotationMatrix();
   T.translation() = translation;
@@ -77,12 +75,15 @@ std::vector<ImageEntry> readImages(const std::string& path, bool with_pixels)
   for (ColmapRows rows(path); rows.next();) {
     ImageEntry image;
     image.id = rows.number<std::uint64_t, std::uint32_t>(wanted);
-    image.T_camera_world = readPose(rows, wanted);
+    const Eigen::Vector4d q = rows.numbers<4>(wanted);
+    const Eigen::Vector3d t = rows.numbers<3>(wanted);
     image.camera = rows.number<std::uint64_t, std::uint32_t>(wanted);
     image.name = rows.name();
+    const std::string where = rows.where();
     if (!rows.isBinary())
       rows.next(true);
     const std::uint64_t features = rows.listLength(feature_bytes);
+    image.T_camera_world = poseOf(q, t, where);
     if (!with_pixels)
       rows.skip(features * feature_bytes);
     else

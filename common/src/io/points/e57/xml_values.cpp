@@ -28,10 +28,7 @@ std::string_view prefixOf(pugi::xml_node node)
 
 pugi::xml_node childNamed(pugi::xml_node node, std::string_view name)
 {
-  for (const pugi::xml_node child : node.children())
-    if (localName(child) == name && prefixOf(child) == prefixOf(node))
-      return child;
-  return {};
+  return node.child(concat(prefixOf(node), name).c_str());
 }
 
 std::string_view typeOf(pugi::xml_node node)
