@@ -42,7 +42,18 @@ public:
   Image read(bool with_alpha)
   {
     Image image(size().width, size().height, with_alpha && hasAlpha() ? 4 : 3);
-    readColors(image.data.data(), with_alpha);
+    callLibrary(errors_, [&] {
+      png_set_strip_16(png_);
+      png_set_palette_to_rgb(png_);
+      if (png_get_bit_depth(png_, info_) < 8 && png_get_color_type(png_, info_) == PNG_COLOR_TYPE_GRAY)
+        png_set_expand_gray_1_2_4_to_8(png_);
+      png_set_gray_to_rgb(png_);
+      if (!with_alpha)
+        png_set_strip_alpha(png_);
+      else if (png_get_valid(png_, info_, PNG_INFO_tRNS))
+        png_set_tRNS_to_alpha(png_);
+      readRows(image.data.data());
+    });
     return image;
   }
   void readGrey16(std::uint16_t* rows)
@@ -54,21 +65,6 @@ public:
   }
 
 private:
-  void readColors(std::uint8_t* rows, bool with_alpha)
-  {
-    callLibrary(errors_, [&] {
-      png_set_strip_16(png_);
-      png_set_palette_to_rgb(png_);
-      if (png_get_bit_depth(png_, info_) < 8 && png_get_color_type(png_, info_) == PNG_COLOR_TYPE_GRAY)
-        png_set_expand_gray_1_2_4_to_8(png_);
-      png_set_gray_to_rgb(png_);
-      if (!with_alpha)
-        png_set_strip_alpha(png_);
-      else if (png_get_valid(png_, info_, PNG_INFO_tRNS))
-        png_set_tRNS_to_alpha(png_);
-      readRows(rows);
-    });
-  }
   static void fail(png_structp png, png_const_charp reason)
   {
     auto& errors = *static_cast<LibraryErrors*>(png_get_error_ptr(png));

@@ -17,16 +17,14 @@ struct Source {
 struct Attributes {
   bool normals = true, colors = true, intensities = true, confidences = true;
 
-  void drop(PointSet& set) const
+  /// Gives a set room for `n` points with these attributes and no others; what has that size stays.
+  void fit(PointSet& set, Index n) const
   {
-    if (!normals)
-      set.normals.resize(3, 0);
-    if (!colors)
-      set.colors.resize(3, 0);
-    if (!intensities)
-      set.intensities.resize(0);
-    if (!confidences)
-      set.confidences.resize(0);
+    set.points.resize(3, n);
+    set.normals.resize(3, normals ? n : 0);
+    set.colors.resize(3, colors ? n : 0);
+    set.intensities.resize(intensities ? n : 0);
+    set.confidences.resize(confidences ? n : 0);
     set.viewpoints.resize(3, 0);
   }
 };
@@ -64,52 +62,6 @@ io::CoordinateBounds boundsOf(const Source& source)
       [&](Index begin, Index end) { return ofTable(source.rows->read(begin, end)); }, merged, io::rows_per_window);
 }
 
-template <typename Matrix>
-void copyColumns(const Matrix& from, Index begin, Matrix& to)
-{
-  if (from.cols() > 0)
-    to.middleCols(begin, from.cols()) = from;
-}
-
-/// Rows of one file, read and converted in pieces.
-class RowWindow {
-public:
-  RowWindow(const io::RowFile& file, const Attributes& attributes, const Eigen::Vector3d& origin)
-      : file_(file), attributes_(attributes), origin_(origin)
-  {}
-
-  void read(Index begin, Index end, PointSet& set) const
-  {
-    const Index n = end - begin;
-    set.origin = origin_;
-    set.points.resize(3, n);
-    set.normals.resize(3, attributes_.normals ? n : 0);
-    set.colors.resize(3, attributes_.colors ? n : 0);
-    set.intensities.resize(attributes_.intensities ? n : 0);
-    set.confidences.resize(attributes_.confidences ? n : 0);
-    parallelRanges(
-        n, 0, [&](Index first, Index last) { copyPiece(begin, first, last, set); }, io::rows_per_window);
-  }
-
-private:
-  void copyPiece(Index begin, Index first, Index last, PointSet& set) const
-  {
-    PointSet piece = io::tableToPoints(file_.read(begin + first, begin + last), origin_);
-    attributes_.drop(piece);
-    copyColumns(piece.points, first, set.points);
-    copyColumns(piece.normals, first, set.normals);
-    copyColumns(piece.colors, first, set.colors);
-    if (attributes_.intensities)
-      set.intensities.segment(first, last - first) = piece.intensities;
-    if (attributes_.confidences)
-      set.confidences.segment(first, last - first) = piece.confidences;
-  }
-
-  const io::RowFile& file_;
-  const Attributes& attributes_;
-  const Eigen::Vector3d& origin_;
-};
-
 class FileStream : public PointStream {
 public:
   FileStream(const std::vector<ScanPath>& files, Index window, const WindowShare& share)
@@ -139,10 +91,9 @@ public:
           continue;
         io::namingFile(source.path.name(), [&] {
           if (source.rows)
-            return RowWindow(*source.rows, attributes_, origin_)
-                .read(count * w / windows, count * (w + 1) / windows, set);
+            return readRows(*source.rows, count * w / windows, count * (w + 1) / windows, set);
           set = io::tableToPoints(io::readTable(source.path), origin_);
-          attributes_.drop(set);
+          attributes_.fit(set, set.size());
         });
         receive(set);
       }
@@ -158,6 +109,26 @@ public:
   }
 
 private:
+  /// Rows begin .. end - 1 of one file, read and converted in pieces.
+  void readRows(const io::RowFile& file, Index begin, Index end, PointSet& set) const
+  {
+    set.origin = origin_;
+    attributes_.fit(set, end - begin);
+    const auto readPiece = [&](Index first, Index last) {
+      PointSet piece = io::tableToPoints(file.read(begin + first, begin + last), origin_);
+      attributes_.fit(piece, last - first);
+      const auto copy = [&](const auto& from, auto& to) {
+        std::copy_n(from.data(), from.size(), to.data() + from.size() / (last - first) * first);
+      };
+      copy(piece.points, set.points);
+      copy(piece.normals, set.normals);
+      copy(piece.colors, set.colors);
+      copy(piece.intensities, set.intensities);
+      copy(piece.confidences, set.confidences);
+    };
+    parallelRanges(end - begin, 0, readPiece, io::rows_per_window);
+  }
+
   /// Of about the same size, and one for each rank at least.
   Index windowsOf(Index rows) const
   {
