@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
-#include <cstring>
 #include <fresco/core/pcl_cloud_table.h>
 #include <fresco/core/require.h>
 #include <limits>
@@ -21,18 +20,6 @@ std::uint8_t fieldType(Scalar scalar)
                       [&](auto& entry) { return entry.second == scalar; })
       ->first;
 }
-
-/// Copies the kept columns of every row; `sources` holds their offsets in the cloud.
-void copyRows(const pcl::PCLPointCloud2& cloud, const std::vector<std::size_t>& sources, PointTable& table)
-{
-  for (std::size_t y = 0; y < cloud.height; ++y)
-    for (std::size_t x = 0; x < cloud.width; ++x) {
-      const std::uint8_t* from = cloud.data.data() + y * cloud.row_step + x * cloud.point_step;
-      const Index row = y * cloud.width + x;
-      for (std::size_t c = 0; c < sources.size(); ++c)
-        std::memcpy(table.cell(row, table.columns[c]), from + sources[c], table.columns[c].bytes());
-    }
-}
 } // namespace
 
 Scalar scalarOfField(std::uint8_t datatype)
@@ -52,8 +39,7 @@ PointTable tableOfCloud(const pcl::PCLPointCloud2& cloud)
   const std::size_t last_row = cloud.height > 0 ? (cloud.height - std::size_t{1}) * cloud.row_step : 0;
   require(rows == 0 || cloud.data.size() >= last_row + std::size_t{cloud.width} * cloud.point_step,
           "cloud: ", cloud.data.size(), " bytes of data are too few for ", cloud.width, " x ", cloud.height, " points");
-  PointTable table;
-  std::vector<std::size_t> sources;
+  PointTable table, stored; // the second as rows lie in the cloud
   for (const Field& field : cloud.fields) {
     const std::size_t count = std::max<std::size_t>(field.count, 1);
     const Scalar type = scalarOfField(field.datatype);
@@ -62,10 +48,16 @@ PointTable tableOfCloud(const pcl::PCLPointCloud2& cloud)
     if (field.name == "_")
       continue;
     table.addColumn(field.name, type, count);
-    sources.push_back(field.offset);
+    stored.columns.push_back(table.columns.back());
+    stored.columns.back().offset = field.offset;
   }
   table.allocate(rows);
-  copyRows(cloud, sources, table);
+  stored.stride = cloud.point_step;
+  stored.rows = cloud.width;
+  for (std::size_t y = 0; rows > 0 && y < cloud.height; ++y) {
+    stored.view = cloud.data.data() + y * cloud.row_step;
+    copyRows(stored, table, y * cloud.width);
+  }
   if (cloud.height > 1) {
     table.width = cloud.width;
     table.height = cloud.height;
