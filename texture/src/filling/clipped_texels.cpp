@@ -5,13 +5,6 @@
 #include <fresco/core/parallel.h>
 namespace fresco::texture {
 namespace {
-/// Of each channel 0..1, how far what a photograph shows is overexposed.
-Eigen::Array3f clippedShare(const Image& photo, const Eigen::Vector2f& pixel)
-{
-  constexpr float full = 254, width = 8; // grey levels; the ramp keeps noise from showing
-  return ((samplePhotoQuickly(photo, pixel.x(), pixel.y()).array() - (full - width)) / width).max(0.f).min(1.f);
-}
-
 /// @param colors 3x3, of the patch's corners
 void continuePatch(const PaintScene& scene, Index patch, const Projector& view, const Image& photo,
                    const Eigen::Matrix3f& colors, std::vector<Image>& atlases)
@@ -19,15 +12,15 @@ void continuePatch(const PaintScene& scene, Index patch, const Projector& view, 
   PatchFrame frame(scene, patch);
   if (!frame.map.look(view))
     return;
-  Image& atlas = atlases[frame.chart.atlas];
   frame.forTexels([&](const Eigen::Vector2f& center, int x, int y) {
     const Eigen::Vector3f inside = frame.inside(center);
-    const Eigen::Vector2f at = frame.map.place(inside);
-    const Eigen::Array3f share = clippedShare(photo, frame.map.pixel(at.x(), at.y()));
-    const Eigen::Vector3f around = colors * inside;
-    std::uint8_t* pixel = atlas.pixel(frame.chart.x + x, frame.chart.y + y);
+    const Eigen::Vector2f at = frame.map.place(inside), shown = frame.map.pixel(at.x(), at.y());
+    const Eigen::Vector3f value = samplePhotoQuickly(photo, shown.x(), shown.y()), around = colors * inside;
+    std::uint8_t* pixel = atlases[frame.chart.atlas].pixel(frame.chart.x + x, frame.chart.y + y);
+    const float light = Eigen::Vector3f(pixel[0], pixel[1], pixel[2]).cwiseQuotient(around.cwiseMax(1.f)).maxCoeff();
+    const Eigen::Vector3f least = (std::max(1.f, light) * around).cwiseMin(255.f); // no channel alone is brighter
     for (int c = 0; c < 3; ++c)
-      pixel[c] += share[c] * std::max(0.f, around[c] - pixel[c]) + 0.5f;
+      pixel[c] += clippedShare(value[c]) * std::max(0.f, least[c] - pixel[c]) + 0.5f;
   });
 }
 } // namespace
@@ -35,10 +28,9 @@ void continuePatch(const PaintScene& scene, Index patch, const Projector& view, 
 std::vector<char> clippedPatches(const PaintScene& scene, const Candidates& candidates)
 {
   std::vector<char> out(scene.patches.size());
-  parallelFor(scene.patches.size(), scene.threads, [&](Index i) {
-    const Candidate* at = scene.isSeen(i) ? candidates.find(i, scene.view[i]) : nullptr;
-    out[i] = at && at->clipped;
-  });
+  for (Index i = 0; i < scene.patches.size(); ++i)
+    if (const Candidate* at = scene.isSeen(i) ? candidates.find(i, scene.view[i]) : nullptr)
+      out[i] = at->clipped;
   return out;
 }
 

@@ -6,7 +6,6 @@ namespace fresco::texture {
 std::vector<char> clippedPatches(const PaintScene& scene, const Candidates& candidates);
 
 /// Overexposed texels continue the surface around them where that is brighter than what the photograph says at least.
-/// @param clipped clippedPatches()
 /// @param colors  3x3P, 0..255, of the patches' corners: diffused from patches that are not clipped
 void continueClipped(const PaintScene& scene, const PaintSources& sources, const std::vector<char>& clipped,
                      const Points& colors, std::vector<Image>& atlases);

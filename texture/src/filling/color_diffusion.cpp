@@ -61,19 +61,21 @@ Links linksOf(const SmoothCorners& corners, std::vector<float> over_crease)
 }
 
 struct Known {
-  Points value;            ///< 3xN
+  Points value, least;     ///< 3xN; the least that a value may be which is continued
   std::vector<char> fixed; ///< N: value is given, not continued
 };
 
 Known seenNodes(const PatchMesh& patches, const SmoothCorners& corners, const Points& patch_colors)
 {
-  Known known{Points::Zero(3, corners.size()), std::vector<char>(corners.size(), 0)};
+  Known known{Points::Zero(3, corners.size()), Points::Zero(3, corners.size()), std::vector<char>(corners.size(), 0)};
   Eigen::VectorXf weight = Eigen::VectorXf::Zero(corners.size());
   for (Index i = 0; i < patches.size(); ++i)
-    for (int k = 0; k < 3 && patch_colors(0, i) >= 0; ++k) {
+    for (int k = 0; k < 3; ++k) {
       const int v = corners.node(k, i);
-      known.value.col(v) += patches.areas[i] * patch_colors.col(i);
-      weight[v] += patches.areas[i];
+      const float area = patch_colors(0, i) < 0 ? 0 : patches.areas[i];
+      known.value.col(v) += area * patch_colors.col(i);
+      weight[v] += area;
+      known.least.col(v) = known.least.col(v).cwiseMax((-1 - patch_colors.col(i).array()).matrix());
     }
   for (Index v = 0; v < weight.size(); ++v)
     if (weight[v] > 0) {
@@ -118,14 +120,14 @@ std::vector<int> spread(const Links& links, const std::vector<int>& vertex, Know
     done[v] = 1;
     if (known.fixed[v])
       continue;
-    known.value.col(v) = sum / total;
+    known.value.col(v) = (sum / total).cwiseMax(known.least.col(v));
     order.push_back(v);
   }
   return order;
 }
 
 /// Rounds of means over the nodes beside, with the factors of Golub & Varga 1961 (Chebyshev's semi-iteration).
-void smooth(const Links& links, const std::vector<int>& free, int threads, Points& value)
+void smooth(const Links& links, const std::vector<int>& free, const Points& least, int threads, Points& value)
 {
   constexpr int rounds = 20; // takes the streaks of the outward start away; a solution to the last digit is not needed
   constexpr float radius = 0.99f; // spectral, of what is to go
@@ -140,7 +142,7 @@ void smooth(const Links& links, const std::vector<int>& free, int threads, Point
         sum += links.weight[r] * value.col(links.rings.list[r]);
         total += links.weight[r];
       }
-      other.col(v) += factor * (sum / total - other.col(v));
+      other.col(v) = (other.col(v) + factor * (sum / total - other.col(v))).cwiseMax(least.col(v)).eval();
     });
     value.swap(other);
     factor = 1 / (1 - radius * radius * (round == 0 ? 0.5f : 0.25f * factor));
@@ -165,19 +167,19 @@ Points diffuseColors(const PatchMesh& patches, const Points& patch_colors, int t
   const bool colored = patches.colors.cols() > 0;
   Eigen::Vector3f mean = Eigen::Vector3f::Zero();
   float count = 0;
-  for (Index v = 0; v < known.value.cols(); ++v)
-    if (known.fixed[v]) {
+  for (Index v = 0; v < known.value.cols(); ++v) {
+    for (Points* colors : {&known.value, &known.least})
       if (colored)
-        known.value.col(v) -= patches.colors.col(corners.vertex[v]);
-      mean += known.value.col(v);
-      ++count;
-    }
+        colors->col(v) -= patches.colors.col(corners.vertex[v]);
+    mean += known.fixed[v] * known.value.col(v);
+    count += known.fixed[v];
+  }
   mean = count > 0 ? Eigen::Vector3f(mean / count) : Eigen::Vector3f::Constant(colored ? 0 : mid_grey);
   for (Index v = 0; v < known.value.cols(); ++v)
     if (!known.fixed[v])
-      known.value.col(v) = mean;
+      known.value.col(v) = mean.cwiseMax(known.least.col(v));
   const Links links = linksOf(corners, weightsOverCreases(patches, corners, patch_colors));
-  smooth(links, spread(links, corners.vertex, known), threads, known.value);
+  smooth(links, spread(links, corners.vertex, known), known.least, threads, known.value);
   if (colored)
     for (Index v = 0; v < corners.size(); ++v)
       known.value.col(v) += patches.colors.col(corners.vertex[v]);

@@ -185,8 +185,7 @@ int texelsPerPixel(const Eigen::Matrix2f& steps)
 
 PhotoResidual residualOf(const Prediction& prediction, const Image& photo, const PixelGain& gain, float error)
 {
-  constexpr std::uint8_t overexposed = 254; // grey level: the light may have been any brighter
-  constexpr float largest = 127;            // of what is stored
+  constexpr float largest = 127; // of what is stored
   const std::size_t count = cellCount(photo.width, photo.height);
   Drawing drawn{photo.width, photo.height, std::vector<Eigen::Vector4f>(count, Eigen::Vector4f::Zero())};
   const std::vector<int>& patches = prediction.patches;
@@ -201,11 +200,13 @@ PhotoResidual residualOf(const Prediction& prediction, const Image& photo, const
       const std::size_t i = cellAt(x, y, photo.width);
       const Eigen::Vector4f& pixel = drawn.pixels[i];
       const std::uint8_t* p = photo.pixel(x, y);
-      const float trust = std::max({p[0], p[1], p[2]}) < overexposed ? coverageWeight(pixel.w()) : 0.f;
+      const float trust = coverageWeight(pixel.w());
       if (!(trust > 0))
         continue;
-      const Eigen::Vector3f more =
+      Eigen::Vector3f more =
           gain({x + 0.5f, y + 0.5f}, Eigen::Vector3f(p[0], p[1], p[2])) - pixel.head<3>() / pixel.w();
+      for (int c = 0; c < 3; ++c)
+        more[c] *= more[c] < 0 ? 1 - clippedShare(p[c]) : 1.f; // the light may have been any brighter
       const float weight = PhotoResidual::per_level * trust * agreementWeight(more.cwiseAbs().maxCoeff(), error);
       const Eigen::Vector3f stored = (weight * more).cwiseMax(-largest).cwiseMin(largest);
       const simd::Int4 rounded = simd::rounded(simd::Float4{stored[0], stored[1], stored[2], 0});

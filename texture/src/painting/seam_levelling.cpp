@@ -79,7 +79,7 @@ private:
         for (int k = around_.begin[v]; k < around_.begin[v + 1]; ++k) {
           const Candidate *ca = input_.usable(around_.list[k], list[a].view),
                           *cb = input_.usable(around_.list[k], list[b].view);
-          if (!ca || !cb)
+          if (!ca || !cb || ca->clipped || cb->clipped)
             continue;
           step += cb->corrected(photometry_) - ca->corrected(photometry_);
           ++count;

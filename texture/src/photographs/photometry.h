@@ -3,6 +3,7 @@
 #include "photographs/response_curve.h"
 #include "photographs/view_parts.h"
 #include <Eigen/Core>
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <fresco/core/camera.h>
@@ -62,6 +63,10 @@ struct Photometry {
     return curve ? curve->relight(color, f) : Eigen::Vector3f(color.cwiseProduct(f));
   }
 };
+
+/// 0..1, how likely a grey level as it was read is clipped: the light may have been any brighter. Of clipped values, JPEG
+/// of quality 90 moves 5 % below 250 and 1 % below 242.
+inline float clippedShare(float level) { return std::clamp((level - 242) / 8, 0.f, 1.f); }
 
 /// One photograph's part of it, quick to evaluate for many pixels.
 class PixelGain {

@@ -164,7 +164,7 @@ Points paintModel(const Job& job, ViewChoice& choice, const PaintedPart& part)
   Points known = knownColors(scene, part, atlases);
   for (std::size_t i = 0; i < clipped.size(); ++i)
     if (clipped[i])
-      known.col(i).setConstant(-1);
+      known.col(i) = -1 - known.col(i).array().max(0.f);
   const Points around = diffuseColors(patches, known, options.threads);
   paintUnseen(scene, around, atlases, result.masks);
   continueClipped(scene, sources, clipped, around, atlases);

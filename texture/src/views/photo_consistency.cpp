@@ -133,7 +133,8 @@ PhotoConsistency photoConsistency(const PatchMesh& patches, const Candidates& ca
                                   const VisibilityInput& input)
 {
   constexpr float most_octaves = 5;    // by difference: a view that alone shows the patch well keeps a chance
-  constexpr float clipped_octaves = 6; // loses to all that are not
+  constexpr float clipped_octaves = 6; // loses to all that are not; of these, the darkest says most
+  const float darkest = photometry.gains.cols() > 0 ? photometry.gains.row(1).maxCoeff() : 1;
   constexpr float certain = 3 * one_octave,
                   certain_around = 45; // grey levels: few surfaces differ so by the light alone
   const int threads = input.options.threads;
@@ -155,7 +156,9 @@ PhotoConsistency photoConsistency(const PatchMesh& patches, const Candidates& ca
   out.penalties.resize(difference.size());
   parallelFor(difference.size(), threads, [&](Index c) {
     const float octaves = difference[c] / one_octave;
-    out.penalties[c] = std::min(octaves * octaves, most_octaves) + (candidates.list[c].clipped ? clipped_octaves : 0.f);
+    const Candidate& shown = candidates.list[c];
+    out.penalties[c] = std::min(octaves * octaves, most_octaves) +
+                       (shown.clipped ? clipped_octaves + 2 * std::log2(darkest / photometry.gains(1, shown.view)) : 0);
   });
   return out;
 }
