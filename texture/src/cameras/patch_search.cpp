@@ -46,26 +46,6 @@ bool takeTemplate(const PatchQuery& query, int level, Template& out)
   return true;
 }
 
-/// Correlation of the template with the patch centred on pixel (x, y); -1 outside the image.
-float correlation(const Template& patch, const Image& image, int x, int y)
-{
-  if (x < radius || y < radius || x >= image.width - radius || y >= image.height - radius)
-    return -1;
-  float product = 0, sum = 0, squares = 0;
-  for (int j = 0; j < side; ++j) {
-    const std::uint8_t* row = image.pixel(x - radius, y - radius + j);
-    const float* wanted = patch.data() + j * side;
-    for (int i = 0; i < side; ++i) {
-      const float v = row[i];
-      product += wanted[i] * v;
-      sum += v;
-      squares += v * v;
-    }
-  }
-  const float spread = squares - sum * sum / count;
-  return spread > 1 ? product / std::sqrt(spread) : -1;
-}
-
 struct Peak {
   int x = 0, y = 0;
   float value = -1, second = -1; ///< second: best more than two pixels away
@@ -118,6 +98,14 @@ private:
   std::vector<float> grey_;
   std::vector<std::int64_t> sums_, squares_;
 };
+
+/// Correlation of the template with the patch centred on pixel (x, y); -1 outside the image.
+float correlation(const Template& patch, const Image& image, int x, int y)
+{
+  if (x < radius || y < radius || x >= image.width - radius || y >= image.height - radius)
+    return -1;
+  return Region(image, {x - radius, y - radius}, {side, side}).correlation(patch, 0, 0);
+}
 
 Peak findPeak(const Template& patch, const Image& image, Eigen::Vector2i at, int reach)
 {

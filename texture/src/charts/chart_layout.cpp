@@ -172,15 +172,11 @@ private:
   std::vector<int> inSeedOrder(const std::vector<std::vector<int>>& groups) const
   {
     std::vector<char> wanted(graph_.areas.size(), 0);
-    bool any = false;
     for (const auto& group : groups)
-      for (const int f : group) {
+      for (const int f : group)
         wanted[f] = 1;
-        any = true;
-      }
     std::vector<int> out;
-    if (any)
-      std::copy_if(graph_.seeds.begin(), graph_.seeds.end(), std::back_inserter(out), [&](int f) { return wanted[f]; });
+    std::copy_if(graph_.seeds.begin(), graph_.seeds.end(), std::back_inserter(out), [&](int f) { return wanted[f]; });
     return out;
   }
 

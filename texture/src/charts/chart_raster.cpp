@@ -137,15 +137,14 @@ std::vector<Index> patchesOfFaces(const PatchMesh& patches, Index faces)
 
 Eigen::Matrix<double, 2, 3> patchTexels(const PatchMesh& patches, const Chart& chart, Index patch)
 {
+  const Eigen::Matrix3f corners = patches.corners(patch);
   Eigen::Matrix<double, 2, 3> out;
   for (int k = 0; k < 3; ++k)
-    out.col(k) = chart.texel(patches.vertices.col(patches.faces(k, patch)));
-  if (!chart.given)
-    return out;
-  const Eigen::Matrix<double, 2, 4>& map = (*chart.given)[patches.parent[patch]];
-  for (int k = 0; k < 3; ++k)
-    out.col(k) = map * patches.vertices.col(patches.faces(k, patch)).cast<double>().homogeneous() -
-                 Eigen::Vector2d(chart.x, chart.y);
+    out.col(k) =
+        chart.given
+            ? Eigen::Vector2d((*chart.given)[patches.parent[patch]] * corners.col(k).cast<double>().homogeneous()) -
+                  Eigen::Vector2d(chart.x, chart.y)
+            : chart.texel(corners.col(k));
   return out;
 }
 

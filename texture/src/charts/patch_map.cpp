@@ -5,9 +5,8 @@
 namespace fresco::texture {
 PatchMap::PatchMap(const PatchMesh& patches, Index patch, const Eigen::Matrix<double, 2, 3>& corners,
                    const Eigen::Vector2d& origin)
+    : points_(patches.corners(patch).cast<double>())
 {
-  for (int k = 0; k < 3; ++k)
-    points_.col(k) = patches.vertices.col(patches.faces(k, patch)).cast<double>();
   Eigen::Matrix3d places;
   places.topRows<2>() = corners.colwise() - origin;
   places.row(2).setOnes();

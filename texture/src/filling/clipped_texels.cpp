@@ -41,14 +41,10 @@ void continueClipped(const PaintScene& scene, const PaintSources& sources, const
   for (Index i = 0; i < scene.patches.size(); ++i)
     if (clipped[i])
       by_view[scene.view[i]].push_back(i);
-  for (std::size_t v = 0; v < by_view.size(); ++v) {
-    if (by_view[v].empty())
-      continue;
-    const std::shared_ptr<const Image> photo = sources.photos.get(v);
-    parallelFor(by_view[v].size(), scene.threads, [&](Index k) {
-      const Index i = by_view[v][k];
-      continuePatch(scene, i, sources.views[v], *photo, colors.middleCols<3>(3 * i), atlases);
+  forViews(by_view, sources.photos, [&](int v, const Image& photo, const std::vector<Index>& patches) {
+    parallelFor(patches.size(), scene.threads, [&](Index k) {
+      continuePatch(scene, patches[k], sources.views[v], photo, colors.middleCols<3>(3 * patches[k]), atlases);
     });
-  }
+  });
 }
 } // namespace fresco::texture

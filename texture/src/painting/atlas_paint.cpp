@@ -138,30 +138,22 @@ void paintSeen(const PaintScene& scene, const PaintSources& sources, std::vector
   for (const Image& atlas : atlases)
     bytes += atlas.data.size();
   sources.photos.setAside(bytes);
-  const std::vector<std::vector<PaintedShare>> parts = sharesByView(scene, sources);
-  for (std::size_t v = 0; v < parts.size(); ++v) {
-    if (parts[v].empty())
-      continue;
-    const std::shared_ptr<const Image> photo = sources.photos.get(v);
-    const PaintedView view{sources, *photo, {sources.photometry, static_cast<int>(v), sources.views[v].camera()}};
-    parallelFor(parts[v].size(), scene.threads, [&](Index i) { paintShare(scene, view, parts[v][i], atlases); });
-  }
+  forViews(sharesByView(scene, sources), sources.photos, [&](int v, const Image& photo, const auto& parts) {
+    const PaintedView view{sources, photo, {sources.photometry, v, sources.views[v].camera()}};
+    parallelFor(parts.size(), scene.threads, [&](Index i) { paintShare(scene, view, parts[i], atlases); });
+  });
 }
 
 void paintTexels(const PaintScene& scene, const PaintSources& sources,
                  const std::vector<std::vector<PatchTexel>>& by_view, std::vector<Image>& atlases)
 {
-  for (std::size_t v = 0; v < by_view.size(); ++v) {
-    const std::vector<PatchTexel>& texels = by_view[v];
-    if (texels.empty())
-      continue;
+  forViews(by_view, sources.photos, [&](int v, const Image& photo, const std::vector<PatchTexel>& texels) {
     std::vector<std::size_t> runs; // first texel of each patch
     for (std::size_t k = 0; k < texels.size(); ++k)
       if (k == 0 || texels[k].patch != texels[k - 1].patch)
         runs.push_back(k);
     runs.push_back(texels.size());
-    const std::shared_ptr<const Image> photo = sources.photos.get(v);
-    const PaintedView view{sources, *photo, {sources.photometry, static_cast<int>(v), sources.views[v].camera()}};
+    const PaintedView view{sources, photo, {sources.photometry, v, sources.views[v].camera()}};
     parallelFor(runs.size() - 1, scene.threads, [&](Index r) {
       PatchFrame frame(scene, texels[runs[r]].patch);
       if (!frame.map.look(sources.views[v]))
@@ -171,7 +163,7 @@ void paintTexels(const PaintScene& scene, const PaintSources& sources,
         store(sampler(frame.place(texels[k].x, texels[k].y)),
               atlases[frame.chart.atlas].pixel(frame.chart.x + texels[k].x, frame.chart.y + texels[k].y));
     });
-  }
+  });
 }
 
 Points patchColors(const PaintScene& scene, const std::vector<Image>& atlases)

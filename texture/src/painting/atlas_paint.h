@@ -47,6 +47,15 @@ struct PaintSources {
   const std::vector<OutlineMask>& masks; ///< of the views, or none
 };
 
+/// visit(view, its photograph, list) for the lists by view that hold something, so that each photograph is read once.
+template <typename List, typename Visit>
+void forViews(const std::vector<List>& by_view, PhotoStore& photos, const Visit& visit)
+{
+  for (std::size_t v = 0; v < by_view.size(); ++v)
+    if (!by_view[v].empty())
+      visit(int(v), *photos.get(v), by_view[v]);
+}
+
 /// Fills the texels of the seen patches from their photographs.
 void paintSeen(const PaintScene& scene, const PaintSources& sources, std::vector<Image>& atlases);
 

@@ -40,15 +40,12 @@ struct Filling {
 std::vector<cv::Point> ringOf(const cv::Mat& photo)
 {
   std::vector<cv::Point> ring;
-  const int right = photo.cols - 1, bottom = photo.rows - 1;
-  for (int x = 0; x < right; ++x)
-    ring.emplace_back(x, 0);
-  for (int y = 0; y < bottom; ++y)
-    ring.emplace_back(right, y);
-  for (int x = right; x > 0; --x)
-    ring.emplace_back(x, bottom);
-  for (int y = bottom; y > 0; --y)
-    ring.emplace_back(0, y);
+  const int steps[4] = {photo.cols - 1, photo.rows - 1, photo.cols - 1, photo.rows - 1};
+  const cv::Point along[4] = {{1, 0}, {0, 1}, {-1, 0}, {0, -1}};
+  cv::Point at(0, 0);
+  for (int side = 0; side < 4; ++side)
+    for (int k = 0; k < steps[side]; ++k, at += along[side])
+      ring.push_back(at);
   return ring;
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "photographs/view_parts.h"
+#include "photographs/distance_field.h"
 #include "photographs/photo_store.h"
 #include <algorithm>
 #include <cmath>
@@ -49,9 +50,8 @@ std::vector<ViewPart> partsOf(const std::vector<TextureView>& views)
 Image wrapPanorama(const Image& panorama)
 {
   Image out(panorama.width + 2 * wrapped_columns, panorama.height);
-  for (int y = 0; y < out.height; ++y)
-    for (int x = 0; x < out.width; ++x)
-      std::copy_n(panorama.pixel((x - wrapped_columns + panorama.width) % panorama.width, y), 3, out.pixel(x, y));
+  cv::Mat to(out.height, out.width, CV_8UC3, out.data.data());
+  cv::copyMakeBorder(matOf(panorama), to, 0, 0, wrapped_columns, wrapped_columns, cv::BORDER_WRAP);
   return out;
 }
 

@@ -7,19 +7,11 @@
 #include <fresco/core/parallel.h>
 namespace fresco::texture {
 namespace {
-Eigen::Matrix3f cornersOf(const PatchMesh& patches, Index patch)
-{
-  Eigen::Matrix3f out;
-  for (int k = 0; k < 3; ++k)
-    out.col(k) = patches.vertices.col(patches.faces(k, patch));
-  return out;
-}
-
 /// Samples that count anywhere on a patch.
 void gatherAround(const PatchMesh& patches, Index patch, const SurfaceGaussian& gaussian, std::vector<int>& found)
 {
   const Eigen::Vector3f middle = patches.middle(patch);
-  gaussian.gather(middle, (cornersOf(patches, patch).colwise() - middle).colwise().norm().maxCoeff(), found);
+  gaussian.gather(middle, (patches.corners(patch).colwise() - middle).colwise().norm().maxCoeff(), found);
 }
 
 /// @return texels without samples
@@ -27,7 +19,7 @@ std::vector<PatchTexel> paintPatch(const PaintScene& scene, const PointPaint& pa
 {
   std::vector<int> found;
   gatherAround(scene.patches, patch, paint.gaussian, found);
-  const Eigen::Matrix3f corners = cornersOf(scene.patches, patch);
+  const Eigen::Matrix3f corners = scene.patches.corners(patch);
   const Eigen::Vector3f normal = scene.patches.normals.col(patch);
   const PatchFrame frame(scene, patch);
   std::vector<PatchTexel> unknown;
@@ -54,7 +46,7 @@ Eigen::VectorXf patchDensities(const PatchMesh& patches, const SurfaceSamples& s
   parallelFor(patches.size(), threads, [&](Index i) {
     std::vector<int> found;
     gatherAround(patches, i, gaussian, found);
-    const Eigen::Matrix3f corners = cornersOf(patches, i);
+    const Eigen::Matrix3f corners = patches.corners(i);
     Eigen::Vector4f sum = Eigen::Vector4f::Zero();
     for (const Eigen::Vector3f& place : {Eigen::Vector3f(patches.middle(i)), Eigen::Vector3f(corners.col(0)),
                                          Eigen::Vector3f(corners.col(1)), Eigen::Vector3f(corners.col(2))})

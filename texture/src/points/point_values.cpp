@@ -201,10 +201,7 @@ void replaceStrays(const SurfaceSamples& samples, int threads, Points& values)
 template <typename Values>
 bool areEqual(const Values& values)
 {
-  for (Index i = 1; i < values.cols(); ++i)
-    if (values.col(i) != values.col(0))
-      return false;
-  return true;
+  return values == values.col(0).replicate(1, values.cols());
 }
 } // namespace
 

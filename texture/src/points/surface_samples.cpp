@@ -60,12 +60,13 @@ void addFeet(const TileTree& tile, const Eigen::Matrix3Xd& queries, const Index*
   }
 }
 
-/// Leaves out points that found nothing.
-void dropLost(Feet& feet)
+/// Leaves out all but the feet for whose numbers keep() holds; places beyond them are of no use.
+template <typename Keep>
+void keepFeet(Feet& feet, const Keep& keep)
 {
   Index kept = 0;
   for (std::size_t i = 0; i < feet.faces.size(); ++i)
-    if (feet.faces[i] >= 0) {
+    if (keep(i)) {
       feet.points[kept] = feet.points[i];
       feet.faces[kept] = feet.faces[i];
       feet.distances[kept] = feet.distances[i];
@@ -100,7 +101,7 @@ Feet feetOf(const TriangleMesh& mesh, const MeshTiles& tiles, const PointSet& se
       addFeet(tile, queries, chosen.data() + first, threads, feet);
     }
   }
-  dropLost(feet);
+  keepFeet(feet, [&](Index i) { return feet.faces[i] >= 0; });
   return feet;
 }
 
@@ -174,23 +175,15 @@ SurfaceSamples sampleSurface(const TriangleMesh& mesh, const MeshTiles& tiles, c
   const float front = side < 0 ? -1 : 1; // a mesh may be turned inside out as a whole
   const float noise = feet.distances.empty() ? 0 : mad_to_sigma * median(std::vector<float>(feet.distances));
   const float rounding = 1e-6f * (mesh.vertices.rowwise().maxCoeff() - mesh.vertices.rowwise().minCoeff()).norm();
-  SurfaceSamples samples;
-  Index kept = 0;
-  for (std::size_t i = 0; i < feet.points.size(); ++i) {
+  keepFeet(feet, [&](Index i) {
     const auto normal = normals.col(feet.faces[i]);
-    if (feet.distances[i] > most_deviations * noise + rounding || !(normal.squaredNorm() > 0) ||
-        front * sideOf(points, feet.points[i], normal) < 0)
-      continue;
-    feet.points[kept] = feet.points[i];
-    feet.faces[kept] = feet.faces[i];
-    feet.places.col(kept++) = feet.places.col(i).eval();
-  }
-  feet.points.resize(kept);
+    return !(feet.distances[i] > most_deviations * noise + rounding) && normal.squaredNorm() > 0 &&
+           !(front * sideOf(points, feet.points[i], normal) < 0);
+  });
+  SurfaceSamples samples;
   samples.points = std::move(feet.points);
-  samples.places = feet.places.leftCols(kept);
-  samples.normals.resize(3, kept);
-  for (Index i = 0; i < kept; ++i)
-    samples.normals.col(i) = normals.col(feet.faces[i]);
+  samples.places = feet.places.leftCols(samples.size());
+  samples.normals = normals(Eigen::all, feet.faces);
   findScans(points, mesh.origin, samples);
   samples.tree = std::make_unique<PointTree>(samples.places, threads);
   measureSpacing(threads, samples);

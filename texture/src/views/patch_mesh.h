@@ -14,6 +14,7 @@ struct PatchMesh {
   Eigen::VectorXf areas;      ///< P
 
   Index size() const { return faces.cols(); }
+  Eigen::Matrix3f corners(Index i) const { return vertices(Eigen::all, faces.col(i)); } ///< columns
   Eigen::Vector3f middle(Index i) const
   {
     return vertices.col(faces(0, i)) / 3 + vertices.col(faces(1, i)) / 3 + vertices.col(faces(2, i)) / 3;
