@@ -9,7 +9,7 @@
 #include "graph/viewpoint_check.h"
 #include "pair/pair_ranking.h"
 #include "pair/partial_alias.h"
-#include "pair/plan_alignment.h"
+#include "pair/pair_alignment.h"
 #include "pair/self_alignment.h"
 #include <algorithm>
 #include <fresco/core/parallel.h>

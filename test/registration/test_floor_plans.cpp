@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "assembly/scan_assembly.h"
 #include "pair/partial_alias.h"
-#include "pair/plan_alignment.h"
+#include "pair/self_alignment.h"
 #include "registration/look_alike_scenes.h"
 #include "scan/up_direction.h"
 #include <fresco/registration/core/point_to_plane_registration.h>

@@ -3,9 +3,9 @@
 #include "answer/more_pairs.h"
 #include "answer/places.h"
 #include "graph/place_check.h"
+#include "scan/lists.h"
 #include <algorithm>
 #include <cmath>
-#include <fresco/core/parallel.h>
 #include <fresco/core/require.h>
 #include <fresco/core/union_find.h>
 #include <fresco/io/listed.h>
@@ -87,16 +87,13 @@ void HintFollower::split(const RegistrationHint& hint, RefusalReason reason)
   for (Index i = 0; i < n; ++i)
     for (Index k = i + 1; k < n; ++k)
       overlaps.push_back({0.0, i, k});
-  parallelFor(
-      overlaps.size(), options_.threads,
-      [&](Index o) {
-        auto& [share, i, k] = overlaps[o];
-        share = checkRoughly(scans_[cluster.scans[i]], scans_[cluster.scans[k]],
-                             cluster.poses[i].inverse() * cluster.poses[k], check_level)
-                    .overlap;
-      },
-      1);
-  std::stable_sort(overlaps.begin(), overlaps.end(), [](const auto& x, const auto& y) { return x.share > y.share; });
+  forEachTask(overlaps.size(), options_.threads, [&](Index o) {
+    auto& [share, i, k] = overlaps[o];
+    share = checkRoughly(scans_[cluster.scans[i]], scans_[cluster.scans[k]],
+                         cluster.poses[i].inverse() * cluster.poses[k], check_level)
+                .overlap;
+  });
+  sortFalling(overlaps, &Overlap::share);
   const auto position = [&](Index scan) {
     return std::find(cluster.scans.begin(), cluster.scans.end(), scan) - cluster.scans.begin();
   };
@@ -164,8 +161,7 @@ void HintFollower::take(const RegistrationHint& hint, Places places)
 {
   const std::size_t tried = places.size();
   places_.judge(clusters_, judge_, places);
-  places.erase(std::remove_if(places.begin(), places.end(), [](const Place& p) { return p.contradicted; }),
-               places.end());
+  removeIf(places, &Place::contradicted);
   if (places.empty()) {
     say(hint, concat("not followed: ",
                      tried == 0 ? "no place was found where they see each other"

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "answer/places.h"
+#include "scan/lists.h"
 #include <algorithm>
 #include <fresco/core/require.h>
 namespace fresco::registration {
@@ -64,7 +65,7 @@ Places PlaceFinder::ofClusters(const ScanCluster& cluster, const ScanCluster& mo
       if (contains(cluster, a) && contains(moving, b))
         for (const Place& place : ofPair(a, b))
           all.push_back(place);
-  std::stable_sort(all.begin(), all.end(), [](const Place& x, const Place& y) { return x.score > y.score; });
+  sortFalling(all, &Place::score);
   const auto add = [&](const Place& place, std::size_t limit) {
     const Eigen::Isometry3d T = clusterPose(cluster, moving, place) * moving.poses[0];
     const double size = scans_[moving.scans[0]].size;
@@ -139,7 +140,7 @@ void PlaceFinder::judge(const std::vector<ScanCluster>& clusters, const FreeSpac
     const ScanCluster &first = clusterOf(clusters, place.a), &second = clusterOf(clusters, place.b);
     return forbids(first, second, clusterPose(first, second, place)) != nullptr;
   };
-  places.erase(std::remove_if(places.begin(), places.end(), is_forbidden), places.end());
+  removeIf(places, is_forbidden);
   std::stable_sort(places.begin(), places.end(), [](const Place& x, const Place& y) {
     return x.contradicted != y.contradicted ? y.contradicted : x.fit.overlap > y.fit.overlap;
   });

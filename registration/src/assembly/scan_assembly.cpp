@@ -189,8 +189,7 @@ Assembler::Joins Assembler::likelyJoins() const
       for (const ClusterFit& fit : fitsOf(i, k))
         if (isJoinable(fit))
           joins.push_back({i, k, fit});
-  std::stable_sort(joins.begin(), joins.end(),
-                   [](const Join& x, const Join& y) { return x.fit.evidence.agree > y.fit.evidence.agree; });
+  sortFalling(joins, [](const Join& join) { return join.fit.evidence.agree; });
   return joins;
 }
 

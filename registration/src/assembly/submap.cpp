@@ -8,7 +8,6 @@ namespace fresco::registration {
 namespace {
 // Of the levels of scans: plans are right to a voxel of the first, and coarser ones make what little holds slide.
 constexpr int first_level = 1;
-constexpr float reach = 2.f; // of counterparts, voxels of that level
 
 // All points of one level, in the frame of the cluster.
 ScanLevel mergedLevel(const std::vector<PreparedScan>& scans, const ScanCluster& cluster, int k)
@@ -98,13 +97,7 @@ IsometryVector matchSubmaps(const Submap& first, const Submap& second, std::size
 
 Eigen::Isometry3d refineSubmap(const Submap& first, const Submap& second, const Eigen::Isometry3d& T)
 {
-  JointOptions options;
-  options.max_distance = reach * first.surface.levels.front().voxel;
-  options.samples = 1500;
-  options.max_iterations = 20;
-  options.last_level = check_level - first_level;
-  options.min_overlap = 0.f;
-  options.threads = 1;
-  return refineJointly({&first.surface, &second.surface}, {Eigen::Isometry3d::Identity(), T}, options, {}).poses[1];
+  constexpr Index samples = 1500;
+  return refinePair({first.surface, second.surface}, T, {0, check_level - first_level}, samples).poses[1];
 }
 } // namespace fresco::registration

@@ -3,6 +3,7 @@
 #include "assembly/cluster_fits.h"
 #include "graph/alias_check.h"
 #include "graph/place_check.h"
+#include "scan/lists.h"
 #include <algorithm>
 #include <memory>
 namespace fresco::registration {
@@ -90,8 +91,7 @@ SubmapPlaces SubmapJoiner::findPlaces(const Group& first, const Group& second) c
   for (const ClusterFit& fit : fits)
     if (fit.evidence.agree >= rival_share * least_confirmed) // no fewer than are confirmed
       places.push_back({fit.T, judge_.confirmed(first.cluster, second.cluster, fit.T), fit.evidence});
-  std::stable_sort(places.begin(), places.end(),
-                   [](const SubmapPlace& x, const SubmapPlace& y) { return x.confirmed > y.confirmed; });
+  sortFalling(places, &SubmapPlace::confirmed);
   return places;
 }
 
@@ -109,8 +109,7 @@ SubmapJoiner::Joins SubmapJoiner::likelyJoins() const
                             ? Join{i, k, places[0]}
                             : Join{k, i, reversed(places[0])});
     }
-  std::stable_sort(joins.begin(), joins.end(),
-                   [](const Join& x, const Join& y) { return x.place.confirmed > y.place.confirmed; });
+  sortFalling(joins, [](const Join& join) { return join.place.confirmed; });
   return joins;
 }
 

@@ -3,6 +3,7 @@
 #include "graph/alias_check.h"
 #include "graph/free_space_evidence.h"
 #include "graph/place_check.h"
+#include "scan/lists.h"
 #include <algorithm>
 #include <map>
 #include <numeric>
@@ -191,8 +192,7 @@ bool GraphBuilder::joinUnambiguous()
     if (!pair.hypotheses.empty() && !pair.ambiguous && !waits(pair) &&
         pair.hypotheses[0].check.color.value_or(1.0) >= least_color_)
       candidates.push_back({&pair, &pair.hypotheses[0]});
-  std::stable_sort(candidates.begin(), candidates.end(),
-                   [](const Candidate& x, const Candidate& y) { return x.hypothesis->score > y.hypothesis->score; });
+  sortFalling(candidates, [](const Candidate& candidate) { return candidate.hypothesis->score; });
   bool joined = false;
   for (const Candidate& candidate : candidates)
     joined = tryJoin(candidate) || joined;
@@ -258,7 +258,7 @@ bool GraphBuilder::joinUncontested()
   std::vector<Index> order(graph_.clusters.size());
   std::iota(order.begin(), order.end(), Index(0));
   const auto size = [&](Index c) { return graph_.clusters[c].scans.size(); };
-  std::stable_sort(order.begin(), order.end(), [&](Index x, Index y) { return size(x) > size(y); });
+  sortFalling(order, size);
   for (std::size_t i = 0; i < order.size() && size(order[i]) > 1; ++i)
     for (std::size_t j = i + 1; j < order.size(); ++j) {
       if (input_.scans[graph_.clusters[order[j]].scans[0]].blind)

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pair/pair_alignment.h"
 #include "pair/feature_matching.h"
-#include "pair/plan_correlation.h"
 #include "pair/plane_matching.h"
+#include "scan/lists.h"
 #include <algorithm>
 namespace fresco::registration {
 namespace {
@@ -29,7 +29,7 @@ public:
         if (!alias.partial)
           consider(hypotheses, k, {hypotheses[k].T_a_b * alias.T, alias.certain});
     }
-    sortByScore(hypotheses);
+    sortFalling(hypotheses, &VerifiedHypothesis::score);
   }
 
 private:
@@ -65,11 +65,12 @@ FoundHypotheses findHypotheses(const DescribedScan& a, const DescribedScan& b, c
 {
   constexpr std::size_t most_by_plans = 16;
   constexpr std::size_t most_by_planes = 200; // the right one is among the first hundred where a tenth overlaps
+  constexpr std::size_t most_matches = 1500;  // of features
   Sc2PcrOptions sc2_pcr;
   sc2_pcr.tolerance = 1.5f * a.scan.levels[1].voxel;
   sc2_pcr.size = pair.size;
   FoundHypotheses found;
-  found.features = runSc2Pcr(a.features, b.features, matchFeatures(a.features, b.features, options.matches), sc2_pcr);
+  found.features = runSc2Pcr(a.features, b.features, matchFeatures(a.features, b.features, most_matches), sc2_pcr);
   if (!a.scan.free_space.empty() && !b.scan.free_space.empty())
     found.planes = matchPlanes(a.features.planes, b.features.planes, most_by_planes);
   if (a.plan && b.plan)
@@ -83,8 +84,16 @@ FoundHypotheses findHypotheses(const DescribedScan& a, const DescribedScan& b, c
 
 void keepUpright(PoseHypotheses& poses)
 {
-  poses.erase(std::remove_if(poses.begin(), poses.end(), [](const PoseHypothesis& h) { return !isUpright(h.T_a_b); }),
-              poses.end());
+  removeIf(poses, [](const PoseHypothesis& hypothesis) { return !isUpright(hypothesis.T_a_b); });
+}
+
+PairAlignmentOptions pairOptions(const ScanRegistrationOptions& options)
+{
+  PairAlignmentOptions pair;
+  pair.verification.min_overlap = options.min_overlap;
+  pair.verification.max_violation = options.max_violation;
+  pair.upright = options.upright;
+  return pair;
 }
 
 PairAlignment alignPair(const DescribedScan& a, const DescribedScan& b, const PairAlignmentOptions& options)
@@ -102,6 +111,18 @@ PairAlignment alignPair(const DescribedScan& a, const DescribedScan& b, const Pa
     if (popular.check.violation > options.verification.max_violation && popular.check.overlap >= telling_overlap)
       alignment.rejected = {popular};
   }
+  return alignment;
+}
+
+PairAlignment alignByPlans(const PlannedScan& a, const PlannedScan& b, const VerificationOptions& options)
+{
+  constexpr std::size_t most_poses = 16; // of 28 pairs of four floors 26 are right with 8, 27 with 16, 27 with 32
+  const PairGeometry pair(a.scan, b.scan);
+  FoundHypotheses found;
+  found.planes = matchPlans(a.plan, b.plan, most_poses);
+  PairAlignment alignment;
+  alignment.hypotheses = verifyHypotheses(pair, found, options);
+  alignment.ambiguous = isAmbiguous(pair, alignment.hypotheses);
   return alignment;
 }
 } // namespace fresco::registration

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include "pair/pair_verification.h"
+#include "pair/plan_correlation.h"
 #include "scan/scan_features.h"
+#include <fresco/registration/core/scan_registration.h>
 namespace fresco::registration {
 /// All that is known of one pair of scans without a start pose.
 struct PairAlignment {
@@ -13,16 +15,20 @@ struct PairAlignment {
 
 struct PairAlignmentOptions {
   VerificationOptions verification;
-  bool upright = false;       ///< whether both scanners stood upright
-  std::size_t matches = 1500; ///< correspondences of features
+  bool upright = false; ///< whether both scanners stood upright
 };
 
-class PlanSpectrum;
+PairAlignmentOptions pairOptions(const ScanRegistrationOptions& options);
 
 struct DescribedScan {
   const PreparedScan& scan;
   const ScanFeatures& features;
   const PlanSpectrum* plan = nullptr; ///< null or empty: none
+};
+
+struct PlannedScan {
+  const PreparedScan& scan;
+  const PlanSpectrum& plan;
 };
 
 /// Leaves the poses between scanners that both stood upright.
@@ -31,4 +37,7 @@ void keepUpright(PoseHypotheses& poses);
 /// Global alignment of two scans: hypotheses by features (SC2-PCR), planes and floor plans, the best by overlap and free
 /// space, refined and checked again; and, for each alias of a scan, the hypothesis that lies at the other place.
 PairAlignment alignPair(const DescribedScan& a, const DescribedScan& b, const PairAlignmentOptions& options);
+
+/// The same of two scans that stood upright: hypotheses by their floor plans alone.
+PairAlignment alignByPlans(const PlannedScan& a, const PlannedScan& b, const VerificationOptions& options);
 } // namespace fresco::registration

@@ -2,37 +2,13 @@
 #include "pair/pair_verification.h"
 #include "refinement/free_motion.h"
 #include "refinement/joint_refinement.h"
+#include "scan/lists.h"
 #include <algorithm>
 #include <cmath>
 namespace fresco::registration {
 namespace {
 constexpr double violation_scale = 0.005; // of violations that costs a factor e: little contradiction outweighs much
                                           // overlap
-
-void keepBest(PoseHypotheses& hypotheses, std::size_t most)
-{
-  std::stable_sort(hypotheses.begin(), hypotheses.end(),
-                   [](const auto& x, const auto& y) { return x.score > y.score; });
-  hypotheses.resize(std::min(most, hypotheses.size()));
-}
-
-// Of the levels of a scan, coarse to fine.
-struct Levels {
-  int first, last;
-};
-
-JointResult refine(const PairGeometry& pair, const Eigen::Isometry3d& T_a_b, const Levels& levels)
-{
-  JointOptions options;
-  options.first_level = levels.first;
-  options.last_level = levels.last;
-  options.max_distance = 2.f * pair.a.levels[levels.first].voxel;
-  options.samples = 1000;
-  options.max_iterations = 20;
-  options.min_overlap = 0.f;
-  options.threads = 1;
-  return refineJointly({&pair.a, &pair.b}, {Eigen::Isometry3d::Identity(), T_a_b}, options, {});
-}
 
 // Keeps those that are best by their check on a level.
 void rankByCheck(const PairGeometry& pair, int level, std::size_t most, PoseHypotheses& hypotheses)
@@ -42,7 +18,7 @@ void rankByCheck(const PairGeometry& pair, int level, std::size_t most, PoseHypo
     const PairCheck check = checkRoughly(pair.a, pair.b, hypothesis.T_a_b, level);
     hypothesis.score = check.overlap * std::exp(-check.violation / rough_scale);
   }
-  keepBest(hypotheses, most);
+  keepLargest(hypotheses, most, &PoseHypothesis::score);
 }
 
 // The hypotheses worth refining, best first.
@@ -54,10 +30,11 @@ void rankHypotheses(const PairGeometry& pair, std::size_t most, FoundHypotheses&
   rankByCheck(pair, 1, most, found.planes);
 }
 
-VerifiedHypothesis verifyOn(const PairGeometry& pair, const PoseHypothesis& hypothesis, const Levels& levels)
+VerifiedHypothesis verifyOn(const PairGeometry& pair, const PoseHypothesis& hypothesis, const LevelRange& levels)
 {
+  constexpr Index samples = 1000;
   VerifiedHypothesis verified;
-  const JointResult refined = refine(pair, hypothesis.T_a_b, levels);
+  const JointResult refined = refinePair({pair.a, pair.b}, hypothesis.T_a_b, levels, samples);
   verified.T_a_b = refined.poses[1];
   verified.has_free_motion = findFreeMotion(refined.information[1]).has_value();
   verified.votes = hypothesis.votes;
@@ -196,13 +173,7 @@ VerifiedHypotheses verifyHypotheses(const PairGeometry& pair, FoundHypotheses fo
   for (const VerifiedHypothesis& verified : refined_all)
     if (verified.check.overlap >= options.min_overlap && verified.check.violation <= options.max_violation)
       accepted.push_back(verified);
-  sortByScore(accepted);
+  sortFalling(accepted, &VerifiedHypothesis::score);
   return accepted;
-}
-
-void sortByScore(VerifiedHypotheses& hypotheses)
-{
-  std::stable_sort(hypotheses.begin(), hypotheses.end(),
-                   [](const VerifiedHypothesis& x, const VerifiedHypothesis& y) { return x.score > y.score; });
 }
 } // namespace fresco::registration

@@ -61,7 +61,4 @@ VerifiedHypothesis verifyHypothesis(const PairGeometry& pair, const PoseHypothes
 /// The hypotheses that pass the checks, refined, distinct, best first.
 VerifiedHypotheses verifyHypotheses(const PairGeometry& pair, FoundHypotheses found,
                                     const VerificationOptions& options);
-
-/// Best first.
-void sortByScore(VerifiedHypotheses& hypotheses);
 } // namespace fresco::registration

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pair/partial_alias.h"
 #include "pair/feature_matching.h"
-#include "pair/self_alignment.h"
 #include "refinement/joint_refinement.h"
+#include "scan/lists.h"
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 namespace fresco::registration {
@@ -22,17 +22,10 @@ std::vector<Index> farFeatures(const ScanFeatures& features, const PreparedScan&
   return far;
 }
 
-Eigen::Isometry3d refined(const PreparedScan& scan, const Eigen::Isometry3d& T, int first_level, int last_level)
+Eigen::Isometry3d refined(const PreparedScan& scan, const Eigen::Isometry3d& T, const LevelRange& levels)
 {
-  JointOptions options;
-  options.max_distance = 2.f * scan.levels[first_level].voxel;
-  options.samples = 2000;
-  options.max_iterations = 20;
-  options.first_level = first_level;
-  options.last_level = last_level;
-  options.min_overlap = 0.f;
-  options.threads = 1;
-  return refineJointly({&scan, &scan}, {Eigen::Isometry3d::Identity(), T}, options, {}).poses[1];
+  constexpr Index samples = 2000;
+  return refinePair({scan, scan}, T, levels, samples).poses[1];
 }
 
 // Direction in which the surfaces that a motion brings together say least of it.
@@ -68,12 +61,6 @@ Eigen::Isometry3d bestAlongWeakest(const PreparedScan& scan, const Eigen::Isomet
   return best;
 }
 
-bool isElsewhere(const PreparedScan& scan, const Eigen::Isometry3d& T)
-{
-  const float apart = alias_distance * scan.size;
-  return poseDistance(T, Eigen::Isometry3d::Identity(), scan.size) > apart;
-}
-
 bool fitsPartially(const PreparedScan& scan, const Eigen::Isometry3d& T)
 {
   constexpr double most_violation = 0.002; // what noise causes: a place of which little is seen must fit
@@ -97,12 +84,10 @@ void keepLikely(const PreparedScan& scan, PoseHypotheses& hypotheses)
     const double distance = hypothesis.T_a_b.translation().norm();
     return distance < far_range * scan.size || distance > next_door * scan.size;
   };
-  hypotheses.erase(std::remove_if(hypotheses.begin(), hypotheses.end(), unlikely), hypotheses.end());
+  removeIf(hypotheses, unlikely);
   for (PoseHypothesis& hypothesis : hypotheses)
     hypothesis.score = alignmentScore(checkPair(scan, scan, hypothesis.T_a_b, 0));
-  std::stable_sort(hypotheses.begin(), hypotheses.end(),
-                   [](const PoseHypothesis& x, const PoseHypothesis& y) { return x.score > y.score; });
-  hypotheses.resize(std::min(most_refined, hypotheses.size()));
+  keepLargest(hypotheses, most_refined, &PoseHypothesis::score);
 }
 
 bool isKnown(const PreparedScan& scan, const Eigen::Isometry3d& T)
@@ -149,6 +134,12 @@ private:
 };
 } // namespace
 
+bool isElsewhere(const PreparedScan& scan, const Eigen::Isometry3d& T)
+{
+  const float apart = alias_distance * scan.size;
+  return poseDistance(T, Eigen::Isometry3d::Identity(), scan.size) > apart;
+}
+
 PoseHypotheses matchFarToNear(const PreparedScan& scan, const ScanFeatures& features, const Sc2PcrOptions& sc2_pcr)
 {
   constexpr int matches_a_feature = 6; // places of the near part that look like a far feature's
@@ -165,7 +156,7 @@ ScanAliases findPartialAliases(const PreparedScan& scan, PoseHypotheses starts)
   ScanAliases found;
   IsometryVector tried;
   for (const PoseHypothesis& hypothesis : starts) {
-    const Eigen::Isometry3d rough = refined(scan, hypothesis.T_a_b, 0, 1), along = bestAlongWeakest(scan, rough, 1);
+    const Eigen::Isometry3d rough = refined(scan, hypothesis.T_a_b, {0, 1}), along = bestAlongWeakest(scan, rough, 1);
     const PairCheck check = checkPair(scan, scan, along, 1);
     const bool known = std::any_of(tried.begin(), tried.end(), [&](const Eigen::Isometry3d& other) {
       return poseDistance(along, other, scan.size) < scan.levels[1].voxel;
@@ -174,7 +165,7 @@ ScanAliases findPartialAliases(const PreparedScan& scan, PoseHypotheses starts)
       continue;
     tried.push_back(along);
     for (const Eigen::Isometry3d& start : {rough, along}) {
-      Eigen::Isometry3d T = refined(scan, start, check_level, level_count - 1);
+      Eigen::Isometry3d T = refined(scan, start, {check_level, level_count - 1});
       if (!fitsPartially(scan, T))
         T = bestAlongWeakest(scan, T, check_level);
       if (fitsPartially(scan, T)) {

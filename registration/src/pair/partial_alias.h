@@ -2,6 +2,12 @@
 #pragma once
 #include "pair/pair_alignment.h"
 namespace fresco::registration {
+constexpr double alias_distance = 0.5; ///< of a scan's size: nearer places that look alike are one place
+constexpr double alias_color = 0.6;    ///< correlation of two places: below, their colours differ more than light does
+
+/// Whether a motion of a scan leads to another place.
+bool isElsewhere(const PreparedScan& scan, const Eigen::Isometry3d& T);
+
 /// Motions that bring what is far from the scanner onto what is near it, by features.
 PoseHypotheses matchFarToNear(const PreparedScan& scan, const ScanFeatures& features, const Sc2PcrOptions& sc2_pcr);
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pair/plane_matching.h"
+#include "scan/lists.h"
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -62,8 +63,7 @@ std::vector<Shift> findShifts(const ScanPlanes& a, const ScanPlanes& b, const Ax
     if (correlation[k] > 0.f && correlation[k] >= *std::max_element(from, to))
       shifts.push_back({static_cast<float>(k + low), correlation[k] / norm});
   }
-  std::stable_sort(shifts.begin(), shifts.end(), [](const Shift& x, const Shift& y) { return x.score > y.score; });
-  shifts.resize(std::min(peaks, shifts.size()));
+  keepLargest(shifts, peaks, &Shift::score);
   return shifts;
 }
 
@@ -114,8 +114,7 @@ PoseHypotheses matchPlanes(const ScanPlanes& a, const ScanPlanes& b, std::size_t
           found.push_back(next);
         }
   }
-  std::stable_sort(found.begin(), found.end(), [](const auto& x, const auto& y) { return x.score > y.score; });
-  found.resize(std::min(most, found.size()));
+  keepLargest(found, most, &PoseHypothesis::score);
   return found;
 }
 } // namespace fresco::registration

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "scan/lists.h"
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
@@ -102,8 +103,7 @@ std::vector<Seed> selectSeeds(const BitMatrix& C, Index n)
     if (best.compatibility > 0)
       seeds.push_back(best);
   }
-  std::stable_sort(seeds.begin(), seeds.end(),
-                   [](const Seed& x, const Seed& y) { return x.compatibility > y.compatibility; });
+  sortFalling(seeds, &Seed::compatibility);
   return seeds;
 }
 
@@ -198,8 +198,7 @@ PoseHypotheses runSc2Pcr(const OrientedPoints& a, const OrientedPoints& b, const
     if (hypothesis.votes >= fewest_votes && std::none_of(found.begin(), found.end(), same))
       found.push_back(hypothesis);
   }
-  std::stable_sort(found.begin(), found.end(), [](const auto& x, const auto& y) { return x.votes > y.votes; });
-  found.resize(std::min(found.size(), options.most));
+  keepLargest(found, options.most, &PoseHypothesis::votes);
   return found;
 }
 } // namespace fresco::registration

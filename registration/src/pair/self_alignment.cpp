@@ -1,33 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pair/self_alignment.h"
 #include "pair/feature_matching.h"
-#include "pair/pair_verification.h"
 #include "pair/partial_alias.h"
 #include <algorithm>
+#include <functional>
 #include <numeric>
 namespace fresco::registration {
 namespace {
-std::vector<Index> allOf(const ScanFeatures& features)
-{
-  std::vector<Index> all(features.points.cols());
-  std::iota(all.begin(), all.end(), Index(0));
-  return all;
-}
-
-// Poses of a scan on itself, the identity among them.
-VerifiedHypotheses alignToSelf(const PreparedScan& scan, const ScanFeatures& features, const Sc2PcrOptions& sc2_pcr)
-{
-  constexpr int matches_a_feature = 3; // places that look like a feature's, which may be one of many
-  VerificationOptions options;
-  options.max_violation *= 2.f; // of a pair: the best of a family of poses violates less
-  options.refined = options.checked;
-  const float apart = alias_distance * scan.size;
-  const std::vector<Correspondence> matches = matchToSelf(features, {allOf(features), apart, apart, matches_a_feature});
-  return verifyHypotheses(PairGeometry(scan, scan), {runSc2Pcr(features, features, matches, sc2_pcr), {}, {}}, options);
-}
-
-} // namespace
-
+// Of a verified pose of a scan on itself.
 ScanAlias toAlias(const VerifiedHypothesis& own)
 {
   constexpr double certain_overlap = 0.5;     // with itself: less, and the scan is laid where it saw nothing
@@ -41,23 +21,50 @@ ScanAlias toAlias(const VerifiedHypothesis& own)
   return alias;
 }
 
+// Of poses of a scan on itself, the identity among them; partial ones, from motions of their own, where none is certain.
+ScanAliases findAliases(const PreparedScan& scan, const FoundHypotheses& found,
+                        const std::function<PoseHypotheses()>& partial)
+{
+  VerificationOptions options;
+  options.max_violation *= 2.f; // of a pair: the best of a family of poses violates less
+  options.refined = options.checked;
+  ScanAliases aliases;
+  for (const VerifiedHypothesis& own : verifyHypotheses(PairGeometry(scan, scan), found, options))
+    if (isElsewhere(scan, own.T_a_b))
+      aliases.push_back(toAlias(own));
+  if (std::none_of(aliases.begin(), aliases.end(), [](const ScanAlias& alias) { return alias.certain; }))
+    for (const ScanAlias& alias : findPartialAliases(scan, partial()))
+      aliases.push_back(alias);
+  return aliases;
+}
+} // namespace
+
 ScanAliases findAliases(const PreparedScan& scan, const ScanFeatures& features)
 {
-  if (!sawAround(scan)) // it knows too little that could reject an alias
+  constexpr int matches_a_feature = 3; // places that look like a feature's, which may be one of many
+  if (!sawAround(scan))                // it knows too little that could reject an alias
     return {};
   Sc2PcrOptions sc2_pcr;
   sc2_pcr.tolerance = 1.5f * scan.levels[1].voxel;
   sc2_pcr.size = scan.size;
   sc2_pcr.exclusive = true;
+  std::vector<Index> all(features.points.cols());
+  std::iota(all.begin(), all.end(), Index(0));
   const float apart = alias_distance * scan.size;
-  ScanAliases aliases;
-  for (const VerifiedHypothesis& own : alignToSelf(scan, features, sc2_pcr))
-    if (poseDistance(own.T_a_b, Eigen::Isometry3d::Identity(), scan.size) > apart)
-      aliases.push_back(toAlias(own));
-  if (std::none_of(aliases.begin(), aliases.end(), [](const ScanAlias& alias) { return alias.certain; }))
-    for (const ScanAlias& alias : findPartialAliases(scan, matchFarToNear(scan, features, sc2_pcr)))
-      aliases.push_back(alias);
-  return aliases;
+  FoundHypotheses found;
+  found.features =
+      runSc2Pcr(features, features, matchToSelf(features, {all, apart, apart, matches_a_feature}), sc2_pcr);
+  return findAliases(scan, found, [&] { return matchFarToNear(scan, features, sc2_pcr); });
+}
+
+ScanAliases findAliasesByPlan(const PlannedScan& scan)
+{
+  constexpr std::size_t most_aliases = 16;
+  if (scan.plan.empty() || !sawAround(scan.scan))
+    return {};
+  FoundHypotheses found;
+  found.planes = matchPlans(scan.plan, scan.plan, most_aliases);
+  return findAliases(scan.scan, found, [&] { return found.planes; });
 }
 
 void addAliases(const ScanAliases& more, double size, ScanAliases& aliases)

@@ -383,4 +383,19 @@ JointResult refineJointly(const ScanPointers& scans, IsometryVector poses, const
     return {};
   return Refinement(scans, std::move(poses), options).run(progress);
 }
+
+JointResult refinePair(const std::pair<const PreparedScan&, const PreparedScan&>& pair, const Eigen::Isometry3d& T_a_b,
+                       const LevelRange& levels, Index samples)
+{
+  const auto& [a, b] = pair;
+  JointOptions options;
+  options.first_level = levels.first;
+  options.last_level = levels.last;
+  options.max_distance = 2.f * a.levels[levels.first].voxel;
+  options.samples = samples;
+  options.max_iterations = 20;
+  options.min_overlap = 0.f;
+  options.threads = 1;
+  return refineJointly({&a, &b}, {Eigen::Isometry3d::Identity(), T_a_b}, options, {});
+}
 } // namespace fresco::registration

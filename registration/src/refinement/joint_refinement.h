@@ -52,4 +52,13 @@ struct JointResult {
 /// residuals say. Each connected group of scans keeps the pose of one of them.
 JointResult refineJointly(const ScanPointers& scans, IsometryVector poses, const JointOptions& options,
                           const Progress& progress);
+
+/// Of the levels of scans, coarse to fine.
+struct LevelRange {
+  int first, last;
+};
+
+/// Moves the second of two scans, which lies at `T_a_b` to about two voxels of the first level. One thread.
+JointResult refinePair(const std::pair<const PreparedScan&, const PreparedScan&>& pair, const Eigen::Isometry3d& T_a_b,
+                       const LevelRange& levels, Index samples);
 } // namespace fresco::registration
