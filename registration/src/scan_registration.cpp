@@ -57,7 +57,7 @@ std::vector<PreparedScan> prepareAll(const ScanSet& set, const ScanRegistrationO
   std::vector<PreparedScan> prepared(scans.count);
   for (Index i = 0; i < scans.count; ++i) {
     report(progress, "prepare", 1.0 * i / scans.count);
-    prepared[i].problem = survey.problems[i];
+    prepared[i].problem = survey.scans[i].problem;
     prepared[i].duplicate_of = survey.duplicates[i];
     if (survey.duplicates[i] >= 0)
       prepared[i].problem = "the same points as " + scanName(options, survey.duplicates[i]);
@@ -160,7 +160,7 @@ ScanRegistrationResult findPoses(const ScanSource& scans, const std::vector<Pose
   Exchange& ranks = scans.ranks ? *scans.ranks : alone;
   ScanSurvey survey = surveyScans(scans, ranks, given);
   survey.duplicates = findDuplicates(survey, start);
-  const double size = commonSize(survey.sizes, given);
+  const double size = commonSize(survey, given);
   ScanRegistrationOptions options = given;
   if (!(options.voxel > 0.f))
     options.voxel = size > 0.0 ? chooseVoxel(survey, size) : 1.f;

@@ -29,7 +29,7 @@ std::vector<Planned> drawPlans(const std::vector<PointSet>& scans, double voxel 
   for (std::size_t k = 0; k < scans.size(); ++k) {
     PlanSpectrum plan;
     if (frames[k])
-      plan = PlanSpectrum(drawFloorPlan(prepared[k], *frames[k], grid), *frames[k], grid);
+      plan = PlanSpectrum(drawFloorPlan({{prepared[k], frames[k]->T_plan_scan}}, grid), *frames[k], grid);
     planned.push_back({prepared[k], plan});
   }
   return planned;

@@ -31,7 +31,7 @@ inline EvidenceInput prepareInput(const std::vector<std::string>& files, const s
   const ScanSource source = sourceOf(files);
   Exchange alone;
   const ScanSurvey survey = surveyScans(source, alone, input.options);
-  const double size = commonSize(survey.sizes, input.options);
+  const double size = commonSize(survey, input.options);
   input.options.voxel = chooseVoxel(survey, size);
   input.options.max_distance = 20.f * input.options.voxel;
   for (Index i = 0; i < source.count; ++i)

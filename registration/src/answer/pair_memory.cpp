@@ -24,21 +24,21 @@ void fields(Archive& archive, GlobalAlignment& alignment)
 std::string memoryKey(const ScanSurvey& survey, const std::vector<Pose>& start, const ScanRegistrationOptions& options)
 {
   Packer packer;
-  for (std::uint64_t hash : survey.hashes)
-    packer(hash);
-  for (std::uint64_t look : survey.looks)
-    packer(look);
-  for (double size : survey.sizes)
-    packer(size);
-  for (std::string problem : survey.problems)
-    packer(problem);
+  for (ScanSketch scan : survey.scans)
+    packer(scan.hash);
+  for (ScanSketch scan : survey.scans)
+    packer(scan.look);
+  for (ScanSketch scan : survey.scans)
+    packer(scan.size);
+  for (ScanSketch scan : survey.scans)
+    packer(scan.problem);
   for (Pose pose : start)
     packer(pose);
   float voxel = options.voxel, min_overlap = options.min_overlap, max_violation = options.max_violation;
   bool upright = options.upright;
   packer(voxel, min_overlap, max_violation, upright);
   const Exchange::Bytes bytes = packer.take();
-  return concat(survey.hashes.size(), " ", hashBytes(bytes.data(), bytes.size()));
+  return concat(survey.scans.size(), " ", hashBytes(bytes.data(), bytes.size()));
 }
 
 std::string packAlignment(GlobalAlignment alignment, const std::string& key)

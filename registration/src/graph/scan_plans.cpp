@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "graph/scan_plans.h"
 #include "graph/viewpoint_check.h"
+#include "scan/lists.h"
 #include <algorithm>
-#include <fresco/core/parallel.h>
 namespace fresco::registration {
 PlanFrames knownFrames(const std::vector<PreparedScan>& scans, const ScanCluster& known, int threads)
 {
@@ -20,13 +20,10 @@ std::vector<PlanSpectrum> drawPlans(const std::vector<PreparedScan>& scans, Plan
   const PlanGrid grid = choosePlanGrid(frames, scans);
   if (grid.side == 0)
     frames.clear();
-  parallelFor(
-      frames.size(), threads,
-      [&](Index k) {
-        if (frames[k])
-          plans[k] = PlanSpectrum(drawFloorPlan(scans[k], *frames[k], grid), *frames[k], grid);
-      },
-      1);
+  forEachTask(frames.size(), threads, [&](Index k) {
+    if (frames[k])
+      plans[k] = PlanSpectrum(drawFloorPlan({{scans[k], frames[k]->T_plan_scan}}, grid), *frames[k], grid);
+  });
   return plans;
 }
 } // namespace fresco::registration

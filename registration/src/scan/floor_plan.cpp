@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scan/floor_plan.h"
+#include "scan/lists.h"
 #include "scan/up_direction.h"
 #include <algorithm>
 #include <cmath>
-#include <fresco/core/parallel.h>
 #include <map>
 #include <numeric>
 namespace fresco::registration {
 namespace {
-// Of the axes, the one that was vertical while the scanner stood upright.
+// Of the axes, if there are any, the one that was vertical while the scanner stood upright.
 std::optional<Eigen::Vector3f> uprightAxis(const ScanPlanes& planes)
 {
   constexpr float upright_cosine = 0.966f; // 15 degrees
@@ -157,7 +157,7 @@ FloorPlan PlanDrawing::finish()
 
 std::optional<PlanFrame> findPlanFrame(const PreparedScan& scan, const ScanPlanes& planes)
 {
-  const std::optional<Eigen::Vector3f> up = planes.axes.isZero() ? std::nullopt : uprightAxis(planes);
+  const std::optional<Eigen::Vector3f> up = uprightAxis(planes);
   return up ? findPlanFrame(scan, planes, *up) : std::nullopt;
 }
 
@@ -182,15 +182,12 @@ PlanFrames findPlanFrames(const std::vector<PreparedScan>& scans, int threads)
 {
   std::vector<ScanPlanes> planes(scans.size());
   PlanFrames frames(scans.size());
-  parallelFor(
-      scans.size(), threads,
-      [&](Index k) {
-        if (!scans[k].problem.empty())
-          return;
-        planes[k] = findPlanes(scans[k]);
-        frames[k] = findPlanFrame(scans[k], planes[k]);
-      },
-      1);
+  forEachTask(scans.size(), threads, [&](Index k) {
+    if (!scans[k].problem.empty())
+      return;
+    planes[k] = findPlanes(scans[k]);
+    frames[k] = findPlanFrame(scans[k], planes[k]);
+  });
   const Index upright =
       std::count_if(frames.begin(), frames.end(), [](const auto& frame) { return frame.has_value(); });
   if (upright == countUsable(scans))
@@ -199,11 +196,6 @@ PlanFrames findPlanFrames(const std::vector<PreparedScan>& scans, int threads)
   for (std::size_t k = 0; k < scans.size(); ++k)
     frames[k] = ups[k] ? findPlanFrame(scans[k], planes[k], *ups[k]) : std::nullopt;
   return frames;
-}
-
-FloorPlan drawFloorPlan(const PreparedScan& scan, const PlanFrame& frame, const PlanGrid& grid)
-{
-  return drawFloorPlan({{scan, frame.T_plan_scan}}, grid);
 }
 
 FloorPlan drawFloorPlan(const std::vector<PlanScan>& scans, const PlanGrid& grid)

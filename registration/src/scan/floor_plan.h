@@ -43,15 +43,12 @@ struct FloorPlan {
   std::array<Layer, plan_layers> free;     ///< was seen through, and neither the cell nor its neighbours hold a point
 };
 
-/// Moravec and Elfes 1985, "High Resolution Maps from Wide Angle Sonar", with rays of a laser and without probabilities.
-FloorPlan drawFloorPlan(const PreparedScan& scan, const PlanFrame& frame, const PlanGrid& grid);
-
 /// A scan and its place in a plan.
 struct PlanScan {
   const PreparedScan& scan;
   Eigen::Isometry3f T_plan_scan; ///< from the scan's working frame
 };
 
-/// The same of several scans together.
+/// Moravec and Elfes 1985, "High Resolution Maps from Wide Angle Sonar", with rays of a laser and without probabilities.
 FloorPlan drawFloorPlan(const std::vector<PlanScan>& scans, const PlanGrid& grid);
 } // namespace fresco::registration

@@ -9,15 +9,6 @@
 #include <utility>
 namespace fresco {
 namespace {
-std::vector<Index> finiteColumns(const PointSet& scan)
-{
-  std::vector<Index> finite;
-  for (Index i = 0; i < scan.size(); ++i)
-    if (scan.points.col(i).allFinite())
-      finite.push_back(i);
-  return finite;
-}
-
 // Those of the scan where it has them, else estimated; towards the viewpoints.
 Points orientedNormals(const PointSet& scan, int threads)
 {
@@ -36,7 +27,7 @@ Eigen::Vector3d originFor(const PointSet& scan, const Eigen::Matrix4d& T_world_s
 {
   constexpr double large_coordinate = 1000.0; // beyond, a float resolves less than a tenth of a millimetre in metres
   Eigen::AlignedBox3d bounds;
-  for (const Index i : finiteColumns(scan))
+  for (const Index i : finiteColumns(scan.points))
     bounds.extend(scan.points.col(i).cast<double>());
   if (bounds.isEmpty())
     return Eigen::Vector3d::Zero();
@@ -49,7 +40,7 @@ Eigen::Vector3d originFor(const PointSet& scan, const Eigen::Matrix4d& T_world_s
 PointSet placedScan(const PointSet& scan, const Eigen::Matrix4d& T_world_scan, const Eigen::Vector3d& origin,
                     int threads)
 {
-  PointSet own = selectPoints(scan, finiteColumns(scan));
+  PointSet own = selectPoints(scan, finiteColumns(scan.points));
   if (own.viewpoints.cols() == 0)
     own.viewpoints = (-own.origin).cast<float>();
   own.normals = orientedNormals(own, threads);

@@ -20,23 +20,9 @@ std::string withoutName(const std::string& message, const std::string& name)
   return message.rfind(name + ": ", 0) == 0 ? message.substr(name.size() + 2) : message;
 }
 
-// What is known of one scan.
-struct Sketch {
-  std::string problem;
-  double size = 0.0, narrowness = 0.0, voxel = 0.0;
-  std::uint64_t hash = 0, look = 0;
-  bool has_points = false;
-};
-
-template <typename Archive>
-void fields(Archive& archive, Sketch& sketch)
+ScanSketch sketchOf(const ScanSource& scans, Index i, const ScanRegistrationOptions& options)
 {
-  archive(sketch.problem, sketch.size, sketch.narrowness, sketch.voxel, sketch.hash, sketch.look, sketch.has_points);
-}
-
-Sketch sketchOf(const ScanSource& scans, Index i, const ScanRegistrationOptions& options)
-{
-  Sketch sketch;
+  ScanSketch sketch;
   PointSet scan;
   try {
     scan = scans.read(i);
@@ -58,21 +44,22 @@ Sketch sketchOf(const ScanSource& scans, Index i, const ScanRegistrationOptions&
 }
 } // namespace
 
+template <typename Archive>
+void fields(Archive& archive, ScanSketch& sketch)
+{
+  archive(sketch.problem, sketch.size, sketch.narrowness, sketch.voxel, sketch.hash, sketch.look, sketch.has_points);
+}
+
 ScanSurvey surveyScans(const ScanSource& scans, Exchange& ranks, const ScanRegistrationOptions& options)
 {
-  std::vector<Sketch> sketches(scans.count);
+  ScanSurvey survey;
+  survey.scans.resize(scans.count);
   for (Index i = 0; i < scans.count; ++i)
     if (isOwn(ranks, i))
-      sketches[i] = sketchOf(scans, i, options);
-  shareItems(ranks, sketches);
-  ScanSurvey survey;
+      survey.scans[i] = sketchOf(scans, i, options);
+  shareItems(ranks, survey.scans);
   Index counted = 0;
-  for (const Sketch& sketch : sketches) {
-    survey.problems.push_back(sketch.problem);
-    survey.sizes.push_back(sketch.size);
-    survey.voxels.push_back(sketch.voxel);
-    survey.hashes.push_back(sketch.hash);
-    survey.looks.push_back(sketch.look);
+  for (const ScanSketch& sketch : survey.scans) {
     survey.narrowness += sketch.narrowness;
     counted += sketch.has_points ? 1 : 0;
   }
@@ -82,39 +69,42 @@ ScanSurvey surveyScans(const ScanSource& scans, Exchange& ranks, const ScanRegis
 
 std::vector<Index> findDuplicates(const ScanSurvey& survey, const std::vector<Pose>& start)
 {
-  const Index n = survey.hashes.size();
+  const Index n = survey.scans.size();
+  const auto hash = [&](Index i) { return survey.scans[i].hash; };
   const auto started = [&](Index i) { return !start.empty() && start[i].has_value(); };
   std::vector<Index> duplicates(n, -1);
   for (Index i = 0; i < n; ++i)
     for (Index k = 0; k < n && !started(i); ++k)
-      if (k != i && survey.hashes[i] != 0 && survey.hashes[k] == survey.hashes[i] && (k < i || started(k)) &&
+      if (k != i && hash(i) != 0 && hash(k) == hash(i) && (k < i || started(k)) &&
           (duplicates[i] < 0 || (started(k) && !started(duplicates[i]))))
         duplicates[i] = k;
   return duplicates;
 }
 
-double commonSize(const std::vector<double>& sizes, const ScanRegistrationOptions& options)
+double commonSize(const ScanSurvey& survey, const ScanRegistrationOptions& options)
 {
   constexpr double size_ratio = 100.0; // between scans of one job: above, one of them is in millimetres
   std::vector<double> known;
-  std::copy_if(sizes.begin(), sizes.end(), std::back_inserter(known), [](double size) { return size > 0.0; });
+  for (const ScanSketch& scan : survey.scans)
+    if (scan.size > 0.0)
+      known.push_back(scan.size);
   if (known.empty())
     return 0.0;
   const double middle = rankedValue(known, (known.size() - 1) / 2);
-  const Index n = sizes.size();
-  for (Index i = 0; i < n; ++i)
-    require(!(sizes[i] > 0.0) || (sizes[i] < size_ratio * middle && middle < size_ratio * sizes[i]),
-            scanName(options, i), ": reaches ", sizes[i], " from its viewpoint, the others ", middle,
-            ": are they in the same unit?");
+  for (std::size_t i = 0; i < survey.scans.size(); ++i) {
+    const double size = survey.scans[i].size;
+    require(!(size > 0.0) || (size < size_ratio * middle && middle < size_ratio * size), scanName(options, i),
+            ": reaches ", size, " from its viewpoint, the others ", middle, ": are they in the same unit?");
+  }
   return middle;
 }
 
 float chooseVoxel(const ScanSurvey& survey, double size)
 {
   std::vector<double> voxels;
-  for (const double voxel : survey.voxels)
-    if (voxel > 0.0)
-      voxels.push_back(std::max(voxel, size / voxels_per_size));
+  for (const ScanSketch& scan : survey.scans)
+    if (scan.voxel > 0.0)
+      voxels.push_back(std::max(scan.voxel, size / voxels_per_size));
   return median(voxels);
 }
 } // namespace fresco::registration

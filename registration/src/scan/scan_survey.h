@@ -2,15 +2,21 @@
 #pragma once
 #include <fresco/registration/core/scan_registration.h>
 namespace fresco::registration {
-/// What is known of the scans before they are thinned.
+/// What is known of a scan before it is thinned.
+struct ScanSketch {
+  std::string problem;     ///< why it cannot be read; empty = it can
+  double size = 0.0;       ///< see scanSize()
+  double narrowness = 0.0; ///< see narrowness()
+  double voxel = 0.0;      ///< that suits it, length; 0 without points
+  std::uint64_t hash = 0;  ///< of its points; 0 without points
+  std::uint64_t look = 0;  ///< of its viewpoints, colours and normals
+  bool has_points = false;
+};
+
 struct ScanSurvey {
-  std::vector<double> sizes;         ///< see scanSize()
-  std::vector<double> voxels;        ///< that suit each scan, length; 0 without points
-  std::vector<std::string> problems; ///< why a scan cannot be read; empty = it can
-  std::vector<std::uint64_t> hashes; ///< of the points of each scan; 0 without points
-  std::vector<std::uint64_t> looks;  ///< likewise, of viewpoints, colours and normals
-  std::vector<Index> duplicates;     ///< see findDuplicates()
-  double narrowness = 0.0;           ///< mean over the scans that have points, 0..1
+  std::vector<ScanSketch> scans;
+  std::vector<Index> duplicates; ///< see findDuplicates()
+  double narrowness = 0.0;       ///< mean over the scans that have points, 0..1
 };
 
 /// @param ranks that share out the scans
@@ -22,7 +28,7 @@ std::vector<Index> findDuplicates(const ScanSurvey& survey, const std::vector<Po
 
 /// The median of the scans' sizes, length; 0 if none has any.
 /// @throws std::invalid_argument if they differ so much that their units must differ
-double commonSize(const std::vector<double>& sizes, const ScanRegistrationOptions& options);
+double commonSize(const ScanSurvey& survey, const ScanRegistrationOptions& options);
 
 /// Finest thinning of all scans, length.
 float chooseVoxel(const ScanSurvey& survey, double size);

@@ -36,19 +36,15 @@ WorkingCenter workingCenter(const PointSet& scan)
   for (Index i = 0; i < scan.viewpoints.cols(); ++i)
     if (scan.viewpoints.col(i).allFinite())
       return {scan.origin + scan.viewpoints.col(i).cast<double>(), true, false};
+  const std::vector<Index> finite = finiteColumns(scan.points);
+  const Index count = finite.size();
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  Index count = 0;
-  const auto finite = [&](Index i) { return scan.points.col(i).allFinite(); };
-  for (Index i = 0; i < scan.size(); ++i)
-    if (finite(i)) {
-      sum += scan.points.col(i).cast<double>();
-      ++count;
-    }
+  for (const Index i : finite)
+    sum += scan.points.col(i).cast<double>();
   const Eigen::Vector3d middle = sum / std::max<Index>(1, count);
   double spread = 0.0;
-  for (Index i = 0; i < scan.size(); ++i)
-    if (finite(i))
-      spread += (scan.points.col(i).cast<double>() - middle).norm() / count;
+  for (const Index i : finite)
+    spread += (scan.points.col(i).cast<double>() - middle).norm() / count;
   if ((scan.origin + middle).norm() > far_origin * spread)
     return {scan.origin + middle, false, false};
   return {Eigen::Vector3d::Zero(), false, true};
@@ -57,27 +53,18 @@ WorkingCenter workingCenter(const PointSet& scan)
 RawScan finitePoints(const PointSet& scan, const Eigen::Vector3d& center)
 {
   const Eigen::Vector3f shift = (scan.origin - center).cast<float>();
-  const bool colored = scan.colors.cols() > 0;
-  RawScan raw{Points(3, scan.size()), Points(3, scan.size()), Points(3, colored ? scan.size() : 0)};
-  const bool known = scan.viewpoints.cols() > 0;
-  Index count = 0;
-  for (Index i = 0; i < scan.size(); ++i) {
-    if (!scan.points.col(i).allFinite())
-      continue;
-    raw.points.col(count) = scan.points.col(i) + shift;
-    if (colored)
-      raw.colors.col(count) = scan.colors.col(i).cast<float>();
-    raw.viewpoints.col(count).setZero();
-    if (known) {
-      const Eigen::Vector3f viewpoint = scan.viewpoints.col(scan.viewpoints.cols() == 1 ? 0 : i) + shift;
-      if (viewpoint.allFinite())
-        raw.viewpoints.col(count) = viewpoint;
-    }
-    ++count;
+  const std::vector<Index> finite = finiteColumns(scan.points);
+  const Index given = scan.viewpoints.cols();
+  RawScan raw;
+  raw.points = scan.points(Eigen::all, finite).colwise() + shift;
+  raw.viewpoints.setZero(3, raw.points.cols());
+  for (Index k = 0; given > 0 && k < raw.points.cols(); ++k) {
+    const Eigen::Vector3f viewpoint = scan.viewpoints.col(given == 1 ? 0 : finite[k]) + shift;
+    if (viewpoint.allFinite())
+      raw.viewpoints.col(k) = viewpoint;
   }
-  raw.points.conservativeResize(3, count);
-  raw.viewpoints.conservativeResize(3, count);
-  raw.colors.conservativeResize(3, colored ? count : 0);
+  if (scan.colors.cols() > 0)
+    raw.colors = scan.colors(Eigen::all, finite).cast<float>();
   return raw;
 }
 

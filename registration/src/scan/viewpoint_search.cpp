@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scan/viewpoint_search.h"
+#include "scan/lists.h"
 #include "scan/scan_free_space.h"
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <fresco/core/parallel.h>
 #include <fresco/core/statistics.h>
 #include <limits>
 namespace fresco::registration {
@@ -42,16 +42,6 @@ public:
 private:
   static constexpr double filling = 1.5; // points per cell
 
-  Index cellOf(const Eigen::Vector3f& ray) const
-  {
-    Index axis = 0;
-    const float length = ray.cwiseAbs().maxCoeff(&axis);
-    const auto slot = [&](Index other) {
-      return std::min(side_ - 1, static_cast<int>((ray[other % 3] / length + 1.f) * 0.5f * side_));
-    };
-    return ((axis * 2 + (ray[axis] < 0.f ? 1 : 0)) * side_ + slot(axis + 1)) * side_ + slot(axis + 2);
-  }
-
   double share(const Eigen::Vector3f& place, int turn) const
   {
     constexpr float behind = 1.17f; // of the nearest range of a cell: a surface seen at a slant reaches less deep
@@ -63,7 +53,7 @@ private:
     for (Index i = 0; i < n; ++i) {
       const Eigen::Vector3f ray = R * (points_.col(i) - place);
       ranges[i] = ray.norm();
-      cells[i] = ranges[i] > 0.f ? cellOf(ray) : 0;
+      cells[i] = ranges[i] > 0.f ? cellOnCube(ray, side_, [](float t) { return t; }) : 0;
       nearest[cells[i]] = std::min(nearest[cells[i]], ranges[i]);
     }
     Index hidden = 0;
@@ -84,14 +74,7 @@ struct Candidate {
 
 std::vector<Candidate> rated(const HiddenPoints& hidden, const std::vector<Eigen::Vector3f>& places, int threads)
 {
-  std::vector<Candidate> candidates(places.size());
-  parallelFor(
-      places.size(), threads,
-      [&](Index k) {
-        candidates[k] = {places[k], hidden.share(places[k])};
-      },
-      1);
-  return candidates;
+  return mapTasks(places.size(), threads, [&](Index k) { return Candidate{places[k], hidden.share(places[k])}; });
 }
 
 // The best places of a grid over the middle of the points.
