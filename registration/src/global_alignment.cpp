@@ -7,12 +7,12 @@
 #include "graph/scan_exchange.h"
 #include "graph/scan_plans.h"
 #include "graph/viewpoint_check.h"
+#include "pair/pair_alignment.h"
 #include "pair/pair_ranking.h"
 #include "pair/partial_alias.h"
-#include "pair/pair_alignment.h"
 #include "pair/self_alignment.h"
+#include "scan/lists.h"
 #include <algorithm>
-#include <fresco/core/parallel.h>
 namespace fresco::registration {
 namespace {
 std::vector<RankedPair> possiblePairs(const std::vector<PreparedScan>& scans, const ScanCluster& known)
@@ -41,7 +41,7 @@ private:
   void forOwn(Index n, const Body& body) const
   {
     const Index step = ranks_.size(), first = ranks_.rank();
-    parallelFor((n - first + step - 1) / step, options_.threads, [&](Index k) { body(first + k * step); }, 1);
+    forEachTask((n - first + step - 1) / step, options_.threads, [&](Index k) { body(first + k * step); });
   }
   void confirmViewpoints();
   bool hasAllPlans() const;
@@ -135,13 +135,10 @@ std::vector<RankedPair> GlobalAligner::pairsByPlans() const
 {
   constexpr Index partners = 12; // overlap by a quarter with fewer
   std::vector<RankedPair> pairs = possiblePairs(scans_, known_);
-  parallelFor(
-      pairs.size(), options_.threads,
-      [&](Index k) {
-        const Index a = pairs[k].a, b = pairs[k].b;
-        pairs[k].likeness = planLikeness({scans_[a], plans_[a]}, {scans_[b], plans_[b]});
-      },
-      1);
+  forEachTask(pairs.size(), options_.threads, [&](Index k) {
+    const Index a = pairs[k].a, b = pairs[k].b;
+    pairs[k].likeness = planLikeness({scans_[a], plans_[a]}, {scans_[b], plans_[b]});
+  });
   return firstPartners(std::move(pairs), scans_.size(), partners);
 }
 
@@ -155,8 +152,7 @@ VerificationOptions GlobalAligner::verification() const
 
 void GlobalAligner::alignByPlans(const std::vector<RankedPair>& pairs)
 {
-  parallelFor(
-      scans_.size(), options_.threads, [&](Index k) { prepareManySearches(scans_[k]); }, 1);
+  forEachTask(scans_.size(), options_.threads, [&](Index k) { prepareManySearches(scans_[k]); });
   const VerificationOptions options = verification();
   alignEach(pairs, [&](Index a, Index b) {
     return registration::alignByPlans({scans_[a], plans_[a]}, {scans_[b], plans_[b]}, options);
@@ -206,8 +202,7 @@ void GlobalAligner::prepareForPairs(const std::vector<RankedPair>& round)
       }
   if (fresh.empty())
     return;
-  parallelFor(
-      fresh.size(), options_.threads, [&](Index k) { prepareManySearches(scans_[fresh[k]]); }, 1);
+  forEachTask(fresh.size(), options_.threads, [&](Index k) { prepareManySearches(scans_[fresh[k]]); });
   std::vector<ScanAliases> aliases(fresh.size());
   forOwn(fresh.size(), [&](Index k) { aliases[k] = aliasesOf(fresh[k]); });
   shareItems(ranks_, aliases);

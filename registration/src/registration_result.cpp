@@ -2,9 +2,9 @@
 #include "registration_result.h"
 #include "answer/places.h"
 #include "scan/floor_plan.h"
+#include "scan/lists.h"
 #include <algorithm>
 #include <cmath>
-#include <fresco/core/parallel.h>
 #include <fresco/core/require.h>
 #include <fresco/core/union_find.h>
 #include <map>
@@ -322,24 +322,21 @@ void Description::findCandidates(const std::vector<ScanCluster>& groups)
   const PlaceFinder finder(scans_, state_.tried, state_.plan_places, options_);
   const FreeSpaceJudge judge(scans_);
   std::vector<std::vector<CandidatePlace>> found(groups.size());
-  parallelFor(
-      groups.size(), options_.threads,
-      [&](Index g) {
-        Places places;
-        for (Index larger = 0; larger < g; ++larger)
-          for (const Place& place : finder.ofClusters(groups[larger], groups[g]))
-            places.push_back(place);
-        finder.judge(groups, judge, places);
-        for (const Place& place : places) {
-          if (found[g].size() == most || place.fit.overlap < least_overlap)
-            continue;
-          CandidatePlace& candidate = found[g].emplace_back(finder.described(place));
-          candidate.group = g;
-          const Eigen::Matrix4d T_larger_scan = result_.scans[place.a].T_group_scan * candidate.T_beside_scan;
-          candidate.T_larger_group = T_larger_scan * result_.scans[place.b].T_group_scan.inverse();
-        }
-      },
-      1);
+  forEachTask(groups.size(), options_.threads, [&](Index g) {
+    Places places;
+    for (Index larger = 0; larger < g; ++larger)
+      for (const Place& place : finder.ofClusters(groups[larger], groups[g]))
+        places.push_back(place);
+    finder.judge(groups, judge, places);
+    for (const Place& place : places) {
+      if (found[g].size() == most || place.fit.overlap < least_overlap)
+        continue;
+      CandidatePlace& candidate = found[g].emplace_back(finder.described(place));
+      candidate.group = g;
+      const Eigen::Matrix4d T_larger_scan = result_.scans[place.a].T_group_scan * candidate.T_beside_scan;
+      candidate.T_larger_group = T_larger_scan * result_.scans[place.b].T_group_scan.inverse();
+    }
+  });
   for (const auto& candidates : found)
     result_.candidates.insert(result_.candidates.end(), candidates.begin(), candidates.end());
 }

@@ -3,8 +3,8 @@
 #include "graph/moved_people.h"
 #include "graph/scan_exchange.h"
 #include "graph/scan_plans.h"
+#include "scan/lists.h"
 #include <algorithm>
-#include <fresco/core/parallel.h>
 #include <map>
 namespace fresco::registration {
 void restoreScans(const AlignmentInput& input, const GlobalAlignment& alignment, int threads)
@@ -40,18 +40,15 @@ void alignMore(const AlignmentInput& input, const ScanRegistrationOptions& optio
         features[scan] = describeScan(input.scans[scan], feature_options);
       }
   std::vector<PairAlignment> aligned(asked.size());
-  parallelFor(
-      asked.size(), options.threads,
-      [&](Index k) {
-        const auto& [a, b] = asked[k];
-        if (!isOwn(input.ranks, k))
-          return;
-        aligned[k] = alignPair({input.scans[a], features.at(a), &plans[a]}, {input.scans[b], features.at(b), &plans[b]},
-                               pair_options);
-        aligned[k].a = a;
-        aligned[k].b = b;
-      },
-      1);
+  forEachTask(asked.size(), options.threads, [&](Index k) {
+    const auto& [a, b] = asked[k];
+    if (!isOwn(input.ranks, k))
+      return;
+    aligned[k] = alignPair({input.scans[a], features.at(a), &plans[a]}, {input.scans[b], features.at(b), &plans[b]},
+                           pair_options);
+    aligned[k].a = a;
+    aligned[k].b = b;
+  });
   shareItems(input.ranks, aligned);
   const auto order = [](const PairAlignment& x, const PairAlignment& y) {
     return std::pair(x.a, x.b) < std::pair(y.a, y.b);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include "graph/free_space_evidence.h"
+#include "scan/lists.h"
 #include <algorithm>
-#include <fresco/core/parallel.h>
 #include <map>
 #include <utility>
 namespace fresco::registration {
@@ -91,8 +91,7 @@ public:
           fresh.push_back({&first, &second});
       }
     std::vector<Fits> found(fresh.size());
-    parallelFor(
-        fresh.size(), threads, [&](Index k) { found[k] = find(*fresh[k].first, *fresh[k].second); }, 1);
+    forEachTask(fresh.size(), threads, [&](Index k) { found[k] = find(*fresh[k].first, *fresh[k].second); });
     for (std::size_t k = 0; k < fresh.size(); ++k)
       fits_[{fresh[k].first->id, fresh[k].second->id}] = std::move(found[k]);
   }

@@ -4,8 +4,8 @@
 #include "assembly/part_check.h"
 #include "graph/alias_check.h"
 #include "graph/place_check.h"
+#include "scan/lists.h"
 #include <algorithm>
-#include <fresco/core/parallel.h>
 namespace fresco::registration {
 namespace {
 // Whether what pairs say of another place is as sure as what they say of a join.
@@ -270,17 +270,14 @@ bool Assembler::splitContested(std::size_t group)
   std::vector<std::vector<Index>>& parts = groups_[group].parts;
   std::stable_sort(parts.begin(), parts.end(), [](const auto& x, const auto& y) { return x.size() < y.size(); });
   std::vector<char> contested(parts.size(), 0);
-  parallelFor(
-      parts.size(), input_.options.threads,
-      [&](Index k) {
-        const auto [part, rest] = divide(cluster, parts[k]);
-        if (part.scans.empty() || part.scans.size() > rest.scans.size() || hasKnown(part))
-          return;
-        const ClusterPart placed{part, rest, judge_.judge(rest, part, Eigen::Isometry3d::Identity())};
-        contested[k] = PartCheck::isMisplaced(placed) || parts_.fitsElsewhere(placed) ||
-                       parts_.mayBeMoved(placed, motions) || isClaimed(group, placed);
-      },
-      1);
+  forEachTask(parts.size(), input_.options.threads, [&](Index k) {
+    const auto [part, rest] = divide(cluster, parts[k]);
+    if (part.scans.empty() || part.scans.size() > rest.scans.size() || hasKnown(part))
+      return;
+    const ClusterPart placed{part, rest, judge_.judge(rest, part, Eigen::Isometry3d::Identity())};
+    contested[k] = PartCheck::isMisplaced(placed) || parts_.fitsElsewhere(placed) ||
+                   parts_.mayBeMoved(placed, motions) || isClaimed(group, placed);
+  });
   const auto first = std::find(contested.begin(), contested.end(), 1);
   if (first == contested.end())
     return false;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "graph/alias_check.h"
+#include "scan/lists.h"
 #include <algorithm>
 #include <atomic>
-#include <fresco/core/parallel.h>
 namespace fresco::registration {
 namespace {
 // A relative pose of two clusters by a hypothesis of one pair: half of a chain.
@@ -131,20 +131,17 @@ double worstViolation(const GraphInput& input, const ScanCluster& first, const S
   const Index n = first.scans.size(), m = second.scans.size();
   std::vector<double> violations(n * m, 0.0);
   std::atomic<bool> too_large{false};
-  parallelFor(
-      n * m, input.options.threads,
-      [&](Index k) {
-        if (too_large)
-          return;
-        const Index i = k / m, j = k % m;
-        const PreparedScan& a = input.scans[first.scans[i]];
-        const PreparedScan& b = input.scans[second.scans[j]];
-        const Eigen::Isometry3d T_a_b = first.poses[i].inverse() * T_first_second * second.poses[j];
-        violations[k] = pairViolation(a, b, T_a_b, check_level);
-        if (violations[k] > input.options.max_violation)
-          too_large = true;
-      },
-      1);
+  forEachTask(n * m, input.options.threads, [&](Index k) {
+    if (too_large)
+      return;
+    const Index i = k / m, j = k % m;
+    const PreparedScan& a = input.scans[first.scans[i]];
+    const PreparedScan& b = input.scans[second.scans[j]];
+    const Eigen::Isometry3d T_a_b = first.poses[i].inverse() * T_first_second * second.poses[j];
+    violations[k] = pairViolation(a, b, T_a_b, check_level);
+    if (violations[k] > input.options.max_violation)
+      too_large = true;
+  });
   return *std::max_element(violations.begin(), violations.end());
 }
 

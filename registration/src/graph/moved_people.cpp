@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "graph/moved_people.h"
 #include "graph/free_space_evidence.h"
+#include "scan/lists.h"
 #include "scan/people.h"
 #include <algorithm>
-#include <fresco/core/parallel.h>
 namespace fresco::registration {
 namespace {
 // Of the pairs, whether nothing contradicts their best pose.
@@ -12,10 +12,9 @@ std::vector<char> findFree(const std::vector<PreparedScan>& scans, const std::ve
 {
   const FreeSpaceJudge judge(scans);
   std::vector<char> free(pairs.size());
-  parallelFor(
-      pairs.size(), threads,
-      [&](Index k) { free[k] = !isContradicted(judge.judge(pairs[k]->a, pairs[k]->b, pairs[k]->hypotheses[0].T_a_b)); },
-      1);
+  forEachTask(pairs.size(), threads, [&](Index k) {
+    free[k] = !isContradicted(judge.judge(pairs[k]->a, pairs[k]->b, pairs[k]->hypotheses[0].T_a_b));
+  });
   return free;
 }
 
@@ -29,14 +28,11 @@ void swapPeople(std::vector<PreparedScan>& scans, std::vector<std::vector<char>>
 
 void spareDoubtful(std::vector<PreparedScan>& scans, const PlanFrames& frames, int threads)
 {
-  parallelFor(
-      frames.size(), threads,
-      [&](Index k) {
-        scans[k].spares_doubtful = true;
-        if (frames[k])
-          scans[k].levels[check_level].maybe_person = findPeople(scans[k], *frames[k]);
-      },
-      1);
+  forEachTask(frames.size(), threads, [&](Index k) {
+    scans[k].spares_doubtful = true;
+    if (frames[k])
+      scans[k].levels[check_level].maybe_person = findPeople(scans[k], *frames[k]);
+  });
 }
 
 void spareNothing(std::vector<PreparedScan>& scans)

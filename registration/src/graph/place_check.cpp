@@ -2,9 +2,9 @@
 #include "graph/place_check.h"
 #include "graph/loop_closing.h"
 #include "refinement/joint_refinement.h"
+#include "scan/lists.h"
 #include <algorithm>
 #include <cmath>
-#include <fresco/core/parallel.h>
 namespace fresco::registration {
 namespace {
 constexpr double telling_overlap = 0.25; // of a pair: hardly by chance
@@ -266,17 +266,14 @@ std::vector<Index> scansOfEither(const GraphInput& input, const ScanCluster& clu
 {
   const Index n = cluster.scans.size();
   std::vector<char> either(n, 0);
-  parallelFor(
-      n, input.options.threads,
-      [&](Index k) {
-        if (!sawAround(input.scans[cluster.scans[k]]))
-          return;
-        const auto [moving, others] = divide(cluster, {cluster.scans[k]});
-        const ClusterPose here = PlaceSearch(input, others, moving).evidence(Eigen::Isometry3d::Identity());
-        const ClusterPoses places = findPlaces(input, other, moving);
-        either[k] = std::any_of(places.begin(), places.end(), [&](const auto& place) { return contests(place, here); });
-      },
-      1);
+  forEachTask(n, input.options.threads, [&](Index k) {
+    if (!sawAround(input.scans[cluster.scans[k]]))
+      return;
+    const auto [moving, others] = divide(cluster, {cluster.scans[k]});
+    const ClusterPose here = PlaceSearch(input, others, moving).evidence(Eigen::Isometry3d::Identity());
+    const ClusterPoses places = findPlaces(input, other, moving);
+    either[k] = std::any_of(places.begin(), places.end(), [&](const auto& place) { return contests(place, here); });
+  });
   std::vector<Index> scans;
   for (Index k = 0; k < n; ++k)
     if (either[k])
@@ -306,13 +303,10 @@ std::vector<Index> contestedScans(const GraphInput& input, const ScanCluster& kn
 {
   const Index n = cluster.scans.size();
   std::vector<char> contested(n, 0);
-  parallelFor(
-      n > 1 ? n : 0, input.options.threads,
-      [&](Index k) {
-        const Index scan = cluster.scans[k];
-        contested[k] = !contains(known, scan) && isContestedMember(input, cluster, k);
-      },
-      1);
+  forEachTask(n > 1 ? n : 0, input.options.threads, [&](Index k) {
+    const Index scan = cluster.scans[k];
+    contested[k] = !contains(known, scan) && isContestedMember(input, cluster, k);
+  });
   std::vector<Index> scans;
   for (Index k = 0; k < n; ++k)
     if (contested[k])

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "refinement/joint_covariance.h"
+#include "scan/lists.h"
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
@@ -90,14 +91,11 @@ void CovarianceEstimator::invert()
   H.diagonal().array() += damping * std::max(1.0, H.trace() / std::max<Index>(1, H.rows()));
   const Eigen::LLT<Eigen::MatrixXd> solver(H);
   P_.resize(H.rows(), H.cols());
-  parallelFor(
-      moving_, joint_.threads,
-      [&](Index k) {
-        Eigen::MatrixXd unit = Eigen::MatrixXd::Zero(6 * moving_, 6);
-        unit.middleRows<6>(6 * k).setIdentity();
-        P_.middleCols<6>(6 * k) = solver.solve(unit);
-      },
-      1);
+  forEachTask(moving_, joint_.threads, [&](Index k) {
+    Eigen::MatrixXd unit = Eigen::MatrixXd::Zero(6 * moving_, 6);
+    unit.middleRows<6>(6 * k).setIdentity();
+    P_.middleCols<6>(6 * k) = solver.solve(unit);
+  });
 }
 
 // What changes the solution as leaving out the equations begin .. end - 1 would.
@@ -253,13 +251,10 @@ Covariances CovarianceEstimator::informations() const
 {
   const std::vector<Matrix6d> pairs = pairSums();
   Covariances informations(count_, Matrix6d::Zero());
-  parallelFor(
-      count_, joint_.threads,
-      [&](Index i) {
-        if (!held(i))
-          informations[i] = acrossInformation(i, goingAlong(i, joint_.holders[i]), pairs);
-      },
-      1);
+  forEachTask(count_, joint_.threads, [&](Index i) {
+    if (!held(i))
+      informations[i] = acrossInformation(i, goingAlong(i, joint_.holders[i]), pairs);
+  });
   return informations;
 }
 
@@ -272,8 +267,8 @@ std::map<std::vector<char>, std::pair<Index, Index>> CovarianceEstimator::bodies
   std::sort(pulled.begin(), pulled.end());
   pulled.erase(std::unique(pulled.begin(), pulled.end()), pulled.end());
   std::vector<std::vector<char>> along(pulled.size());
-  parallelFor(
-      pulled.size(), joint_.threads, [&](Index k) { along[k] = goingAlong(pulled[k].first, pulled[k].second); }, 1);
+  forEachTask(pulled.size(), joint_.threads,
+              [&](Index k) { along[k] = goingAlong(pulled[k].first, pulled[k].second); });
   std::map<std::vector<char>, std::pair<Index, Index>> found;
   for (std::size_t k = 0; k < pulled.size(); ++k)
     if (along[k][pulled[k].first] && !along[k][pulled[k].second])
@@ -321,8 +316,7 @@ Covariances CovarianceEstimator::run() const
   std::vector<CellPull> pulls(begins.size() - 1);
   parallelFor(pulls.size(), joint_.threads, [&](Index c) { pulls[c] = pullOf(begins[c], begins[c + 1]); });
   Covariances covariances(count_);
-  parallelFor(
-      count_, joint_.threads, [&](Index i) { covariances[i] = covarianceOf(i, pulls); }, 1);
+  forEachTask(count_, joint_.threads, [&](Index i) { covariances[i] = covarianceOf(i, pulls); });
   return covariances;
 }
 } // namespace

@@ -2,10 +2,10 @@
 #include "refinement/joint_refinement.h"
 #include "overlap/pair_overlap.h"
 #include "refinement/point_to_plane_system.h"
+#include "scan/lists.h"
 #include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <cmath>
-#include <fresco/core/parallel.h>
 #include <fresco/core/statistics.h>
 #include <fresco/core/union_find.h>
 #include <map>
@@ -90,25 +90,22 @@ std::vector<int> Refinement::commonLevels(float distance) const
 {
   const Index n = scanCount();
   std::vector<int> levels(n * n, -1);
-  parallelFor(
-      n * n, options_.threads,
-      [&](Index k) {
-        DirectedPair pair;
-        pair.source = k / n;
-        pair.target = k % n;
-        if (pair.source == pair.target || (fixed(pair.source) && fixed(pair.target)))
-          return;
-        pair.level = level_;
-        if (options_.min_overlap <= 0.f || overlap(pair, distance)) {
-          levels[k] = level_;
-          return;
-        }
-        pair.level = check_level;
-        if (options_.coarse_pairs && level_ > check_level && !level(pair.target).search &&
-            overlap(pair, onLevel(distance, check_level)))
-          levels[k] = check_level;
-      },
-      1);
+  forEachTask(n * n, options_.threads, [&](Index k) {
+    DirectedPair pair;
+    pair.source = k / n;
+    pair.target = k % n;
+    if (pair.source == pair.target || (fixed(pair.source) && fixed(pair.target)))
+      return;
+    pair.level = level_;
+    if (options_.min_overlap <= 0.f || overlap(pair, distance)) {
+      levels[k] = level_;
+      return;
+    }
+    pair.level = check_level;
+    if (options_.coarse_pairs && level_ > check_level && !level(pair.target).search &&
+        overlap(pair, onLevel(distance, check_level)))
+      levels[k] = check_level;
+  });
   for (const auto& [a, b] : options_.excluded)
     levels[a * n + b] = levels[b * n + a] = -1;
   return levels;
@@ -150,29 +147,22 @@ void Refinement::weigh()
 
 void Refinement::match(float distance)
 {
-  parallelFor(
-      blocks_.size(), options_.threads,
-      [&](Index b) {
-        DirectedPair& pair = pairs_[blocks_[b].pair];
-        findMatches(levelPair(pair), blocks_[b].range, onLevel(distance, pair.level), pair);
-      },
-      1);
-  parallelFor(
-      pairs_.size(), options_.threads,
-      [&](Index p) { findCutoff(level(pairs_[p].target, pairs_[p].level).voxel, pairs_[p]); }, 1);
+  forEachTask(blocks_.size(), options_.threads, [&](Index b) {
+    DirectedPair& pair = pairs_[blocks_[b].pair];
+    findMatches(levelPair(pair), blocks_[b].range, onLevel(distance, pair.level), pair);
+  });
+  forEachTask(pairs_.size(), options_.threads,
+              [&](Index p) { findCutoff(level(pairs_[p].target, pairs_[p].level).voxel, pairs_[p]); });
   weigh();
 }
 
 std::vector<PairSystem> Refinement::accumulateAll() const
 {
   std::vector<PairSystem> parts(blocks_.size()), systems(pairs_.size());
-  parallelFor(
-      blocks_.size(), options_.threads,
-      [&](Index b) {
-        const DirectedPair& pair = pairs_[blocks_[b].pair];
-        parts[b] = accumulate(levelPair(pair), blocks_[b].range, pair);
-      },
-      1);
+  forEachTask(blocks_.size(), options_.threads, [&](Index b) {
+    const DirectedPair& pair = pairs_[blocks_[b].pair];
+    parts[b] = accumulate(levelPair(pair), blocks_[b].range, pair);
+  });
   for (std::size_t b = 0; b < blocks_.size(); ++b)
     systems[blocks_[b].pair] += parts[b];
   return systems;
@@ -325,8 +315,7 @@ void Refinement::findCovariances(JointResult& result) const
   joint.size = scans_[0]->size;
   joint.threads = options_.threads;
   std::vector<CellSystems> parts(pairs_.size());
-  parallelFor(
-      pairs_.size(), options_.threads, [&](Index p) { parts[p] = systemsByCell(p); }, 1);
+  forEachTask(pairs_.size(), options_.threads, [&](Index p) { parts[p] = systemsByCell(p); });
   for (std::size_t p = 0; p < pairs_.size(); ++p) {
     const DirectedPair& pair = pairs_[p];
     joint.links.push_back({pair.source, pair.target, PairJacobian(poses_[pair.target], relative(pair))});

@@ -3,9 +3,9 @@
 #include "overlap/pair_overlap.h"
 #include "refinement/free_motion.h"
 #include "refinement/steady_parts.h"
+#include "scan/lists.h"
 #include <algorithm>
 #include <cmath>
-#include <fresco/core/parallel.h>
 #include <fresco/core/union_find.h>
 namespace fresco::registration {
 namespace {
@@ -92,9 +92,8 @@ void checkPairs(const std::vector<PreparedScan>& scans, const ScanRegistrationOp
 {
   const std::vector<std::pair<Index, Index>> pairs = memberPairs(placement);
   std::vector<MemberCheck> all(pairs.size());
-  parallelFor(
-      pairs.size(), options.threads,
-      [&](Index k) { all[k] = checkMembers(scans, placement, pairs[k].first, pairs[k].second); }, 1);
+  forEachTask(pairs.size(), options.threads,
+              [&](Index k) { all[k] = checkMembers(scans, placement, pairs[k].first, pairs[k].second); });
   const auto find = [&](Index a, Index b) -> MemberCheck& {
     const std::pair<Index, Index> wanted = std::minmax(a, b); // pairs are in order
     return all[std::lower_bound(pairs.begin(), pairs.end(), wanted) - pairs.begin()];
@@ -190,9 +189,8 @@ void addUnsteadyParts(const ScanPointers& members, const JointOptions& joint, Pl
 {
   const LooseCuts& cuts = placement.joint.cuts;
   std::vector<std::optional<FreeMotion>> motions(cuts.size());
-  parallelFor(
-      cuts.size(), joint.threads,
-      [&](Index k) { motions[k] = findUnsteadyMotion(members, placement.poses, cuts[k], joint); }, 1);
+  forEachTask(cuts.size(), joint.threads,
+              [&](Index k) { motions[k] = findUnsteadyMotion(members, placement.poses, cuts[k], joint); });
   const std::vector<char> in_largest = largestHeld(placement);
   for (std::size_t k = 0; k < cuts.size(); ++k)
     if (motions[k])
