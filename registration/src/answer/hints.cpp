@@ -48,11 +48,7 @@ private:
     return std::find_if(clusters_.begin(), clusters_.end(), [&](const auto& c) { return contains(c, scan); }) -
            clusters_.begin();
   }
-  Eigen::Isometry3d poseOf(Index scan) const
-  {
-    const ScanCluster& cluster = clusters_[clusterOf(scan)];
-    return cluster.poses[std::find(cluster.scans.begin(), cluster.scans.end(), scan) - cluster.scans.begin()];
-  }
+  const Eigen::Isometry3d& poseOf(Index scan) const { return poseIn(clusters_[clusterOf(scan)], scan); }
   Eigen::Isometry3d relative(Index a, Index b) const { return poseOf(a).inverse() * poseOf(b); }
   void follow(const RegistrationHint& hint);
   void keepApart(const RegistrationHint& hint);
@@ -94,10 +90,7 @@ void HintFollower::split(const RegistrationHint& hint, RefusalReason reason)
                 .overlap;
   });
   sortFalling(overlaps, &Overlap::share);
-  const auto position = [&](Index scan) {
-    return std::find(cluster.scans.begin(), cluster.scans.end(), scan) - cluster.scans.begin();
-  };
-  const Index a = position(hint.a), b = position(hint.b);
+  const Index a = positionOf(cluster, hint.a), b = positionOf(cluster, hint.b);
   UnionFind parts(n);
   for (const Overlap& overlap : overlaps) {
     const auto holds = [&](Index scan) {

@@ -5,11 +5,6 @@
 #include <fresco/core/require.h>
 namespace fresco::registration {
 namespace {
-const Eigen::Isometry3d& poseIn(const ScanCluster& cluster, Index scan)
-{
-  return cluster.poses[std::find(cluster.scans.begin(), cluster.scans.end(), scan) - cluster.scans.begin()];
-}
-
 const ScanCluster& clusterOf(const std::vector<ScanCluster>& clusters, Index scan)
 {
   return *std::find_if(clusters.begin(), clusters.end(), [&](const auto& c) { return contains(c, scan); });

@@ -90,8 +90,8 @@ public:
         if (fits_.find({first.id, second.id}) == fits_.end())
           fresh.push_back({&first, &second});
       }
-    std::vector<Fits> found(fresh.size());
-    forEachTask(fresh.size(), threads, [&](Index k) { found[k] = find(*fresh[k].first, *fresh[k].second); });
+    std::vector<Fits> found =
+        mapTasks(fresh.size(), threads, [&](Index k) { return find(*fresh[k].first, *fresh[k].second); });
     for (std::size_t k = 0; k < fresh.size(); ++k)
       fits_[{fresh[k].first->id, fresh[k].second->id}] = std::move(found[k]);
   }

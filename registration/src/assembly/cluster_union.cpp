@@ -11,11 +11,6 @@ struct Link {
 };
 using Links = std::vector<Link, Eigen::aligned_allocator<Link>>;
 
-ScanCluster without(const ScanCluster& cluster, const std::vector<Index>& scans)
-{
-  return divide(cluster, scans).second;
-}
-
 class ClusterUnion {
 public:
   ClusterUnion(const GraphInput& input, const FreeSpaceJudge& judge) : input_(input), judge_(judge) {}
@@ -44,23 +39,17 @@ Link ClusterUnion::linkTo(std::size_t cluster, const ScanCluster& added) const
 {
   const ScanCluster& known = clusters_[cluster].cluster;
   Link link{cluster, Eigen::Isometry3d::Identity(), {}};
-  for (std::size_t i = 0; i < known.scans.size(); ++i) {
-    const auto in_added = std::find(added.scans.begin(), added.scans.end(), known.scans[i]);
-    if (in_added == added.scans.end())
-      continue;
-    if (link.shared.empty())
-      link.T = known.poses[i] * added.poses[in_added - added.scans.begin()].inverse();
-    link.shared.push_back(known.scans[i]);
-  }
+  for (const Index scan : known.scans)
+    if (contains(added, scan))
+      link.shared.push_back(scan);
+  if (!link.shared.empty())
+    link.T = poseIn(known, link.shared[0]) * poseIn(added, link.shared[0]).inverse();
   return link;
 }
 
 // Whether all scans that they share are where the link says.
 bool ClusterUnion::agrees(const Link& link, const ScanCluster& added) const
 {
-  const auto poseIn = [](const ScanCluster& cluster, Index scan) {
-    return cluster.poses[std::find(cluster.scans.begin(), cluster.scans.end(), scan) - cluster.scans.begin()];
-  };
   const ScanCluster& known = clusters_[link.cluster].cluster;
   return std::all_of(link.shared.begin(), link.shared.end(), [&](Index scan) {
     return poseDistance(link.T * poseIn(added, scan), poseIn(known, scan), input_.scans[scan].size) <
@@ -74,7 +63,7 @@ bool ClusterUnion::isPossible(const Link& link, const Links& others, const ScanC
   const auto contradicts = [&](const ScanCluster& first, const ScanCluster& second, const Eigen::Isometry3d& T) {
     return !first.scans.empty() && !second.scans.empty() && isContradicted(judge_.judge(first, second, T));
   };
-  const ScanCluster &known = clusters_[link.cluster].cluster, rest = without(added, link.shared);
+  const ScanCluster &known = clusters_[link.cluster].cluster, rest = divide(added, link.shared).second;
   return !contradicts(known, rest, link.T) && std::none_of(others.begin(), others.end(), [&](const Link& other) {
     return contradicts(known, clusters_[other.cluster].cluster, link.T * other.T.inverse());
   });
@@ -90,7 +79,7 @@ void ClusterUnion::unite(const Links& links, const ScanCluster& added)
     append(united.cluster, other.cluster, links[0].T * links[k].T.inverse());
     united.parts.insert(united.parts.end(), other.parts.begin(), other.parts.end());
   }
-  append(united.cluster, without(added, united.cluster.scans), links[0].T);
+  append(united.cluster, divide(added, united.cluster.scans).second, links[0].T);
   clusters_[links[0].cluster] = std::move(united);
   for (std::size_t k = links.size(); k-- > 1;) // in order
     clusters_.erase(clusters_.begin() + links[k].cluster);

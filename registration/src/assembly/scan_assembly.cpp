@@ -269,14 +269,13 @@ bool Assembler::splitContested(std::size_t group)
   const ScanCluster& cluster = groups_[group].cluster;
   std::vector<std::vector<Index>>& parts = groups_[group].parts;
   std::stable_sort(parts.begin(), parts.end(), [](const auto& x, const auto& y) { return x.size() < y.size(); });
-  std::vector<char> contested(parts.size(), 0);
-  forEachTask(parts.size(), input_.options.threads, [&](Index k) {
+  const std::vector<char> contested = mapTasks(parts.size(), input_.options.threads, [&](Index k) {
     const auto [part, rest] = divide(cluster, parts[k]);
     if (part.scans.empty() || part.scans.size() > rest.scans.size() || hasKnown(part))
-      return;
+      return false;
     const ClusterPart placed{part, rest, judge_.judge(rest, part, Eigen::Isometry3d::Identity())};
-    contested[k] = PartCheck::isMisplaced(placed) || parts_.fitsElsewhere(placed) ||
-                   parts_.mayBeMoved(placed, motions) || isClaimed(group, placed);
+    return PartCheck::isMisplaced(placed) || parts_.fitsElsewhere(placed) || parts_.mayBeMoved(placed, motions) ||
+           isClaimed(group, placed);
   });
   const auto first = std::find(contested.begin(), contested.end(), 1);
   if (first == contested.end())

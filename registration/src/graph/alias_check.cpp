@@ -129,18 +129,17 @@ double worstViolation(const GraphInput& input, const ScanCluster& first, const S
                       const Eigen::Isometry3d& T_first_second)
 {
   const Index n = first.scans.size(), m = second.scans.size();
-  std::vector<double> violations(n * m, 0.0);
   std::atomic<bool> too_large{false};
-  forEachTask(n * m, input.options.threads, [&](Index k) {
+  const std::vector<double> violations = mapTasks(n * m, input.options.threads, [&](Index k) {
     if (too_large)
-      return;
+      return 0.0;
     const Index i = k / m, j = k % m;
-    const PreparedScan& a = input.scans[first.scans[i]];
-    const PreparedScan& b = input.scans[second.scans[j]];
     const Eigen::Isometry3d T_a_b = first.poses[i].inverse() * T_first_second * second.poses[j];
-    violations[k] = pairViolation(a, b, T_a_b, check_level);
-    if (violations[k] > input.options.max_violation)
+    const double violation =
+        pairViolation(input.scans[first.scans[i]], input.scans[second.scans[j]], T_a_b, check_level);
+    if (violation > input.options.max_violation)
       too_large = true;
+    return violation;
   });
   return *std::max_element(violations.begin(), violations.end());
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "graph/equal_rooms.h"
+#include "scan/lists.h"
 #include <algorithm>
 #include <fresco/registration/core/sc2_pcr.h>
 #include <map>
@@ -55,8 +56,7 @@ void partEqualRooms(const GraphInput& input, const ScanCluster& known, std::vect
     cluster.refusal = refusal;
     clusters.push_back({{scan}, {Eigen::Isometry3d::Identity()}, {RefusalReason::repeats, other}});
   }
-  clusters.erase(std::remove_if(clusters.begin(), clusters.end(), [](const auto& c) { return c.scans.empty(); }),
-                 clusters.end());
+  removeIf(clusters, [](const ScanCluster& cluster) { return cluster.scans.empty(); });
   sortBySize(clusters, known.scans.empty() ? 0 : 1);
 }
 } // namespace fresco::registration

@@ -8,15 +8,11 @@ namespace {
 PoseEdges edgesOf(const GraphInput& input, const ScanCluster& cluster, const PoseGraphOptions& options)
 {
   constexpr double edge_reach = 6.0; // tolerances between a pair and the poses of its cluster: beyond, it is wrong
-  const auto position = [&](Index scan) {
-    return std::find(cluster.scans.begin(), cluster.scans.end(), scan) - cluster.scans.begin();
-  };
-  const Index n = cluster.scans.size();
   PoseEdges edges;
   for (const PairAlignment& pair : input.pairs) {
-    const Index a = position(pair.a), b = position(pair.b);
-    if (a == n || b == n)
+    if (!contains(cluster, pair.a) || !contains(cluster, pair.b))
       continue;
+    const Index a = positionOf(cluster, pair.a), b = positionOf(cluster, pair.b);
     const Eigen::Isometry3d T = cluster.poses[a].inverse() * cluster.poses[b];
     for (const VerifiedHypothesis& hypothesis : pair.hypotheses)
       if (poseDistance(T, hypothesis.T_a_b, options.size) < edge_reach * options.tolerance)
@@ -32,7 +28,7 @@ void closeLoops(const GraphInput& input, const ScanCluster& known, ScanCluster& 
   options.size = input.scans[cluster.scans[0]].size;
   options.tolerance = input.options.tolerance;
   for (const Index scan : cluster.scans)
-    options.fixed.push_back(std::find(known.scans.begin(), known.scans.end(), scan) != known.scans.end());
+    options.fixed.push_back(contains(known, scan));
   if (std::find(options.fixed.begin(), options.fixed.end(), 1) == options.fixed.end())
     options.fixed[0] = 1;
   cluster.poses = optimizePoseGraph(cluster.poses, edgesOf(input, cluster, options), options);

@@ -11,11 +11,9 @@ std::vector<char> findFree(const std::vector<PreparedScan>& scans, const std::ve
                            int threads)
 {
   const FreeSpaceJudge judge(scans);
-  std::vector<char> free(pairs.size());
-  forEachTask(pairs.size(), threads, [&](Index k) {
-    free[k] = !isContradicted(judge.judge(pairs[k]->a, pairs[k]->b, pairs[k]->hypotheses[0].T_a_b));
+  return mapTasks(pairs.size(), threads, [&](Index k) {
+    return !isContradicted(judge.judge(pairs[k]->a, pairs[k]->b, pairs[k]->hypotheses[0].T_a_b));
   });
-  return free;
 }
 
 void swapPeople(std::vector<PreparedScan>& scans, std::vector<std::vector<char>>& people)

@@ -36,13 +36,6 @@ bool contests(const ClusterPose& other, const ClusterPose& place)
          (other.chained || other.overlap >= overlap_share * place.overlap);
 }
 
-// A place before it is refined.
-struct RoughPlace {
-  Eigen::Isometry3d T;
-  bool sound, chained, faded; // as of ClusterPose
-};
-using RoughPlaces = std::vector<RoughPlace, Eigen::aligned_allocator<RoughPlace>>;
-
 class PlaceSearch {
 public:
   PlaceSearch(const GraphInput& input, const ScanCluster& cluster, const ScanCluster& moving)
@@ -51,7 +44,7 @@ public:
   {}
 
   ClusterPoses run() const;
-  ClusterPose evidence(const Eigen::Isometry3d& T) const;
+  ClusterPose judged(ClusterPose place) const;
   double distance(const Eigen::Isometry3d& T, const Eigen::Isometry3d& other) const
   {
     return poseDistance(T * moving_.poses[0], other * moving_.poses[0], size_);
@@ -62,12 +55,12 @@ private:
   double loose() const { return 0.5 * input_.options.max_violation; }
   // Right poses of little overlap are often below that from which a place is believed.
   double contestingColor() const { return least_color_ > 0.0 ? 0.5 * least_color_ : least_color_; }
-  void addPlaces(Index scan, Index from, const RoughPlace& pose, bool sound_only, RoughPlaces& places) const;
-  RoughPlaces placesOf(Index scan, bool sound_only) const;
-  void addChains(RoughPlaces& places) const;
-  RoughPlaces roughPlaces() const;
+  void addPlaces(Index scan, Index from, const ClusterPose& pose, bool sound_only, ClusterPoses& places) const;
+  ClusterPoses placesOf(Index scan, bool sound_only) const;
+  void addChains(ClusterPoses& places) const;
+  ClusterPoses roughPlaces() const;
   Eigen::Isometry3d refined(const Eigen::Isometry3d& T) const;
-  bool isKnown(const RoughPlace& rough, const Eigen::Isometry3d& T, double tolerances, ClusterPoses& places) const;
+  bool isKnown(const ClusterPose& rough, double tolerances, ClusterPoses& places) const;
 
   const GraphInput& input_;
   const ScanCluster &cluster_, &moving_;
@@ -75,7 +68,8 @@ private:
 };
 
 // Where a scan at a pose sees another one.
-void PlaceSearch::addPlaces(Index scan, Index from, const RoughPlace& pose, bool sound_only, RoughPlaces& places) const
+void PlaceSearch::addPlaces(Index scan, Index from, const ClusterPose& pose, bool sound_only,
+                            ClusterPoses& places) const
 {
   for (const PairAlignment& pair : input_.pairs) {
     if (!((pair.a == scan && pair.b == from) || (pair.a == from && pair.b == scan)))
@@ -92,54 +86,56 @@ void PlaceSearch::addPlaces(Index scan, Index from, const RoughPlace& pose, bool
 }
 
 // Of a scan among those of the cluster.
-RoughPlaces PlaceSearch::placesOf(Index scan, bool sound_only) const
+ClusterPoses PlaceSearch::placesOf(Index scan, bool sound_only) const
 {
-  RoughPlaces places;
+  ClusterPoses places;
   for (std::size_t k = 0; k < cluster_.scans.size(); ++k)
     addPlaces(scan, cluster_.scans[k], {cluster_.poses[k], false, sound_only, false}, sound_only, places);
   return places;
 }
 
 // Over one or two scans that are in neither cluster.
-void PlaceSearch::addChains(RoughPlaces& places) const
+void PlaceSearch::addChains(ClusterPoses& places) const
 {
   const Index n = input_.scans.size();
   std::vector<Index> outside;
   for (Index i = 0; i < n; ++i)
     if (input_.scans[i].problem.empty() && !contains(cluster_, i) && !contains(moving_, i))
       outside.push_back(i);
-  std::vector<RoughPlaces> first(n);
+  std::vector<ClusterPoses> first(n);
   for (const Index i : outside)
     first[i] = placesOf(i, true);
   for (const Index i : outside) {
-    RoughPlaces reached = first[i];
+    ClusterPoses reached = first[i];
     for (const Index j : outside)
-      for (const RoughPlace& place : first[j])
+      for (const ClusterPose& place : first[j])
         addPlaces(i, j, place, true, reached);
-    for (const RoughPlace& place : reached)
+    for (const ClusterPose& place : reached)
       for (std::size_t k = 0; k < moving_.scans.size(); ++k) {
-        RoughPlaces ends;
+        ClusterPoses ends;
         addPlaces(moving_.scans[k], i, place, true, ends);
-        for (const RoughPlace& end : ends)
+        for (const ClusterPose& end : ends)
           places.push_back({end.T * moving_.poses[k].inverse(), end.sound, true, end.faded});
       }
   }
 }
 
-RoughPlaces PlaceSearch::roughPlaces() const
+ClusterPoses PlaceSearch::roughPlaces() const
 {
-  RoughPlaces places;
+  ClusterPoses places;
   for (std::size_t k = 0; k < moving_.scans.size(); ++k)
-    for (const RoughPlace& place : placesOf(moving_.scans[k], false))
+    for (const ClusterPose& place : placesOf(moving_.scans[k], false))
       places.push_back({place.T * moving_.poses[k].inverse(), place.sound, false, place.faded});
   addChains(places);
   return places;
 }
 
-ClusterPose PlaceSearch::evidence(const Eigen::Isometry3d& T) const
+// What all pairs of their scans say of it.
+ClusterPose PlaceSearch::judged(ClusterPose place) const
 {
-  ClusterPose place;
-  place.T = T;
+  const Eigen::Isometry3d& T = place.T;
+  place.violation = place.overlap = 0.0;
+  place.violating_points = 0;
   std::vector<std::pair<double, std::pair<std::size_t, std::size_t>>> near_first;
   for (std::size_t i = 0; i < cluster_.scans.size(); ++i)
     for (std::size_t j = 0; j < moving_.scans.size(); ++j)
@@ -170,11 +166,10 @@ Eigen::Isometry3d PlaceSearch::refined(const Eigen::Isometry3d& T) const
   return moving_.scans.size() > 1 ? T : settledPose(input_, cluster_, moving_, T);
 }
 
-bool PlaceSearch::isKnown(const RoughPlace& rough, const Eigen::Isometry3d& T, double tolerances,
-                          ClusterPoses& places) const
+bool PlaceSearch::isKnown(const ClusterPose& rough, double tolerances, ClusterPoses& places) const
 {
   for (ClusterPose& place : places)
-    if (distance(place.T, T) < tolerances * input_.options.tolerance) {
+    if (distance(place.T, rough.T) < tolerances * input_.options.tolerance) {
       place.sound = place.sound || rough.sound;
       place.chained = place.chained || rough.chained;
       place.faded = place.faded && rough.faded;
@@ -186,26 +181,32 @@ bool PlaceSearch::isKnown(const RoughPlace& rough, const Eigen::Isometry3d& T, d
 ClusterPoses PlaceSearch::run() const
 {
   ClusterPoses places;
-  for (const RoughPlace& rough : roughPlaces()) {
-    if (isKnown(rough, rough.T, 2.0, places) || evidence(rough.T).violation > loose())
+  for (ClusterPose place : roughPlaces()) {
+    if (isKnown(place, 2.0, places) || judged(place).violation > loose())
       continue;
-    const Eigen::Isometry3d T = refined(rough.T);
-    if (isKnown(rough, T, 1.0, places))
+    place.T = refined(place.T);
+    if (isKnown(place, 1.0, places))
       continue;
-    ClusterPose place = evidence(T);
-    place.sound = rough.sound;
-    place.chained = rough.chained;
-    place.faded = rough.faded;
+    place = judged(place);
     if (place.violation <= loose())
       places.push_back(place);
   }
   return places;
 }
 
-bool isContestedMember(const GraphInput& input, const ScanCluster& cluster, std::size_t member)
+// Members of which holds(others, member) says so.
+template <typename Holds>
+std::vector<Index> membersWhere(const GraphInput& input, const ScanCluster& cluster, const Holds& holds)
 {
-  const auto [moving, others] = divide(cluster, {cluster.scans[member]});
-  return isContested(input, others, moving, Eigen::Isometry3d::Identity());
+  const std::vector<char> found = mapTasks(cluster.scans.size(), input.options.threads, [&](Index k) {
+    const auto [member, others] = divide(cluster, {cluster.scans[k]});
+    return holds(others, member);
+  });
+  std::vector<Index> scans;
+  for (std::size_t k = 0; k < found.size(); ++k)
+    if (found[k])
+      scans.push_back(cluster.scans[k]);
+  return scans;
 }
 } // namespace
 
@@ -255,7 +256,7 @@ bool isContested(const GraphInput& input, const ScanCluster& cluster, const Scan
   if (!std::all_of(moving.scans.begin(), moving.scans.end(), [&](Index scan) { return sawAround(input.scans[scan]); }))
     return false;
   const PlaceSearch search(input, cluster, moving);
-  const ClusterPose here = search.evidence(T);
+  const ClusterPose here = search.judged({T});
   const ClusterPoses places = search.run();
   return here.doubtful || std::any_of(places.begin(), places.end(), [&](const ClusterPose& place) {
            return search.distance(place.T, T) > 2.0 * input.options.tolerance && contests(place, here);
@@ -264,21 +265,13 @@ bool isContested(const GraphInput& input, const ScanCluster& cluster, const Scan
 
 std::vector<Index> scansOfEither(const GraphInput& input, const ScanCluster& cluster, const ScanCluster& other)
 {
-  const Index n = cluster.scans.size();
-  std::vector<char> either(n, 0);
-  forEachTask(n, input.options.threads, [&](Index k) {
-    if (!sawAround(input.scans[cluster.scans[k]]))
-      return;
-    const auto [moving, others] = divide(cluster, {cluster.scans[k]});
-    const ClusterPose here = PlaceSearch(input, others, moving).evidence(Eigen::Isometry3d::Identity());
-    const ClusterPoses places = findPlaces(input, other, moving);
-    either[k] = std::any_of(places.begin(), places.end(), [&](const auto& place) { return contests(place, here); });
+  return membersWhere(input, cluster, [&](const ScanCluster& others, const ScanCluster& member) {
+    if (!sawAround(input.scans[member.scans[0]]))
+      return false;
+    const ClusterPose here = PlaceSearch(input, others, member).judged({});
+    const ClusterPoses places = findPlaces(input, other, member);
+    return std::any_of(places.begin(), places.end(), [&](const auto& place) { return contests(place, here); });
   });
-  std::vector<Index> scans;
-  for (Index k = 0; k < n; ++k)
-    if (either[k])
-      scans.push_back(cluster.scans[k]);
-  return scans;
 }
 
 ClusterPoses findPlaces(const GraphInput& input, const ScanCluster& cluster, const ScanCluster& moving)
@@ -301,16 +294,9 @@ const ClusterPose* uncontested(const ClusterPoses& places, double least_overlap,
 
 std::vector<Index> contestedScans(const GraphInput& input, const ScanCluster& known, const ScanCluster& cluster)
 {
-  const Index n = cluster.scans.size();
-  std::vector<char> contested(n, 0);
-  forEachTask(n > 1 ? n : 0, input.options.threads, [&](Index k) {
-    const Index scan = cluster.scans[k];
-    contested[k] = !contains(known, scan) && isContestedMember(input, cluster, k);
+  return membersWhere(input, cluster, [&](const ScanCluster& others, const ScanCluster& member) {
+    return !others.scans.empty() && !contains(known, member.scans[0]) &&
+           isContested(input, others, member, Eigen::Isometry3d::Identity());
   });
-  std::vector<Index> scans;
-  for (Index k = 0; k < n; ++k)
-    if (contested[k])
-      scans.push_back(cluster.scans[k]);
-  return scans;
 }
 } // namespace fresco::registration

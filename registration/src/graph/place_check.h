@@ -5,13 +5,13 @@ namespace fresco::registration {
 /// Where one cluster may be in another.
 struct ClusterPose {
   Eigen::Isometry3d T = Eigen::Isometry3d::Identity(); ///< frame of the other from its own
-  double violation = 0.0;                              ///< largest of a scan of one with a scan of the other, 0..1
-  double overlap = 0.0;                                ///< likewise
-  Index violating_points = 0;                          ///< of all pairs, see PairCheck
-  bool sound = false;    ///< the best that a pair of scans says of itself, and nothing that they see contradicts it
-  bool chained = false;  ///< by sound pairs over one or two scans of neither
-  bool faded = false;    ///< by pairs whose colours agree too little to believe them, but enough to contest others
-  bool doubtful = false; ///< no more pairs agree there than contradict each other, see contradictsOneRoom()
+  bool sound = false;     ///< the best that a pair of scans says of itself, and nothing that they see contradicts it
+  bool chained = false;   ///< by sound pairs over one or two scans of neither
+  bool faded = false;     ///< by pairs whose colours agree too little to believe them, but enough to contest others
+  double violation = 0.0; ///< largest of a scan of one with a scan of the other, 0..1
+  double overlap = 0.0;   ///< likewise
+  Index violating_points = 0; ///< of all pairs, see PairCheck
+  bool doubtful = false;      ///< no more pairs agree there than contradict each other, see contradictsOneRoom()
 };
 using ClusterPoses = std::vector<ClusterPose, Eigen::aligned_allocator<ClusterPose>>;
 

@@ -309,7 +309,17 @@ ScanGraph GraphBuilder::build()
 
 bool contains(const ScanCluster& cluster, Index scan)
 {
-  return std::find(cluster.scans.begin(), cluster.scans.end(), scan) != cluster.scans.end();
+  return positionOf(cluster, scan) < static_cast<Index>(cluster.scans.size());
+}
+
+Index positionOf(const ScanCluster& cluster, Index scan)
+{
+  return std::find(cluster.scans.begin(), cluster.scans.end(), scan) - cluster.scans.begin();
+}
+
+const Eigen::Isometry3d& poseIn(const ScanCluster& cluster, Index scan)
+{
+  return cluster.poses[positionOf(cluster, scan)];
 }
 
 void append(ScanCluster& first, const ScanCluster& second, const Eigen::Isometry3d& T_first_second)
@@ -335,7 +345,7 @@ std::pair<ScanCluster, ScanCluster> divide(const ScanCluster& cluster, const std
 void sortBySize(std::vector<ScanCluster>& clusters, Index first)
 {
   std::stable_sort(clusters.begin() + first, clusters.end(),
-                   [](const ScanCluster& x, const ScanCluster& y) { return x.scans.size() > y.scans.size(); });
+                   [](const auto& x, const auto& y) { return x.scans.size() > y.scans.size(); });
 }
 
 std::vector<ScanCluster> startingClusters(const GraphInput& input, const ScanCluster& known)

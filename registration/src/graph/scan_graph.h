@@ -14,6 +14,12 @@ struct ScanCluster {
 
 bool contains(const ScanCluster& cluster, Index scan);
 
+/// Among the scans of the cluster, their number if it is none of them.
+Index positionOf(const ScanCluster& cluster, Index scan);
+
+/// Of one of its scans.
+const Eigen::Isometry3d& poseIn(const ScanCluster& cluster, Index scan);
+
 /// Adds the scans of the second cluster.
 void append(ScanCluster& first, const ScanCluster& second, const Eigen::Isometry3d& T_first_second);
 

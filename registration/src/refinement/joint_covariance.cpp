@@ -266,9 +266,8 @@ std::map<std::vector<char>, std::pair<Index, Index>> CovarianceEstimator::bodies
     pulled.push_back(std::minmax(link.source, link.target));
   std::sort(pulled.begin(), pulled.end());
   pulled.erase(std::unique(pulled.begin(), pulled.end()), pulled.end());
-  std::vector<std::vector<char>> along(pulled.size());
-  forEachTask(pulled.size(), joint_.threads,
-              [&](Index k) { along[k] = goingAlong(pulled[k].first, pulled[k].second); });
+  std::vector<std::vector<char>> along =
+      mapTasks(pulled.size(), joint_.threads, [&](Index k) { return goingAlong(pulled[k].first, pulled[k].second); });
   std::map<std::vector<char>, std::pair<Index, Index>> found;
   for (std::size_t k = 0; k < pulled.size(); ++k)
     if (along[k][pulled[k].first] && !along[k][pulled[k].second])

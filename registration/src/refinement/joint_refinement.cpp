@@ -314,8 +314,7 @@ void Refinement::findCovariances(JointResult& result) const
   joint.fit = options_.fixed.empty();
   joint.size = scans_[0]->size;
   joint.threads = options_.threads;
-  std::vector<CellSystems> parts(pairs_.size());
-  forEachTask(pairs_.size(), options_.threads, [&](Index p) { parts[p] = systemsByCell(p); });
+  const auto parts = mapTasks(pairs_.size(), options_.threads, [&](Index p) { return systemsByCell(p); });
   for (std::size_t p = 0; p < pairs_.size(); ++p) {
     const DirectedPair& pair = pairs_[p];
     joint.links.push_back({pair.source, pair.target, PairJacobian(poses_[pair.target], relative(pair))});

@@ -91,9 +91,9 @@ void refuseLooseParts(const std::vector<PreparedScan>& scans, const std::vector<
 void checkPairs(const std::vector<PreparedScan>& scans, const ScanRegistrationOptions& options, Placement& placement)
 {
   const std::vector<std::pair<Index, Index>> pairs = memberPairs(placement);
-  std::vector<MemberCheck> all(pairs.size());
-  forEachTask(pairs.size(), options.threads,
-              [&](Index k) { all[k] = checkMembers(scans, placement, pairs[k].first, pairs[k].second); });
+  std::vector<MemberCheck> all = mapTasks(pairs.size(), options.threads, [&](Index k) {
+    return checkMembers(scans, placement, pairs[k].first, pairs[k].second);
+  });
   const auto find = [&](Index a, Index b) -> MemberCheck& {
     const std::pair<Index, Index> wanted = std::minmax(a, b); // pairs are in order
     return all[std::lower_bound(pairs.begin(), pairs.end(), wanted) - pairs.begin()];
@@ -188,9 +188,8 @@ void findFreeMotions(Placement& placement)
 void addUnsteadyParts(const ScanPointers& members, const JointOptions& joint, Placement& placement)
 {
   const LooseCuts& cuts = placement.joint.cuts;
-  std::vector<std::optional<FreeMotion>> motions(cuts.size());
-  forEachTask(cuts.size(), joint.threads,
-              [&](Index k) { motions[k] = findUnsteadyMotion(members, placement.poses, cuts[k], joint); });
+  const auto motions = mapTasks(cuts.size(), joint.threads,
+                                [&](Index k) { return findUnsteadyMotion(members, placement.poses, cuts[k], joint); });
   const std::vector<char> in_largest = largestHeld(placement);
   for (std::size_t k = 0; k < cuts.size(); ++k)
     if (motions[k])
@@ -216,11 +215,15 @@ void refineWithin(const Reach& reach, const std::vector<PreparedScan>& scans, co
   joint.anchors = placement.anchors.empty() ? std::vector<Index>{placement.holder} : placement.anchors;
   joint.cuts = placement.anchors.empty(); // start poses tell which of two places a few voxels apart is meant
   joint.fixed = placement.fixed;
-  const IsometryVector start = placement.poses;
-  for (int round = 0; round < most_rounds; ++round) {
-    placement.joint = refineJointly(members, start, joint, progress);
+  const auto refine = [&](const IsometryVector& poses) {
+    placement.joint = refineJointly(members, poses, joint, progress);
     placement.poses = placement.joint.poses;
     checkPairs(scans, options, placement);
+    findFreeMotions(placement);
+  };
+  const IsometryVector start = placement.poses;
+  for (int round = 0; round < most_rounds; ++round) {
+    refine(start);
     const std::size_t before = joint.excluded.size();
     for (const PairResult& pair : placement.pairs)
       if (pair.matches > 0 && pair.violation > options.max_violation)
@@ -228,7 +231,6 @@ void refineWithin(const Reach& reach, const std::vector<PreparedScan>& scans, co
     if (joint.excluded.size() == before)
       break;
   }
-  findFreeMotions(placement);
   if (!placement.fixed.empty())
     return;
   // What hangs together by surfaces that hold it loosely: the larger part stays.
@@ -238,10 +240,7 @@ void refineWithin(const Reach& reach, const std::vector<PreparedScan>& scans, co
       loose.push_back(m);
   if (2 * loose.size() > placement.members.size()) {
     joint.anchors = {loose.front()};
-    placement.joint = refineJointly(members, placement.poses, joint, progress);
-    placement.poses = placement.joint.poses;
-    checkPairs(scans, options, placement);
-    findFreeMotions(placement);
+    refine(placement.poses);
   }
   addUnsteadyParts(members, joint, placement);
 }
