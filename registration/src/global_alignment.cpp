@@ -7,7 +7,6 @@
 #include "graph/scan_exchange.h"
 #include "graph/scan_plans.h"
 #include "graph/viewpoint_check.h"
-#include "pair/pair_alignment.h"
 #include "pair/pair_ranking.h"
 #include "pair/partial_alias.h"
 #include "pair/self_alignment.h"
@@ -36,23 +35,13 @@ public:
   GlobalAlignment run(const Progress& progress);
 
 private:
-  /// body(k) for those of 0..n-1 that this rank has.
-  template <typename Body>
-  void forOwn(Index n, const Body& body) const
-  {
-    const Index step = ranks_.size(), first = ranks_.rank();
-    forEachTask((n - first + step - 1) / step, options_.threads, [&](Index k) { body(first + k * step); });
-  }
   void confirmViewpoints();
   bool hasAllPlans() const;
-  VerificationOptions verification() const;
-  void alignByPlans(const std::vector<RankedPair>& pairs);
+  std::vector<PairAlignment> alignByPlans(const std::vector<RankedPair>& pairs);
   bool sparePeople(std::vector<RankedPair> pairs);
   std::vector<RankedPair> pairsByPlans() const;
   void assembleByPlans(const std::vector<RankedPair>& pairs, const Progress& progress);
   void alignInRounds(const Progress& progress);
-  template <typename Align>
-  void alignEach(const std::vector<RankedPair>& pairs, const Align& align);
   void describe(const Progress& progress);
   void prepareForPairs(const std::vector<RankedPair>& round);
   ScanAliases aliasesOf(Index scan) const;
@@ -78,29 +67,11 @@ private:
   GlobalAlignment result_;
 };
 
-// align(a, b) for all of them, shared out to the ranks.
-template <typename Align>
-void GlobalAligner::alignEach(const std::vector<RankedPair>& pairs, const Align& align)
-{
-  std::vector<PairAlignment> aligned(pairs.size());
-  forOwn(pairs.size(), [&](Index k) {
-    aligned[k] = align(pairs[k].a, pairs[k].b);
-    aligned[k].a = pairs[k].a;
-    aligned[k].b = pairs[k].b;
-  });
-  shareItems(ranks_, aligned);
-  result_.pairs.insert(result_.pairs.end(), aligned.begin(), aligned.end());
-  std::sort(result_.pairs.begin(), result_.pairs.end(),
-            [](const PairAlignment& x, const PairAlignment& y) { return std::pair(x.a, x.b) < std::pair(y.a, y.b); });
-}
-
 void GlobalAligner::confirmViewpoints()
 {
-  std::vector<ViewpointSign> signs(scans_.size());
-  forOwn(scans_.size(), [&](Index k) { signs[k] = findViewpointSign(scans_[k], 1); });
-  shareItems(ranks_, signs);
-  registration::confirmViewpoints(scans_, signs);
-  result_.signs = signs;
+  result_.signs =
+      mapShared(ranks_, options_.threads, scans_.size(), [&](Index k) { return findViewpointSign(scans_[k], 1); });
+  registration::confirmViewpoints(scans_, result_.signs);
 }
 
 bool GlobalAligner::hasAllPlans() const
@@ -118,10 +89,7 @@ bool GlobalAligner::sparePeople(std::vector<RankedPair> pairs)
   constexpr std::size_t most_tried = 64; // tells enough, and costs a tenth of what the rounds do
   pairs.resize(std::min(most_tried, pairs.size()));
   spareDoubtful(scans_, frames_, options_.threads);
-  alignByPlans(pairs);
-  std::vector<PairAlignment> tried;
-  tried.swap(result_.pairs);
-  const bool moved = peopleMoved(scans_, tried, options_.threads);
+  const bool moved = peopleMoved(scans_, alignByPlans(pairs), options_.threads);
   if (!moved)
     spareNothing(scans_);
   for (PreparedScan& scan : scans_)
@@ -142,19 +110,11 @@ std::vector<RankedPair> GlobalAligner::pairsByPlans() const
   return firstPartners(std::move(pairs), scans_.size(), partners);
 }
 
-VerificationOptions GlobalAligner::verification() const
-{
-  VerificationOptions options;
-  options.min_overlap = options_.min_overlap;
-  options.max_violation = options_.max_violation;
-  return options;
-}
-
-void GlobalAligner::alignByPlans(const std::vector<RankedPair>& pairs)
+std::vector<PairAlignment> GlobalAligner::alignByPlans(const std::vector<RankedPair>& pairs)
 {
   forEachTask(scans_.size(), options_.threads, [&](Index k) { prepareManySearches(scans_[k]); });
-  const VerificationOptions options = verification();
-  alignEach(pairs, [&](Index a, Index b) {
+  const VerificationOptions options = pairOptions(options_).verification;
+  return alignAll(ranks_, options_.threads, pairs, [&](Index a, Index b) {
     return registration::alignByPlans({scans_[a], plans_[a]}, {scans_[b], plans_[b]}, options);
   });
 }
@@ -162,10 +122,10 @@ void GlobalAligner::alignByPlans(const std::vector<RankedPair>& pairs)
 void GlobalAligner::assembleByPlans(const std::vector<RankedPair>& pairs, const Progress& progress)
 {
   report(progress, "align pairs", 0.3);
-  alignByPlans(pairs);
-  std::vector<ScanAliases> aliases(scans_.size());
-  forOwn(scans_.size(), [&](Index k) { aliases[k] = findAliasesByPlan({scans_[k], plans_[k]}); });
-  shareItems(ranks_, aliases);
+  addPairs(alignByPlans(pairs), result_.pairs);
+  std::vector<ScanAliases> aliases = mapShared(ranks_, options_.threads, scans_.size(), [&](Index k) {
+    return findAliasesByPlan({scans_[k], plans_[k]});
+  });
   for (std::size_t k = 0; k < scans_.size(); ++k)
     scans_[k].aliases = std::move(aliases[k]);
   sharePartialAliases(scans_, result_.pairs);
@@ -177,14 +137,12 @@ void GlobalAligner::assembleByPlans(const std::vector<RankedPair>& pairs, const 
 
 void GlobalAligner::describe(const Progress& progress)
 {
-  FeatureOptions options;
-  options.threads = options_.threads;
   const Index count = scans_.size();
   features_.resize(scans_.size());
   for (Index k = 0; k < count; ++k) {
     report(progress, "describe", 0.3 * static_cast<double>(k) / static_cast<double>(count));
     if (isOwn(ranks_, k) && scans_[k].problem.empty())
-      features_[k] = describeScan(scans_[k], options);
+      features_[k] = describeScan(scans_[k], options_.threads);
   }
   shareItems(ranks_, features_);
   has_aliases_.assign(scans_.size(), 0);
@@ -203,9 +161,8 @@ void GlobalAligner::prepareForPairs(const std::vector<RankedPair>& round)
   if (fresh.empty())
     return;
   forEachTask(fresh.size(), options_.threads, [&](Index k) { prepareManySearches(scans_[fresh[k]]); });
-  std::vector<ScanAliases> aliases(fresh.size());
-  forOwn(fresh.size(), [&](Index k) { aliases[k] = aliasesOf(fresh[k]); });
-  shareItems(ranks_, aliases);
+  std::vector<ScanAliases> aliases =
+      mapShared(ranks_, options_.threads, fresh.size(), [&](Index k) { return aliasesOf(fresh[k]); });
   for (std::size_t k = 0; k < fresh.size(); ++k)
     scans_[fresh[k]].aliases = std::move(aliases[k]);
 }
@@ -219,27 +176,24 @@ ScanAliases GlobalAligner::aliasesOf(Index scan) const
 
 void GlobalAligner::alignPairs(const std::vector<RankedPair>& round)
 {
-  PairAlignmentOptions options;
-  options.verification = verification();
-  options.upright = options_.upright;
+  const PairAlignmentOptions options = pairOptions(options_);
   prepareForPairs(round);
-  alignEach(round, [&](Index a, Index b) {
+  const auto align = [&](Index a, Index b) {
     return alignPair({scans_[a], features_[a], &plans_[a]}, {scans_[b], features_[b], &plans_[b]}, options);
-  });
+  };
+  addPairs(alignAll(ranks_, options_.threads, round, align), result_.pairs);
 }
 
 // Aligns the pairs of scans with wrong viewpoints again, without their free space.
 void GlobalAligner::correctViewpoints()
 {
-  FeatureOptions features;
-  features.threads = options_.threads;
   const auto find = [&] { return wrongViewpoints(scans_, result_.pairs, options_.max_violation); };
   for (std::vector<char> wrong = find(); std::find(wrong.begin(), wrong.end(), 1) != wrong.end(); wrong = find()) {
     for (std::size_t i = 0; i < scans_.size(); ++i)
       if (wrong[i]) {
         result_.distrusted[i] = "its viewpoint contradicts the other scans";
         distrustViewpoint(scans_[i], result_.distrusted[i]);
-        features_[i] = describeScan(scans_[i], features);
+        features_[i] = describeScan(scans_[i], options_.threads);
       }
     std::vector<RankedPair> again;
     std::vector<PairAlignment> kept;
@@ -287,8 +241,7 @@ bool GlobalAligner::hasMany(std::size_t pairs) const
 void GlobalAligner::leaveOutJoined(std::vector<RankedPair>& pairs) const
 {
   const std::vector<ClusterPlace> places = placesOf(result_.graph.clusters, scans_.size());
-  const auto joined = [&](const RankedPair& pair) { return places[pair.a].cluster == places[pair.b].cluster; };
-  pairs.erase(std::remove_if(pairs.begin(), pairs.end(), joined), pairs.end());
+  removeIf(pairs, [&](const RankedPair& pair) { return places[pair.a].cluster == places[pair.b].cluster; });
 }
 
 // The likeliest first where there are many.

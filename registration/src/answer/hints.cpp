@@ -12,9 +12,9 @@
 namespace fresco::registration {
 namespace {
 // Usable scans that follow each other.
-std::vector<ScanPair> neighbours(const std::vector<PreparedScan>& scans)
+std::vector<RankedPair> neighbours(const std::vector<PreparedScan>& scans)
 {
-  std::vector<ScanPair> pairs;
+  std::vector<RankedPair> pairs;
   Index last = -1;
   const Index n = scans.size();
   for (Index k = 0; k < n; ++k)
@@ -225,7 +225,7 @@ void HintFollower::goNear(const RegistrationHint& hint)
 void HintFollower::followOrder(const RegistrationHint& hint)
 {
   const std::size_t before = clusters_.size();
-  for (const ScanPair& pair : neighbours(scans_)) {
+  for (const RankedPair& pair : neighbours(scans_)) {
     RegistrationHint step = hint;
     step.a = pair.a;
     step.b = pair.b;
@@ -263,11 +263,11 @@ void HintFollower::run()
 }
 
 // Pairs of scans of two clusters that hints speak of and that have not been aligned.
-std::vector<ScanPair> untriedPairs(const AlignmentInput& input, const std::vector<RegistrationHint>& hints,
-                                   const GlobalAlignment& alignment)
+std::vector<RankedPair> untriedPairs(const AlignmentInput& input, const std::vector<RegistrationHint>& hints,
+                                     const GlobalAlignment& alignment)
 {
   const std::vector<ClusterPlace> places = placesOf(alignment.graph.clusters, input.scans.size());
-  std::vector<ScanPair> pairs;
+  std::vector<RankedPair> pairs;
   const auto ask = [&](Index a, Index b) {
     if (a > b)
       std::swap(a, b);
@@ -281,7 +281,7 @@ std::vector<ScanPair> untriedPairs(const AlignmentInput& input, const std::vecto
     if (hint.kind == HintKind::link || hint.kind == HintKind::choose)
       ask(hint.a, hint.b);
     else if (hint.kind == HintKind::order)
-      for (const ScanPair& pair : neighbours(input.scans))
+      for (const RankedPair& pair : neighbours(input.scans))
         ask(pair.a, pair.b);
   return pairs;
 }
@@ -290,7 +290,7 @@ std::vector<ScanPair> untriedPairs(const AlignmentInput& input, const std::vecto
 void followHints(const AlignmentInput& input, const ScanRegistrationOptions& options, GlobalAlignment& alignment,
                  std::vector<std::string>& said)
 {
-  const std::vector<ScanPair> pairs = untriedPairs(input, options.hints, alignment);
+  const std::vector<RankedPair> pairs = untriedPairs(input, options.hints, alignment);
   if (!pairs.empty())
     alignMore(input, options, pairs, alignment.pairs);
   HintFollower(input, options, alignment, said).run();

@@ -38,36 +38,14 @@ Json pairJson(const PairResult& pair)
   return json;
 }
 
-const char* nameOf(RefusalReason reason)
-{
-  switch (reason) {
-  case RefusalReason::none:
-    return "none";
-  case RefusalReason::unusable:
-    return "unusable";
-  case RefusalReason::nothing_found:
-    return "nothing_found";
-  case RefusalReason::too_little:
-    return "too_little";
-  case RefusalReason::contradicted:
-    return "contradicted";
-  case RefusalReason::second_place:
-    return "second_place";
-  case RefusalReason::repeats:
-    return "repeats";
-  case RefusalReason::claimed:
-    return "claimed";
-  case RefusalReason::loose:
-    return "loose";
-  case RefusalReason::apart:
-    return "apart";
-  }
-  return "";
-}
+// By RefusalReason.
+constexpr const char* reason_names[] = {"none",         "unusable", "nothing_found", "too_little", "contradicted",
+                                        "second_place", "repeats",  "claimed",       "loose",      "apart"};
+static_assert(std::size(reason_names) == static_cast<std::size_t>(RefusalReason::apart) + 1);
 
 Json refusalJson(const Refusal& refusal)
 {
-  return {{"reason", nameOf(refusal.reason)},
+  return {{"reason", reason_names[static_cast<int>(refusal.reason)]},
           {"scan", refusal.scan},
           {"agree", refusal.agree},
           {"contradict", refusal.contradict}};

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include "graph/scan_graph.h"
+#include "pair/pair_ranking.h"
+#include "scan/lists.h"
 #include <fresco/io/packing.h>
 namespace fresco::registration {
 // What ranks tell each other of scans and pairs, see Packer.
@@ -74,6 +76,34 @@ void fields(Archive& archive, ScanGraph& graph)
 {
   archive(graph.clusters, graph.places);
 }
+
+/// What make(k) gives for k = 0..n-1, each a task of one rank; all ranks get it.
+template <typename Make>
+auto mapShared(Exchange& ranks, int threads, Index n, const Make& make)
+{
+  std::vector<std::decay_t<decltype(make(n))>> made(n);
+  const Index step = ranks.size(), first = ranks.rank();
+  forEachTask((n - first + step - 1) / step, threads,
+              [&](Index k) { made[first + k * step] = make(first + k * step); });
+  shareItems(ranks, made);
+  return made;
+}
+
+/// Aligns pairs likewise. @param align align(a, b), of two scans
+template <typename Align>
+std::vector<PairAlignment> alignAll(Exchange& ranks, int threads, const std::vector<RankedPair>& pairs,
+                                    const Align& align)
+{
+  return mapShared(ranks, threads, pairs.size(), [&](Index k) {
+    PairAlignment pair = align(pairs[k].a, pairs[k].b);
+    pair.a = pairs[k].a;
+    pair.b = pairs[k].b;
+    return pair;
+  });
+}
+
+/// Adds pairs to those that are there, ordered by (a, b).
+void addPairs(const std::vector<PairAlignment>& more, std::vector<PairAlignment>& pairs);
 
 /// As shareItems().
 void shareScans(Exchange& ranks, std::vector<PreparedScan>& scans, int threads);
