@@ -2,7 +2,7 @@
 #include "global_alignment.h"
 #include "assembly/scan_assembly.h"
 #include "assembly/submap_joining.h"
-#include "graph/loop_closing.h"
+#include "graph/cluster_poses.h"
 #include "graph/moved_people.h"
 #include "graph/scan_exchange.h"
 #include "graph/scan_plans.h"

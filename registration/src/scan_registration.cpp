@@ -155,7 +155,6 @@ Placement toPlacement(const ScanCluster& cluster, const RegistrationState& state
 ScanRegistrationResult findPoses(const ScanSource& scans, const std::vector<Pose>& start,
                                  const ScanRegistrationOptions& given, const Progress& progress)
 {
-  constexpr float distance_voxels = 20.f; // the reach of refinement, a fifth of the scans' range
   Exchange alone;
   Exchange& ranks = scans.ranks ? *scans.ranks : alone;
   ScanSurvey survey = surveyScans(scans, ranks, given);
@@ -165,7 +164,7 @@ ScanRegistrationResult findPoses(const ScanSource& scans, const std::vector<Pose
   if (!(options.voxel > 0.f))
     options.voxel = size > 0.0 ? chooseVoxel(survey, size) : 1.f;
   if (!(options.max_distance > 0.f))
-    options.max_distance = distance_voxels * options.voxel;
+    options.max_distance = reach_voxels * options.voxel;
   const Thinning thinning(options.voxel, size, survey.narrowness);
   std::vector<PreparedScan> prepared =
       prepareAll({scans, survey, ranks}, options, thinning, subProgress(progress, 0.0, 0.3));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "assembly/cluster_fits.h"
+#include "graph/cluster_poses.h"
 #include "graph/place_check.h"
 namespace fresco::registration {
 namespace {
@@ -21,8 +22,7 @@ bool isJoinable(const ClusterFit& fit)
 
 bool isSeenAsWell(const ClusterFit& other, const ClusterFit& fit)
 {
-  constexpr double overlap_share = 0.4; // less, and chance explains it
-  return other.certain || other.overlap >= overlap_share * fit.overlap;
+  return other.certain || other.overlap >= chance_share * fit.overlap;
 }
 
 bool rivals(const ClusterFit& other, const ClusterFit& fit, double unit)
@@ -67,7 +67,6 @@ void ClusterFitter::add(const ScanCluster& second, const ClusterFit& fit, Cluste
 
 ClusterFits ClusterFitter::rough(const ScanCluster& first, const ScanCluster& second, Use use) const
 {
-  constexpr double loose_violation = 0.01; // of one pair: others may have seen a pane
   ClusterFits fits;
   std::map<Index, std::size_t> positions;
   for (std::size_t k = 0; k < second.scans.size(); ++k)
@@ -79,7 +78,7 @@ ClusterFits ClusterFitter::rough(const ScanCluster& first, const ScanCluster& se
       if (other == positions.end())
         continue;
       for (const VerifiedHypothesis& hypothesis : pair->hypotheses) {
-        if (hypothesis.check.violation > loose_violation || hypothesis.check.color.value_or(1.0) < least_color_ ||
+        if (hypothesis.check.violation > pane_violation || hypothesis.check.color.value_or(1.0) < least_color_ ||
             (use == Use::join && contradictsOneRoom(hypothesis.check, usual_violation_)))
           continue;
         ClusterFit fit;
@@ -87,7 +86,7 @@ ClusterFits ClusterFitter::rough(const ScanCluster& first, const ScanCluster& se
                 second.poses[other->second].inverse();
         fit.pairs = 1;
         fit.overlap = hypothesis.check.overlap;
-        fit.sound = isSound(*pair, hypothesis, input_.options.strong_overlap);
+        fit.sound = isSound(*pair, hypothesis);
         fit.certain = fit.sound && !pair->ambiguous;
         add(second, fit, fits);
       }
@@ -125,10 +124,9 @@ ClusterFits ClusterFitter::find(const ScanCluster& first, const ScanCluster& sec
 
 ClusterFit ClusterFitter::settled(const ScanCluster& first, const ScanCluster& second, ClusterFit fit) const
 {
-  constexpr double hopeless = 0.1; // of one scan's points: no small motion mends it
   constexpr double least_overlap = 0.1;
   fit.evidence = judge_.judge(first, second, fit.T);
-  if (!isContradicted(fit.evidence) || fit.evidence.clustered > hopeless || fit.overlap < least_overlap)
+  if (!isContradicted(fit.evidence) || isHopeless(fit.evidence) || fit.overlap < least_overlap)
     return fit;
   const Eigen::Isometry3d T = settledPose(input_, first, second, fit.T);
   if (!isSame(second, T, fit.T, 2.0))

@@ -3,11 +3,14 @@
 #include "assembly/cluster_union.h"
 #include "assembly/part_check.h"
 #include "graph/alias_check.h"
+#include "graph/cluster_poses.h"
 #include "graph/place_check.h"
 #include "scan/lists.h"
 #include <algorithm>
 namespace fresco::registration {
 namespace {
+constexpr double one_room = 0.8; // overlap, or share of what agrees elsewhere, of scans of one room
+
 // Whether what pairs say of another place is as sure as what they say of a join.
 bool isAsSure(const ClusterFit& other, const ClusterFit& join)
 {
@@ -135,7 +138,6 @@ bool Assembler::fitsThird(std::size_t stays, std::size_t moves, const ClusterFit
 bool Assembler::areApart(std::size_t stays, std::size_t third, const ClusterFit& moved, const ClusterFit& other,
                          bool by_chains) const
 {
-  constexpr double one_room = 0.8; // of what agrees at either fit
   ClusterFit composed = moved;
   composed.T = moved.T * other.T.inverse();
   composed.evidence = judge_.judge(groups_[stays].cluster, groups_[third].cluster, composed.T);
@@ -306,7 +308,6 @@ bool Assembler::splitTwins(std::size_t group)
 // together falls apart.
 void Assembler::split(std::size_t group, const std::vector<Index>& listed)
 {
-  constexpr double one_room = 0.8; // overlap
   const auto [part, rest] = divide(groups_[group].cluster, listed);
   std::vector<Index> alone;
   for (std::size_t i = 0; i < rest.scans.size(); ++i)

@@ -47,20 +47,6 @@ void centerPlan(Submap& submap)
   submap.frame.T_plan_scan = shift * submap.frame.T_plan_scan;
   submap.extent = (high - low).maxCoeff();
 }
-
-// Cells enough that nothing of one reaches the other around the edge.
-PlanGrid commonGrid(const Submap& first, const Submap& second)
-{
-  constexpr float cells_per_height = 8.f; // as of single scans
-  constexpr int least_side = 64, most_side = 1024;
-  PlanGrid grid;
-  grid.height = 0.5f * (first.frame.height + second.frame.height);
-  grid.cell = grid.height / cells_per_height;
-  grid.side = least_side;
-  while (grid.side < most_side && grid.side * grid.cell < first.extent + second.extent)
-    grid.side *= 2;
-  return grid;
-}
 } // namespace
 
 std::optional<Submap> makeSubmap(const std::vector<PreparedScan>& scans, const PlanFrames& frames,
@@ -86,7 +72,9 @@ std::optional<Submap> makeSubmap(const std::vector<PreparedScan>& scans, const P
 
 IsometryVector matchSubmaps(const Submap& first, const Submap& second, std::size_t most)
 {
-  const PlanGrid grid = commonGrid(first, second);
+  // Cells enough that nothing of one reaches the other around the edge.
+  const PlanGrid grid =
+      makePlanGrid(0.5f * (first.frame.height + second.frame.height), first.extent + second.extent, 1024);
   const PlanSpectrum plan_first(drawFloorPlan(first.placed, grid), first.frame, grid);
   const PlanSpectrum plan_second(drawFloorPlan(second.placed, grid), second.frame, grid);
   IsometryVector places;

@@ -2,6 +2,7 @@
 #include "assembly/submap_joining.h"
 #include "assembly/cluster_fits.h"
 #include "graph/alias_check.h"
+#include "graph/cluster_poses.h"
 #include "graph/place_check.h"
 #include "scan/lists.h"
 #include <algorithm>
@@ -73,7 +74,6 @@ SubmapPlaces SubmapJoiner::findPlaces(const Group& first, const Group& second) c
 {
   constexpr std::size_t most_by_plans = 32; // of 30 true places 22 are among the first 24, of 28 23 among 64
   constexpr double distinct = 3.0;          // tolerances
-  constexpr double hopeless = 0.1;          // of one scan's points in free space: no small motion mends it
   const auto uncontradicted = [&](const ClusterFits& rough) {
     return fitter_.uncontradicted(first.cluster, second.cluster, rough);
   };
@@ -81,7 +81,7 @@ SubmapPlaces SubmapJoiner::findPlaces(const Group& first, const Group& second) c
   const std::optional<Submap>&a = *first.submap, &b = *second.submap;
   if (a && b && first.cluster.scans.size() + second.cluster.scans.size() > 2) // of two scans the pair has told all
     for (const Eigen::Isometry3d& T : matchSubmaps(*a, *b, most_by_plans))
-      if (judge_.judge(first.cluster, second.cluster, T).clustered <= hopeless)
+      if (!isHopeless(judge_.judge(first.cluster, second.cluster, T)))
         by_plans.emplace_back().T = refineSubmap(*a, *b, T);
   for (const ClusterFit& fit : uncontradicted(by_plans))
     if (std::none_of(fits.begin(), fits.end(),

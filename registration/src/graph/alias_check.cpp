@@ -15,16 +15,15 @@ using ChainLinks = std::vector<ChainLink, Eigen::aligned_allocator<ChainLink>>;
 // Hypotheses that stand comparison with the best of their pair.
 VerifiedHypotheses soundHypotheses(const PairAlignment& pair)
 {
-  constexpr double sound_overlap = 0.4; // of the best overlap: twins of a room are seen as well as the room itself
   double overlap = 0.0, violation = 1.0;
   for (const VerifiedHypothesis& hypothesis : pair.hypotheses)
     overlap = std::max(overlap, hypothesis.check.overlap);
   for (const VerifiedHypothesis& hypothesis : pair.hypotheses)
-    if (hypothesis.check.overlap > sound_overlap * overlap)
+    if (hypothesis.check.overlap > chance_share * overlap)
       violation = std::min(violation, hypothesis.check.violation);
   VerifiedHypotheses sound;
   for (const VerifiedHypothesis& hypothesis : pair.hypotheses)
-    if (hypothesis.check.overlap > sound_overlap * overlap && !clearlyWorse(hypothesis.check.violation, violation))
+    if (hypothesis.check.overlap > chance_share * overlap && !clearlyWorse(hypothesis.check.violation, violation))
       sound.push_back(hypothesis);
   return sound;
 }

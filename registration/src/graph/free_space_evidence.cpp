@@ -35,6 +35,12 @@ bool isContradicted(const FreeSpaceEvidence& evidence)
   return evidence.crowded ? isClearlyContradicted(evidence) : evidence.clustered > usualContradiction(evidence);
 }
 
+bool isHopeless(const FreeSpaceEvidence& evidence)
+{
+  constexpr double much = 0.1; // of one scan's points
+  return evidence.clustered > much;
+}
+
 bool isClearlyContradicted(const FreeSpaceEvidence& evidence)
 {
   constexpr double clearly = 1.5;
@@ -100,12 +106,11 @@ FreeSpaceEvidence FreeSpaceJudge::judge(Index a, Index b, const Eigen::Isometry3
 FreeSpaceEvidence FreeSpaceJudge::judge(const ScanCluster& first, const ScanCluster& second,
                                         const Eigen::Isometry3d& T_first_second) const
 {
-  constexpr double much = 0.1; // of one scan's points: no others make up for it
   FreeSpaceEvidence evidence;
   for (std::size_t i = 0; i < first.scans.size(); ++i)
     for (std::size_t k = 0; k < second.scans.size(); ++k) {
       evidence += judge(first.scans[i], second.scans[k], first.poses[i].inverse() * T_first_second * second.poses[k]);
-      if (evidence.clustered > much && isContradicted(evidence))
+      if (isHopeless(evidence) && isContradicted(evidence))
         return evidence;
     }
   return evidence;

@@ -18,6 +18,9 @@ void refuse(ScanCluster& first, ScanCluster& second, RefusalReason reason, const
 /// Whether more points contradict a pose than mixed pixels and small errors of poses explain.
 bool isContradicted(const FreeSpaceEvidence& evidence);
 
+/// Whether so many do that no small motion mends it, nor other scans make up for it.
+bool isHopeless(const FreeSpaceEvidence& evidence);
+
 /// Whether half as many more do: something may have moved.
 bool isClearlyContradicted(const FreeSpaceEvidence& evidence);
 

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <fresco/core/statistics.h>
 namespace fresco::registration {
-bool isSound(const PairAlignment& pair, const VerifiedHypothesis& hypothesis, double least_overlap)
+bool isSound(const PairAlignment& pair, const VerifiedHypothesis& hypothesis)
 {
-  return &hypothesis == &pair.hypotheses.front() && hypothesis.check.overlap >= least_overlap &&
+  return &hypothesis == &pair.hypotheses.front() && hypothesis.check.overlap >= strong_overlap &&
          hypothesis.check.violation <= noise_violation;
 }
 
@@ -35,8 +35,7 @@ double usualViolation(const std::vector<PairAlignment>& pairs)
 
 double mostViolation(const std::vector<PairAlignment>& pairs, double limit)
 {
-  constexpr double plain_violation = 0.01;
-  return std::min(limit, std::max(plain_violation, usualViolation(pairs)));
+  return std::min(limit, std::max(pane_violation, usualViolation(pairs)));
 }
 
 bool contradictsOneRoom(const PairCheck& check, double usual_violation)

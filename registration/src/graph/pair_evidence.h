@@ -2,10 +2,11 @@
 #pragma once
 #include "pair/pair_alignment.h"
 namespace fresco::registration {
-constexpr double noise_violation = 0.002; ///< of a pair: mixed pixels do not cause more
+/// Of the overlap at another place: less, and chance explains it. Of equal rooms, the wrong one may be seen best.
+constexpr double chance_share = 0.4;
 
-/// Whether a pose is the best of its pair, and nothing that the two see contradicts it.
-bool isSound(const PairAlignment& pair, const VerifiedHypothesis& hypothesis, double least_overlap);
+/// Whether a pose is the best of its pair, hardly by chance, and nothing that the two see contradicts it.
+bool isSound(const PairAlignment& pair, const VerifiedHypothesis& hypothesis);
 
 /// Where most pairs agree well in colour, one below this correlation is a look-alike; else -1.
 double leastColor(const std::vector<PairAlignment>& pairs);

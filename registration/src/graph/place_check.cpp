@@ -1,39 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "graph/place_check.h"
-#include "graph/loop_closing.h"
+#include "graph/cluster_poses.h"
 #include "refinement/joint_refinement.h"
 #include "scan/lists.h"
 #include <algorithm>
 #include <cmath>
 namespace fresco::registration {
 namespace {
-constexpr double telling_overlap = 0.25; // of a pair: hardly by chance
-
-JointOptions settlingOptions(const GraphInput& input)
-{
-  JointOptions options;
-  options.max_distance = input.options.tolerance;
-  options.min_overlap = 0.1f;
-  options.samples = 1500; // of thousands: centimetres suffice
-  options.first_level = check_level;
-  options.last_level = check_level;
-  options.max_iterations = 20;
-  options.threads = input.options.threads;
-  return options;
-}
-
 // Whether a place stands against another one. Overlap hardly counts: of equal rooms, the wrong one may be seen best.
 bool contests(const ClusterPose& other, const ClusterPose& place)
 {
-  constexpr double overlap_share = 0.4;    // less, and mere chance explains it
-  constexpr double sound_violation = 0.01; // of a place that two scans are sure of: others may have seen a pane
   const double most = place.violating_points + 3.0 * std::sqrt(other.violating_points + place.violating_points);
   if (other.violating_points > most) // more than counts vary
     return false;
-  if (other.sound && !other.chained && other.violation <= sound_violation)
+  if (other.sound && !other.chained && other.violation <= pane_violation)
     return true;
   return !clearlyWorse(other.violation, place.violation) &&
-         (other.chained || other.overlap >= overlap_share * place.overlap);
+         (other.chained || other.overlap >= chance_share * place.overlap);
 }
 
 class PlaceSearch {
@@ -76,7 +59,7 @@ void PlaceSearch::addPlaces(Index scan, Index from, const ClusterPose& pose, boo
       continue;
     for (const VerifiedHypothesis& hypothesis : pair.hypotheses) {
       const double color = hypothesis.check.color.value_or(1.0);
-      const bool sound = isSound(pair, hypothesis, telling_overlap), faded = pose.faded || color < least_color_;
+      const bool sound = isSound(pair, hypothesis), faded = pose.faded || color < least_color_;
       if (color < contestingColor() || (sound_only ? !sound : hypothesis.check.violation > loose()))
         continue;
       const Eigen::Isometry3d& T = hypothesis.T_a_b;
@@ -152,7 +135,7 @@ ClusterPose PlaceSearch::judged(ClusterPose place) const
     place.violating_points += check.violating_points;
     const bool contradicts = contradictsOneRoom(check, usual_violation_);
     against += contradicts ? 1 : 0;
-    agree += !contradicts && check.overlap > telling_overlap ? 1 : 0;
+    agree += !contradicts && check.overlap > strong_overlap ? 1 : 0;
     if (place.violation > loose())
       break; // ruled out
   }
@@ -209,46 +192,6 @@ std::vector<Index> membersWhere(const GraphInput& input, const ScanCluster& clus
   return scans;
 }
 } // namespace
-
-void settle(const GraphInput& input, const ScanCluster& known, ScanCluster& cluster)
-{
-  if (cluster.scans.size() < 2)
-    return;
-  closeLoops(input, known, cluster);
-  refineCluster(input, known, cluster);
-}
-
-void refineCluster(const GraphInput& input, const ScanCluster& known, ScanCluster& cluster)
-{
-  ScanPointers scans;
-  JointOptions options = settlingOptions(input);
-  for (const Index scan : cluster.scans) {
-    scans.push_back(&input.scans[scan]);
-    if (!known.scans.empty())
-      options.fixed.push_back(contains(known, scan));
-  }
-  cluster.poses = refineJointly(scans, cluster.poses, options, {}).poses;
-}
-
-Eigen::Isometry3d settledPose(const GraphInput& input, const ScanCluster& cluster, const ScanCluster& moving,
-                              const Eigen::Isometry3d& T)
-{
-  ScanPointers scans;
-  IsometryVector poses;
-  JointOptions options = settlingOptions(input);
-  options.threads = 1;
-  for (std::size_t k = 0; k < moving.scans.size(); ++k) {
-    scans.push_back(&input.scans[moving.scans[k]]);
-    poses.push_back(T * moving.poses[k]);
-    options.fixed.push_back(0);
-  }
-  for (std::size_t k = 0; k < cluster.scans.size(); ++k) {
-    scans.push_back(&input.scans[cluster.scans[k]]);
-    poses.push_back(cluster.poses[k]);
-    options.fixed.push_back(1);
-  }
-  return refineJointly(scans, poses, options, {}).poses[0] * moving.poses[0].inverse();
-}
 
 bool isContested(const GraphInput& input, const ScanCluster& cluster, const ScanCluster& moving,
                  const Eigen::Isometry3d& T)

@@ -15,18 +15,6 @@ struct ClusterPose {
 };
 using ClusterPoses = std::vector<ClusterPose, Eigen::aligned_allocator<ClusterPose>>;
 
-/// Moves all scans of a cluster so that their surfaces agree.
-/// @param known scans that do not move; may be empty
-void refineCluster(const GraphInput& input, const ScanCluster& known, ScanCluster& cluster);
-
-/// The same after its loops are closed by what its pairs say.
-void settle(const GraphInput& input, const ScanCluster& known, ScanCluster& cluster);
-
-/// The place of a cluster near T in another one, by all its pairs with scans of that one, which does not move. One
-/// thread.
-Eigen::Isometry3d settledPose(const GraphInput& input, const ScanCluster& cluster, const ScanCluster& moving,
-                              const Eigen::Isometry3d& T);
-
 /// All places of a cluster in another one that a pair of their scans, or a chain of pairs over other scans, leads to and
 /// that free space does not rule out; refined, distinct.
 ClusterPoses findPlaces(const GraphInput& input, const ScanCluster& cluster, const ScanCluster& moving);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "graph/scan_graph.h"
 #include "graph/alias_check.h"
+#include "graph/cluster_poses.h"
 #include "graph/free_space_evidence.h"
 #include "graph/place_check.h"
 #include "scan/lists.h"
@@ -161,7 +162,7 @@ bool GraphBuilder::tryJoin(const Candidate& candidate)
     return false;
   Eigen::Isometry3d T = clusterPose(candidate);
   const bool unsure = unconvincing(candidate);
-  const bool weak = candidate.hypothesis->support < input_.options.strong_overlap ||
+  const bool weak = candidate.hypothesis->support < strong_overlap ||
                     doubtful(*candidate.pair, candidate.hypothesis->check) || unsure;
   if (weak && !supported(candidate, T)) {
     if (unsure)
@@ -264,7 +265,7 @@ bool GraphBuilder::joinUncontested()
       if (input_.scans[graph_.clusters[order[j]].scans[0]].blind)
         continue;
       const ClusterPoses places = findPlaces(input_, graph_.clusters[order[i]], graph_.clusters[order[j]]);
-      const ClusterPose* place = uncontested(places, input_.options.strong_overlap, noiseViolation());
+      const ClusterPose* place = uncontested(places, strong_overlap, noiseViolation());
       if (place == nullptr)
         continue;
       join(order[i], order[j], place->T);

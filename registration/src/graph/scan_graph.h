@@ -54,7 +54,6 @@ struct GraphOptions {
   float max_violation = 0.04f;
   float tolerance = 0.f; ///< of agreement between chains of poses, length
   int threads = 0;
-  float strong_overlap = 0.25f; ///< a pair below it joins two clusters only together with a second pair that agrees
 };
 
 /// What graphs are made of.

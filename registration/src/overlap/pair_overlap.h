@@ -43,6 +43,10 @@ struct PairCheck {
   std::optional<double> color;
 };
 
+constexpr double noise_violation = 0.002; ///< of a pair: mixed pixels do not cause more
+constexpr double pane_violation = 0.01;   ///< of a pair: some may have seen a pane
+constexpr double strong_overlap = 0.25;   ///< of a pair: hardly by chance
+
 /// @param level index into PreparedScan::levels: the finer, the smaller the errors of the pose and the misplaced
 /// surfaces that count as violations
 PairCheck checkPair(const PreparedScan& a, const PreparedScan& b, const Eigen::Isometry3d& T_a_b, int level);

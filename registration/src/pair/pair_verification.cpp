@@ -134,11 +134,7 @@ double alignmentScore(const PairCheck& check)
   return check.overlap * color * std::exp(-check.violation / violation_scale);
 }
 
-bool clearlyWorse(double violation, double other)
-{
-  constexpr double clear_difference = 0.002; // of violations: mixed pixels do not cause it
-  return violation > std::max(2.0 * other, other + clear_difference);
-}
+bool clearlyWorse(double violation, double other) { return violation > std::max(2.0 * other, other + noise_violation); }
 
 bool isAmbiguous(const PairGeometry& pair, const VerifiedHypotheses& hypotheses)
 {

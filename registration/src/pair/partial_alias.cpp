@@ -63,14 +63,13 @@ Eigen::Isometry3d bestAlongWeakest(const PreparedScan& scan, const Eigen::Isomet
 
 bool fitsPartially(const PreparedScan& scan, const Eigen::Isometry3d& T)
 {
-  constexpr double most_violation = 0.002; // what noise causes: a place of which little is seen must fit
-  constexpr double most_strays = 0.005;    // of the points that agree, single ones among them
-  constexpr double fewest_points = 200.0;  // that agree: fewer do so by chance in many a room
+  constexpr double most_strays = 0.005;   // of the points that agree, single ones among them
+  constexpr double fewest_points = 200.0; // that agree: fewer do so by chance in many a room
   if (!isElsewhere(scan, T))
     return false;
   const PairCheck check = checkPair(scan, scan, T, check_level);
   const double agreeing = check.overlap * static_cast<double>(scan.levels[check_level].points.cols());
-  return check.overlap >= least_overlap && check.violation < most_violation && agreeing >= fewest_points &&
+  return check.overlap >= least_overlap && check.violation < noise_violation && agreeing >= fewest_points &&
          static_cast<double>(check.violating_points) <= most_strays * agreeing &&
          check.color.value_or(1.0) > alias_color;
 }
@@ -103,11 +102,10 @@ public:
   SharedAlias(const std::vector<PreparedScan>& scans, const std::vector<PairAlignment>& pairs, Index scan,
               const ScanAlias& alias)
   {
-    constexpr double same_place = 0.25;           // overlap of two scans that look at one room from two places
     constexpr double rejecting_violation = 0.005; // of another scan taken there: more than twice what noise causes
     for (const PairAlignment& pair : pairs) {
       if ((pair.a != scan && pair.b != scan) || pair.hypotheses.empty() || scans[pair.a].blind || scans[pair.b].blind ||
-          pair.hypotheses[0].check.overlap < same_place)
+          pair.hypotheses[0].check.overlap < strong_overlap)
         continue;
       const Eigen::Isometry3d T_a_b = pair.hypotheses[0].T_a_b, T = pair.a == scan ? T_a_b.inverse() : T_a_b;
       const Index other = pair.a == scan ? pair.b : pair.a;
@@ -151,7 +149,6 @@ PoseHypotheses matchFarToNear(const PreparedScan& scan, const ScanFeatures& feat
 
 ScanAliases findPartialAliases(const PreparedScan& scan, PoseHypotheses starts)
 {
-  constexpr double hopeless_violation = 0.02; // before the last refinement: ten times what may be left after it
   keepLikely(scan, starts);
   ScanAliases found;
   IsometryVector tried;
@@ -161,7 +158,7 @@ ScanAliases findPartialAliases(const PreparedScan& scan, PoseHypotheses starts)
     const bool known = std::any_of(tried.begin(), tried.end(), [&](const Eigen::Isometry3d& other) {
       return poseDistance(along, other, scan.size) < scan.levels[1].voxel;
     });
-    if (known || check.violation > hopeless_violation || check.overlap < least_overlap || !isElsewhere(scan, along))
+    if (known || check.violation > 10.0 * noise_violation || check.overlap < least_overlap || !isElsewhere(scan, along))
       continue;
     tried.push_back(along);
     for (const Eigen::Isometry3d& start : {rough, along}) {

@@ -126,10 +126,22 @@ Eigen::Isometry3f shiftedBy(const PlanShift& shift, float cell)
 }
 } // namespace
 
+PlanGrid makePlanGrid(float height, double extent, int most_side)
+{
+  constexpr float cells_per_height = 8.f;
+  constexpr int least_side = 64;
+  PlanGrid grid;
+  grid.height = height;
+  grid.cell = height / cells_per_height;
+  grid.side = least_side;
+  while (grid.side < most_side && grid.side * grid.cell < extent)
+    grid.side *= 2;
+  return grid;
+}
+
 PlanGrid choosePlanGrid(const std::vector<std::optional<PlanFrame>>& frames, const std::vector<PreparedScan>& scans)
 {
-  constexpr float cells_per_height = 8.f, reach = 12.f; // of median ranges: twice what the farthest walls take
-  constexpr int least_side = 64, most_side = 512;
+  constexpr float reach = 12.f; // of median ranges: twice what the farthest walls take
   std::vector<double> heights, sizes;
   for (std::size_t k = 0; k < frames.size(); ++k)
     if (frames[k]) {
@@ -137,14 +149,9 @@ PlanGrid choosePlanGrid(const std::vector<std::optional<PlanFrame>>& frames, con
       sizes.push_back(scans[k].size);
     }
   PlanGrid grid;
+  if (!heights.empty())
+    grid = makePlanGrid(median(heights), reach * median(sizes), 512);
   grid.inner_free = std::any_of(scans.begin(), scans.end(), [](const auto& scan) { return scan.spares_doubtful; });
-  if (heights.empty())
-    return grid;
-  grid.height = median(heights);
-  grid.cell = grid.height / cells_per_height;
-  grid.side = least_side;
-  while (grid.side < most_side && grid.side * grid.cell < reach * median(sizes))
-    grid.side *= 2;
   return grid;
 }
 

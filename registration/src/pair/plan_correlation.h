@@ -4,6 +4,9 @@
 #include <complex>
 #include <fresco/registration/core/sc2_pcr.h>
 namespace fresco::registration {
+/// Cells by the height of scanners, enough for `extent` (length) or as many along an edge as there may be.
+PlanGrid makePlanGrid(float height, double extent, int most_side);
+
 /// The grid for plans of scanners as high as most of `frames`, and scans as large as most of `scans`.
 PlanGrid choosePlanGrid(const std::vector<std::optional<PlanFrame>>& frames, const std::vector<PreparedScan>& scans);
 

@@ -58,11 +58,10 @@ std::shared_ptr<const PreparedScan> prepareForRegistration(const PointSet& scan,
 PointToPlaneResult alignPointToPlane(const PreparedPair& pair, const PointToPlaneOptions& options,
                                      const Progress& progress)
 {
-  constexpr float distance_voxels = 20.f; // the reach of refinement, a fifth of the scans' range
   validate(pair.guess, options);
   const PreparedScan &source = pair.source, &target = pair.target;
   JointOptions joint;
-  joint.max_distance = options.max_distance > 0.f ? options.max_distance : distance_voxels * target.levels.back().voxel;
+  joint.max_distance = options.max_distance > 0.f ? options.max_distance : reach_voxels * target.levels.back().voxel;
   joint.min_overlap = 0.f;
   joint.max_iterations = options.max_iterations;
   joint.min_motion = options.min_motion;

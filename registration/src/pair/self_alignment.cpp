@@ -10,12 +10,11 @@ namespace {
 // Of a verified pose of a scan on itself.
 ScanAlias toAlias(const VerifiedHypothesis& own)
 {
-  constexpr double certain_overlap = 0.5;     // with itself: less, and the scan is laid where it saw nothing
-  constexpr double certain_violation = 0.004; // twice what noise causes: nothing speaks against the alias
+  constexpr double certain_overlap = 0.5; // with itself: less, and the scan is laid where it saw nothing
   const bool wide = own.check.overlap > certain_overlap;
   ScanAlias alias;
   alias.T = own.T_a_b;
-  alias.certain = wide && own.check.violation < certain_violation && own.check.color.value_or(1.0) > alias_color;
+  alias.certain = wide && own.check.violation < 2.0 * noise_violation && own.check.color.value_or(1.0) > alias_color;
   alias.violation = own.check.violation;
   alias.likeness = wide && own.check.violation <= VerificationOptions().max_violation ? own.check.overlap : 0.0;
   return alias;

@@ -148,8 +148,6 @@ Index heldTogether(const Placement& placement)
   return std::count(held.begin(), held.end(), 1);
 }
 
-constexpr double sound_violation = 0.01; // others may have seen a pane
-
 // Whether all members are held together, and free space hardly contradicts start poses: a scan that lies on another wall
 // of the same room overlaps with it by its floor.
 bool suffices(const Placement& placement)
@@ -157,7 +155,7 @@ bool suffices(const Placement& placement)
   const bool started = !placement.anchors.empty();
   return heldTogether(placement) == static_cast<Index>(placement.members.size()) &&
          std::none_of(placement.pairs.begin(), placement.pairs.end(),
-                      [&](const PairResult& pair) { return started && pair.violation > sound_violation; });
+                      [&](const PairResult& pair) { return started && pair.violation > pane_violation; });
 }
 
 // Whether more members are held together; of as many, whether free space contradicts less, by more than counts vary.
@@ -278,7 +276,7 @@ Placement refineUnconfirmed(const std::vector<PreparedScan>& scans, const ScanRe
   Placement far = near;
   far.fixed = largestHeld(near);
   for (const PairResult& pair : near.pairs)
-    if (pair.violation > sound_violation)
+    if (pair.violation > pane_violation)
       for (const Index scan : {pair.a, pair.b})
         far.fixed[memberOf(near, scan)] = 0;
   for (std::size_t m = 0; m < near.fixed.size(); ++m)

@@ -35,7 +35,6 @@ Eigen::Matrix3f planAxes(const ScanPlanes& planes, const Eigen::Vector3f& up)
 // scans are compared by layers of height.
 std::optional<float> floorHeight(const ScanLevel& level, const Eigen::Vector3f& up, float scanner)
 {
-  constexpr float facing = 0.95f; // cosine of 18 degrees
   std::map<Index, Index> counts;
   std::vector<float> heights;
   for (Index i = 0; i < level.points.cols(); ++i)

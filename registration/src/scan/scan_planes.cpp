@@ -5,9 +5,8 @@
 #include <cmath>
 namespace fresco::registration {
 namespace {
-constexpr float same_direction = 0.985f;      // cosine of 10 degrees: normals on a wall, with noise
-constexpr float flat_variation = 0.05f;       // half of variation_limit: planes, not edges
-constexpr int planes_level = level_count - 2; // fine enough for the thickness of a wall
+constexpr float same_direction = 0.985f; // cosine of 10 degrees: normals on a wall, with noise
+constexpr float flat_variation = 0.05f;  // half of variation_limit: planes, not edges
 
 bool isFlat(const ScanLevel& level, Index i)
 {
@@ -73,7 +72,7 @@ void fillHistogram(const std::vector<Index>& places, PlaneHistogram& histogram)
 ScanPlanes findPlanes(const PreparedScan& scan)
 {
   ScanPlanes planes;
-  const ScanLevel& level = scan.levels[planes_level];
+  const ScanLevel& level = scan.levels[check_level]; // fine enough for the thickness of a wall
   const Eigen::Vector3f first = meanDirection(level, commonDirection(level, Eigen::Vector3f::Zero()));
   const Eigen::Vector3f second = meanDirection(level, commonDirection(level, first));
   if (first.isZero() || second.isZero())

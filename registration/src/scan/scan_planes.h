@@ -3,6 +3,8 @@
 #include "scan/prepared_scan.h"
 #include <array>
 namespace fresco::registration {
+constexpr float facing = 0.95f; ///< cosine between a direction and normals that keep to it, 18 degrees
+
 /// How much surface lies across an axis, by the place along it: the square root of the points, in bins.
 struct PlaneHistogram {
   Index first = 0; ///< place of the first bin, bins from the frame's origin

@@ -24,7 +24,6 @@ public:
   Index topsLessUndersides(const OppositePlanes& planes) const;
 
 private:
-  static constexpr float facing = 0.95f; // cosine of 18 degrees
   struct Plane {
     float place = 0.f; // mean, length
     Index points = 0;
