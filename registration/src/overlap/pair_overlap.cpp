@@ -20,6 +20,20 @@ double overlapShare(const ScanLevel& source, const ScanLevel& target, const Eige
   return count > 0 ? 1.0 * found / count : 0.0;
 }
 
+double pairOverlap(const PreparedScan& a, const PreparedScan& b, const Eigen::Isometry3d& T_a_b,
+                   const SampledLevel& samples)
+{
+  const ScanLevel &level_a = a.levels[samples.level], &level_b = b.levels[samples.level];
+  level_a.prepareSearch();
+  level_b.prepareSearch();
+  OverlapTest test;
+  test.distance = 2.f * std::max(level_a.voxel, level_b.voxel);
+  test.most = samples.most;
+  test.oriented = a.oriented && b.oriented;
+  return std::max(overlapShare(level_b, level_a, T_a_b.cast<float>(), test),
+                  overlapShare(level_a, level_b, T_a_b.inverse().cast<float>(), test));
+}
+
 namespace {
 using Verdict = ScanFreeSpace::Verdict;
 
@@ -138,9 +152,7 @@ double pairViolation(const PreparedScan& a, const PreparedScan& b, const Eigen::
 }
 
 namespace {
-struct CheckDetail {
-  int level;
-  Index samples; // that look for a counterpart
+struct CheckDetail : SampledLevel {
   Grazed grazed;
 };
 
@@ -148,20 +160,10 @@ struct CheckDetail {
 PairCheck checkSurfaces(const PreparedScan& a, const PreparedScan& b, const Eigen::Isometry3d& T_a_b,
                         const CheckDetail& detail)
 {
-  const int level = detail.level;
-  const ScanLevel& level_a = a.levels[level];
-  const ScanLevel& level_b = b.levels[level];
-  const Eigen::Isometry3f T_ab = T_a_b.cast<float>(), T_ba = T_a_b.inverse().cast<float>();
-  level_a.prepareSearch();
-  level_b.prepareSearch();
-  OverlapTest test;
-  test.distance = 2.f * std::max(level_a.voxel, level_b.voxel);
-  test.most = detail.samples;
-  test.oriented = a.oriented && b.oriented;
   PairCheck check;
-  check.overlap = std::max(overlapShare(level_b, level_a, T_ab, test), overlapShare(level_a, level_b, T_ba, test));
-  const Violation by_a = findViolation(a, level_b, T_ab, detail.grazed),
-                  by_b = findViolation(b, level_a, T_ba, detail.grazed);
+  check.overlap = pairOverlap(a, b, T_a_b, detail);
+  const Violation by_a = findViolation(a, b.levels[detail.level], T_a_b.cast<float>(), detail.grazed),
+                  by_b = findViolation(b, a.levels[detail.level], T_a_b.inverse().cast<float>(), detail.grazed);
   check.violation_a = by_a.of_comparable;
   check.violation_b = by_b.of_comparable;
   check.violating_points = by_a.points + by_b.points;
@@ -172,7 +174,7 @@ PairCheck checkSurfaces(const PreparedScan& a, const PreparedScan& b, const Eige
 
 PairCheck checkPair(const PreparedScan& a, const PreparedScan& b, const Eigen::Isometry3d& T_a_b, int level)
 {
-  PairCheck check = checkSurfaces(a, b, T_a_b, {level, OverlapTest().most, Grazed::counts});
+  PairCheck check = checkSurfaces(a, b, T_a_b, {{level, OverlapTest().most}, Grazed::counts});
   const ScanLevel &level_a = a.levels[level], &level_b = b.levels[level];
   check.color = colorCorrelation(level_b, level_a, T_a_b.cast<float>(), std::max(level_a.voxel, level_b.voxel));
   return check;
@@ -182,6 +184,6 @@ PairCheck checkRoughly(const PreparedScan& a, const PreparedScan& b, const Eigen
                        Grazed grazed)
 {
   constexpr Index few = 500; // samples: the share is known to 2 %
-  return checkSurfaces(a, b, T_a_b, {level, few, grazed});
+  return checkSurfaces(a, b, T_a_b, {{level, few}, grazed});
 }
 } // namespace fresco::registration

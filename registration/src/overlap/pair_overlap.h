@@ -16,6 +16,16 @@ struct OverlapTest {
 double overlapShare(const ScanLevel& source, const ScanLevel& target, const Eigen::Isometry3f& T_target_source,
                     const OverlapTest& test);
 
+/// So many samples of a level look for a counterpart.
+struct SampledLevel {
+  int level;
+  Index most;
+};
+
+/// Larger of the shares of the samples of either scan that have a counterpart in the other, 0..1.
+double pairOverlap(const PreparedScan& a, const PreparedScan& b, const Eigen::Isometry3d& T_a_b,
+                   const SampledLevel& samples);
+
 /// Whether surfaces that the seer's rays grazed violate, see ScanFreeSpace::judge(). They are spared at places that many
 /// pairs of scans judge together, whose errors add up. Between hypotheses of one pair the little that is grazed may
 /// decide.

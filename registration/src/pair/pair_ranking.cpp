@@ -30,29 +30,18 @@ double agreeingFeatures(const DescribedScan& a, const DescribedScan& b)
   return best.empty() ? 0.0 : best[0].votes;
 }
 
-// Larger of the shares of few samples that have a counterpart.
-double roughOverlap(const PreparedScan& a, const PreparedScan& b, const Eigen::Isometry3d& T_a_b)
-{
-  constexpr int level = 1; // coarser than check_level, as poses are: 10 cm where planes gave them
-  const ScanLevel &level_a = a.levels[level], &level_b = b.levels[level];
-  OverlapTest test;
-  test.distance = 2.f * std::max(level_a.voxel, level_b.voxel);
-  test.most = 150; // the share is known to 4 %
-  test.oriented = a.oriented && b.oriented;
-  return std::max(overlapShare(level_b, level_a, T_a_b.cast<float>(), test),
-                  overlapShare(level_a, level_b, T_a_b.inverse().cast<float>(), test));
-}
-
 // How well two scans fit at best of some poses that are not refined, 0..1: the overlap, discounted by the share of points
 // in space that the other scan saw through, both of few samples.
 double bestLikeness(const PreparedScan& a, const PreparedScan& b, const PoseHypotheses& poses)
 {
   constexpr double likeness_scale = 0.02; // of violations, as violation_scale, for poses that are not refined
+  // The share is known to 4 %; coarser than check_level, as poses are: 10 cm where planes gave them.
+  constexpr SampledLevel few{1, 150};
   double best = 0.0;
   for (const PoseHypothesis& pose : poses) {
     const double discount = std::exp(-sampledViolation(a, b, pose.T_a_b) / likeness_scale);
     if (discount > best) // the overlap is at most 1
-      best = std::max(best, discount * roughOverlap(a, b, pose.T_a_b));
+      best = std::max(best, discount * pairOverlap(a, b, pose.T_a_b, few));
   }
   return best;
 }
