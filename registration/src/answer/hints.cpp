@@ -43,11 +43,7 @@ private:
       said_.push_back(hint.source + ": " + what);
   }
   std::string name(Index scan) const { return scanName(options_, scan); }
-  std::size_t clusterOf(Index scan) const
-  {
-    return std::find_if(clusters_.begin(), clusters_.end(), [&](const auto& c) { return contains(c, scan); }) -
-           clusters_.begin();
-  }
+  Index clusterOf(Index scan) const { return registration::clusterOf(clusters_, scan); }
   const Eigen::Isometry3d& poseOf(Index scan) const { return poseIn(clusters_[clusterOf(scan)], scan); }
   Eigen::Isometry3d relative(Index a, Index b) const { return poseOf(a).inverse() * poseOf(b); }
   void follow(const RegistrationHint& hint);
@@ -76,7 +72,7 @@ void HintFollower::split(const RegistrationHint& hint, RefusalReason reason)
     double share;
     Index i, k;
   };
-  const std::size_t at = clusterOf(hint.a);
+  const Index at = clusterOf(hint.a);
   const ScanCluster cluster = clusters_[at];
   const Index n = cluster.scans.size();
   std::vector<Overlap> overlaps;
@@ -124,7 +120,7 @@ void HintFollower::keepApart(const RegistrationHint& hint)
   }
   const PairCheck check = checkPair(scans_[hint.a], scans_[hint.b], relative(hint.a, hint.b), check_level);
   split(hint, RefusalReason::apart);
-  const std::size_t moved =
+  const Index moved =
       clusters_[clusterOf(hint.a)].refusal.reason == RefusalReason::apart ? clusterOf(hint.a) : clusterOf(hint.b);
   std::vector<std::string> names;
   for (const Index scan : clusters_[moved].scans)
@@ -136,7 +132,7 @@ void HintFollower::keepApart(const RegistrationHint& hint)
 
 void HintFollower::join(const RegistrationHint& hint, const Place& place)
 {
-  const std::size_t a = clusterOf(place.a), b = clusterOf(place.b);
+  const Index a = clusterOf(place.a), b = clusterOf(place.b);
   const Eigen::Isometry3d T_a_b = poseOf(place.a) * place.fit.T * poseOf(place.b).inverse(); // clusters
   if (const RegistrationHint* apart = places_.forbids(clusters_[a], clusters_[b], T_a_b)) {
     say(hint, "not followed: " + apart->source + " keeps them apart there");

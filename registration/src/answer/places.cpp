@@ -5,11 +5,6 @@
 #include <fresco/core/require.h>
 namespace fresco::registration {
 namespace {
-const ScanCluster& clusterOf(const std::vector<ScanCluster>& clusters, Index scan)
-{
-  return *std::find_if(clusters.begin(), clusters.end(), [&](const auto& c) { return contains(c, scan); });
-}
-
 // Frame of the first cluster from that of the second.
 Eigen::Isometry3d clusterPose(const ScanCluster& first, const ScanCluster& second, const Place& place)
 {
@@ -125,14 +120,14 @@ const RegistrationHint* PlaceFinder::forbids(const ScanCluster& cluster, const S
 void PlaceFinder::judge(const std::vector<ScanCluster>& clusters, const FreeSpaceJudge& judge, Places& places) const
 {
   for (Place& place : places) {
-    const ScanCluster &first = clusterOf(clusters, place.a), &second = clusterOf(clusters, place.b);
+    const ScanCluster &first = clusters[clusterOf(clusters, place.a)], &second = clusters[clusterOf(clusters, place.b)];
     place.fit.evidence = judge.judge(first, second, clusterPose(first, second, place));
     place.contradicted = isContradicted(place.fit.evidence);
     if (place.number == 0)
       nameNearest(first, second, place);
   }
   const auto is_forbidden = [&](const Place& place) {
-    const ScanCluster &first = clusterOf(clusters, place.a), &second = clusterOf(clusters, place.b);
+    const ScanCluster &first = clusters[clusterOf(clusters, place.a)], &second = clusters[clusterOf(clusters, place.b)];
     return forbids(first, second, clusterPose(first, second, place)) != nullptr;
   };
   removeIf(places, is_forbidden);

@@ -32,16 +32,6 @@ bool rivals(const ClusterFit& other, const ClusterFit& fit, double unit)
          !contradictsMore(other.evidence, fit.evidence, unit) && isSeenAsWell(other, fit);
 }
 
-ClusterFitter::ClusterFitter(const GraphInput& input, const FreeSpaceJudge& judge)
-    : input_(input), judge_(judge), least_color_(leastColor(input.pairs)),
-      usual_violation_(usualViolation(input.pairs)), pairs_of_(input.scans.size())
-{
-  for (const PairAlignment& pair : input_.pairs) {
-    pairs_of_[pair.a].push_back(&pair);
-    pairs_of_[pair.b].push_back(&pair);
-  }
-}
-
 bool ClusterFitter::isSame(const ScanCluster& moving, const Eigen::Isometry3d& T, const Eigen::Isometry3d& other,
                            double tolerances) const
 {
@@ -72,14 +62,14 @@ ClusterFits ClusterFitter::rough(const ScanCluster& first, const ScanCluster& se
   for (std::size_t k = 0; k < second.scans.size(); ++k)
     positions[second.scans[k]] = k;
   for (std::size_t i = 0; i < first.scans.size(); ++i)
-    for (const PairAlignment* pair : pairs_of_[first.scans[i]]) {
+    for (const PairAlignment* pair : input_.pairs_of[first.scans[i]]) {
       const bool turned = pair->b == first.scans[i];
       const auto other = positions.find(turned ? pair->a : pair->b);
       if (other == positions.end())
         continue;
       for (const VerifiedHypothesis& hypothesis : pair->hypotheses) {
-        if (hypothesis.check.violation > pane_violation || hypothesis.check.color.value_or(1.0) < least_color_ ||
-            (use == Use::join && contradictsOneRoom(hypothesis.check, usual_violation_)))
+        if (hypothesis.check.violation > pane_violation || hypothesis.check.color.value_or(1.0) < input_.least_color ||
+            (use == Use::join && contradictsOneRoom(hypothesis.check, input_.usual_violation)))
           continue;
         ClusterFit fit;
         fit.T = first.poses[i] * (turned ? hypothesis.T_a_b.inverse() : hypothesis.T_a_b) *

@@ -39,7 +39,7 @@ bool rivals(const ClusterFit& other, const ClusterFit& fit, double unit);
 class ClusterFitter {
 public:
   /// Both have to outlive it.
-  ClusterFitter(const GraphInput& input, const FreeSpaceJudge& judge);
+  ClusterFitter(const GraphInput& input, const FreeSpaceJudge& judge) : input_(input), judge_(judge) {}
 
   /// What places are for. A pair whose scans would contradict that they see one room joins nothing there, but its place
   /// may contest another.
@@ -68,8 +68,6 @@ private:
 
   const GraphInput& input_;
   const FreeSpaceJudge& judge_;
-  double least_color_, usual_violation_;
-  std::vector<std::vector<const PairAlignment*>> pairs_of_; // per scan
 };
 
 /// Places of all groups of scans in each other, found once for each pair of groups.

@@ -38,8 +38,7 @@ bool isElsewhere(const GraphInput& input, const ScanCluster& first, const Cluste
 class ChainCheck {
 public:
   ChainCheck(const GraphInput& input, const std::vector<ScanCluster>& clusters, const ClusterJoin& join)
-      : input_(input), clusters_(clusters), join_(join),
-        most_violation_(mostViolation(input.pairs, input.options.max_violation))
+      : input_(input), clusters_(clusters), join_(join)
   {}
 
   bool run() const;
@@ -55,7 +54,6 @@ private:
   const GraphInput& input_;
   const std::vector<ScanCluster>& clusters_;
   const ClusterJoin& join_;
-  const double most_violation_; // of a link: one that cannot be joined says nothing
 };
 
 // To clusters other than the two to be joined. Scans without free space cannot speak for an alias.
@@ -73,7 +71,8 @@ ChainLinks ChainCheck::linksFrom(Index cluster) const
     for (const VerifiedHypothesis& hypothesis : soundHypotheses(pair)) {
       const Eigen::Isometry3d T =
           clusters_[a.cluster].poses[a.position] * hypothesis.T_a_b * clusters_[b.cluster].poses[b.position].inverse();
-      if (hypothesis.check.overlap > least_overlap * join_.overlap && hypothesis.check.violation <= most_violation_)
+      if (hypothesis.check.overlap > least_overlap * join_.overlap &&
+          hypothesis.check.violation <= input_.most_violation) // a link that cannot be joined says nothing
         links.push_back({cluster, far, a.cluster == cluster ? T : Eigen::Isometry3d(T.inverse())});
     }
   }

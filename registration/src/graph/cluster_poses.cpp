@@ -21,8 +21,9 @@ PoseEdges edgesOf(const GraphInput& input, const ScanCluster& cluster, const Pos
   return edges;
 }
 
-JointOptions settlingOptions(const GraphInput& input)
+void refine(const GraphInput& input, const ScanCluster& known, ScanCluster& cluster, int threads)
 {
+  ScanPointers scans;
   JointOptions options;
   options.max_distance = input.options.tolerance;
   options.min_overlap = 0.1f;
@@ -30,10 +31,14 @@ JointOptions settlingOptions(const GraphInput& input)
   options.first_level = check_level;
   options.last_level = check_level;
   options.max_iterations = 20;
-  options.threads = input.options.threads;
-  return options;
+  options.threads = threads;
+  for (const Index scan : cluster.scans) {
+    scans.push_back(&input.scans[scan]);
+    if (!known.scans.empty())
+      options.fixed.push_back(contains(known, scan));
+  }
+  cluster.poses = refineJointly(scans, cluster.poses, options, {}).poses;
 }
-
 } // namespace
 
 void closeLoops(const GraphInput& input, const ScanCluster& known, ScanCluster& cluster)
@@ -58,33 +63,16 @@ void settle(const GraphInput& input, const ScanCluster& known, ScanCluster& clus
 
 void refineCluster(const GraphInput& input, const ScanCluster& known, ScanCluster& cluster)
 {
-  ScanPointers scans;
-  JointOptions options = settlingOptions(input);
-  for (const Index scan : cluster.scans) {
-    scans.push_back(&input.scans[scan]);
-    if (!known.scans.empty())
-      options.fixed.push_back(contains(known, scan));
-  }
-  cluster.poses = refineJointly(scans, cluster.poses, options, {}).poses;
+  refine(input, known, cluster, input.options.threads);
 }
 
 Eigen::Isometry3d settledPose(const GraphInput& input, const ScanCluster& cluster, const ScanCluster& moving,
                               const Eigen::Isometry3d& T)
 {
-  ScanPointers scans;
-  IsometryVector poses;
-  JointOptions options = settlingOptions(input);
-  options.threads = 1;
-  for (std::size_t k = 0; k < moving.scans.size(); ++k) {
-    scans.push_back(&input.scans[moving.scans[k]]);
-    poses.push_back(T * moving.poses[k]);
-    options.fixed.push_back(0);
-  }
-  for (std::size_t k = 0; k < cluster.scans.size(); ++k) {
-    scans.push_back(&input.scans[cluster.scans[k]]);
-    poses.push_back(cluster.poses[k]);
-    options.fixed.push_back(1);
-  }
-  return refineJointly(scans, poses, options, {}).poses[0] * moving.poses[0].inverse();
+  ScanCluster both;
+  append(both, moving, T);
+  append(both, cluster, Eigen::Isometry3d::Identity());
+  refine(input, cluster, both, 1);
+  return both.poses[0] * moving.poses[0].inverse();
 }
 } // namespace fresco::registration

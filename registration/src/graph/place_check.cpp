@@ -22,8 +22,7 @@ bool contests(const ClusterPose& other, const ClusterPose& place)
 class PlaceSearch {
 public:
   PlaceSearch(const GraphInput& input, const ScanCluster& cluster, const ScanCluster& moving)
-      : input_(input), cluster_(cluster), moving_(moving), size_(input.scans[moving.scans[0]].size),
-        usual_violation_(usualViolation(input.pairs)), least_color_(leastColor(input.pairs))
+      : input_(input), cluster_(cluster), moving_(moving), size_(input.scans[moving.scans[0]].size)
   {}
 
   ClusterPoses run() const;
@@ -37,7 +36,7 @@ private:
   // Errors of a pose that is not refined may cause it.
   double loose() const { return 0.5 * input_.options.max_violation; }
   // Right poses of little overlap are often below that from which a place is believed.
-  double contestingColor() const { return least_color_ > 0.0 ? 0.5 * least_color_ : least_color_; }
+  double contestingColor() const { return input_.least_color * (input_.least_color > 0.0 ? 0.5 : 1.0); }
   void addPlaces(Index scan, Index from, const ClusterPose& pose, bool sound_only, ClusterPoses& places) const;
   ClusterPoses placesOf(Index scan, bool sound_only) const;
   void addChains(ClusterPoses& places) const;
@@ -47,23 +46,23 @@ private:
 
   const GraphInput& input_;
   const ScanCluster &cluster_, &moving_;
-  double size_, usual_violation_, least_color_;
+  double size_;
 };
 
 // Where a scan at a pose sees another one.
 void PlaceSearch::addPlaces(Index scan, Index from, const ClusterPose& pose, bool sound_only,
                             ClusterPoses& places) const
 {
-  for (const PairAlignment& pair : input_.pairs) {
-    if (!((pair.a == scan && pair.b == from) || (pair.a == from && pair.b == scan)))
+  for (const PairAlignment* pair : input_.pairs_of[scan]) {
+    if ((pair->a == scan ? pair->b : pair->a) != from)
       continue;
-    for (const VerifiedHypothesis& hypothesis : pair.hypotheses) {
+    for (const VerifiedHypothesis& hypothesis : pair->hypotheses) {
       const double color = hypothesis.check.color.value_or(1.0);
-      const bool sound = isSound(pair, hypothesis), faded = pose.faded || color < least_color_;
+      const bool sound = isSound(*pair, hypothesis), faded = pose.faded || color < input_.least_color;
       if (color < contestingColor() || (sound_only ? !sound : hypothesis.check.violation > loose()))
         continue;
       const Eigen::Isometry3d& T = hypothesis.T_a_b;
-      places.push_back({pose.T * (pair.a == scan ? T.inverse() : T), sound, pose.chained, faded});
+      places.push_back({pose.T * (pair->a == scan ? T.inverse() : T), sound, pose.chained, faded});
     }
   }
 }
@@ -133,7 +132,7 @@ ClusterPose PlaceSearch::judged(ClusterPose place) const
     place.violation = std::max(place.violation, check.violation);
     place.overlap = std::max(place.overlap, check.overlap);
     place.violating_points += check.violating_points;
-    const bool contradicts = contradictsOneRoom(check, usual_violation_);
+    const bool contradicts = contradictsOneRoom(check, input_.usual_violation);
     against += contradicts ? 1 : 0;
     agree += !contradicts && check.overlap > strong_overlap ? 1 : 0;
     if (place.violation > loose())

@@ -19,9 +19,7 @@ struct Candidate {
 class GraphBuilder {
 public:
   GraphBuilder(const GraphInput& input, const ScanCluster& known)
-      : input_(input), known_(known), judge_(input.scans), least_color_(leastColor(input.pairs)),
-        usual_violation_(usualViolation(input.pairs)),
-        most_violation_(mostViolation(input.pairs, input.options.max_violation)), late_(input.scans.size(), 0)
+      : input_(input), known_(known), judge_(input.scans), late_(input.scans.size(), 0)
   {
     begin();
   }
@@ -43,10 +41,10 @@ private:
   bool doubtful(const PairAlignment& pair, const PairCheck& check) const
   {
     if (!sawAround(input_.scans[pair.a]) || !sawAround(input_.scans[pair.b]))
-      return check.violation > most_violation_;
-    return check.violation > noiseViolation() || contradictsOneRoom(check, usual_violation_);
+      return check.violation > input_.most_violation;
+    return check.violation > noiseViolation() || contradictsOneRoom(check, input_.usual_violation);
   }
-  double noiseViolation() const { return std::max(noise_violation, usual_violation_); }
+  double noiseViolation() const { return std::max(noise_violation, input_.usual_violation); }
   std::optional<Eigen::Isometry3d> fittingPose(Index a, Index b, const Eigen::Isometry3d& T_a_b) const;
   bool unconvincing(const Candidate& candidate) const;
   bool joinUnambiguous();
@@ -61,7 +59,6 @@ private:
   const GraphInput& input_;
   const ScanCluster& known_;
   const FreeSpaceJudge judge_;
-  double least_color_, usual_violation_, most_violation_;
   std::map<const PairAlignment*, RefusalReason> aliased_;
   std::vector<char> late_; // per scan
   ScanGraph graph_;
@@ -145,7 +142,7 @@ void GraphBuilder::join(Index a, Index b, const Eigen::Isometry3d& T_a_b)
 std::optional<Eigen::Isometry3d> GraphBuilder::fittingPose(Index a, Index b, const Eigen::Isometry3d& T_a_b) const
 {
   const ScanCluster &first = graph_.clusters[a], &second = graph_.clusters[b];
-  if (worstViolation(input_, first, second, T_a_b) <= most_violation_)
+  if (worstViolation(input_, first, second, T_a_b) <= input_.most_violation)
     return T_a_b;
   if (first.scans.size() + second.scans.size() == 2)
     return std::nullopt;
@@ -191,7 +188,7 @@ bool GraphBuilder::joinUnambiguous()
   std::vector<Candidate> candidates;
   for (const PairAlignment& pair : input_.pairs)
     if (!pair.hypotheses.empty() && !pair.ambiguous && !waits(pair) &&
-        pair.hypotheses[0].check.color.value_or(1.0) >= least_color_)
+        pair.hypotheses[0].check.color.value_or(1.0) >= input_.least_color)
       candidates.push_back({&pair, &pair.hypotheses[0]});
   sortFalling(candidates, [](const Candidate& candidate) { return candidate.hypothesis->score; });
   bool joined = false;
@@ -211,7 +208,7 @@ bool GraphBuilder::joinAmbiguous()
     for (const VerifiedHypothesis& hypothesis : pair.hypotheses) {
       const Candidate candidate{&pair, &hypothesis};
       const double violation = worstViolation(input_, graph_.clusters[a], graph_.clusters[b], clusterPose(candidate));
-      if (hypothesis.check.color.value_or(1.0) >= least_color_ && violation <= input_.options.max_violation)
+      if (hypothesis.check.color.value_or(1.0) >= input_.least_color && violation <= input_.options.max_violation)
         left.emplace_back(violation, candidate);
     }
     std::stable_sort(left.begin(), left.end(), [](const auto& x, const auto& y) { return x.first < y.first; });
@@ -231,11 +228,11 @@ bool GraphBuilder::mostAgree(Index scan, const PairAlignment& candidate) const
     return Eigen::Isometry3d(pose(partner(pair)) * (pair.a == scan ? T.inverse() : T));
   };
   Index agree = 0, others = 0;
-  for (const PairAlignment& pair : input_.pairs) {
-    if ((pair.a != scan && pair.b != scan) || pair.hypotheses.empty() || input_.scans[partner(pair)].blind)
+  for (const PairAlignment* pair : input_.pairs_of[scan]) {
+    if (pair->hypotheses.empty() || input_.scans[partner(*pair)].blind)
       continue;
-    const bool same = places_[partner(pair)].cluster == places_[partner(candidate)].cluster &&
-                      poseDistance(seen(pair), seen(candidate), input_.scans[scan].size) < slack();
+    const bool same = places_[partner(*pair)].cluster == places_[partner(candidate)].cluster &&
+                      poseDistance(seen(*pair), seen(candidate), input_.scans[scan].size) < slack();
     (same ? agree : others) += 1;
   }
   return agree >= fewest && agree > others;
@@ -308,6 +305,16 @@ ScanGraph GraphBuilder::build()
 }
 } // namespace
 
+GraphInput::GraphInput(const std::vector<PreparedScan>& all, const std::vector<PairAlignment>& aligned,
+                       const GraphOptions& given)
+    : scans(all), pairs(aligned), pairs_of(all.size()), options(given), least_color(leastColor(pairs)),
+      usual_violation(usualViolation(pairs)), most_violation(mostViolation(pairs, given.max_violation))
+{
+  for (const PairAlignment& pair : pairs)
+    for (const Index scan : {pair.a, pair.b})
+      pairs_of[scan].push_back(&pair);
+}
+
 bool contains(const ScanCluster& cluster, Index scan)
 {
   return positionOf(cluster, scan) < static_cast<Index>(cluster.scans.size());
@@ -321,6 +328,12 @@ Index positionOf(const ScanCluster& cluster, Index scan)
 const Eigen::Isometry3d& poseIn(const ScanCluster& cluster, Index scan)
 {
   return cluster.poses[positionOf(cluster, scan)];
+}
+
+Index clusterOf(const std::vector<ScanCluster>& clusters, Index scan)
+{
+  return std::find_if(clusters.begin(), clusters.end(), [&](const auto& c) { return contains(c, scan); }) -
+         clusters.begin();
 }
 
 void append(ScanCluster& first, const ScanCluster& second, const Eigen::Isometry3d& T_first_second)

@@ -20,6 +20,9 @@ Index positionOf(const ScanCluster& cluster, Index scan);
 /// Of one of its scans.
 const Eigen::Isometry3d& poseIn(const ScanCluster& cluster, Index scan);
 
+/// The cluster of a scan, which is in one.
+Index clusterOf(const std::vector<ScanCluster>& clusters, Index scan);
+
 /// Adds the scans of the second cluster.
 void append(ScanCluster& first, const ScanCluster& second, const Eigen::Isometry3d& T_first_second);
 
@@ -56,11 +59,16 @@ struct GraphOptions {
   int threads = 0;
 };
 
-/// What graphs are made of.
+/// What graphs are made of, and what is usual among all pairs.
 struct GraphInput {
+  /// Scans and pairs have to outlive it.
+  GraphInput(const std::vector<PreparedScan>& scans, const std::vector<PairAlignment>& pairs,
+             const GraphOptions& options);
   const std::vector<PreparedScan>& scans;
   const std::vector<PairAlignment>& pairs;
+  std::vector<std::vector<const PairAlignment*>> pairs_of; ///< per scan
   GraphOptions options;
+  double least_color, usual_violation, most_violation; ///< see leastColor(), usualViolation(), mostViolation()
 };
 
 /// Every scan without a problem alone, but the known ones, which come first.
