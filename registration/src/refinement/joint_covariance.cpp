@@ -23,9 +23,7 @@ class CovarianceEstimator {
 public:
   explicit CovarianceEstimator(const JointSystem& joint);
 
-  Covariances run() const;
-  Covariances informations() const;
-  LooseCuts cuts() const;
+  PoseUncertainty run(bool with_cuts) const;
 
 private:
   bool held(Index scan) const { return joint_.holders[scan] == scan; }
@@ -38,9 +36,17 @@ private:
   Block fitRows(Index holder) const;
   Matrix6d part(Index scan, Index other) const;
   std::vector<char> goingAlong(Index scan, Index against) const;
-  std::vector<Matrix6d> pairSums() const;
+  Covariances covariances() const;
+  Covariances informations() const;
+  LooseCuts cuts() const;
+  PairInformations pairInformations() const;
   std::map<std::vector<char>, std::pair<Index, Index>> bodies() const;
-  Matrix6d acrossInformation(Index scan, const std::vector<char>& along, const std::vector<Matrix6d>& pairs) const;
+  Matrix6d unscaled(const Matrix6d& information) const
+  {
+    const Vector6d back = scale_.cwiseInverse();
+    return back.asDiagonal() * information * back.asDiagonal();
+  }
+  Matrix6d acrossInformation(Index scan, const std::vector<char>& along) const;
   double fewCellsFactor(Index scan, const Vector6d& direction, const std::vector<CellPull>& pulls) const;
   Matrix6d covarianceOf(Index scan, const std::vector<CellPull>& pulls) const;
 
@@ -50,14 +56,18 @@ private:
   std::vector<Index> slots_;                                 // per scan, its place among those that can move, or -1
   Eigen::MatrixXd P_;                                        // inverse of their normal equations
   std::vector<Block, Eigen::aligned_allocator<Block>> fits_; // per scan, of its group
+  std::vector<Matrix6d> pairs_;                              // per pair, sum over its cells
 };
 
-CovarianceEstimator::CovarianceEstimator(const JointSystem& joint) : joint_(joint), count_(joint.poses.size())
+CovarianceEstimator::CovarianceEstimator(const JointSystem& joint)
+    : joint_(joint), count_(joint.poses.size()), pairs_(joint.links.size(), Matrix6d::Zero())
 {
   scale_ << Eigen::Vector3d::Constant(1.0 / joint.size), Eigen::Vector3d::Ones();
   for (Index i = 0; i < count_; ++i)
     slots_.push_back(held(i) ? -1 : moving_++);
   invert();
+  for (const CellSystem& cell : joint_.cells)
+    pairs_[cell.pair] += cell.system.H;
   fits_.resize(count_);
   for (Index i = 0; i < count_ && joint.fit && moving_ > 0; ++i)
     if (held(i))
@@ -217,43 +227,30 @@ std::vector<char> CovarianceEstimator::goingAlong(Index scan, Index against) con
   return along;
 }
 
-// Sums over the cells of each pair.
-std::vector<Matrix6d> CovarianceEstimator::pairSums() const
-{
-  std::vector<Matrix6d> pairs(joint_.links.size(), Matrix6d::Zero());
-  for (const CellSystem& cell : joint_.cells)
-    pairs[cell.pair] += cell.system.H;
-  return pairs;
-}
-
 // About a scan of those that go along, by the matches between them and the others.
-/// @param pairs see pairSums()
-Matrix6d CovarianceEstimator::acrossInformation(Index scan, const std::vector<char>& along,
-                                                const std::vector<Matrix6d>& pairs) const
+Matrix6d CovarianceEstimator::acrossInformation(Index scan, const std::vector<char>& along) const
 {
   const auto seen = [&](Index i, const Matrix6d& M, const Matrix6d& H) -> Matrix6d {
     const Matrix6d rows = motionAlong(i, scan).transpose() * scaled(M);
     return rows * H * rows.transpose();
   };
   Matrix6d information = Matrix6d::Zero();
-  for (std::size_t p = 0; p < pairs.size(); ++p) {
+  for (std::size_t p = 0; p < pairs_.size(); ++p) {
     const PairLink& link = joint_.links[p];
     if (along[link.source] && !along[link.target])
-      information += seen(link.source, link.jacobian.M_source, pairs[p]);
+      information += seen(link.source, link.jacobian.M_source, pairs_[p]);
     else if (along[link.target] && !along[link.source])
-      information += seen(link.target, link.jacobian.M_target, pairs[p]);
+      information += seen(link.target, link.jacobian.M_target, pairs_[p]);
   }
-  const Vector6d back = scale_.cwiseInverse();
-  return back.asDiagonal() * information * back.asDiagonal();
+  return unscaled(information);
 }
 
 Covariances CovarianceEstimator::informations() const
 {
-  const std::vector<Matrix6d> pairs = pairSums();
   Covariances informations(count_, Matrix6d::Zero());
   forEachTask(count_, joint_.threads, [&](Index i) {
     if (!held(i))
-      informations[i] = acrossInformation(i, goingAlong(i, joint_.holders[i]), pairs);
+      informations[i] = acrossInformation(i, goingAlong(i, joint_.holders[i]));
   });
   return informations;
 }
@@ -277,7 +274,6 @@ std::map<std::vector<char>, std::pair<Index, Index>> CovarianceEstimator::bodies
 
 LooseCuts CovarianceEstimator::cuts() const
 {
-  const std::vector<Matrix6d> pairs = pairSums();
   const auto found = bodies();
   LooseCuts cuts;
   for (const auto& [along, pulled] : found) {
@@ -288,7 +284,7 @@ LooseCuts CovarianceEstimator::cuts() const
       continue;
     LooseCut& cut = cuts.emplace_back();
     cut.about = pulled.first;
-    cut.information = acrossInformation(cut.about, along, pairs);
+    cut.information = acrossInformation(cut.about, along);
     for (const PairLink& link : joint_.links)
       if (along[link.source] != along[link.target])
         linked[link.source] = linked[link.target] = 1;
@@ -304,7 +300,7 @@ LooseCuts CovarianceEstimator::cuts() const
   return cuts;
 }
 
-Covariances CovarianceEstimator::run() const
+Covariances CovarianceEstimator::covariances() const
 {
   std::vector<Index> begins;
   const Index n = joint_.cells.size();
@@ -318,15 +314,8 @@ Covariances CovarianceEstimator::run() const
   forEachTask(count_, joint_.threads, [&](Index i) { covariances[i] = covarianceOf(i, pulls); });
   return covariances;
 }
-} // namespace
 
-Covariances jointCovariances(const JointSystem& joint) { return CovarianceEstimator(joint).run(); }
-
-Covariances bodyInformations(const JointSystem& joint) { return CovarianceEstimator(joint).informations(); }
-
-LooseCuts looseCuts(const JointSystem& joint) { return CovarianceEstimator(joint).cuts(); }
-
-PairInformations pairInformations(const JointSystem& joint)
+PairInformations CovarianceEstimator::pairInformations() const
 {
   // Sums of one pair: of its cells' information, and of the squares of what they pull.
   struct Sums {
@@ -339,17 +328,14 @@ PairInformations pairInformations(const JointSystem& joint)
       pull.setZero();
     }
   };
-  Vector6d scale; // balances rotations and translations
-  scale << Eigen::Vector3d::Constant(1.0 / joint.size), Eigen::Vector3d::Ones();
   std::map<std::pair<Index, Index>, Sums> all;
-  for (const CellSystem& cell : joint.cells) {
-    const PairLink& link = joint.links[cell.pair];
+  for (const CellSystem& cell : joint_.cells) {
+    const PairLink& link = joint_.links[cell.pair];
     Sums& sums = all[std::minmax(link.source, link.target)];
     if (sums.cell != cell.cell)
       sums.close();
     sums.cell = cell.cell;
-    const Matrix6d M =
-        scale.asDiagonal() * (link.source > link.target ? link.jacobian.M_source : link.jacobian.M_target);
+    const Matrix6d M = scaled(link.source > link.target ? link.jacobian.M_source : link.jacobian.M_target);
     sums.H += M * cell.system.H * M.transpose();
     sums.pull += M * cell.system.b;
   }
@@ -359,10 +345,17 @@ PairInformations pairInformations(const JointSystem& joint)
     Matrix6d H = sums.H;
     H.diagonal().array() += 1e-9 * H.trace(); // directions without information say nothing of the variance
     const double variance = H.ldlt().solve(sums.squares).trace() / 6.0; // mean over the six motions
-    const Vector6d back = scale.cwiseInverse();
     if (variance > 0.0)
-      informations.push_back({pair.first, pair.second, back.asDiagonal() * sums.H * back.asDiagonal() / variance});
+      informations.push_back({pair.first, pair.second, unscaled(sums.H) / variance});
   }
   return informations;
 }
+
+PoseUncertainty CovarianceEstimator::run(bool with_cuts) const
+{
+  return {covariances(), informations(), with_cuts ? cuts() : LooseCuts(), pairInformations()};
+}
+} // namespace
+
+PoseUncertainty findUncertainty(const JointSystem& joint, bool cuts) { return CovarianceEstimator(joint).run(cuts); }
 } // namespace fresco::registration

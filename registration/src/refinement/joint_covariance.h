@@ -30,17 +30,6 @@ struct JointSystem {
 
 using Covariances = std::vector<Matrix6d, Eigen::aligned_allocator<Matrix6d>>;
 
-/// Covariance of each pose: rotation (about the scan's centre, axes of the world) first. Cluster-robust, in the form of a
-/// jackknife over cells (Bell & McCaffrey 2002): errors of one cell may depend on each other in any way, among all pairs
-/// that see it. What counts is how much the solution changes without the cell. Relative to the holder of the group, or
-/// to the best fit of the whole group where that is larger; zero for the holders of groups that are not fitted.
-Covariances jointCovariances(const JointSystem& joint);
-
-/// Information of each pose: rotation (about the scan's centre, axes of the world) first; weights of one match sum up.
-/// What moves is the scan together with those that go along where it is held least, all others held: two scans of a room
-/// that hold each other may slide along a corridor as one. Zero for the holder of a group.
-Covariances bodyInformations(const JointSystem& joint);
-
 /// Two parts of a group that move against each other most easily where one pair of scans is pulled apart.
 struct LooseCut {
   std::vector<Index> body, rest;           ///< scans, rising
@@ -50,10 +39,6 @@ struct LooseCut {
 };
 using LooseCuts = std::vector<LooseCut, Eigen::aligned_allocator<LooseCut>>;
 
-/// One for each pair of scans that has matches, distinct. Whichever scan holds the frame: seen from it, a loose part elsewhere
-/// may be hidden by a looser one.
-LooseCuts looseCuts(const JointSystem& joint);
-
 /// Inverse covariance of the pose of b relative to a by the matches of this pair alone, in both directions.
 struct PairInformation {
   Index a = 0, b = 0;                      ///< a < b
@@ -61,6 +46,24 @@ struct PairInformation {
 };
 using PairInformations = std::vector<PairInformation, Eigen::aligned_allocator<PairInformation>>;
 
-/// Of each pair that has matches, ordered. The errors of one cell may depend on each other.
-PairInformations pairInformations(const JointSystem& joint);
+/// What the normal equations tell of poses: rotation (about the scan's centre, axes of the world) first.
+struct PoseUncertainty {
+  /// Of each scan. Cluster-robust, in the form of a jackknife over cells (Bell & McCaffrey 2002): errors of one cell may
+  /// depend on each other in any way, among all pairs that see it. What counts is how much the solution changes without
+  /// the cell. Relative to the holder of the group, or to the best fit of the whole group where that is larger; zero for
+  /// the holders of groups that are not fitted.
+  Covariances covariances;
+  /// Of each scan; weights of one match sum up. What moves is the scan together with those that go along where it is held
+  /// least, all others held: two scans of a room that hold each other may slide along a corridor as one. Zero for the
+  /// holder of a group.
+  Covariances information;
+  /// One for each pair of scans that has matches, distinct. Whichever scan holds the frame: seen from it, a loose part
+  /// elsewhere may be hidden by a looser one.
+  LooseCuts cuts;
+  PairInformations
+      informations; ///< of each pair that has matches, ordered; the errors of one cell may depend on each other
+};
+
+/// @param cuts whether loose cuts are wanted
+PoseUncertainty findUncertainty(const JointSystem& joint, bool cuts);
 } // namespace fresco::registration

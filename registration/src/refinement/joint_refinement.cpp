@@ -322,11 +322,7 @@ void Refinement::findCovariances(JointResult& result) const
   }
   std::stable_sort(joint.cells.begin(), joint.cells.end(),
                    [](const CellSystem& x, const CellSystem& y) { return x.cell < y.cell; });
-  result.covariances = jointCovariances(joint);
-  result.information = bodyInformations(joint);
-  if (options_.cuts)
-    result.cuts = looseCuts(joint);
-  result.informations = pairInformations(joint);
+  static_cast<PoseUncertainty&>(result) = findUncertainty(joint, options_.cuts);
 }
 
 void Refinement::finish(JointResult& result) const

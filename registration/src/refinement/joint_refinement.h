@@ -36,15 +36,11 @@ struct JointPair {
   bool coarse = false; ///< whether only a coarser level than the last has surfaces in common
 };
 
-struct JointResult {
+/// Uncertainties are empty unless asked for, but for the information; without covariances this is that of a scan, all others
+/// held.
+struct JointResult : PoseUncertainty {
   IsometryVector poses;         ///< world from working frame
   std::vector<JointPair> pairs; ///< both directions of each pair
-  /// Per scan, all others held: rotation (about the scan's centre, axes of the world) first; weights of one match sum up.
-  /// With covariances see bodyInformations().
-  std::vector<Matrix6d, Eigen::aligned_allocator<Matrix6d>> information;
-  Covariances covariances;       ///< see jointCovariances(); empty unless asked for
-  LooseCuts cuts;                ///< see looseCuts(); empty unless asked for
-  PairInformations informations; ///< see pairInformations(); empty unless asked for
   int iterations = 0;
   bool converged = false;
 };
