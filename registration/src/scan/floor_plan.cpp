@@ -4,7 +4,6 @@
 #include "scan/up_direction.h"
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <numeric>
 namespace fresco::registration {
 namespace {
@@ -35,20 +34,15 @@ Eigen::Matrix3f planAxes(const ScanPlanes& planes, const Eigen::Vector3f& up)
 // scans are compared by layers of height.
 std::optional<float> floorHeight(const ScanLevel& level, const Eigen::Vector3f& up, float scanner)
 {
-  std::map<Index, Index> counts;
   std::vector<float> heights;
   for (Index i = 0; i < level.points.cols(); ++i)
-    if (level.normals.col(i).dot(up) > facing && level.points.col(i).dot(up) < scanner) {
+    if (level.normals.col(i).dot(up) > facing && level.points.col(i).dot(up) < scanner)
       heights.push_back(level.points.col(i).dot(up));
-      ++counts[std::lround(heights.back() / level.voxel)];
-    }
-  if (counts.empty())
+  const std::optional<float> middle = fullestBin(heights, level.voxel);
+  if (!middle)
     return std::nullopt;
-  const auto most =
-      std::max_element(counts.begin(), counts.end(), [](const auto& x, const auto& y) { return x.second < y.second; });
-  const float middle = most->first * level.voxel;
   const auto floor = std::partition(heights.begin(), heights.end(),
-                                    [&](float height) { return std::abs(height - middle) < level.voxel; });
+                                    [&](float height) { return std::abs(height - *middle) < level.voxel; });
   return std::accumulate(heights.begin(), floor, 0.f) / static_cast<float>(floor - heights.begin());
 }
 

@@ -3,6 +3,7 @@
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
+#include <map>
 namespace fresco::registration {
 namespace {
 constexpr float same_direction = 0.985f; // cosine of 10 degrees: normals on a wall, with noise
@@ -92,5 +93,15 @@ ScanPlanes findPlanes(const PreparedScan& scan)
       fillHistogram(places, planes.histograms[axis][side]);
     }
   return planes;
+}
+
+std::optional<float> fullestBin(const std::vector<float>& places, float width)
+{
+  std::map<Index, Index> counts;
+  for (const float place : places)
+    ++counts[std::lround(place / width)];
+  const auto most =
+      std::max_element(counts.begin(), counts.end(), [](const auto& x, const auto& y) { return x.second < y.second; });
+  return most == counts.end() ? std::nullopt : std::optional(most->first * width);
 }
 } // namespace fresco::registration

@@ -2,6 +2,7 @@
 #pragma once
 #include "scan/prepared_scan.h"
 #include <array>
+#include <optional>
 namespace fresco::registration {
 constexpr float facing = 0.95f; ///< cosine between a direction and normals that keep to it, 18 degrees
 
@@ -20,4 +21,7 @@ struct ScanPlanes {
 };
 
 ScanPlanes findPlanes(const PreparedScan& scan);
+
+/// Middle of the bin of so much width that holds most places; nothing without places.
+std::optional<float> fullestBin(const std::vector<float>& places, float width);
 } // namespace fresco::registration

@@ -2,7 +2,6 @@
 #include "scan/up_direction.h"
 #include <algorithm>
 #include <cmath>
-#include <map>
 namespace fresco::registration {
 namespace {
 // Two opposite surfaces on both sides of a scanner, such as floor and ceiling.
@@ -11,6 +10,7 @@ struct OppositePlanes {
   Index points = 0;            // on both
   bool found = false;
   float height() const { return high - low; }
+  bool isAsHigh(float other, float tolerance) const { return found && std::abs(height() - other) < tolerance; }
 };
 
 class AxisView {
@@ -38,19 +38,18 @@ private:
 
 AxisView::Plane AxisView::fullest(float side) const
 {
-  std::map<Index, Index> counts; // by voxels
+  std::vector<float> places;
   const auto faces = [&](Index i) { return side * level_.normals.col(i).dot(axis_) < -facing; };
   const auto placeOf = [&](Index i) { return level_.points.col(i).dot(axis_) - scanner_; };
   for (Index i = 0; i < level_.points.cols(); ++i)
     if (side * placeOf(i) > level_.voxel && faces(i))
-      ++counts[std::lround(placeOf(i) / level_.voxel)];
-  if (counts.empty())
+      places.push_back(placeOf(i));
+  const std::optional<float> middle = fullestBin(places, level_.voxel);
+  if (!middle)
     return {};
-  const auto most =
-      std::max_element(counts.begin(), counts.end(), [](const auto& x, const auto& y) { return x.second < y.second; });
   Plane plane;
   for (Index i = 0; i < level_.points.cols(); ++i)
-    if (faces(i) && std::abs(placeOf(i) - most->first * level_.voxel) < level_.voxel) {
+    if (faces(i) && std::abs(placeOf(i) - *middle) < level_.voxel) {
       plane.place += placeOf(i);
       ++plane.points;
     }
@@ -110,9 +109,8 @@ float commonHeight(const std::vector<PlanesOfAxes>& planes, float tolerance)
       if (!candidate.found)
         continue;
       const Index count = std::count_if(planes.begin(), planes.end(), [&](const PlanesOfAxes& other) {
-        return std::any_of(other.begin(), other.end(), [&](const OppositePlanes& axis) {
-          return axis.found && std::abs(axis.height() - candidate.height()) < tolerance;
-        });
+        return std::any_of(other.begin(), other.end(),
+                           [&](const OppositePlanes& axis) { return axis.isAsHigh(candidate.height(), tolerance); });
       });
       if (count > most) {
         most = count;
@@ -137,14 +135,10 @@ UpDirections findUpDirections(const std::vector<PreparedScan>& scans, const std:
   }
   const float height = commonHeight(found, tolerance);
   for (std::size_t k = 0; k < scans.size(); ++k) {
-    const auto more = [&](const OppositePlanes& x, const OppositePlanes& y) {
-      const auto points = [&](const OppositePlanes& axis) {
-        return axis.found && std::abs(axis.height() - height) < tolerance ? axis.points : 0;
-      };
-      return points(x) < points(y);
-    };
-    const auto vertical = std::max_element(found[k].begin(), found[k].end(), more);
-    if (vertical->found && std::abs(vertical->height() - height) < tolerance)
+    const auto points = [&](const OppositePlanes& axis) { return axis.isAsHigh(height, tolerance) ? axis.points : 0; };
+    const auto vertical = std::max_element(found[k].begin(), found[k].end(),
+                                           [&](const auto& x, const auto& y) { return points(x) < points(y); });
+    if (vertical->isAsHigh(height, tolerance))
       ups[k] = upAlong(scans[k], planes[k].axes.col(vertical - found[k].begin()), *vertical);
   }
   return ups;
