@@ -130,7 +130,7 @@ void GlobalAligner::assembleByPlans(const std::vector<RankedPair>& pairs, const 
     scans_[k].aliases = std::move(aliases[k]);
   sharePartialAliases(scans_, result_.pairs);
   report(progress, "assemble", 0.7);
-  result_.graph = assembleScans(graphInput(), known_);
+  result_.graph = assembleScans(graphInput());
   if (hasFew() && !hangsTogether())
     result_.graph = assembleUnited(graphInput(), result_.graph, decidedGraph());
 }
@@ -276,11 +276,11 @@ void GlobalAligner::alignInRounds(const Progress& progress)
       break;
   }
   if (!frames_.empty() && !hasFew()) // whole clusters tell more than the pairs, which place some of these wrongly
-    result_.graph = assembleScans(graphInput(), known_);
+    result_.graph = assembleScans(graphInput());
   else if (!manyPlaces())
     splitUndecided(graphInput(), result_.graph);
   if (hasAllPlans() && !hangsTogether())
-    result_.graph = assembleUnited(graphInput(), result_.graph, assembleScans(graphInput(), known_));
+    result_.graph = assembleUnited(graphInput(), result_.graph, assembleScans(graphInput()));
 }
 
 GlobalAlignment GlobalAligner::run(const Progress& progress)

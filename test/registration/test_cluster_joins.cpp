@@ -72,7 +72,7 @@ TEST(ClusterJoins, WhatFitsInTwoEqualRoomsPartsThem)
       scene.addPair(door_b, room_c, scene.scanned.truth[door_b].inverse() * shifted(room_c, -1), 0.3);
       scene.addPair(door_a, room_c, scene.scanned.truth[door_a].inverse() * shifted(room_c, -2), 0.3);
     }
-    const ScanGraph graph = assembleScans(scene.input(), {});
+    const ScanGraph graph = assembleScans(scene.input());
     const std::vector<ClusterPlace> places = placesOf(graph.clusters, scene.scans.size());
     EXPECT_EQ(places[room_a].cluster == places[room_b].cluster, !witness);
   }

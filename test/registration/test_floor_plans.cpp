@@ -242,7 +242,7 @@ TEST(FloorPlans, ScansOfEqualRoomsInARowFallApart)
   sharePartialAliases(scans, pairs);
   GraphOptions options;
   options.tolerance = 4.f * scans[0].levels.back().voxel;
-  for (const ScanCluster& cluster : assembleScans({scans, pairs, options}, {}).clusters)
+  for (const ScanCluster& cluster : assembleScans({scans, pairs, options}).clusters)
     for (std::size_t k = 1; k < cluster.scans.size(); ++k)
       EXPECT_LT(poseDistance(cluster.poses[0].inverse() * cluster.poses[k],
                              truth(scene, planned, cluster.scans[0], cluster.scans[k]), 2.0),

@@ -19,13 +19,13 @@ bool isAsSure(const ClusterFit& other, const ClusterFit& join)
 
 class Assembler {
 public:
-  Assembler(const GraphInput& input, const ScanCluster& known)
-      : input_(input), known_(known), judge_(input.scans), fitter_(input, judge_), parts_(judge_, fitter_)
+  explicit Assembler(const GraphInput& input)
+      : input_(input), judge_(input.scans), fitter_(input, judge_), parts_(judge_, fitter_)
   {}
 
   void startAlone()
   {
-    for (const ScanCluster& cluster : startingClusters(input_, known_))
+    for (const ScanCluster& cluster : startingClusters(input_, {}))
       groups_.push_back({next_id_++, cluster});
   }
   void startUnited(const ScanGraph& first, const ScanGraph& second);
@@ -68,10 +68,6 @@ private:
   Joins likelyJoins() const;
   bool joinBest();
   void join(const Join& join);
-  bool hasKnown(const ScanCluster& cluster) const
-  {
-    return std::any_of(cluster.scans.begin(), cluster.scans.end(), [&](Index i) { return contains(known_, i); });
-  }
   bool isClaimed(std::size_t group, const ClusterPart& placed) const;
   IsometryVector twinMotions(std::size_t group) const;
   bool splitContested(std::size_t group);
@@ -79,7 +75,6 @@ private:
   void split(std::size_t group, const std::vector<Index>& listed);
 
   const GraphInput& input_;
-  const ScanCluster& known_;
   FreeSpaceJudge judge_;
   ClusterFitter fitter_;
   PartCheck parts_;
@@ -92,7 +87,7 @@ void Assembler::startUnited(const ScanGraph& first, const ScanGraph& second)
 {
   for (JoinedCluster& united : uniteClusters(input_, judge_, first, second)) {
     if (united.parts.size() > 1)
-      settle(input_, known_, united.cluster);
+      settle(input_, {}, united.cluster);
     groups_.push_back({next_id_++, united.cluster, united.parts});
   }
 }
@@ -231,7 +226,7 @@ void Assembler::join(const Join& join)
   append(first.cluster, second.cluster, join.fit.T);
   first.id = next_id_++;
   groups_.erase(groups_.begin() + join.second);
-  settle(input_, known_, first.cluster);
+  settle(input_, {}, first.cluster);
   for (Group& group : groups_)
     group.cluster.refusal = {}; // joinBest() tells anew
 }
@@ -273,7 +268,7 @@ bool Assembler::splitContested(std::size_t group)
   std::stable_sort(parts.begin(), parts.end(), [](const auto& x, const auto& y) { return x.size() < y.size(); });
   const std::vector<char> contested = mapTasks(parts.size(), input_.options.threads, [&](Index k) {
     const auto [part, rest] = divide(cluster, parts[k]);
-    if (part.scans.empty() || part.scans.size() > rest.scans.size() || hasKnown(part))
+    if (part.scans.empty() || part.scans.size() > rest.scans.size())
       return false;
     const ClusterPart placed{part, rest, judge_.judge(rest, part, Eigen::Isometry3d::Identity())};
     return PartCheck::isMisplaced(placed) || parts_.fitsElsewhere(placed) || parts_.mayBeMoved(placed, motions) ||
@@ -292,7 +287,7 @@ bool Assembler::splitTwins(std::size_t group)
   const ScanCluster cluster = groups_[group].cluster;
   for (const std::vector<Index>& listed : groups_[group].parts) {
     const auto [part, rest] = divide(cluster, listed);
-    if (part.scans.empty() || rest.scans.empty() || hasKnown(part))
+    if (part.scans.empty() || rest.scans.empty())
       continue;
     for (std::size_t other = 0; other < groups_.size(); ++other)
       if (other != group && groups_[other].cluster.scans.size() > 1 &&
@@ -311,7 +306,7 @@ void Assembler::split(std::size_t group, const std::vector<Index>& listed)
   const auto [part, rest] = divide(groups_[group].cluster, listed);
   std::vector<Index> alone;
   for (std::size_t i = 0; i < rest.scans.size(); ++i)
-    for (std::size_t k = 0; k < part.scans.size() && !contains(known_, rest.scans[i]); ++k)
+    for (std::size_t k = 0; k < part.scans.size(); ++k)
       if (checkRoughly(input_.scans[rest.scans[i]], input_.scans[part.scans[k]],
                        rest.poses[i].inverse() * part.poses[k], check_level)
               .overlap > one_room) {
@@ -321,7 +316,7 @@ void Assembler::split(std::size_t group, const std::vector<Index>& listed)
   const std::vector<std::vector<Index>> parts = std::move(groups_[group].parts);
   groups_.erase(groups_.begin() + group);
   const ScanCluster left = divide(rest, alone).second;
-  for (const ScanCluster& held : hasKnown(left) ? std::vector<ScanCluster>{left} : parts_.heldTogether(left))
+  for (const ScanCluster& held : parts_.heldTogether(left))
     groups_.insert(groups_.begin() + group, {next_id_++, held, parts});
   groups_.push_back({next_id_++, part, parts});
   const Refusal contested{RefusalReason::claimed, rest.scans.empty() ? -1 : rest.scans[0]};
@@ -339,14 +334,14 @@ ScanGraph Assembler::checked()
   ScanGraph graph;
   for (const Group& group : groups_)
     graph.clusters.push_back(group.cluster);
-  sortBySize(graph.clusters, known_.scans.empty() ? 0 : 1);
+  sortBySize(graph.clusters, 0);
   return graph;
 }
 } // namespace
 
-ScanGraph assembleScans(const GraphInput& input, const ScanCluster& known)
+ScanGraph assembleScans(const GraphInput& input)
 {
-  Assembler assembler(input, known);
+  Assembler assembler(input);
   assembler.startAlone();
   assembler.joinAll();
   return assembler.checked();
@@ -354,8 +349,7 @@ ScanGraph assembleScans(const GraphInput& input, const ScanCluster& known)
 
 ScanGraph assembleUnited(const GraphInput& input, const ScanGraph& first, const ScanGraph& second)
 {
-  const ScanCluster none;
-  Assembler assembler(input, none);
+  Assembler assembler(input);
   assembler.startUnited(first, second);
   return assembler.checked();
 }

@@ -6,9 +6,8 @@ namespace fresco::registration {
 /// their scans lead to, the one where most surfaces agree is tried first. Clusters are not joined where free space
 /// contradicts it, or while one of them also fits elsewhere: at a second place in the other, or in a third cluster in
 /// a way that contradicts the join. In the end, parts of clusters that also fit elsewhere in them are split off. Every
-/// usable scan has free space and saw around.
-/// @param known scans that already share a frame, which stays; may be empty
-ScanGraph assembleScans(const GraphInput& input, const ScanCluster& known);
+/// usable scan has free space and saw around, and no two share a frame from the start.
+ScanGraph assembleScans(const GraphInput& input);
 
 /// Unites two graphs of the same scans, see uniteClusters(), and splits off what also fits elsewhere: of two ways to join
 /// scans, either finds what the other one does not.
