@@ -56,7 +56,6 @@ private:
     return fits_.of(groups_[first].id, groups_[second].id);
   }
   RefusalReason refusal(const Join& candidate) const;
-  bool hasAlias(const Join& join) const;
   bool hasSecondPlace(const Join& join) const;
   bool fitsThird(std::size_t stays, std::size_t moves, const ClusterFit& fit, bool by_chains) const;
   bool areApart(std::size_t stays, std::size_t third, const ClusterFit& moved, const ClusterFit& other,
@@ -96,13 +95,6 @@ void Assembler::findAllFits()
 {
   fits_.findNew(groups_, input_.options.threads,
                 [&](const Group& first, const Group& second) { return fitter_.find(first.cluster, second.cluster); });
-}
-
-// Whether a scan of either group saw two places that look alike, and the other group fits at both.
-bool Assembler::hasAlias(const Join& join) const
-{
-  return hasAliasByScan(input_, {groups_[join.first].cluster, groups_[join.second].cluster},
-                        {0, 1, join.fit.T, join.fit.overlap});
 }
 
 bool Assembler::hasSecondPlace(const Join& join) const
@@ -192,7 +184,7 @@ Assembler::Joins Assembler::likelyJoins() const
 
 RefusalReason Assembler::refusal(const Join& candidate) const
 {
-  if (hasAlias(candidate))
+  if (hasAliasByScan(input_, groups_[candidate.first].cluster, groups_[candidate.second].cluster, candidate.fit.T))
     return RefusalReason::repeats;
   if (hasSecondPlace(candidate))
     return RefusalReason::second_place;

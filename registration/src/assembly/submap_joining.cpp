@@ -132,8 +132,7 @@ bool SubmapJoiner::fitsThird(std::size_t stays, std::size_t moves, const SubmapP
 
 bool SubmapJoiner::isContested(const Join& join) const
 {
-  const ScanCluster &first = groups_[join.first].cluster, &second = groups_[join.second].cluster;
-  return hasAliasByScan(input_, {first, second}, {0, 1, join.place.T, 0.0}) ||
+  return hasAliasByScan(input_, groups_[join.first].cluster, groups_[join.second].cluster, join.place.T) ||
          fitsThird(join.first, join.second, join.place) || fitsThird(join.second, join.first, reversed(join.place));
 }
 

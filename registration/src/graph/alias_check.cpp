@@ -28,11 +28,12 @@ VerifiedHypotheses soundHypotheses(const PairAlignment& pair)
   return sound;
 }
 
-// Whether a pose of the second cluster is another place than that of the join.
-bool isElsewhere(const GraphInput& input, const ScanCluster& first, const ClusterJoin& join, const Eigen::Isometry3d& T)
+// Whether a pose of a second cluster in the first one is another place than that of a join.
+bool isElsewhere(const GraphInput& input, const ScanCluster& first, const Eigen::Isometry3d& T,
+                 const Eigen::Isometry3d& joined)
 {
   const double size = input.scans[first.scans[0]].size;
-  return poseDistance(T, join.T_first_second, size) >= std::max<double>(3.0 * input.options.tolerance, 0.5 * size);
+  return poseDistance(T, joined, size) >= std::max<double>(3.0 * input.options.tolerance, 0.5 * size);
 }
 
 class ChainCheck {
@@ -84,7 +85,7 @@ ChainLinks ChainCheck::linksFrom(Index cluster) const
 bool ChainCheck::isAlias(const ChainLink& out, const ChainLink& back) const
 {
   const Eigen::Isometry3d T = out.T_from_to * back.T_from_to.inverse();
-  if (!isElsewhere(input_, clusters_[join_.first], join_, T))
+  if (!isElsewhere(input_, clusters_[join_.first], T, join_.T_first_second))
     return false;
   const double there = std::max({violation(join_.first, join_.second, T), violation(join_.first, out.to, out.T_from_to),
                                  violation(join_.second, out.to, back.T_from_to)});
@@ -108,18 +109,16 @@ bool ChainCheck::run() const
   return false;
 }
 
-// Poses of the second cluster at the other places of the certain aliases of one of the two.
-IsometryVector aliasPoses(const GraphInput& input, const ScanCluster& cluster, const ClusterJoin& join, bool is_first)
+// Motions of a cluster by the certain aliases of its scans, in its frame.
+IsometryVector aliasMotions(const GraphInput& input, const ScanCluster& cluster)
 {
-  IsometryVector poses;
+  IsometryVector motions;
   for (std::size_t k = 0; k < cluster.scans.size(); ++k)
     for (const ScanAlias& alias : input.scans[cluster.scans[k]].aliases)
       if (alias.certain)
-        for (const Eigen::Isometry3d& S : {alias.T, alias.T.inverse()}) {
-          const Eigen::Isometry3d own = cluster.poses[k] * S * cluster.poses[k].inverse();
-          poses.push_back(is_first ? own * join.T_first_second : join.T_first_second * own);
-        }
-  return poses;
+        for (const Eigen::Isometry3d& S : {alias.T, alias.T.inverse()})
+          motions.push_back(cluster.poses[k] * S * cluster.poses[k].inverse());
+  return motions;
 }
 } // namespace
 
@@ -147,17 +146,19 @@ bool hasAliasByChain(const GraphInput& input, const std::vector<ScanCluster>& cl
   return ChainCheck(input, clusters, join).run();
 }
 
-bool hasAliasByScan(const GraphInput& input, const std::vector<ScanCluster>& clusters, const ClusterJoin& join)
+bool hasAliasByScan(const GraphInput& input, const ScanCluster& first, const ScanCluster& second,
+                    const Eigen::Isometry3d& T_first_second)
 {
-  const ScanCluster &first = clusters[join.first], &second = clusters[join.second];
-  IsometryVector elsewhere = aliasPoses(input, first, join, true);
-  for (const Eigen::Isometry3d& T : aliasPoses(input, second, join, false))
-    elsewhere.push_back(T);
+  IsometryVector elsewhere;
+  for (const Eigen::Isometry3d& motion : aliasMotions(input, first))
+    elsewhere.push_back(motion * T_first_second);
+  for (const Eigen::Isometry3d& motion : aliasMotions(input, second))
+    elsewhere.push_back(T_first_second * motion);
   if (elsewhere.empty())
     return false;
-  const double here = worstViolation(input, first, second, join.T_first_second);
+  const double here = worstViolation(input, first, second, T_first_second);
   return std::any_of(elsewhere.begin(), elsewhere.end(), [&](const Eigen::Isometry3d& T) {
-    if (!isElsewhere(input, first, join, T))
+    if (!isElsewhere(input, first, T, T_first_second))
       return false;
     const double there = worstViolation(input, first, second, T);
     return there <= input.options.max_violation && !clearlyWorse(there, here);

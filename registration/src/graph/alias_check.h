@@ -21,5 +21,6 @@ double worstViolation(const GraphInput& input, const ScanCluster& first, const S
 bool hasAliasByChain(const GraphInput& input, const std::vector<ScanCluster>& clusters, const ClusterJoin& join);
 
 /// The same by an alias of a scan of either cluster.
-bool hasAliasByScan(const GraphInput& input, const std::vector<ScanCluster>& clusters, const ClusterJoin& join);
+bool hasAliasByScan(const GraphInput& input, const ScanCluster& first, const ScanCluster& second,
+                    const Eigen::Isometry3d& T_first_second);
 } // namespace fresco::registration
