@@ -21,14 +21,11 @@ public:
   void addTo(VerifiedHypotheses& hypotheses) const
   {
     constexpr std::size_t most_origins = 3; // of the best: each costs a refinement per alias
-    for (std::size_t k = 0, count = std::min(most_origins, hypotheses.size()); k < count; ++k) {
-      for (const ScanAlias& alias : pair_.a.aliases)
-        if (!alias.partial)
-          consider(hypotheses, k, {alias.T * hypotheses[k].T_a_b, alias.certain});
-      for (const ScanAlias& alias : pair_.b.aliases)
-        if (!alias.partial)
-          consider(hypotheses, k, {hypotheses[k].T_a_b * alias.T, alias.certain});
-    }
+    for (std::size_t k = 0, count = std::min(most_origins, hypotheses.size()); k < count; ++k)
+      for (const bool of_a : {true, false})
+        for (const ScanAlias& alias : (of_a ? pair_.a : pair_.b).aliases)
+          if (const Eigen::Isometry3d& T = hypotheses[k].T_a_b; !alias.partial)
+            consider(hypotheses, k, {of_a ? alias.T * T : T * alias.T, alias.certain});
     sortFalling(hypotheses, &VerifiedHypothesis::score);
   }
 
@@ -41,18 +38,14 @@ private:
       start.T_a_b = candidate.T;
       const VerifiedHypothesis verified = verifyHypothesis(pair_, start);
       known = findNear(pair_, hypotheses, verified.T_a_b, pair_.grain);
-      if (known == hypotheses.end() && acceptable(verified, candidate.certain))
+      const bool fits = verified.check.violation <= options_.verification.max_violation &&
+                        (candidate.certain || verified.check.overlap >= options_.verification.min_overlap) &&
+                        (!options_.upright || isUpright(verified.T_a_b));
+      if (known == hypotheses.end() && fits)
         known = hypotheses.insert(hypotheses.end(), verified);
     }
     if (known != hypotheses.end() && candidate.certain && known != hypotheses.begin() + origin)
       known->has_alias = hypotheses[origin].has_alias = true;
-  }
-
-  bool acceptable(const VerifiedHypothesis& verified, bool certain) const
-  {
-    return verified.check.violation <= options_.verification.max_violation &&
-           (certain || verified.check.overlap >= options_.verification.min_overlap) &&
-           (!options_.upright || isUpright(verified.T_a_b));
   }
 
   const PairGeometry& pair_;

@@ -5,6 +5,7 @@
 #include "scan/lists.h"
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <optional>
 namespace fresco::registration {
 namespace {
 constexpr double far_range = 1.5;     // of the scan's size: what lies beyond may have been seen through an opening
@@ -89,6 +90,8 @@ void keepLikely(const PreparedScan& scan, PoseHypotheses& hypotheses)
   keepLargest(hypotheses, most_refined, &PoseHypothesis::score);
 }
 
+using SharedAliases = std::vector<std::pair<Index, ScanAlias>>; // by scans
+
 bool isKnown(const PreparedScan& scan, const Eigen::Isometry3d& T)
 {
   return std::any_of(scan.aliases.begin(), scan.aliases.end(), [&](const ScanAlias& own) {
@@ -96,40 +99,26 @@ bool isKnown(const PreparedScan& scan, const Eigen::Isometry3d& T)
   });
 }
 
-// A partial alias of one scan as others have it that were taken in the same place, or in one that looks alike.
-class SharedAlias {
-public:
-  SharedAlias(const std::vector<PreparedScan>& scans, const std::vector<PairAlignment>& pairs, Index scan,
-              const ScanAlias& alias)
-  {
-    constexpr double rejecting_violation = 0.005; // of another scan taken there: more than twice what noise causes
-    for (const PairAlignment& pair : pairs) {
-      if ((pair.a != scan && pair.b != scan) || pair.hypotheses.empty() || scans[pair.a].blind || scans[pair.b].blind ||
-          pair.hypotheses[0].check.overlap < strong_overlap)
-        continue;
-      const Eigen::Isometry3d T_a_b = pair.hypotheses[0].T_a_b, T = pair.a == scan ? T_a_b.inverse() : T_a_b;
-      const Index other = pair.a == scan ? pair.b : pair.a;
-      shared_.push_back({other, alias});
-      shared_.back().second.T = T * alias.T * T.inverse();
-      const PreparedScan& seen = scans[other];
-      rejected_ =
-          rejected_ || checkPair(seen, seen, shared_.back().second.T, check_level).violation > rejecting_violation;
-    }
+// A partial alias of one scan as others have it that were taken in the same place, or in one that looks alike; nothing if
+// one of these contradicts it.
+std::optional<SharedAliases> sharedAlias(const std::vector<PreparedScan>& scans,
+                                         const std::vector<PairAlignment>& pairs, Index scan, const ScanAlias& alias)
+{
+  constexpr double rejecting_violation = 0.005; // of another scan taken there: more than twice what noise causes
+  SharedAliases shared;
+  for (const PairAlignment& pair : pairs) {
+    if ((pair.a != scan && pair.b != scan) || pair.hypotheses.empty() || scans[pair.a].blind || scans[pair.b].blind ||
+        pair.hypotheses[0].check.overlap < strong_overlap)
+      continue;
+    const Eigen::Isometry3d T_a_b = pair.hypotheses[0].T_a_b, T = pair.a == scan ? T_a_b.inverse() : T_a_b;
+    const Index other = pair.a == scan ? pair.b : pair.a;
+    auto& [seer, of_other] = shared.emplace_back(other, alias);
+    of_other.T = T * alias.T * T.inverse();
+    if (checkPair(scans[seer], scans[seer], of_other.T, check_level).violation > rejecting_violation)
+      return std::nullopt;
   }
-
-  bool rejected() const { return rejected_; }
-
-  void addTo(std::vector<PreparedScan>& scans) const
-  {
-    for (const auto& [scan, alias] : shared_)
-      if (!isKnown(scans[scan], alias.T))
-        scans[scan].aliases.push_back(alias);
-  }
-
-private:
-  std::vector<std::pair<Index, ScanAlias>> shared_;
-  bool rejected_ = false;
-};
+  return shared;
+}
 } // namespace
 
 bool isElsewhere(const PreparedScan& scan, const Eigen::Isometry3d& T)
@@ -176,19 +165,16 @@ ScanAliases findPartialAliases(const PreparedScan& scan, PoseHypotheses starts)
 
 void sharePartialAliases(std::vector<PreparedScan>& scans, const std::vector<PairAlignment>& pairs)
 {
-  std::vector<SharedAlias> shared;
-  for (std::size_t i = 0; i < scans.size(); ++i) {
-    ScanAliases kept;
-    for (const ScanAlias& alias : scans[i].aliases) {
-      if (alias.partial)
-        shared.emplace_back(scans, pairs, i, alias);
-      if (!alias.partial || !shared.back().rejected())
-        kept.push_back(alias);
-    }
-    scans[i].aliases = kept;
-  }
-  for (const SharedAlias& alias : shared)
-    if (!alias.rejected())
-      alias.addTo(scans);
+  SharedAliases all;
+  for (std::size_t i = 0; i < scans.size(); ++i)
+    removeIf(scans[i].aliases, [&](const ScanAlias& alias) {
+      const auto shared = alias.partial ? sharedAlias(scans, pairs, i, alias) : SharedAliases();
+      if (shared)
+        all.insert(all.end(), shared->begin(), shared->end());
+      return !shared;
+    });
+  for (const auto& [scan, alias] : all)
+    if (!isKnown(scans[scan], alias.T))
+      scans[scan].aliases.push_back(alias);
 }
 } // namespace fresco::registration
