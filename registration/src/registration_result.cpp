@@ -321,21 +321,22 @@ void Description::findCandidates(const std::vector<ScanCluster>& groups)
   constexpr double least_overlap = 0.02; // of two scans: of less, nobody can tell whether they fit
   const PlaceFinder finder(scans_, state_.tried, state_.plan_places, options_);
   const FreeSpaceJudge judge(scans_);
-  std::vector<std::vector<CandidatePlace>> found(groups.size());
-  forEachTask(groups.size(), options_.threads, [&](Index g) {
+  const auto found = mapTasks(groups.size(), options_.threads, [&](Index g) {
+    std::vector<CandidatePlace> candidates;
     Places places;
     for (Index larger = 0; larger < g; ++larger)
       for (const Place& place : finder.ofClusters(groups[larger], groups[g]))
         places.push_back(place);
     finder.judge(groups, judge, places);
     for (const Place& place : places) {
-      if (found[g].size() == most || place.fit.overlap < least_overlap)
+      if (candidates.size() == most || place.fit.overlap < least_overlap)
         continue;
-      CandidatePlace& candidate = found[g].emplace_back(finder.described(place));
+      CandidatePlace& candidate = candidates.emplace_back(finder.described(place));
       candidate.group = g;
       const Eigen::Matrix4d T_larger_scan = result_.scans[place.a].T_group_scan * candidate.T_beside_scan;
       candidate.T_larger_group = T_larger_scan * result_.scans[place.b].T_group_scan.inverse();
     }
+    return candidates;
   });
   for (const auto& candidates : found)
     result_.candidates.insert(result_.candidates.end(), candidates.begin(), candidates.end());

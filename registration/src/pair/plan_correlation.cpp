@@ -64,10 +64,7 @@ std::pair<Complex, Complex> PlanScores::at(Index row, Index column) const
   for (int layer = 0; layer < plan_layers; ++layer) {
     const Complex oa = a_[2 * layer * plane + place], fa = a_[(2 * layer + 1) * plane + place];
     const Complex ob = b_[2 * layer * plane + place], fb = b_[(2 * layer + 1) * plane + place];
-    const Complex to_occupied(blur * oa.real() - contradiction * fa.real(),
-                              blur * oa.imag() - contradiction * fa.imag());
-    const Complex to_free(both_free * fa.real() - contradiction * oa.real(),
-                          both_free * fa.imag() - contradiction * oa.imag());
+    const Complex to_occupied = blur * oa - contradiction * fa, to_free = both_free * fa - contradiction * oa;
     const auto add = [](Complex& sum, const Complex& x, const Complex& y, float sign) {
       sum +=
           Complex(x.real() * y.real() + sign * x.imag() * y.imag(), x.imag() * y.real() - sign * x.real() * y.imag());

@@ -6,8 +6,8 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <fresco/core/parallel.h>
 #include <map>
+#include <set>
 namespace fresco::registration {
 namespace {
 using Block = Eigen::Matrix<double, 6, Eigen::Dynamic>;
@@ -112,12 +112,12 @@ void CovarianceEstimator::invert()
 CellPull CovarianceEstimator::pullOf(Index begin, Index end) const
 {
   CellPull result;
+  std::set<Index> seers;
   for (Index k = begin; k < end; ++k)
     for (const Index scan : {joint_.links[joint_.cells[k].pair].source, joint_.links[joint_.cells[k].pair].target})
       if (!held(scan))
-        result.scans.push_back(scan);
-  std::sort(result.scans.begin(), result.scans.end());
-  result.scans.erase(std::unique(result.scans.begin(), result.scans.end()), result.scans.end());
+        seers.insert(scan);
+  result.scans.assign(seers.begin(), seers.end());
   const Index n = result.scans.size();
   std::vector<Index> at(count_, -1);
   for (Index k = 0; k < n; ++k)
@@ -258,11 +258,10 @@ Covariances CovarianceEstimator::informations() const
 // Per body, the scans that are pulled apart.
 std::map<std::vector<char>, std::pair<Index, Index>> CovarianceEstimator::bodies() const
 {
-  std::vector<std::pair<Index, Index>> pulled;
+  std::set<std::pair<Index, Index>> linked;
   for (const PairLink& link : joint_.links)
-    pulled.push_back(std::minmax(link.source, link.target));
-  std::sort(pulled.begin(), pulled.end());
-  pulled.erase(std::unique(pulled.begin(), pulled.end()), pulled.end());
+    linked.insert(std::minmax(link.source, link.target));
+  const std::vector<std::pair<Index, Index>> pulled(linked.begin(), linked.end());
   std::vector<std::vector<char>> along =
       mapTasks(pulled.size(), joint_.threads, [&](Index k) { return goingAlong(pulled[k].first, pulled[k].second); });
   std::map<std::vector<char>, std::pair<Index, Index>> found;
@@ -308,8 +307,8 @@ Covariances CovarianceEstimator::covariances() const
     if (k == 0 || joint_.cells[k].cell != joint_.cells[k - 1].cell)
       begins.push_back(k);
   begins.push_back(n);
-  std::vector<CellPull> pulls(begins.size() - 1);
-  parallelFor(pulls.size(), joint_.threads, [&](Index c) { pulls[c] = pullOf(begins[c], begins[c + 1]); });
+  const std::vector<CellPull> pulls =
+      mapTasks(begins.size() - 1, joint_.threads, [&](Index c) { return pullOf(begins[c], begins[c + 1]); });
   Covariances covariances(count_);
   forEachTask(count_, joint_.threads, [&](Index i) { covariances[i] = covarianceOf(i, pulls); });
   return covariances;
