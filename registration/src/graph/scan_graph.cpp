@@ -20,9 +20,7 @@ class GraphBuilder {
 public:
   GraphBuilder(const GraphInput& input, const ScanCluster& known)
       : input_(input), known_(known), judge_(input.scans), late_(input.scans.size(), 0)
-  {
-    begin();
-  }
+  {}
 
   ScanGraph build();
 
@@ -291,11 +289,11 @@ ScanGraph GraphBuilder::build()
 {
   constexpr int most_rounds = 6; // bounds the time
   for (int round = 0; round < most_rounds; ++round) {
+    begin();
     while (joinUnambiguous() || joinAmbiguous())
       ;
-    if (!setContestedAside() || round + 1 == most_rounds)
+    if (!setContestedAside())
       break;
-    begin();
   }
   while (joinUncontested() || joinBlind())
     ;
@@ -315,53 +313,6 @@ GraphInput::GraphInput(const std::vector<PreparedScan>& all, const std::vector<P
       pairs_of[scan].push_back(&pair);
 }
 
-bool contains(const ScanCluster& cluster, Index scan)
-{
-  return positionOf(cluster, scan) < static_cast<Index>(cluster.scans.size());
-}
-
-Index positionOf(const ScanCluster& cluster, Index scan)
-{
-  return std::find(cluster.scans.begin(), cluster.scans.end(), scan) - cluster.scans.begin();
-}
-
-const Eigen::Isometry3d& poseIn(const ScanCluster& cluster, Index scan)
-{
-  return cluster.poses[positionOf(cluster, scan)];
-}
-
-Index clusterOf(const std::vector<ScanCluster>& clusters, Index scan)
-{
-  return std::find_if(clusters.begin(), clusters.end(), [&](const auto& c) { return contains(c, scan); }) -
-         clusters.begin();
-}
-
-void append(ScanCluster& first, const ScanCluster& second, const Eigen::Isometry3d& T_first_second)
-{
-  for (std::size_t k = 0; k < second.scans.size(); ++k) {
-    first.scans.push_back(second.scans[k]);
-    first.poses.push_back(T_first_second * second.poses[k]);
-  }
-}
-
-std::pair<ScanCluster, ScanCluster> divide(const ScanCluster& cluster, const std::vector<Index>& listed)
-{
-  std::pair<ScanCluster, ScanCluster> sides;
-  for (std::size_t k = 0; k < cluster.scans.size(); ++k) {
-    const bool in = std::find(listed.begin(), listed.end(), cluster.scans[k]) != listed.end();
-    ScanCluster& side = in ? sides.first : sides.second;
-    side.scans.push_back(cluster.scans[k]);
-    side.poses.push_back(cluster.poses[k]);
-  }
-  return sides;
-}
-
-void sortBySize(std::vector<ScanCluster>& clusters, Index first)
-{
-  std::stable_sort(clusters.begin() + first, clusters.end(),
-                   [](const auto& x, const auto& y) { return x.scans.size() > y.scans.size(); });
-}
-
 std::vector<ScanCluster> startingClusters(const GraphInput& input, const ScanCluster& known)
 {
   std::vector<ScanCluster> clusters;
@@ -372,15 +323,6 @@ std::vector<ScanCluster> startingClusters(const GraphInput& input, const ScanClu
     if (input.scans[i].problem.empty() && !contains(known, i))
       clusters.push_back({{i}, {Eigen::Isometry3d::Identity()}});
   return clusters;
-}
-
-std::vector<ClusterPlace> placesOf(const std::vector<ScanCluster>& clusters, Index scan_count)
-{
-  std::vector<ClusterPlace> places(scan_count);
-  for (std::size_t c = 0; c < clusters.size(); ++c)
-    for (std::size_t k = 0; k < clusters[c].scans.size(); ++k)
-      places[clusters[c].scans[k]] = {static_cast<Index>(c), static_cast<Index>(k)};
-  return places;
 }
 
 ScanGraph buildScanGraph(const GraphInput& input, const ScanCluster& known)
