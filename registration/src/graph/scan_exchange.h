@@ -47,6 +47,12 @@ void fields(Archive& archive, ScanFeatures& features)
 }
 
 template <typename Archive>
+void fields(Archive& archive, PairCheck& check)
+{
+  archive(check.overlap, check.violation, check.violation_a, check.violation_b, check.violating_points, check.color);
+}
+
+template <typename Archive>
 void fields(Archive& archive, VerifiedHypothesis& hypothesis)
 {
   archive(hypothesis.T_a_b, hypothesis.check, hypothesis.votes, hypothesis.support, hypothesis.score,

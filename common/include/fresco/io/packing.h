@@ -22,6 +22,11 @@ public:
   }
 
 protected:
+  template <typename Value> // an empty one holds whatever memory held
+  void add(std::optional<Value>& value)
+  {
+    fields(static_cast<Archive&>(*this), value);
+  }
   template <typename Value>
   void add(Value& value)
   {
