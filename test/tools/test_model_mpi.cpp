@@ -90,9 +90,12 @@ TEST(ModelMpi, OtherVersionIsRefused)
   fs::create_directory(folder + "/bin");
   fs::create_directory_symlink(std::string(FRESCO_BINARY_DIR) + "/lib", folder + "/lib");
   put(folder + "/bin/fresco_model_mpi", get(binary("model_mpi")) + "x");
-  fs::permissions(folder + "/bin/fresco_model_mpi", fs::perms::owner_all);
-  const Outcome outcome =
-      runJob(folder, ranks(1, "model_mpi room out") + " : -np 1 " + folder + "/bin/fresco_model_mpi room out");
+  put(folder + "/by_rank", // mpirun of Open MPI 5.0.7 crashes when it is given two programs
+      "#!/bin/sh\n[ \"$OMPI_COMM_WORLD_RANK\" = 0 ] && exec " + binary("model_mpi") + " room out\nexec " + folder +
+          "/bin/fresco_model_mpi room out\n");
+  for (const char* program : {"/bin/fresco_model_mpi", "/by_rank"})
+    fs::permissions(folder + program, fs::perms::owner_all);
+  const Outcome outcome = runJob(folder, "mpirun -np 2 " + folder + "/by_rank");
   EXPECT_EQ(outcome.status, 1) << outcome.err;
   ASSERT_EQ(linesOf(outcome.err).size(), 1U) << outcome.err;
   EXPECT_NE(linesOf(outcome.err)[0].find("the version of fresco_model_mpi differs between rank 0 on "),
