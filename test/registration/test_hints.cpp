@@ -231,6 +231,7 @@ TEST(Hints, WhatIsOfOtherScansOrDamagedIsNotUsed)
     registerScans(sourceOf(scene, memory), {}, optionsWith({}));
     EXPECT_FALSE(memory.used);
   }
+  EXPECT_EQ(memory.bytes, whole); // as found anew
   registerScans(sourceOf(scene, memory), {}, optionsWith({}));
   EXPECT_TRUE(memory.used);
 }

@@ -49,18 +49,6 @@ void expectSame(const ScanRegistrationResult& found, const ScanRegistrationResul
   }
 }
 
-TEST(Packing, AnEmptyValueIsTheSameBytesWhateverItHeld)
-{
-  const auto packed = [](double held) {
-    std::optional<double> value = held;
-    value.reset();
-    Packer packer;
-    packer(value);
-    return packer.take();
-  };
-  EXPECT_EQ(packed(1.5), packed(-2.5));
-}
-
 TEST(RegistrationRanks, SameResultFromAnyNumber)
 {
   const ScannedScene scene = test::scanTwoRooms(20000);

@@ -1,6 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include <fresco/distributed/mesh_part.h>
+#include <fresco/io/packing.h>
+namespace fresco {
+template <typename Archive>
+void fields(Archive& archive, MeshPart::Run& run)
+{
+  archive(run.first, run.count);
+}
+} // namespace fresco
 namespace fresco::io {
 /// A rank's part as a mesh by itself.
 struct SeparateMesh {

@@ -4,6 +4,13 @@
 #include "pair/pair_ranking.h"
 #include "scan/lists.h"
 #include <fresco/io/packing.h>
+namespace fresco {
+template <typename Archive>
+void fields(Archive& archive, Refusal& refusal)
+{
+  archive(refusal.reason, refusal.scan, refusal.agree, refusal.contradict);
+}
+} // namespace fresco
 namespace fresco::registration {
 // What ranks tell each other of scans and pairs, see Packer.
 

@@ -22,23 +22,18 @@ public:
   }
 
 protected:
-  template <typename Value> // an empty one holds whatever memory held
-  void add(std::optional<Value>& value)
-  {
-    fields(static_cast<Archive&>(*this), value);
-  }
   template <typename Value>
   void add(Value& value)
   {
     Archive& archive = static_cast<Archive&>(*this);
-    if constexpr (std::is_trivially_copyable_v<Value>)
+    if constexpr (std::is_arithmetic_v<Value> || std::is_enum_v<Value>)
       archive.block(&value, sizeof(value));
     else
       fields(archive, value);
   }
 };
 
-/// Values as bytes, for messages between ranks on machines of one kind. A struct that is no plain memory needs a function
+/// Values as bytes, for messages between ranks on machines of one kind. A struct needs a function
 /// `template <typename Archive> void fields(Archive& archive, Struct& s) { archive(s.first, s.second); }` beside it, which
 /// serves both directions.
 class Packer : public ArchiveBase<Packer> {
