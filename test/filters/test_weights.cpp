@@ -14,7 +14,7 @@ TEST(Weights, OfTheLibraryAreThereAndFinite)
   for (const auto& [weights, name, rows, columns] : {std::tuple{&score, "of_candidate", 44, 16},
                                                      {&first, "first_weights", 154, 64},
                                                      {&second, "first_weights", 455, 96}}) {
-    const float* values = weights->values(name, {rows, columns});
+    const float* values = weights->values(name, {std::uint32_t(rows), std::uint32_t(columns)});
     for (int i = 0; i < rows * columns; ++i)
       ASSERT_TRUE(std::isfinite(values[i])) << name << " " << i;
   }

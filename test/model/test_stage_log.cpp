@@ -104,8 +104,9 @@ TEST(StageLog, BelievesNoFileThatWasDamagedEmptiedOrLost)
       harm(file);
       EXPECT_NE(job.run(true), Runs()) << file << " was " << how;
       EXPECT_EQ(job.run(true), Runs()) << file;
-      if (fs::path(file).extension() != ".json")
+      if (fs::path(file).extension() != ".json") {
         EXPECT_EQ(readFile(file), before) << file << " was " << how;
+      }
     }
   for (const std::string& file : inputs) {
     damage(file);

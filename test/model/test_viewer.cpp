@@ -108,7 +108,7 @@ ViewerOptions before()
 {
   const Eigen::Vector3d middle = board().mesh.origin;
   ViewerOptions options;
-  options.places = {{"In front", middle + Eigen::Vector3d(0, -3, 0), middle, 60}};
+  options.places = {{"In front", middle + Eigen::Vector3d(0, -3, 0), middle, 60, "Views", {}}};
   return options;
 }
 

@@ -100,8 +100,9 @@ TEST(Hints, TruePosesPlaceWhatWasApart)
   EXPECT_LT(relativeError(result.poses, twins()).translation, 0.02);
   for (std::size_t i = 0; i < result.scans.size(); ++i) {
     EXPECT_EQ(result.scans[i].hint.empty(), alone.scans[i].placed) << i;
-    if (alone.poses[i])
+    if (alone.poses[i]) {
       EXPECT_LT((*result.poses[i] - *alone.poses[i]).norm(), 0.02) << "the frame moves with " << i;
+    }
   }
   EXPECT_EQ(result.hints.size(), hints.size());
 }
@@ -241,8 +242,9 @@ TEST(Hints, EachScanWithoutAPlaceHasAReason)
   const ScanRegistrationResult result = registerTwins({});
   for (const ScanResult& scan : result.scans) {
     EXPECT_EQ(scan.placed, scan.refusal.reason == RefusalReason::none);
-    if (!scan.placed && scan.refusal.reason != RefusalReason::loose)
+    if (!scan.placed && scan.refusal.reason != RefusalReason::loose) {
       EXPECT_EQ(scan.problem, refusalText(scan.refusal, optionsWith({})));
+    }
   }
   const auto json = nlohmann::json::parse(registrationJson(result, optionsWith({})));
   EXPECT_EQ(json["candidates"].size(), result.candidates.size());

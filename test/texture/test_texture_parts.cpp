@@ -32,7 +32,7 @@ struct BoardScene {
     TextureOptions options;
     options.threads = threads;
     const RayScene scene(mesh);
-    const ViewList list{projectors, photos, std::move(used), {0, 1}, 0.2};
+    const ViewList list{projectors, photos, std::move(used), {0, 1}, 0.2, {}, {}};
     return cutHiddenParts(patches, {&scene, list, options}, coarseMaps({&scene, list, options}));
   }
 

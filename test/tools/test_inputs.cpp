@@ -118,7 +118,7 @@ TEST_F(Inputs, CamerasOfEachProgramShowTheSame)
 }
 
 INSTANTIATE_TEST_SUITE_P(All, EachLayout, testing::ValuesIn(simulation::layoutNames()),
-                         [](const auto& info) { return info.param; });
+                         [](const auto& test) { return test.param; });
 
 /// Mean distance of the mesh's vertices from the walls of the room, and of these from the mesh's box.
 void expectRoom(const std::string& file, const Eigen::Vector3d& corner, double tolerance)
@@ -166,7 +166,7 @@ TEST_P(WholeChain, MakesTheRoom)
 INSTANTIATE_TEST_SUITE_P(Some, WholeChain,
                          testing::Values("one_cloud", "cloud_utm", "cloud_normals", "cloud_trajectory", "cloud_times",
                                          "matterpak", "colmap", "metashape", "bundler", "scanner_export"),
-                         [](const auto& info) { return info.param; });
+                         [](const auto& test) { return test.param; });
 
 /// Frames show the walls to some height only.
 class FramesChain : public Inputs, public testing::WithParamInterface<std::string> {};
@@ -188,7 +188,7 @@ TEST_P(FramesChain, GivesTheSameSurfaceWhateverTheLayout)
 }
 
 INSTANTIATE_TEST_SUITE_P(Some, FramesChain, testing::Values("tum", "scannet", "stray", "polycam", "matterport"),
-                         [](const auto& info) { return info.param; });
+                         [](const auto& test) { return test.param; });
 
 /// Points of structure from motion are few: a rough room.
 TEST_F(Inputs, PhotographsOfAModelGiveARoughRoom)

@@ -293,7 +293,7 @@ TEST_P(OneThingWrong, IsOneLineWithFileAndCure)
 }
 
 INSTANTIATE_TEST_SUITE_P(All, OneThingWrong, testing::Range(std::size_t{0}, damages().size()),
-                         [](const auto& info) { return damages()[info.param].name; });
+                         [](const auto& test) { return damages()[test.param].name; });
 
 /// Lists whose rows lie in another order say the same.
 TEST_F(Inputs, FramesInAnotherOrder)

@@ -84,19 +84,19 @@ bool tellsViewpoint(const PointSet& set)
 Standing standpointOf(const ScanPath& scan)
 {
   if (holdsFaces(scan.file))
-    return {Standpoint::many};
+    return {Standpoint::many, {}};
   constexpr double most_hidden = 0.05; // 0.01 to 0.04 of scans of rooms, 0.08 to 0.3 of merged ones: docs/inputs.md
   if (holdsScans(scan.file)) {
     const std::vector<ScanInfo> infos = readScanInfos(scan.file);
     const ScanInfo& info = infos.at(std::max<Index>(scan.scan, 0));
     const bool placed = info.has_pose && !info.T_file_scan.matrix().isIdentity(); // else maybe all scans as one
     if (placed || info.sensor || infos.size() > 1) // files of several scans keep them apart
-      return {Standpoint::origin};
+      return {Standpoint::origin, {}};
   }
   PointSet first;
   const Points points = sampleOf(scan, first);
   if (tellsViewpoint(first))
-    return {first.viewpoints.cols() == 1 ? Standpoint::origin : Standpoint::many};
+    return {first.viewpoints.cols() == 1 ? Standpoint::origin : Standpoint::many, {}};
   if (points.cols() == 0)
     throw std::runtime_error(scan.name() + ": no points in it");
   if (points.cols() < 2)
