@@ -24,12 +24,11 @@ CCACHE_SLOPPINESS=pch_defines,time_macros exec '@FRESCO_CCACHE@' \"$@\"\n" @ONLY
 endif()
 
 # Headers of Eigen and of the standard library are read once per target. Without, files must name all that they use: the
-# builds with sanitizers hold them to that.
-option(FRESCO_PRECOMPILE "Precompile Eigen's headers" ON)
+# builds with sanitizers hold them to that, and -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON.
 function(fresco_precompile target)
   get_target_property(sources ${target} SOURCES)
   list(LENGTH sources count)
-  if(NOT FRESCO_PRECOMPILE OR FRESCO_SANITIZE OR count LESS 4) # fewer files do not pay for it
+  if(FRESCO_SANITIZE OR count LESS 4) # fewer files do not pay for it
     return()
   endif()
   foreach(source IN LISTS sources)
