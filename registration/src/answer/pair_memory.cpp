@@ -25,13 +25,7 @@ std::string memoryKey(const ScanSurvey& survey, const std::vector<Pose>& start, 
 {
   Packer packer;
   for (ScanSketch scan : survey.scans)
-    packer(scan.hash);
-  for (ScanSketch scan : survey.scans)
-    packer(scan.look);
-  for (ScanSketch scan : survey.scans)
-    packer(scan.size);
-  for (ScanSketch scan : survey.scans)
-    packer(scan.problem);
+    packer(scan.hash, scan.look, scan.size, scan.problem);
   for (Pose pose : start)
     packer(pose);
   float voxel = options.voxel, min_overlap = options.min_overlap, max_violation = options.max_violation;

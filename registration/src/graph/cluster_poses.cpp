@@ -8,11 +8,12 @@ namespace {
 PoseEdges edgesOf(const GraphInput& input, const ScanCluster& cluster, const PoseGraphOptions& options)
 {
   constexpr double edge_reach = 6.0; // tolerances between a pair and the poses of its cluster: beyond, it is wrong
+  const Index n = cluster.scans.size();
   PoseEdges edges;
   for (const PairAlignment& pair : input.pairs) {
-    if (!contains(cluster, pair.a) || !contains(cluster, pair.b))
-      continue;
     const Index a = positionOf(cluster, pair.a), b = positionOf(cluster, pair.b);
+    if (a == n || b == n)
+      continue;
     const Eigen::Isometry3d T = cluster.poses[a].inverse() * cluster.poses[b];
     for (const VerifiedHypothesis& hypothesis : pair.hypotheses)
       if (poseDistance(T, hypothesis.T_a_b, options.size) < edge_reach * options.tolerance)

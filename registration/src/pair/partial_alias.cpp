@@ -138,6 +138,7 @@ PoseHypotheses matchFarToNear(const PreparedScan& scan, const ScanFeatures& feat
 
 ScanAliases findPartialAliases(const PreparedScan& scan, PoseHypotheses starts)
 {
+  constexpr double hopeless_violation = 10.0 * noise_violation; // before the last refinement
   keepLikely(scan, starts);
   ScanAliases found;
   IsometryVector tried;
@@ -147,7 +148,7 @@ ScanAliases findPartialAliases(const PreparedScan& scan, PoseHypotheses starts)
     const bool known = std::any_of(tried.begin(), tried.end(), [&](const Eigen::Isometry3d& other) {
       return poseDistance(along, other, scan.size) < scan.levels[1].voxel;
     });
-    if (known || check.violation > 10.0 * noise_violation || check.overlap < least_overlap || !isElsewhere(scan, along))
+    if (known || check.violation > hopeless_violation || check.overlap < least_overlap || !isElsewhere(scan, along))
       continue;
     tried.push_back(along);
     for (const Eigen::Isometry3d& start : {rough, along}) {

@@ -67,6 +67,7 @@ Histogram spfh(const ScanLevel& level, Index i, const std::vector<Neighbor>& nei
   normalizeParts(histogram);
   return histogram;
 }
+
 // Fast point feature histograms of all points of a level (Rusu, Blodow, Beetz 2009, "Fast Point Feature Histograms
 // (FPFH) for 3D Registration"): simplified histograms of three angles (SPFH), then FPFH = SPFH + sum of the
 // neighbours' SPFH, each by 1 / distance. Unlike there, each column is the square root of the histogram and has unit
@@ -95,6 +96,7 @@ Histograms computeFpfh(const ScanLevel& level, float radius, int threads)
   });
   return full;
 }
+
 // Points in falling order of how much they differ from the mean, each at least `spacing` from those before.
 std::vector<Index> distinctivePoints(const ScanLevel& level, const Histograms& histograms, float spacing, Index most)
 {
@@ -128,8 +130,9 @@ std::vector<Index> distinctivePoints(const ScanLevel& level, const Histograms& h
 ScanFeatures describeScan(const PreparedScan& scan, int threads)
 {
   constexpr Index most = 1200;
+  constexpr float radius = 5.f; // of the neighbourhood that is described, voxels
   const ScanLevel& level = scan.levels[1];
-  const Histograms histograms = computeFpfh(level, 5.f * level.voxel, threads);
+  const Histograms histograms = computeFpfh(level, radius * level.voxel, threads);
   const std::vector<Index> kept = distinctivePoints(level, histograms, 1.2f * level.voxel, most);
   return {level.points(Eigen::all, kept), level.normals(Eigen::all, kept), histograms(Eigen::all, kept),
           findPlanes(scan)};
