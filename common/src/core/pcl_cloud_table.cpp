@@ -53,10 +53,11 @@ PointTable tableOfCloud(const pcl::PCLPointCloud2& cloud)
   }
   table.allocate(rows);
   stored.stride = cloud.point_step;
-  stored.rows = cloud.width;
-  for (std::size_t y = 0; rows > 0 && y < cloud.height; ++y) {
-    stored.view = cloud.data.data() + y * cloud.row_step;
-    copyRows(stored, table, y * cloud.width);
+  const bool has_gaps = cloud.row_step != std::size_t{cloud.width} * cloud.point_step;
+  stored.rows = has_gaps ? cloud.width : rows;
+  for (std::size_t row = 0; row < rows; row += stored.rows) {
+    stored.view = cloud.data.data() + row / cloud.width * cloud.row_step;
+    copyRows(stored, table, row);
   }
   if (cloud.height > 1) {
     table.width = cloud.width;

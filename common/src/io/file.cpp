@@ -12,10 +12,6 @@
 #include <sys/stat.h>
 namespace fresco {
 namespace {
-[[noreturn]] void fail(const std::string& path, const std::string& reason)
-{
-  throw std::runtime_error(path + ": " + reason);
-}
 /// Files that were read, by device and number, with the name that was used first.
 struct Inputs {
   std::mutex mutex;
@@ -81,7 +77,7 @@ try {
   file.read(0, content.data(), content.size());
   return content;
 } catch (const std::runtime_error& error) {
-  fail(path, error.what());
+  throw std::runtime_error(path + ": " + error.what());
 }
 
 std::string extension(const std::string& path)
@@ -99,7 +95,8 @@ std::string fileBelow(const std::string& folder, const std::string& name)
     std::string shown = name.substr(0, 100);
     std::replace_if(
         shown.begin(), shown.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; }, '?');
-    fail(folder.empty() ? "." : folder, "names the file '" + shown + "', which is not below its folder");
+    throw std::runtime_error((folder.empty() ? "." : folder) + ": names the file '" + shown +
+                             "', which is not below its folder");
   }
   return (std::filesystem::path(folder) / path).string();
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "io/points/scan_reader.h"
+#include "io/files/remarks.h"
 #include <algorithm>
 #include <filesystem>
 #include <fresco/io/image_io.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Every format of cameras. A new one is a row of the table below and, in docs/inputs.md, a row of the list.
 #include "io/cameras/camera_format.h"
-#include "io/points/scan_reader.h"
+#include "io/files/remarks.h"
 #include <algorithm>
 #include <cmath>
 #include <filesystem>

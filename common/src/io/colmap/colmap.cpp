@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "io/colmap/colmap_rows.h"
 #include "io/colmap/lens_models.h"
-#include "io/points/scan_reader.h"
+#include "io/files/remarks.h"
 #include <algorithm>
 #include <cmath>
 #include <filesystem>

@@ -23,7 +23,7 @@ public:
   bool next(bool may_be_empty = false)
   {
     if (binary_)
-      return rows_-- > 0;
+      return rows_ > 0 && rows_-- > 0;
     while (!lines_.done()) {
       line_ = lines_.line();
       const std::string_view line = lines_.restOfLine();

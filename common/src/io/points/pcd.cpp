@@ -217,6 +217,7 @@ void readAscii(const PcdHeader& header, const PointTable& stored, PointTable& ta
       }
   repackWholeNumbers(table);
 }
+
 std::string headerText(const PointTable& table, bool compressed)
 {
   std::string fields, sizes, types, counts, viewpoint;

@@ -5,7 +5,6 @@
 #include <fresco/core/point_table.h>
 #include <fresco/io/scan_file.h>
 #include <memory>
-#include <new>
 #include <string>
 #include <vector>
 namespace fresco::io {
@@ -49,18 +48,6 @@ try {
 } catch (const std::runtime_error& error) {
   errors.push_back(what + ": " + error.what());
   return false;
-}
-
-/// use(); every error is a std::runtime_error "PATH: reason".
-template <typename Use>
-auto namingFile(const std::string& path, const Use& use) -> decltype(use())
-try {
-  const FileInHand file(path);
-  return use();
-} catch (const std::bad_alloc&) {
-  throw std::runtime_error(path + ": not enough memory");
-} catch (const std::exception& error) {
-  throw std::runtime_error(path + ": " + error.what());
 }
 
 /// One scan in its own frame, or the whole file. @throws std::runtime_error "PATH: reason"

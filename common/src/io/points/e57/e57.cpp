@@ -81,6 +81,7 @@ Eigen::Vector3d fromSpherical(double range, double azimuth, double elevation)
   return range * Eigen::Vector3d(std::cos(elevation) * std::cos(azimuth), std::cos(elevation) * std::sin(azimuth),
                                  std::sin(elevation));
 }
+
 /// The largest values of red, green and blue, of channels of one kind together; those of a scan that says its limits by
 /// the first records.
 std::array<double, 3> largestColors(PagedFile& file, const Scan& scan)
