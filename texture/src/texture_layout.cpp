@@ -10,11 +10,7 @@ using namespace texture;
 TexturedMesh layOutTexture(TriangleMesh mesh, const TextureLayoutOptions& options)
 {
   require(options.texel > 0, "texture: a texel of ", options.texel);
-  TextureOptions shared;
-  shared.texel = options.texel;
-  shared.atlas = options.atlas;
-  shared.border = options.border;
-  shared.threads = options.threads;
+  const TextureOptions shared = layoutOptions(options);
   validate(mesh, {}, shared);
   TextureResult result;
   result.model.mesh = std::move(mesh);

@@ -11,6 +11,18 @@ Eigen::VectorXf patchResolutions(const PatchMesh& patches, const std::vector<Pro
 /// Side of a pixel on the surface, mesh units, median over the patches; 0 where nothing is seen.
 double pixelSize(const Eigen::VectorXf& resolution);
 
+/// Those of what lays out charts as TextureOptions does.
+template <class Options>
+TextureOptions layoutOptions(const Options& options)
+{
+  TextureOptions out;
+  out.texel = options.texel;
+  out.atlas = options.atlas;
+  out.border = options.border;
+  out.threads = options.threads;
+  return out;
+}
+
 /// Lays the mesh out into charts and packs them: fills the model's texture coordinates, its empty atlases and masks,
 /// and the figures that say how. Where the photographs would give more texels than memory should hold, texels are made
 /// larger, with a warning.

@@ -17,19 +17,17 @@ struct Links {
   std::vector<float> over_crease; ///< by node, with which it takes the colours of its vertex's other nodes
 };
 
-/// N. Nodes hardly take colours from beyond a crease, unless nothing at all is seen on their side: then these are the
-/// best guess.
+/// N. Nodes hardly take colours from beyond a crease, unless nothing is seen on their side: these are the best guess.
 std::vector<float> weightsOverCreases(const PatchMesh& patches, const SmoothCorners& corners,
-                                      const Points& patch_colors)
+                                      const std::vector<char>& seen)
 {
   const std::vector<int> pieces = smoothPieces(patches);
-  std::vector<char> seen(patches.size(), 0); // by piece
+  std::vector<char> has_seen(patches.size(), 0); // by piece
   for (Index i = 0; i < patches.size(); ++i)
-    if (patch_colors(0, i) >= 0)
-      seen[pieces[i]] = 1;
+    has_seen[pieces[i]] |= seen[i];
   std::vector<float> weights(corners.size(), 1.f);
   for (Index i = 0; i < patches.size(); ++i)
-    for (int k = 0; k < 3 && seen[pieces[i]]; ++k)
+    for (int k = 0; k < 3 && has_seen[pieces[i]]; ++k)
       weights[corners.node(k, i)] = least_weight;
   return weights;
 }
@@ -65,17 +63,19 @@ struct Known {
   std::vector<char> fixed; ///< N: value is given, not continued
 };
 
-Known seenNodes(const PatchMesh& patches, const SmoothCorners& corners, const Points& patch_colors)
+Known seenNodes(const PatchMesh& patches, const SmoothCorners& corners, const Points& patch_colors,
+                const std::vector<char>& seen)
 {
   Known known{Points::Zero(3, corners.size()), Points::Zero(3, corners.size()), std::vector<char>(corners.size(), 0)};
   Eigen::VectorXf weight = Eigen::VectorXf::Zero(corners.size());
   for (Index i = 0; i < patches.size(); ++i)
     for (int k = 0; k < 3; ++k) {
       const int v = corners.node(k, i);
-      const float area = patch_colors(0, i) < 0 ? 0 : patches.areas[i];
+      const float area = seen[i] ? patches.areas[i] : 0;
       known.value.col(v) += area * patch_colors.col(i);
       weight[v] += area;
-      known.least.col(v) = known.least.col(v).cwiseMax((-1 - patch_colors.col(i).array()).matrix());
+      if (!seen[i])
+        known.least.col(v) = known.least.col(v).cwiseMax(patch_colors.col(i));
     }
   for (Index v = 0; v < weight.size(); ++v)
     if (weight[v] > 0) {
@@ -159,18 +159,21 @@ Points atCorners(const SmoothCorners& corners, const Points& value)
 }
 } // namespace
 
-Points diffuseColors(const PatchMesh& patches, const Points& patch_colors, int threads)
+Points diffuseColors(const PatchMesh& patches, const Points& colors, const std::vector<char>& clipped, int threads)
 {
   constexpr float mid_grey = 128.f;
   const SmoothCorners corners = joinSmoothCorners(patches);
-  Known known = seenNodes(patches, corners, patch_colors);
+  std::vector<char> seen(patches.size());
+  for (Index i = 0; i < patches.size(); ++i)
+    seen[i] = colors(0, i) >= 0 && !clipped[i];
+  Known known = seenNodes(patches, corners, colors, seen);
   const bool colored = patches.colors.cols() > 0;
   Eigen::Vector3f mean = Eigen::Vector3f::Zero();
   float count = 0;
   for (Index v = 0; v < known.value.cols(); ++v) {
-    for (Points* colors : {&known.value, &known.least})
+    for (Points* values : {&known.value, &known.least})
       if (colored)
-        colors->col(v) -= patches.colors.col(corners.vertex[v]);
+        values->col(v) -= patches.colors.col(corners.vertex[v]);
     mean += known.fixed[v] * known.value.col(v);
     count += known.fixed[v];
   }
@@ -178,7 +181,7 @@ Points diffuseColors(const PatchMesh& patches, const Points& patch_colors, int t
   for (Index v = 0; v < known.value.cols(); ++v)
     if (!known.fixed[v])
       known.value.col(v) = mean.cwiseMax(known.least.col(v));
-  const Links links = linksOf(corners, weightsOverCreases(patches, corners, patch_colors));
+  const Links links = linksOf(corners, weightsOverCreases(patches, corners, seen));
   smooth(links, spread(links, corners.vertex, known), known.least, threads, known.value);
   if (colored)
     for (Index v = 0; v < corners.size(); ++v)

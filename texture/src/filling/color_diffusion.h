@@ -5,7 +5,8 @@ namespace fresco::texture {
 /// Colour of every corner of the patches: of vertices of seen patches the mean over these, of the others a smooth
 /// continuation over the mesh, which hardly crosses creases: a vertex there has one colour for each side. Where the mesh
 /// has colours of its own, what is continued is the difference from them.
-/// @param patch_colors 3xP 0..255; -1 - c where it is only known to be c at least: -1 where unseen
+/// @param colors 3xP 0..255; -1 where unseen
+/// @param clipped P: the patch's colour is the least that it may be, and is continued
 /// @return 3x3P, three columns per patch, 0..255; mid grey where nothing is known
-Points diffuseColors(const PatchMesh& patches, const Points& patch_colors, int threads);
+Points diffuseColors(const PatchMesh& patches, const Points& colors, const std::vector<char>& clipped, int threads);
 } // namespace fresco::texture

@@ -14,17 +14,6 @@
 namespace fresco {
 using namespace texture;
 namespace {
-/// Those that say how the atlas is laid out.
-TextureOptions layoutOptions(const PointTextureOptions& options)
-{
-  TextureOptions out;
-  out.texel = options.texel;
-  out.atlas = options.atlas;
-  out.border = options.border;
-  out.threads = options.threads;
-  return out;
-}
-
 void validate(const TriangleMesh& mesh, const PointSet& points, const PointTextureOptions& options)
 {
   texture::validate(mesh, {}, layoutOptions(options));
@@ -74,7 +63,9 @@ Points paintModel(const Paint& paint, const PaintedPart& part, SampledPatches& s
   const PaintScene scene{patches, charts, view, slots, options.threads};
   std::vector<Image>& atlases = result.model.atlases;
   paintSamples(scene, {paint.gaussian, paint.values}, view, part.patches, result);
-  paintUnseen(scene, diffuseColors(patches, knownColors(scene, part, atlases), options.threads), atlases, result.masks);
+  const std::vector<char> clipped(patches.size());
+  const Points around = diffuseColors(patches, knownColors(scene, part, atlases), clipped, options.threads);
+  paintUnseen(scene, around, atlases, result.masks);
   fillGaps(charts, options.threads, atlases);
   return part.fill_colors ? takeOwn(scene, part, result) : Points();
 }

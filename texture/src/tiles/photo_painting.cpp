@@ -161,11 +161,7 @@ Points paintModel(const Job& job, ViewChoice& choice, const PaintedPart& part)
 
   steps.begin("inpainting", 0.9);
   const std::vector<char> clipped = clippedPatches(scene, candidates);
-  Points known = knownColors(scene, part, atlases);
-  for (std::size_t i = 0; i < clipped.size(); ++i)
-    if (clipped[i])
-      known.col(i) = -1 - known.col(i).array().max(0.f);
-  const Points around = diffuseColors(patches, known, options.threads);
+  const Points around = diffuseColors(patches, knownColors(scene, part, atlases), clipped, options.threads);
   paintUnseen(scene, around, atlases, result.masks);
   continueClipped(scene, sources, clipped, around, atlases);
 
