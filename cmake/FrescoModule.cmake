@@ -64,11 +64,9 @@ endfunction()
 function(fresco_add_test name)
   cmake_parse_arguments(ARG "" "SHARDS" "SOURCES;DEPENDS" ${ARGN})
   add_executable(test_${name} ${ARG_SOURCES})
-  target_link_libraries(test_${name} PRIVATE ${ARG_DEPENDS} GTest::gtest_main fresco_warnings)
+  target_link_libraries(test_${name} PRIVATE ${ARG_DEPENDS} fresco_test_folders GTest::gtest_main fresco_warnings)
   target_include_directories(test_${name} PRIVATE ${PROJECT_SOURCE_DIR}/test ${PROJECT_SOURCE_DIR}/tools
                              ${PROJECT_SOURCE_DIR}/simulation/include)
-  target_compile_definitions(test_${name} PRIVATE FRESCO_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
-                             FRESCO_BINARY_DIR="${PROJECT_BINARY_DIR}")
   target_link_options(test_${name} PRIVATE -Wl,--as-needed)
   fresco_precompile(test_${name} <gtest/gtest.h>)
   set(timeout 600)

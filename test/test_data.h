@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+#include "test_folders.h"
 #include <cstdlib>
 #include <filesystem>
 #include <gtest/gtest.h>
@@ -10,15 +11,15 @@ namespace fresco::test {
 inline std::string dataFolder()
 {
   const char* given = std::getenv("FRESCO_DATA");
-  return given ? given : std::string(FRESCO_SOURCE_DIR) + "/../shared/data";
+  return given ? given : projectFolder() + "/../shared/data";
 }
 
 /// A fresh, empty folder for the output of the running test.
 inline std::string scratchFolder()
 {
   const auto* info = testing::UnitTest::GetInstance()->current_test_info();
-  const auto folder = std::filesystem::path(FRESCO_BINARY_DIR) / "scratch" /
-                      (std::string(info->test_suite_name()) + "." + info->name());
+  const auto folder =
+      std::filesystem::path(buildFolder()) / "scratch" / (std::string(info->test_suite_name()) + "." + info->name());
   std::filesystem::remove_all(folder);
   std::filesystem::create_directories(folder);
   return folder.string();

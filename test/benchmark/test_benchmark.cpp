@@ -66,7 +66,7 @@ TEST(BenchmarkProcess, ReportsAreReadBack)
 
 TEST(BenchmarkCases, TheTableOfTheProjectIsValid)
 {
-  const CaseTable table = readCases(std::string(FRESCO_SOURCE_DIR) + "/benchmark/cases/cases.json");
+  const CaseTable table = readCases(test::projectFolder() + "/benchmark/cases/cases.json");
   EXPECT_GE(table.cases.size(), 4U);
   for (const Case& c : table.cases) {
     EXPECT_EQ(c.runs.size(), 3U) << c.name;

@@ -172,7 +172,7 @@ TEST(Gltf, ThePlaceInTheWorldIsKeptInTheNode)
 
 TEST(Gltf, KhronosValidatorFindsNothing)
 {
-  const std::string folder = test::scratchFolder(), modules = std::string(FRESCO_BINARY_DIR) + "/npm";
+  const std::string folder = test::scratchFolder(), modules = test::buildFolder() + "/npm";
   makeFolder(modules);
   const std::string install = "npm install --no-audit --no-fund --prefix " + modules +
                               " gltf-validator@2.0.0-dev.3.10 > " + folder + "/npm.txt 2>&1";
@@ -199,7 +199,7 @@ TEST(Gltf, KhronosValidatorFindsNothing)
   writeModel(folder + "/plain.glb", bare);
   writeTileset(folder, mapped.model, {mapped.model.mesh.faceCount() / 2});
   writeFile(folder + "/broken.glb", readFile(folder + "/plain.glb").substr(0, 300));
-  const std::string validate = std::string(FRESCO_SOURCE_DIR) + "/scripts/validate_gltf " + modules + "/node_modules ";
+  const std::string validate = test::projectFolder() + "/scripts/validate_gltf " + modules + "/node_modules ";
   for (const char* name : {"mapped", "exact", "packed", "placed", "large", "bare", "plain", "tile_0", "tile_1"})
     EXPECT_EQ(std::system((validate + folder + "/" + name + ".glb").c_str()), 0) << name;
   EXPECT_NE(std::system((validate + folder + "/broken.glb > /dev/null").c_str()), 0);

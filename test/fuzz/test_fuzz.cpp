@@ -54,7 +54,7 @@ TEST(Fuzz, SeedsAreRead)
 TEST(Fuzz, FindingsStayFixed)
 {
   const std::string folder = test::scratchFolder();
-  const std::string findings = std::string(FRESCO_SOURCE_DIR) + "/test/fuzz/findings";
+  const std::string findings = test::projectFolder() + "/test/fuzz/findings";
   for (const fuzz::Target& target : fuzz::targets())
     replay(target, findings + "/" + target.name, folder);
   for (const std::string& known : filesIn(findings))

@@ -130,7 +130,7 @@ TEST(Viewer, ShowsTheModelFromAFile)
 /// Folder of node's modules, with `package` in it; "": it cannot be had.
 std::string nodeModules(const std::string& package, const std::string& version)
 {
-  const std::string folder = std::string(FRESCO_BINARY_DIR) + "/npm", modules = folder + "/node_modules";
+  const std::string folder = buildFolder() + "/npm", modules = folder + "/node_modules";
   makeFolder(folder);
   if (!std::filesystem::exists(modules + "/" + package) &&
       run("npm install --no-audit --no-fund --prefix " + folder + " " + package + "@" + version + " > " +
@@ -161,7 +161,7 @@ TEST(Viewer, MouseFingersAndKeys)
             "style=\"height:500px\">" +
                 viewerElement(boardBytes(folder), options) + "</div>\n<a href=\"#\">A link</a>" + text +
                 "</body></html>\n");
-  const std::string script = std::string(FRESCO_SOURCE_DIR) + "/test/model/use_viewer.js";
+  const std::string script = projectFolder() + "/test/model/use_viewer.js";
   EXPECT_EQ(run("sh -c 'HOME=" + folder + " node " + script + " " + modules + " $(command -v " + chromium() + ") " +
                 folder + "/page.html'"),
             0);

@@ -21,8 +21,8 @@ protected:
   /// Exit status; -1 after a signal.
   int run(const std::string& arguments) const
   {
-    const std::string command = std::string(FRESCO_BINARY_DIR) + "/bin/fresco_" + tool_ + " " + arguments + " >" +
-                                path("out") + " 2>" + path("err");
+    const std::string command =
+        buildFolder() + "/bin/fresco_" + tool_ + " " + arguments + " >" + path("out") + " 2>" + path("err");
     const int code = std::system(command.c_str());
     return WIFEXITED(code) ? WEXITSTATUS(code) : -1;
   }

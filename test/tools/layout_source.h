@@ -64,10 +64,7 @@ inline std::string layoutSource(const std::string& folder, Index beams = 3000)
 }
 
 /// Folder of the source that the tests of this program lay out; programs run at once.
-inline std::string sourceFolder()
-{
-  return std::string(FRESCO_BINARY_DIR) + "/scratch/source_of_" + program_invocation_short_name;
-}
+inline std::string sourceFolder() { return buildFolder() + "/scratch/source_of_" + program_invocation_short_name; }
 
 /// Tests that lay out one source, which is written once.
 class Inputs : public testing::Test {

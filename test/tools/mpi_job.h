@@ -7,7 +7,7 @@
 #include <thread>
 #include <unistd.h>
 namespace fresco::test {
-inline std::string binary(const std::string& name) { return std::string(FRESCO_BINARY_DIR) + "/bin/fresco_" + name; }
+inline std::string binary(const std::string& name) { return buildFolder() + "/bin/fresco_" + name; }
 
 /// A command, such as mpirun with what it starts.
 class Job {

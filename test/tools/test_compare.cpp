@@ -32,7 +32,7 @@ class Compare : public testing::Test {
 protected:
   Outcome compare(const std::string& arguments) const
   {
-    return runProgram(std::string(FRESCO_BINARY_DIR) + "/bin/fresco_compare", arguments, folder);
+    return runProgram(test::buildFolder() + "/bin/fresco_compare", arguments, folder);
   }
   std::string path(const std::string& name) const { return folder + "/" + name; }
   std::string write(const std::string& name, const TriangleMesh& mesh) const
@@ -158,7 +158,7 @@ TEST_F(Compare, WrongUsage)
 
 TEST_F(Compare, IndependentProgramAgrees)
 {
-  const std::string judge = std::string(FRESCO_SOURCE_DIR) + "/../shared/measure/meshdist.py";
+  const std::string judge = test::projectFolder() + "/../shared/measure/meshdist.py";
   if (!fs::exists(judge) || std::system("/usr/bin/python3 -c 'import open3d' >/dev/null 2>&1") != 0) {
     std::cout << "*** SKIPPED: needs " << judge << " and Python's open3d ***\n";
     GTEST_SKIP();

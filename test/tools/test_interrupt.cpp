@@ -29,7 +29,7 @@ class ToolRun {
 public:
   ToolRun(const Command& command, const std::string& folder) : log_(folder + ".err")
   {
-    const std::string name = "fresco_" + command.tool, program = std::string(FRESCO_BINARY_DIR) + "/bin/" + name;
+    const std::string name = "fresco_" + command.tool, program = test::buildFolder() + "/bin/" + name;
     std::vector<std::string> words = command.words;
     words.insert(words.begin(), name);
     std::vector<char*> pointers;
@@ -92,7 +92,7 @@ class Interrupt : public testing::Test {
 protected:
   static void SetUpTestSuite()
   {
-    folder_ = std::string(FRESCO_BINARY_DIR) + "/scratch/Interrupt";
+    folder_ = test::buildFolder() + "/scratch/Interrupt";
     fs::remove_all(folder_);
     test::writeSmallRoom(folder_ + "/room", 150000);
     const TriangleMesh ball = test::sphere(1.f, 6);

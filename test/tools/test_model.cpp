@@ -36,7 +36,7 @@ class ModelRun {
 public:
   ModelRun(const std::string& input, const std::string& out, bool resume, Limits limits = {}) : log_(out + ".err")
   {
-    const std::string program = std::string(FRESCO_BINARY_DIR) + "/bin/fresco_model";
+    const std::string program = test::buildFolder() + "/bin/fresco_model";
     process_ = fork();
     if (process_ == 0) {
       const int log = open(log_.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0666);
@@ -147,7 +147,7 @@ class Faults : public testing::Test {
 protected:
   static void SetUpTestSuite()
   {
-    folder_ = std::string(FRESCO_BINARY_DIR) + "/scratch/Faults";
+    folder_ = test::buildFolder() + "/scratch/Faults";
     fs::remove_all(folder_);
     input_ = folder_ + "/room";
     test::writeSmallRoom(input_);

@@ -11,7 +11,7 @@ const std::string coarse = " -no_optimize -cell 0.1 -texel 0.1 -size 160x120 -th
 void scannedRoom(const std::string& folder)
 {
   static const std::string made = [] {
-    std::string all = std::string(FRESCO_BINARY_DIR) + "/scratch/ModelMpi";
+    std::string all = buildFolder() + "/scratch/ModelMpi";
     fs::remove_all(all);
     fs::create_directories(all);
     const Outcome outcome = run(all, "scan conference_room room -stations 3 -points 10000 -no_images -quiet");
@@ -88,7 +88,7 @@ TEST(ModelMpi, OtherVersionIsRefused)
 {
   const std::string folder = scratchFolder();
   fs::create_directory(folder + "/bin");
-  fs::create_directory_symlink(std::string(FRESCO_BINARY_DIR) + "/lib", folder + "/lib");
+  fs::create_directory_symlink(buildFolder() + "/lib", folder + "/lib");
   put(folder + "/bin/fresco_model_mpi", get(binary("model_mpi")) + "x");
   put(folder + "/by_rank", // mpirun of Open MPI 5.0.7 crashes when it is given two programs
       "#!/bin/sh\n[ \"$OMPI_COMM_WORLD_RANK\" = 0 ] && exec " + binary("model_mpi") + " room out\nexec " + folder +

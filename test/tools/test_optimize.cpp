@@ -13,8 +13,8 @@ namespace fresco {
 namespace {
 int runTool(const std::string& arguments, const std::string& folder, const std::string& before = "")
 {
-  const std::string command = before + std::string(FRESCO_BINARY_DIR) + "/bin/fresco_optimize " + arguments + " >" +
-                              folder + "/stdout.txt 2>" + folder + "/stderr.txt";
+  const std::string command = before + test::buildFolder() + "/bin/fresco_optimize " + arguments + " >" + folder +
+                              "/stdout.txt 2>" + folder + "/stderr.txt";
   const int code = std::system(command.c_str());
   return WIFEXITED(code) ? WEXITSTATUS(code) : -1;
 }

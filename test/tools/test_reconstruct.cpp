@@ -20,8 +20,8 @@ protected:
   /// Exit status of `fresco_reconstruct IN OUT OPTIONS`; -1 after a signal.
   int run(const std::string& in, const std::string& out, const std::string& options) const
   {
-    const std::string command = std::string(FRESCO_BINARY_DIR) + "/bin/fresco_reconstruct " + path(in) + " " +
-                                path(out) + " " + options + " >" + path("log.out") + " 2>" + path("log.err");
+    const std::string command = buildFolder() + "/bin/fresco_reconstruct " + path(in) + " " + path(out) + " " +
+                                options + " >" + path("log.out") + " 2>" + path("log.err");
     const int code = std::system(command.c_str());
     return WIFEXITED(code) ? WEXITSTATUS(code) : -1;
   }

@@ -12,8 +12,8 @@ namespace fresco {
 namespace {
 int run(const std::string& arguments)
 {
-  const std::string command = std::string(FRESCO_BINARY_DIR) + "/bin/fresco_register " + arguments + " >/dev/null 2>" +
-                              test::scratchFolder() + ".err";
+  const std::string command =
+      test::buildFolder() + "/bin/fresco_register " + arguments + " >/dev/null 2>" + test::scratchFolder() + ".err";
   const int status = std::system(command.c_str());
   return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }

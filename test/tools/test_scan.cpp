@@ -58,8 +58,7 @@ void writeFile(const std::string& path)
 
 int runScan(const std::string& arguments)
 {
-  const int status =
-      std::system((std::string(FRESCO_BINARY_DIR) + "/bin/fresco_scan " + arguments + " > /dev/null 2>&1").c_str());
+  const int status = std::system((test::buildFolder() + "/bin/fresco_scan " + arguments + " > /dev/null 2>&1").c_str());
   return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
 } // namespace
@@ -288,7 +287,7 @@ TEST(VirtualDataset, RefusesBadOptionsAndFiles)
 TEST(VirtualTool, ExitsAsStated)
 {
   const std::string folder = test::scratchFolder(), box = boxFile(folder), out = " " + folder + "/out";
-  if (!fs::exists(std::string(FRESCO_BINARY_DIR) + "/bin/fresco_scan"))
+  if (!fs::exists(test::buildFolder() + "/bin/fresco_scan"))
     GTEST_SKIP() << "fresco_scan is not built";
   EXPECT_EQ(runScan("-h"), 0);
   EXPECT_EQ(runScan(""), 2);

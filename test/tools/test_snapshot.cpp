@@ -31,7 +31,7 @@ protected:
   Outcome run(const std::string& arguments, const std::string& environment = "") const
   {
     const std::string errors = folder_ + "/stderr.txt", output = folder_ + "/stdout.txt";
-    const std::string command = "env -u DISPLAY " + environment + " '" FRESCO_BINARY_DIR "/bin/fresco_snapshot' " +
+    const std::string command = "env -u DISPLAY " + environment + " '" + buildFolder() + "/bin/fresco_snapshot' " +
                                 arguments + " >'" + output + "' 2>'" + errors + "'";
     const int result = std::system(command.c_str());
     return {WIFEXITED(result) ? WEXITSTATUS(result) : -1, slurp(errors), slurp(output)};

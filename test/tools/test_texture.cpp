@@ -31,7 +31,7 @@ struct Files {
 
   int run(const std::string& arguments, const std::string& before = "") const
   {
-    const std::string tool = before + std::string(FRESCO_BINARY_DIR) + "/bin/fresco_texture";
+    const std::string tool = before + buildFolder() + "/bin/fresco_texture";
     const int status = std::system((tool + " " + arguments + " > " + messages + " 2>&1").c_str());
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   }

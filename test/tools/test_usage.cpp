@@ -190,7 +190,7 @@ TEST(Usage, WhatFollowsTwoDashesAreFiles)
 
 TEST(Usage, StandardOutputThatIsFull)
 {
-  const std::string folder = soundFolder(), bin = std::string(FRESCO_BINARY_DIR) + "/bin/fresco_";
+  const std::string folder = soundFolder(), bin = buildFolder() + "/bin/fresco_";
   for (const std::string command :
        {"filter -h", "model -h", "compare mesh.ply mesh.ply -quiet", "reconstruct cloud.pcd out.ply -estimate"}) {
     const int status = std::system(("cd '" + folder + "' && '" + bin + command.substr(0, command.find(' ')) + "'" +

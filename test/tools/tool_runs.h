@@ -30,7 +30,7 @@ inline std::string get(const std::string& path)
 /// @param before the command: of a program that runs it
 inline Outcome run(const std::string& folder, const std::string& command, const std::string& before = "")
 {
-  const std::string bin = std::string(FRESCO_BINARY_DIR) + "/bin/fresco_";
+  const std::string bin = buildFolder() + "/bin/fresco_";
   const std::string log = folder + "/.log";
   const std::string line = "cd '" + folder + "' && " + before + "'" + bin + command.substr(0, command.find(' ')) + "'" +
                            command.substr(std::min(command.size(), command.find(' '))) + " >" + log + ".out 2>" + log +

@@ -20,7 +20,7 @@ std::string rowOf(const io::Format& format)
 
 TEST(Formats, DocumentationListsTheTable)
 {
-  const std::string page = readFile(std::string(FRESCO_SOURCE_DIR) + "/docs/formats.md");
+  const std::string page = readFile(test::projectFolder() + "/docs/formats.md");
   std::string table = "| format | extensions | points | mesh | textured model |\n|---|---|---|---|---|\n";
   for (const io::Format& format : io::formats())
     table += rowOf(format);
