@@ -21,6 +21,7 @@ using namespace fresco;
 
 struct ToolOptions {
   int keep_out = 0, quality = 0;
+  bool no_examples = false;
   std::string cameras_out, points, uv = "new";
   PointTextureOptions from_points;
 };
@@ -52,6 +53,7 @@ void declare(Args& args, TextureOptions& options, ToolOptions& tool)
   args.flag("no_exposure", options.exposure, "leave exposure and white balance of the photographs as they are", false);
   args.flag("no_consistency", options.consistency, "do not avoid photographs that differ from what most show", false);
   args.flag("no_level", options.level, "leave the steps of colour at seams", false);
+  args.flag("no_examples", tool.no_examples, "taken and ignored: unseen parts are always coloured smoothly");
   args.option("blend_width", options.blend_width, Range::within(0, 100),
               "pixels over which one photograph passes into the next at a seam");
   args.option("rounds", options.rounds, Range::within(0, 100),
