@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
-# Installs the Debian packages on a clean Debian 12, runs the tools there, and removes them again. As root:
-#   test/package/deb_test.sh PACKAGE_DIR [CHROOT]   CHROOT is made by debootstrap where it is missing
+# Installs the Debian packages on a clean Debian, runs the tools there, and removes them again. As root:
+#   test/package/deb_test.sh PACKAGE_DIR [CHROOT [SUITE]]   CHROOT is made by debootstrap where it is missing, of bookworm
 # PACKAGE_DIR: as cpack -G DEB writes it (cmake --preset package, cmake --build --preset package --target package).
 set -euo pipefail
 [ $# -ge 1 ] && [ "$(id -u)" -eq 0 ] || { sed -n '2,4s/^# //p' "$0" >&2; exit 2; }
 packages=$(realpath "$1") root=$(realpath -m "${2:-/var/tmp/fresco-clean}")
-[ -x "$root/usr/bin/apt-get" ] || debootstrap --variant=minbase bookworm "$root" http://deb.debian.org/debian
+[ -x "$root/usr/bin/apt-get" ] || debootstrap --variant=minbase "${3:-bookworm}" "$root" http://deb.debian.org/debian
 echo force-unsafe-io >"$root/etc/dpkg/dpkg.cfg.d/quick"
 inside() { chroot "$root" env DEBIAN_FRONTEND=noninteractive LC_ALL=C PATH=/usr/sbin:/usr/bin:/sbin:/bin "$@"; }
 mount -t proc proc "$root/proc"
