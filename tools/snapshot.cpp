@@ -75,7 +75,8 @@ void declareView(Args& args, Request& request)
                "vertical opening angle, degrees; default: 30, with -view inside 62",
                [&](const auto& given) { request.from.angle = given[0]; });
   args.flag("cull", request.picture.cull_back_faces,
-            "leave out faces, and points with normals, seen from behind (always with -view above)");
+            "leave out faces, and points with normals, seen from behind, and what hangs on walls of such faces (always "
+            "with -view above)");
 }
 
 void declareLook(Args& args, Request& request)

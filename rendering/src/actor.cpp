@@ -130,6 +130,11 @@ vtkSmartPointer<vtkActor> makeActor(DrawMesh& mesh, const SurfaceLook& look)
   return actor;
 }
 
+void update(vtkActor& actor, DrawMesh& mesh)
+{
+  vtkPolyDataMapper::SafeDownCast(actor.GetMapper())->SetInputData(toPolyData(mesh));
+}
+
 Image shrinkTo(Image image, int largest)
 {
   while (std::max(image.width, image.height) > largest) {

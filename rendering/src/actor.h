@@ -22,6 +22,9 @@ struct SurfaceLook {
 /// `mesh` is used in place: it must outlive the actor.
 vtkSmartPointer<vtkActor> makeActor(DrawMesh& mesh, const SurfaceLook& look);
 
+/// After a change of the mesh that the actor was made from.
+void update(vtkActor& actor, DrawMesh& mesh);
+
 /// `image` halved (mean of 2x2) until no side is above `largest`.
 Image shrinkTo(Image image, int largest);
 } // namespace fresco::rendering

@@ -2,9 +2,12 @@
 #include "draw_mesh.h"
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <fresco/core/constants.h>
+#include <fresco/core/grouped.h>
 #include <fresco/core/parallel.h>
+#include <fresco/core/union_find.h>
 #include <unordered_map>
 namespace fresco::rendering {
 namespace {
@@ -30,28 +33,6 @@ void fillVertices(DrawMesh& drawn, const TriangleMesh& mesh)
     drawn.colors = mesh.colors(Eigen::all, drawn.source);
 }
 
-/// Corners (face * 3 + k) around each vertex, ascending: corners[start[v]] .. corners[start[v + 1]].
-struct VertexCorners {
-  std::vector<Index> start, corners;
-  Index count(Index v) const { return start[v + 1] - start[v]; }
-  const Index* begin(Index v) const { return corners.data() + start[v]; }
-};
-
-VertexCorners cornersOfVertices(const Faces& faces, Index vertex_count)
-{
-  VertexCorners around;
-  around.start.assign(vertex_count + 1, 0);
-  for (Index i = 0; i < faces.size(); ++i)
-    ++around.start[faces.data()[i] + 1];
-  for (std::size_t v = 1; v < around.start.size(); ++v)
-    around.start[v] += around.start[v - 1];
-  around.corners.resize(faces.size());
-  std::vector<Index> next(around.start.begin(), around.start.end() - 1);
-  for (Index i = 0; i < faces.size(); ++i)
-    around.corners[next[faces.data()[i]]++] = i;
-  return around;
-}
-
 /// Area times normal in a unit that suits the size of the model,
 /// so that neither tiny nor huge models leave float's range.
 Points areaVectors(const Points& vertices, const Faces& faces, int threads)
@@ -74,15 +55,18 @@ class CreaseNormals {
 public:
   CreaseNormals(const DrawMesh& mesh, double crease_angle, int threads)
       : areas_(areaVectors(mesh.vertices, mesh.faces, threads)), directions_(areas_.colwise().normalized()),
-        around_(cornersOfVertices(mesh.faces, mesh.vertices.cols())), cosine_(std::cos(crease_angle * pi / 180))
+        around_(grouped(mesh.faces.size(), mesh.vertices.cols(), [&](Index i) { return mesh.faces.data()[i]; })),
+        cosine_(std::cos(crease_angle * pi / 180))
   {}
 
-  const VertexCorners& around() const { return around_; }
+  /// Corners around a vertex: face * 3 + k, ascending.
+  Index count(Index v) const { return around_.begin[v + 1] - around_.begin[v]; }
+  Index corner(Index v, Index i) const { return around_.list[around_.begin[v] + i]; }
 
   /// Whether an edge among the faces around `v` may be a crease.
   bool isCreased(Index v) const
   {
-    const Index n = around_.count(v);
+    const Index n = count(v);
     if (n > most_corners)
       return true;
     for (Index i = 0; i < n; ++i)
@@ -92,15 +76,15 @@ public:
     return false;
   }
 
-  /// Mean normal at corner number `corner` of `v` over the faces on its side of all creases.
-  Eigen::Vector3f normal(Index v, Index corner) const
+  /// Mean normal at corner number `at` of `v` over the faces on its side of all creases.
+  Eigen::Vector3f normal(Index v, Index at) const
   {
-    const Index own = face(v, corner), n = around_.count(v);
+    const Index own = face(v, at), n = count(v);
     if (n > most_corners)
       return directions_.col(own);
     Eigen::Vector3f sum = Eigen::Vector3f::Zero();
     for (Index i = 0; i < n; ++i)
-      if (i == corner || sameSurface(own, face(v, i)))
+      if (i == at || sameSurface(own, face(v, i)))
         sum += areas_.col(face(v, i));
     return sum.norm() > 0 ? Eigen::Vector3f(sum.normalized()) : Eigen::Vector3f(directions_.col(own));
   }
@@ -108,14 +92,14 @@ public:
 private:
   static constexpr Index most_corners = 256; // beyond, comparing all pairs costs too much: such a vertex is drawn flat
 
-  Index face(Index v, Index corner) const { return around_.begin(v)[corner] / 3; }
+  Index face(Index v, Index i) const { return corner(v, i) / 3; }
   bool sameSurface(Index f, Index g) const
   {
     return areas_.col(f).isZero(0) || areas_.col(g).isZero(0) || directions_.col(f).dot(directions_.col(g)) >= cosine_;
   }
 
   Points areas_, directions_;
-  VertexCorners around_;
+  Groups around_;
   float cosine_;
 };
 } // namespace
@@ -139,16 +123,16 @@ DrawMesh creasedMesh(const TriangleMesh& mesh, double crease_angle, int threads)
   DrawMesh drawn;
   for (std::size_t v = 0; v < creased.size(); ++v) {
     first[v] = drawn.source.size();
-    drawn.source.insert(drawn.source.end(), creased[v] ? crease.around().count(v) : 1, plain.source[v]);
+    drawn.source.insert(drawn.source.end(), creased[v] ? crease.count(v) : 1, plain.source[v]);
   }
   fillVertices(drawn, mesh);
   drawn.faces.resize(3, plain.faces.cols());
   drawn.normals.resize(3, drawn.vertices.cols());
   parallelFor(count, threads, [&](Index v) {
     const bool split = creased[v];
-    for (Index i = 0; i < crease.around().count(v); ++i) {
+    for (Index i = 0; i < crease.count(v); ++i) {
       const Index to = first[v] + (split ? i : 0);
-      drawn.faces.data()[crease.around().begin(v)[i]] = to;
+      drawn.faces.data()[crease.corner(v, i)] = to;
       if (split || i == 0)
         drawn.normals.col(to) = crease.normal(v, i);
     }
@@ -170,7 +154,7 @@ DrawMesh texturedPart(const TexturedMesh& model, int atlas)
   DrawMesh drawn;
   std::unordered_map<std::uint64_t, int> number; // of a pair of vertex and texture coordinate
   std::vector<int> texcoord;
-  std::vector<Index> faces;
+  std::vector<Index>& faces = drawn.face_source;
   for (Index f = 0; f < model.mesh.faceCount(); ++f)
     if (model.face_atlas[f] == atlas)
       faces.push_back(f);
@@ -191,5 +175,53 @@ DrawMesh texturedPart(const TexturedMesh& model, int atlas)
   if (atlas >= 0)
     drawn.texcoords = model.texcoords(Eigen::all, texcoord);
   return drawn;
+}
+
+std::vector<char> hangingFaces(const TriangleMesh& mesh, const Eigen::Vector3d& eye)
+{
+  constexpr double small = 0.1; // share
+  struct Part {
+    double area = 0, distance = 0; // sum over the area
+    double wall = 0;               // area of the largest that it grows from
+    bool isNearer(const Part& other) const { return distance * other.area < other.distance * area; }
+  };
+  struct Side {
+    explicit Side(Index vertices) : joined(vertices), parts(vertices) {}
+    Part& part(Index vertex) { return parts[joined.root(vertex)]; }
+
+    UnionFind joined; // vertices of faces that are seen from this side
+    std::vector<Part> parts;
+    Part all;
+  };
+  std::array<Side, 2> sides{Side(mesh.vertexCount()), Side(mesh.vertexCount())};
+  auto& [back, front] = sides;
+  const Faces faces = weldedFaces(mesh);
+  const auto to_eye = [&](Index f) { return Eigen::Vector3d(eye - mesh.origin - faceCorner(mesh, f, 0)); };
+  std::vector<char> seen(faces.cols());
+  for (Index f = 0; f < faces.cols(); ++f) {
+    seen[f] = areaVector(mesh, f).dot(to_eye(f)) > 0;
+    for (int k = 1; k < 3; ++k)
+      sides[seen[f]].joined.join(faces(0, f), faces(k, f));
+  }
+  for (Index f = 0; f < faces.cols(); ++f)
+    for (Part* part : {&sides[seen[f]].part(faces(0, f)), &sides[seen[f]].all}) {
+      const double area = areaVector(mesh, f).norm();
+      part->area += area;
+      part->distance += area * to_eye(f).norm();
+    }
+  for (Index v = 0; v < mesh.vertexCount(); ++v)
+    if (const Part& part = back.part(v);
+        part.area > small * (back.all.area + front.all.area) && part.isNearer(front.all))
+      front.part(v).wall = std::max(front.part(v).wall, part.area);
+  for (Index f = 0; f < faces.cols(); ++f)
+    seen[f] = seen[f] && front.part(faces(0, f)).area < small * front.part(faces(0, f)).wall;
+  return seen;
+}
+
+void leaveOut(DrawMesh& drawn, const std::vector<char>& hidden)
+{
+  for (Index f = 0; f < drawn.faces.cols(); ++f)
+    if (hidden[drawn.face_source.empty() ? f : drawn.face_source[f]])
+      drawn.faces.col(f).setConstant(drawn.faces(0, f));
 }
 } // namespace fresco::rendering

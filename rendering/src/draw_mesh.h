@@ -7,14 +7,24 @@ namespace fresco::rendering {
 /// Triangles in the form that a graphics system draws: every attribute once per vertex or once per face, no vertex that
 /// is not used. Without faces the vertices are drawn as points. Empty matrices where there is no such attribute.
 struct DrawMesh {
-  Points vertices;            ///< 3xV
-  Faces faces;                ///< 3xF
-  Points normals;             ///< 3xV, unit
-  Colors colors;              ///< 3xV
-  Colors face_colors;         ///< 3xF
-  Eigen::Matrix2Xf texcoords; ///< 2xV, v up
-  std::vector<int> source;    ///< V, vertex of the mesh that it was made from
+  Points vertices;                ///< 3xV
+  Faces faces;                    ///< 3xF
+  Points normals;                 ///< 3xV, unit
+  Colors colors;                  ///< 3xV
+  Colors face_colors;             ///< 3xF
+  Eigen::Matrix2Xf texcoords;     ///< 2xV, v up
+  std::vector<int> source;        ///< V, vertex of the mesh that it was made from
+  std::vector<Index> face_source; ///< F, face of the mesh that it was made from; empty: all, in their order
 };
+
+/// F: what hangs on walls and ceilings that the view looks through from behind, as sills and lamps do, and would float where they are
+/// culled. A wall is surface seen from behind, connected, a tenth of the model at least and nearer than the rest; what is
+/// seen from the front, grows from it alone and is less than a tenth of it hangs.
+/// @param eye in the world
+std::vector<char> hangingFaces(const TriangleMesh& mesh, const Eigen::Vector3d& eye);
+
+/// Shrinks faces of the mesh that it was made from to points, so that they are not seen.
+void leaveOut(DrawMesh& drawn, const std::vector<char>& hidden);
 
 /// The referenced vertices with their colours.
 DrawMesh plainMesh(const TriangleMesh& mesh);

@@ -40,18 +40,14 @@ SurfaceLook pointLook(const DrawMesh& drawn, const PictureOptions& options)
   return look;
 }
 
-/// A viewpoint in world coordinates for actors whose coordinates are relative to `origin`.
-struct Shot {
-  Viewpoint view;
-  Eigen::Vector3d origin;
-};
-
-Image drawOne(DrawMesh& drawn, SurfaceLook look, const Shot& shot, const PictureOptions& options)
+/// @param origin of the frame that the actor's coordinates are in; the view is in world coordinates
+Image drawOne(DrawMesh& drawn, SurfaceLook look, const Viewpoint& view, const Eigen::Vector3d& origin,
+              const PictureOptions& options)
 {
   Canvas canvas(options);
   look.size *= canvas.oversampling();
   canvas.add(makeActor(drawn, look));
-  return canvas.draw(shot.view, shot.origin);
+  return canvas.draw(view, origin);
 }
 
 PointSet verticesOf(const TriangleMesh& mesh)
@@ -143,10 +139,12 @@ Image renderPicture(const TriangleMesh& mesh, const PictureOptions& options)
   require(options.shading != Shading::Error, "picture: error shading needs distances to a reference");
   const Viewpoint view = chooseView(mesh, options);
   DrawMesh drawn = drawnFaces(mesh, options);
+  if (options.cull_back_faces)
+    leaveOut(drawn, hangingFaces(mesh, view.eye));
   SurfaceLook look = surfaceLook(drawn, options);
   if (options.shading == Shading::Wireframe)
     setEdges(look, mesh, view, options.height);
-  return drawOne(drawn, look, {view, mesh.origin}, options);
+  return drawOne(drawn, look, view, mesh.origin, options);
 }
 
 Image renderPicture(const PointSet& set, const PictureOptions& options)
@@ -158,6 +156,6 @@ Image renderPicture(const PointSet& set, const PictureOptions& options)
   DrawMesh drawn = drawPoints(drawnPoints(set, options, view.eye));
   if (options.shading == Shading::Normals)
     drawn.colors = normalColors(drawn.normals);
-  return drawOne(drawn, pointLook(drawn, options), {view, set.origin}, options);
+  return drawOne(drawn, pointLook(drawn, options), view, set.origin, options);
 }
 } // namespace fresco::rendering

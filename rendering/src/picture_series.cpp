@@ -6,19 +6,38 @@
 namespace fresco::rendering {
 /// What stands before the eye.
 struct PictureSeries::Stage {
-  explicit Stage(const PictureOptions& options) : canvas(options) {}
+  Stage(const TriangleMesh& mesh, const PictureOptions& options)
+      : surface{mesh.vertices, mesh.faces, {}, {}, {}, mesh.origin}, canvas(options), hidden(mesh.faceCount(), 0)
+  {}
 
   void add(DrawMesh&& mesh, const SurfaceLook& look)
   {
     drawn.push_back(std::make_unique<DrawMesh>(std::move(mesh)));
     actors.push_back(makeActor(*drawn.back(), look));
     canvas.add(actors.back());
+    whole.push_back(drawn.back()->faces);
   }
 
+  void show(bool cull_back_faces, const Eigen::Vector3d& eye)
+  {
+    std::vector<char> out = cull_back_faces ? hangingFaces(surface, eye) : std::vector<char>(hidden.size(), 0);
+    for (std::size_t i = 0; i < actors.size(); ++i) {
+      actors[i]->GetProperty()->SetBackfaceCulling(cull_back_faces);
+      if (out == hidden)
+        continue;
+      drawn[i]->faces = whole[i];
+      leaveOut(*drawn[i], out);
+      update(*actors[i], *drawn[i]);
+    }
+    hidden = std::move(out);
+  }
+
+  TriangleMesh surface;                         ///< without attributes
   std::vector<std::unique_ptr<DrawMesh>> drawn; ///< actors use them in place
+  std::vector<Faces> whole;                     ///< of each of them
   Canvas canvas;
   std::vector<vtkSmartPointer<vtkActor>> actors;
-  Eigen::Vector3d origin;
+  std::vector<char> hidden; ///< F, not shown now
 };
 
 namespace {
@@ -43,8 +62,7 @@ PictureSeries::PictureSeries(const TexturedMesh& model, const PictureOptions& op
   require(!textured || !model.atlases.empty(), "picture: the model has no texture");
   require(options.shading <= Shading::Flat || textured, "picture: no series of this shading");
   require(model.mesh.faceCount() > 0, "picture: the model has no face");
-  stage_ = std::make_unique<Stage>(options);
-  stage_->origin = model.mesh.origin;
+  stage_ = std::make_unique<Stage>(model.mesh, options);
   if (!textured) {
     DrawMesh drawn = drawnFaces(model.mesh, options);
     const SurfaceLook look = surfaceLook(drawn, options);
@@ -63,9 +81,8 @@ PictureSeries::~PictureSeries() = default;
 
 Image PictureSeries::draw(const Viewpoint& view, bool cull_back_faces)
 {
-  for (vtkActor* actor : stage_->actors)
-    actor->GetProperty()->SetBackfaceCulling(cull_back_faces);
-  return stage_->canvas.draw(view, stage_->origin);
+  stage_->show(cull_back_faces, view.eye);
+  return stage_->canvas.draw(view, stage_->surface.origin);
 }
 
 Image renderPicture(const TexturedMesh& model, const PictureOptions& options)

@@ -30,8 +30,8 @@ struct PictureOptions {
   Shading shading = Shading::Gouraud;
   int width = 1280, height = 960; ///< pixels, >= 1 (error pictures: >= 160 x 120)
   std::optional<Viewpoint> view;  ///< nothing: the whole model, from the default direction of Framing
-  bool cull_back_faces = false;   ///< faces, and points with normals, seen from behind are left out: a room seen from
-                                  ///< outside shows its inside
+  bool cull_back_faces = false;   ///< faces, and points with normals, seen from behind are left out, and what hangs on
+                                  ///< walls of such faces: a room seen from outside shows its inside
   bool no_colors = false;         ///< colours and intensities of vertices and points are left out: the shape alone
   bool transparent = false;       ///< RGBA with alpha 0 where the model is not; else RGB
   std::array<std::uint8_t, 3> background{255, 255, 255};
