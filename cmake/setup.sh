@@ -1,4 +1,4 @@
-# Sourced by ./demo, ./check and ./package: installs what is missing on Debian 12 and builds into build/.
+# Sourced by ./demo, ./check and ./package: installs what is missing on Debian 12 or 13 and builds into build/.
 
 # For libraries and tools. PCL's package brings Boost and FLANN.
 fresco_packages=(
