@@ -89,6 +89,8 @@ TEST(PlanDrawing, PicturesAreTrueToScale)
   const ScaledPicture picture = orthophoto(model, plan, 0.02);
   EXPECT_NEAR(picture.image.width, 4 / 0.02, 2);
   EXPECT_NEAR(picture.image.height, 3 / 0.02, 2);
+  EXPECT_NEAR(picture.first_pixel.x() - 0.01, plan.low.x(), 1e-9) << "the corner of a pixel, not its centre";
+  EXPECT_NEAR(picture.first_pixel.y() + 0.01, plan.high.y(), 1e-9);
   std::istringstream world(worldFile(picture));
   double a[6];
   for (double& value : a)

@@ -104,10 +104,12 @@ TEST(Locale, FilesAreTheSameInAnyLocale)
   for (std::size_t i = 0; i < classic.size(); ++i)
     EXPECT_TRUE(classic[i] == hostile[i]) << classic[i].substr(0, 400) << "\n" << hostile[i].substr(0, 400);
   const std::string tiny = test::scratchFolder() + "/tiny.xyz";
-  test::writeText(tiny, "1.5e-400 -1e999 1.25\n");
+  test::writeText(tiny, "1.5e-400 -1e999 1.25\n0.001e9223372036854775807 1e-9223372036854775808 0\n");
   const PointSet points = readPoints(tiny);
   EXPECT_EQ(points.points(0, 0), 0.f);
   EXPECT_TRUE(std::isinf(points.points(1, 0)) && points.points(1, 0) < 0);
+  EXPECT_TRUE(std::isinf(points.points(0, 1)));
+  EXPECT_EQ(points.points(1, 1), 0.f);
   if (!std::getenv("FRESCO_HOSTILE_LOCALE"))
     setClassicLocale();
 }

@@ -26,13 +26,13 @@ double beyondRange(std::string_view word)
   const std::string_view digits = word.substr(0, exponent);
   const auto point = std::int64_t(std::min(digits.find('.'), digits.size())),
              first = std::int64_t(std::min(digits.find_first_of("123456789"), digits.size()));
-  std::int64_t power = 0;
+  int power = 0;
   if (exponent + 1 < word.size()) {
     const std::size_t begin = exponent + (word[exponent + 1] == '+' ? 2 : 1);
     if (std::from_chars(word.data() + begin, word.data() + word.size(), power).ec == std::errc::result_out_of_range)
       power = word[exponent + 1] == '-' ? std::numeric_limits<int>::min() : std::numeric_limits<int>::max();
   }
-  const double size = power + point - first > 0 ? std::numeric_limits<double>::infinity() : 0.0;
+  const double size = std::int64_t(power) + point - first > 0 ? std::numeric_limits<double>::infinity() : 0.0;
   return word[0] == '-' ? -size : size;
 }
 
