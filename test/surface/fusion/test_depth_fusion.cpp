@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "fusion/pose_refinement.h"
 #include "fusion/vote_kernels.h"
 #include <Eigen/LU>
 #include <algorithm>
@@ -182,6 +183,30 @@ TEST(DepthFusion, RefinementBringsFramesOntoOneSurface)
   const std::vector<Eigen::Isometry3d> kept = fuseDepthImages(scene.frames, options()).T_world_camera;
   for (std::size_t i = 0; i < kept.size(); ++i)
     EXPECT_EQ(kept[i].matrix(), scene.frames.T_world_camera[i].matrix());
+}
+
+TEST(DepthFusion, AMovedFrameComesToRestOnTheSurface)
+{
+  const Scene scene(9);
+  fusion::DistanceGrid grid(0.02, 0.08);
+  std::vector<fusion::DepthFrame> frames;
+  for (Index f = 0; f < 9; ++f) {
+    frames.emplace_back(scene.frames.camera, scene.depthOf(f), scene.true_poses[f], 1);
+    grid.allocate(frames.back(), 1);
+  }
+  for (const fusion::DepthFrame& frame : frames)
+    grid.integrate(frame, nullptr, 1, 1);
+  grid.finish(nullptr, 1);
+  const Eigen::Isometry3d& truth = scene.true_poses[4];
+  Eigen::Isometry3d moved = truth * Eigen::AngleAxisd(0.01, Eigen::Vector3d(1, 2, 3).normalized());
+  moved.translation() += Eigen::Vector3d(0.01, -0.008, 0.012);
+  const auto apart = [](const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) {
+    return (a * ball - b * ball).norm();
+  };
+  const Eigen::Isometry3d once = fusion::alignToGrid(grid, frames[4], moved, moved, 1),
+                          twice = fusion::alignToGrid(grid, frames[4], once, moved, 1);
+  EXPECT_LT(apart(once, truth), 0.5 * apart(moved, truth));
+  EXPECT_LT(apart(twice, once), 0.001 * apart(moved, once)) << "it had not come to rest";
 }
 
 TEST(DepthFusion, FramesWithoutDepthGiveNoPoints)
