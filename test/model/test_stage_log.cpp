@@ -2,6 +2,7 @@
 #include "job/file_state.h"
 #include "job/stage_log.h"
 #include "test_data.h"
+#include <algorithm>
 #include <fresco/io/file.h>
 #include <fstream>
 #include <map>
@@ -19,11 +20,11 @@ public:
       writeFile(folder_ + "/in/" + name, std::string("content of ") + name);
   }
 
-  std::map<std::string, int> run(bool resume)
+  std::map<std::string, int> run(bool resume, const Progress& progress = {})
   {
     runs_.clear();
     const std::string in = folder_ + "/in/", out = folder_ + "/out/";
-    StageLog log(out + "work", {in + "listed.txt", in + "also_listed.bin"}, resume, {});
+    StageLog log(out + "work", {in + "listed.txt", in + "also_listed.bin"}, resume, progress);
     const auto stage = [&](const std::string& name, std::vector<std::string> outputs,
                            const std::function<void()>& body) {
       log.run({name, "", std::move(outputs), [&](const Progress&) {
@@ -84,6 +85,24 @@ TEST(StageLog, TakesOverWhatIsAsItWas)
   EXPECT_EQ(job.run(true), Runs());
   EXPECT_EQ(job.run(true), Runs());
   EXPECT_EQ(job.run(false), (Runs{{"first", 1}, {"second", 1}, {"third", 1}}));
+}
+
+TEST(StageLog, ProgressOfEachStageRisesFromZeroToOne)
+{
+  SmallJob job(test::scratchFolder());
+  for (const bool resume : {false, true}) {
+    std::map<std::string, std::vector<double>> shares; // by stage
+    job.run(resume, [&](std::string_view step, double share) {
+      shares[std::string(step.substr(0, step.find(':')))].push_back(share);
+      return true;
+    });
+    EXPECT_EQ(shares.size(), 3u);
+    for (const auto& [stage, values] : shares) {
+      EXPECT_TRUE(std::is_sorted(values.begin(), values.end())) << stage;
+      EXPECT_EQ(values.front(), 0) << stage;
+      EXPECT_EQ(values.back(), 1) << stage;
+    }
+  }
 }
 
 TEST(StageLog, BelievesNoFileThatWasDamagedEmptiedOrLost)

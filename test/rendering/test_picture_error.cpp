@@ -94,6 +94,29 @@ TEST(ErrorPicture, TheBarHidesNothingOfTheView)
   EXPECT_GT(covered, 0.25 * 400 * 300);
 }
 
+TEST(ErrorPicture, LettersStandUprightAboveTheBar)
+{
+  Image image(200, 300, 3, 255);
+  ScaleBar bar;
+  bar.title = {"L"};
+  drawScaleBar(image, bar);
+  std::vector<int> ink; // dark pixels of the rows above the bar that have some
+  const int left = image.width - scaleBarWidth(bar, image.height);
+  for (int y = 0, colored = 0; y < image.height && !colored; ++y) {
+    int dark = 0;
+    for (int x = left; x < left + 20; ++x) {
+      dark += image.pixel(x, y)[0] < 200;
+      colored += image.pixel(x, y)[0] != image.pixel(x, y)[2];
+    }
+    if (dark > 0)
+      ink.push_back(dark);
+  }
+  ASSERT_GT(ink.size(), 6u);
+  ink.pop_back(); // the bar's rim and its first row
+  ink.pop_back();
+  EXPECT_GE(ink.back(), 2 * ink.front()) << "the foot of the L";
+}
+
 TEST(ErrorPicture, TicksAreRoundAndCoverTheScale)
 {
   for (const double largest : {1.0, 0.0375, 2.0, 4.99, 6e-7, 123456.0, 1e12}) {
