@@ -53,6 +53,9 @@ TEST(MeshDistance, TwoSpheres)
   EXPECT_LT(result.normals_to_reference.mean, 2.0);
   EXPECT_FALSE(result.inside_out);
   EXPECT_EQ(result.vertices.symmetric.count, inner.vertexCount() + outer.vertexCount());
+  const MeshDistanceResult without = measureMeshDistance(outer, inner, withSamples(0));
+  EXPECT_EQ(without.surface.symmetric.count, 0) << "not asked for";
+  EXPECT_GT(without.normals_to_reference.count, 0) << "these have samples of their own";
 }
 
 TEST(MeshDistance, ShiftedPlanes)
