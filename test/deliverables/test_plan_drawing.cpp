@@ -3,6 +3,7 @@
 #include <fresco/deliverables/core/plan_drawing.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
+#include <regex>
 #include <sstream>
 namespace {
 using namespace fresco;
@@ -71,6 +72,28 @@ TEST(PlanDrawing, SvgIsInMetresAndMarksAreNoTags)
   EXPECT_NE(svg.find("&lt;b&gt;&amp;"), std::string::npos);
   EXPECT_EQ(svg.find("<b>"), std::string::npos);
   EXPECT_NE(svg.find("12.00 m\u00b2"), std::string::npos);
+}
+
+TEST(PlanDrawing, EverythingLiesOnTheSheet)
+{
+  TriangleMesh moved = room();
+  moved.origin = {50, -30, 0};
+  const std::string svg = planSvg(drawPlan(moved), {{{51, -29}, "mark"}});
+  double sheet[4];
+  std::istringstream box(svg.substr(svg.find("viewBox=\"") + 9));
+  for (double& value : sheet)
+    box >> value;
+  const auto lies = [&](double x, double y) {
+    return x >= sheet[0] && y >= sheet[1] && x <= sheet[0] + sheet[2] && y <= sheet[1] + sheet[3];
+  };
+  const std::regex text("<text x=\"([^\"]*)\" y=\"([^\"]*)\""), point("(-?[0-9.]+),(-?[0-9.]+)[ \"]");
+  int texts = 0, points = 0;
+  for (std::sregex_iterator at(svg.begin(), svg.end(), text); at != std::sregex_iterator(); ++at, ++texts)
+    EXPECT_TRUE(lies(std::stod((*at)[1]), std::stod((*at)[2]))) << at->str();
+  for (std::sregex_iterator at(svg.begin(), svg.end(), point); at != std::sregex_iterator(); ++at, ++points)
+    EXPECT_TRUE(lies(std::stod((*at)[1]), -std::stod((*at)[2]))) << at->str();
+  EXPECT_GT(texts, 4);
+  EXPECT_GT(points, 10);
 }
 
 TEST(PlanDrawing, PicturesAreTrueToScale)
