@@ -150,6 +150,19 @@ TEST(Colmap, EveryModelHasItsParameters)
     EXPECT_THROW(camera(bad), std::runtime_error) << bad;
 }
 
+TEST(Colmap, AnEmptyListOfPointsIsNone)
+{
+  const std::string folder = test::scratchFolder();
+  writeColmap(folder, cameraSet());
+  writeText(folder + "/points3D.txt", ""); // as COLMAP's manual wants it beside known poses
+  EXPECT_TRUE(readColmapPoints(folder).empty());
+  const auto [cameras, images] = binaryModel(cameraSet());
+  writeText(folder + "/binary/cameras.bin", cameras);
+  writeText(folder + "/binary/images.bin", images);
+  writeText(folder + "/binary/points3D.bin", "");
+  EXPECT_THROW(readColmapPoints(folder + "/binary"), std::runtime_error) << "which begins with their number";
+}
+
 TEST(Colmap, MissingFilesAreNamed)
 {
   const std::string folder = test::scratchFolder();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Every format of cameras. A new one is a row of the table below and, in docs/inputs.md, a row of the list.
 #include "io/cameras/camera_format.h"
+#include "io/colmap/colmap_rows.h"
 #include "io/files/remarks.h"
 #include <algorithm>
 #include <cmath>
@@ -41,12 +42,6 @@ const io::CameraFormat* formatOf(const std::string& file)
       return &format;
   }
   return nullptr;
-}
-
-bool isColmap(const std::string& folder)
-{
-  const auto has = [&](const char* name) { return fs::exists(folder + "/" + name); };
-  return (has("cameras.txt") && has("images.txt")) || (has("cameras.bin") && has("images.bin"));
 }
 
 /// Files in a folder that are recognised.
@@ -160,7 +155,7 @@ std::string cameraFileIn(const std::string& path)
 {
   if (!fs::is_directory(path))
     return formatOf(path) ? path : "";
-  if (isColmap(path))
+  if (!io::colmapKind(path).empty())
     return path;
   const std::vector<std::string> files = recognised(path);
   return files.size() == 1 ? files[0] : "";

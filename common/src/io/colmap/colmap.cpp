@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "io/colmap/colmap_rows.h"
 #include "io/colmap/lens_models.h"
+#include "io/files/inputs.h"
 #include "io/files/remarks.h"
 #include <algorithm>
 #include <cmath>
@@ -20,15 +21,6 @@ struct ImageEntry {
   Eigen::Isometry3d T_camera_world = Eigen::Isometry3d::Identity();
   std::vector<Eigen::Vector2d> pixels; ///< of its feature points; empty unless asked for
 };
-
-/// What names of the model's files end with; "" if it is none.
-std::string kindOf(const std::string& folder)
-{
-  for (const std::string kind : {".txt", ".bin"})
-    if (std::filesystem::exists(folder + "/cameras" + kind) && std::filesystem::exists(folder + "/images" + kind))
-      return kind;
-  return "";
-}
 
 /// What follows the id of a camera.
 CameraModel readCamera(ColmapRows& rows, const char* wanted)
@@ -65,8 +57,7 @@ Eigen::Isometry3d poseOf(const Eigen::Vector4d& q, const Eigen::Vector3d& transl
   return T;
 }
 
-/// In the order of their ids. In text every image has two lines: the pose, then its feature points, which may be an empty
-/// line.
+/// In the order of their ids. In text an image has two lines: the pose, then its feature points, empty if there are none.
 std::vector<ImageEntry> readImages(const std::string& path, bool with_pixels)
 {
   constexpr const char* wanted = "IMAGE_ID QW QX QY QZ TX TY TZ CAMERA_ID NAME";
@@ -127,11 +118,19 @@ private:
 };
 } // namespace
 
+std::string io::colmapKind(const std::string& folder)
+{
+  for (const std::string kind : {".txt", ".bin"})
+    if (std::filesystem::exists(folder + "/cameras" + kind) && std::filesystem::exists(folder + "/images" + kind))
+      return kind;
+  return "";
+}
+
 CameraSet readColmap(const std::string& folder)
 {
   if (!std::filesystem::is_directory(folder))
     throw std::runtime_error(folder + ": no such folder of cameras");
-  const std::string kind = kindOf(folder), path = folder + "/images" + kind;
+  const std::string kind = io::colmapKind(folder), path = folder + "/images" + kind;
   if (kind.empty())
     throw std::runtime_error(folder + ": neither cameras.txt and images.txt nor cameras.bin and images.bin in it");
   constexpr const char* wanted = "CAMERA_ID MODEL WIDTH HEIGHT PARAMS";
@@ -160,10 +159,14 @@ CameraSet readColmap(const std::string& folder)
 
 SparsePoints readColmapPoints(const std::string& folder)
 {
-  const std::string kind = kindOf(folder) == ".txt" ? ".txt" : ".bin", path = folder + "/points3D" + kind;
+  const std::string kind = io::colmapKind(folder) == ".txt" ? ".txt" : ".bin", path = folder + "/points3D" + kind;
   SparsePoints points;
   if (!std::filesystem::exists(path))
     return points;
+  if (std::error_code error; kind == ".txt" && std::filesystem::file_size(path, error) == 0) {
+    io::rememberInput(path); // COLMAP's manual wants an empty one beside known poses
+    return points;
+  }
   const Images images(folder + "/images" + kind);
   constexpr const char* wanted = "POINT3D_ID X Y Z R G B ERROR TRACK[]";
   for (ColmapRows rows(path); rows.next();) {

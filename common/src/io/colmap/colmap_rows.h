@@ -7,6 +7,8 @@
 #include <fresco/io/file.h>
 #include <string>
 namespace fresco::io {
+/// What names of the files of a COLMAP model in a folder end with, .txt or .bin; "" if there is none.
+FRESCO_EXPORT std::string colmapKind(const std::string& folder);
 /// The rows of a file of a COLMAP model. Its text (.txt) and binary kinds (.bin, little-endian) hold the same values in the
 /// same order. Nothing is read beyond the end.
 class ColmapRows {
