@@ -72,6 +72,14 @@ TEST(TextureTool, TilesHaveAtlasesOfTheirOwn)
   EXPECT_EQ(files.texture("model.obj", "-tile_faces -4"), 2);
 }
 
+TEST(TextureTool, KnownPosesWithoutPointsAndAnOptionOfOldScripts)
+{
+  const Files files;
+  writeFile(files.cameras + "/points3D.txt", "");
+  ASSERT_EQ(files.texture("model.glb", "-no_examples"), 0) << readFile(files.messages);
+  EXPECT_LT(colorError(readTexturedMesh(files.folder + "/model.glb"), waves).mean, 2.0);
+}
+
 TEST(TextureTool, TilesThatFailLeaveNothing)
 {
   const Files files;
