@@ -82,7 +82,9 @@ void readPointsAndCloud(const std::string& path)
 /// Every scan of a file of several, whole and in windows.
 void readScans(const std::string& path)
 {
-  for (const ScanPath& scan : scansOf({path})) {
+  std::vector<ScanPath> scans = scansOf({path});
+  scans.resize(std::min<std::size_t>(scans.size(), 8)); // each one costs a pass over the file
+  for (const ScanPath& scan : scans) {
     const PointSet set = readPoints(scan);
     validatePointSet(set);
     Index streamed = 0;

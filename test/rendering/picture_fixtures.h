@@ -82,6 +82,14 @@ inline Viewpoint squareView()
   return view;
 }
 
+inline Viewpoint from(const Eigen::Vector3d& eye, double angle)
+{
+  Viewpoint view;
+  view.eye = eye;
+  view.angle = angle;
+  return view;
+}
+
 inline PictureOptions optionsFor(Shading shading, int width = 200, int height = 150)
 {
   PictureOptions options;

@@ -131,8 +131,10 @@ void takeLines(std::string& text, const Use& use)
   constexpr std::size_t longest = std::size_t{1} << 16;
   for (std::size_t end; (end = text.find('\n')) != std::string::npos; text.erase(0, end + 1))
     use(text.substr(0, end));
-  if (text.size() > longest)
-    use(std::exchange(text, ""));
+  if (text.size() > longest) {
+    use(text);
+    text.clear();
+  }
 }
 } // namespace
 

@@ -42,17 +42,7 @@ Figures entryOf(const Shot& shot, const Viewpoint& view)
           {"look", listOf(view.look)},
           {"angle", view.angle}};
 }
-} // namespace
 
-std::vector<std::string> pictureFiles(const Job& job)
-{
-  std::vector<std::string> paths;
-  for (const Shot& shot : shots(job.input))
-    paths.push_back(job.files.snapshots + "/" + shot.name + ".png");
-  return paths;
-}
-
-namespace {
 /// How all pictures of one shading are made.
 PictureOptions optionsFor(Shading shading, const ModelOptions& options, const TexturedMesh& model)
 {
@@ -66,6 +56,14 @@ PictureOptions optionsFor(Shading shading, const ModelOptions& options, const Te
   return picture;
 }
 } // namespace
+
+std::vector<std::string> pictureFiles(const Job& job)
+{
+  std::vector<std::string> paths;
+  for (const Shot& shot : shots(job.input))
+    paths.push_back(job.files.snapshots + "/" + shot.name + ".png");
+  return paths;
+}
 
 Figures makePictures(const Job& job, const Progress& progress)
 {

@@ -157,6 +157,7 @@ TEST(Colmap, AnEmptyListOfPointsIsNone)
   writeText(folder + "/points3D.txt", ""); // as COLMAP's manual wants it beside known poses
   EXPECT_TRUE(readColmapPoints(folder).empty());
   const auto [cameras, images] = binaryModel(cameraSet());
+  std::filesystem::create_directory(folder + "/binary");
   writeText(folder + "/binary/cameras.bin", cameras);
   writeText(folder + "/binary/images.bin", images);
   writeText(folder + "/binary/points3D.bin", "");

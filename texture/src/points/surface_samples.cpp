@@ -124,7 +124,7 @@ void findScans(const PointSet& set, const Eigen::Vector3d& mesh_origin, SurfaceS
   samples.stations = Points::Zero(3, 1);
   const Eigen::Vector3f shift = (set.origin - mesh_origin).cast<float>();
   if (set.viewpoints.cols() == 1)
-    samples.stations = set.viewpoints.col(0) + shift;
+    samples.stations.col(0) = set.viewpoints.col(0) + shift;
   if (set.viewpoints.cols() <= 1)
     return;
   std::map<std::tuple<float, float, float>, int> numbers;

@@ -22,15 +22,15 @@ struct PlanOptions {
 
 /// A door or window: where the surface of a wall is missing at the height of the cut and nothing stands before it.
 struct PlanOpening {
-  Eigen::Vector2d from, to;  ///< on the line of the wall, metres
-  double sill = 0, head = 0; ///< lower and upper end, metres above the room's floor
-  bool is_door = false;      ///< it reaches down to the floor
-  int beyond = -1;           ///< room on the other side, -1 = none
+  Eigen::Vector2d from = {0, 0}, to = {0, 0}; ///< on the line of the wall, metres
+  double sill = 0, head = 0;                  ///< lower and upper end, metres above the room's floor
+  bool is_door = false;                       ///< it reaches down to the floor
+  int beyond = -1;                            ///< room on the other side, -1 = none
 };
 
 /// One edge of a room's outline, the room on its left.
 struct PlanWall {
-  Eigen::Vector2d from, to;
+  Eigen::Vector2d from = {0, 0}, to = {0, 0};
   bool straight = false; ///< the data lie within the tolerance (nine tenths of them) of this line
   bool seen = true;      ///< false: no data here, the outline is closed over a gap
   double rms = 0;        ///< deviation of the data from the line, metres
