@@ -271,6 +271,8 @@ TEST(AsOthersWrite, TexturedPly)
   const TexturedMesh model = readTexturedMesh(stored("wedge.ply", wedge));
   EXPECT_EQ(model.face_atlas, Eigen::Vector3i(1, 1, -1));
   EXPECT_EQ(model.texcoords.col(model.texcoord_faces(2, 1)), Eigen::Vector2f(0, 1));
+  wedge.replace(wedge.find("int texnumber"), 3, "float").replace(wedge.rfind("-1"), 2, "nan");
+  EXPECT_EQ(readTexturedMesh(stored("nan.ply", wedge)).face_atlas, model.face_atlas);
   std::string smooth =
       head + "property float s\nproperty float t\nelement face 1\nproperty list uchar int vertex_index\nend_header\n";
   for (const std::string& row : rows)

@@ -193,9 +193,9 @@ void readFaceProperty(ValueReader& source, const PlyProperty& property, bool tex
     readList(source, property, row.corners);
   else if (textured && isTexcoordList(property))
     readList(source, property, row.texcoords);
-  else if (textured && isTexnumber(property))
+  else if (textured && isTexnumber(property)) // fmax() takes NaN for -1
     visitScalar(property.type, [&](auto zero) {
-      row.number = int(std::clamp<double>(source.next<decltype(zero)>(), -1, std::numeric_limits<int>::max()));
+      row.number = int(std::fmin(std::fmax(source.next<decltype(zero)>(), -1), std::numeric_limits<int>::max()));
     });
   else
     skipProperty(source, property);
