@@ -17,9 +17,8 @@ struct DrawMesh {
   std::vector<Index> face_source; ///< F, face of the mesh that it was made from; empty: all, in their order
 };
 
-/// F: what hangs on walls and ceilings that the view looks through from behind, as sills and lamps do, and would float where they are
-/// culled. A wall is surface seen from behind, connected, a tenth of the model at least and nearer than the rest; what is
-/// seen from the front, grows from it alone and is less than a tenth of it hangs.
+/// F: what hangs on culled walls and ceilings, as sills and lamps do, and would float. A wall is connected surface seen from behind, a
+/// tenth of the model at least and nearer than the rest; what is seen from the front, grows from it and is less than a tenth of it hangs.
 /// @param eye in the world
 std::vector<char> hangingFaces(const TriangleMesh& mesh, const Eigen::Vector3d& eye);
 

@@ -21,15 +21,16 @@ struct PictureSeries::Stage {
   void show(bool cull_back_faces, const Eigen::Vector3d& eye)
   {
     std::vector<char> out = cull_back_faces ? hangingFaces(surface, eye) : std::vector<char>(hidden.size(), 0);
+    const bool changed = out != hidden;
+    hidden = std::move(out);
     for (std::size_t i = 0; i < actors.size(); ++i) {
       actors[i]->GetProperty()->SetBackfaceCulling(cull_back_faces);
-      if (out == hidden)
+      if (!changed)
         continue;
       drawn[i]->faces = whole[i];
-      leaveOut(*drawn[i], out);
+      leaveOut(*drawn[i], hidden);
       update(*actors[i], *drawn[i]);
     }
-    hidden = std::move(out);
   }
 
   TriangleMesh surface;                         ///< without attributes
