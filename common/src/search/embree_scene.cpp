@@ -41,27 +41,10 @@ bool countBytes(void* sum, ssize_t bytes, bool)
 } // namespace
 
 EmbreeScene::EmbreeScene(const Points& vertices, const Faces& faces, RTCSceneFlags flags, int threads)
-    : device_(newDevice(threads)), face_count_(faces.cols())
+    : EmbreeScene(newDevice(threads)) // so that errors from here on end in the destructor, too
 {
   if (!device_)
     failForMemory();
-  try {
-    commit(vertices, faces, flags);
-  } catch (...) {
-    rtcReleaseScene(scene_);
-    rtcReleaseDevice(device_);
-    throw;
-  }
-}
-
-EmbreeScene::~EmbreeScene()
-{
-  rtcReleaseScene(scene_);
-  rtcReleaseDevice(device_);
-}
-
-void EmbreeScene::commit(const Points& vertices, const Faces& faces, RTCSceneFlags flags)
-{
   rtcSetDeviceMemoryMonitorFunction(device_, countBytes, &bytes_);
   scene_ = rtcNewScene(device_);
   if (!scene_)
@@ -70,10 +53,17 @@ void EmbreeScene::commit(const Points& vertices, const Faces& faces, RTCSceneFla
   const Geometry geometry(rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE));
   vertices_ = fillBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, vertices);
   faces_ = fillBuffer(geometry, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3, faces);
+  face_count_ = faces.cols();
   rtcCommitGeometry(geometry.get());
   rtcAttachGeometry(scene_, geometry.get());
   rtcCommitScene(scene_);
   if (rtcGetDeviceError(device_) == RTC_ERROR_OUT_OF_MEMORY)
     failForMemory();
+}
+
+EmbreeScene::~EmbreeScene()
+{
+  rtcReleaseScene(scene_);
+  rtcReleaseDevice(device_);
 }
 } // namespace fresco::search

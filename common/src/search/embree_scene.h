@@ -60,8 +60,8 @@ public:
   std::size_t memory() const { return bytes_; }                  ///< bytes held, those of the triangles included
 
 private:
-  void commit(const Points& vertices, const Faces& faces, RTCSceneFlags flags);
-  RTCDevice device_ = nullptr;
+  explicit EmbreeScene(RTCDevice device) : device_(device) {}
+  RTCDevice device_;
   RTCScene scene_ = nullptr;
   std::atomic<std::ptrdiff_t> bytes_ = 0;
   Index face_count_ = 0;

@@ -4,7 +4,6 @@
 #include "io/colmap/colmap_rows.h"
 #include "io/files/remarks.h"
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <fresco/io/colmap.h>
 #include <fresco/io/file.h>

@@ -4,7 +4,6 @@
 #include <fresco/core/poses.h>
 #include <fresco/io/camera_files.h>
 #include <map>
-#include <optional>
 #include <string_view>
 #include <vector>
 namespace fresco::io {

@@ -7,21 +7,15 @@ namespace {
 /// An open file, its header read.
 class PngReader {
 public:
-  explicit PngReader(std::string_view bytes)
-      : rest_(bytes), png_(png_create_read_struct(PNG_LIBPNG_VER_STRING, &errors_, fail, ignore)),
-        info_(png_ ? png_create_info_struct(png_) : nullptr)
+  explicit PngReader(std::string_view bytes) : PngReader() // so that errors from here on end in the destructor, too
   {
-    if (!info_) {
-      png_destroy_read_struct(&png_, nullptr, nullptr);
+    rest_ = bytes;
+    png_ = png_create_read_struct(PNG_LIBPNG_VER_STRING, &errors_, fail, ignore);
+    info_ = png_ ? png_create_info_struct(png_) : nullptr;
+    if (!info_)
       throw std::bad_alloc();
-    }
     png_set_read_fn(png_, this, take);
-    try {
-      callLibrary(errors_, [&] { png_read_info(png_, info_); });
-    } catch (...) {
-      png_destroy_read_struct(&png_, &info_, nullptr);
-      throw;
-    }
+    callLibrary(errors_, [&] { png_read_info(png_, info_); });
   }
   ~PngReader() { png_destroy_read_struct(&png_, &info_, nullptr); }
   PngReader(const PngReader&) = delete;
@@ -65,6 +59,7 @@ public:
   }
 
 private:
+  PngReader() = default;
   static void fail(png_structp png, png_const_charp reason)
   {
     auto& errors = *static_cast<LibraryErrors*>(png_get_error_ptr(png));
@@ -93,8 +88,8 @@ private:
 
   std::string_view rest_;
   LibraryErrors errors_;
-  png_structp png_;
-  png_infop info_;
+  png_structp png_ = nullptr;
+  png_infop info_ = nullptr;
 };
 } // namespace
 

@@ -220,7 +220,7 @@ std::vector<Sample> samplesOf(const Table& table, const Layout& layout, std::siz
 }
 
 /// put(x, y, sample, value) of every sample of a file.
-template <typename Sample = std::uint16_t, typename Put>
+template <typename Sample, typename Put>
 void forEachSample(const Table& table, const Layout& layout, const Put& put)
 {
   const std::uint32_t across = (layout.width + layout.part_width - 1) / layout.part_width;
@@ -235,6 +235,18 @@ void forEachSample(const Table& table, const Layout& layout, const Put& put)
         for (std::uint32_t s = 0; s < step; ++s)
           put(x0 + x, y0 + y, s + part / across / down, samples[(std::size_t{y} * layout.part_width + x) * step + s]);
   }
+}
+
+/// An image of one channel, of samples as its values are stored.
+template <typename Sample, typename Picture>
+Picture onlyChannel(const Table& table, const Layout& layout)
+{
+  Picture image{int(layout.width), int(layout.height), {}};
+  image.data.resize(std::size_t{layout.width} * layout.height);
+  forEachSample<Sample>(table, layout, [&](std::uint32_t x, std::uint32_t y, std::uint32_t, Sample value) {
+    std::memcpy(&image.data[std::size_t{y} * layout.width + x], &value, sizeof value);
+  });
+  return image;
 }
 } // namespace
 
@@ -252,7 +264,7 @@ Image decodeTiff(std::string_view bytes)
   expect(layout.bits != 32, "TIFF: holds depths (floats), no picture");
   Image image(layout.width, layout.height, 3);
   const std::size_t colors = std::size_t{1} << layout.bits;
-  forEachSample(table, layout, [&](std::uint32_t x, std::uint32_t y, std::uint32_t sample, std::uint32_t value) {
+  const auto put = [&](std::uint32_t x, std::uint32_t y, std::uint32_t sample, std::uint32_t value) {
     std::uint8_t* const pixel = image.pixel(x, y);
     const std::uint8_t byte = value >> (layout.bits - 8);
     if (layout.photometric == rgb && sample < 3)
@@ -262,7 +274,8 @@ Image decodeTiff(std::string_view bytes)
         pixel[c] = layout.photometric == palette_colors  ? table.value(palette_tag, 0, c * colors + value) >> 8
                    : layout.photometric == white_is_zero ? 255 - byte
                                                          : byte;
-  });
+  };
+  forEachSample<std::uint16_t>(table, layout, put);
   return image;
 }
 
@@ -272,26 +285,13 @@ Image16 decodeTiff16(std::string_view bytes)
   const Layout layout = layoutOf(table);
   if (layout.bits != 16 || layout.samples != 1 || layout.photometric != black_is_zero)
     return {};
-  Image16 image{int(layout.width), int(layout.height),
-                std::vector<std::uint16_t>(std::size_t{layout.width} * layout.height)};
-  forEachSample(table, layout, [&](std::uint32_t x, std::uint32_t y, std::uint32_t, std::uint32_t value) {
-    image.data[std::size_t{y} * layout.width + x] = value;
-  });
-  return image;
+  return onlyChannel<std::uint16_t, Image16>(table, layout);
 }
 
 FloatImage decodeTiffFloats(std::string_view bytes)
 {
   const Table table(bytes);
   const Layout layout = layoutOf(table);
-  if (layout.bits != 32)
-    return {};
-  FloatImage image{int(layout.width), int(layout.height),
-                   std::vector<float>(std::size_t{layout.width} * layout.height)};
-  const auto put = [&](std::uint32_t x, std::uint32_t y, std::uint32_t, std::uint32_t value) {
-    std::memcpy(&image.data[std::size_t{y} * layout.width + x], &value, sizeof value);
-  };
-  forEachSample<std::uint32_t>(table, layout, put);
-  return image;
+  return layout.bits == 32 ? onlyChannel<std::uint32_t, FloatImage>(table, layout) : FloatImage();
 }
 } // namespace fresco::io

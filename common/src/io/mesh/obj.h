@@ -16,16 +16,15 @@ struct ObjTriangle {
 };
 
 struct ObjContent {
-  std::vector<double> vertices; ///< x y z each, or x y z r g b (as in the file) each if `has_colors`
-  bool has_colors = false;
+  std::vector<double> vertices; ///< x y z each
+  std::vector<double> colors;   ///< r g b of each vertex as in the file; empty: there are none
   std::vector<double> normals;  ///< x y z each
   std::vector<float> texcoords; ///< u v each
   std::vector<ObjTriangle> triangles;
   std::vector<std::string> materials; ///< names in the order of their first use
   std::vector<std::string> libraries; ///< files named by mtllib
 
-  std::size_t valuesPerVertex() const { return has_colors ? 6 : 3; }
-  Index vertexCount() const { return static_cast<Index>(vertices.size() / valuesPerVertex()); }
+  Index vertexCount() const { return vertices.size() / 3; }
 };
 
 /// Polygons become fans. @throws std::runtime_error if malformed, without vertices, or if an index is out of range

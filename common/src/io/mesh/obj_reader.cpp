@@ -90,8 +90,8 @@ private:
     if (count < 3)
       return;
     const auto row = content_.vertices.size() / 3 - 1;
-    colors_.resize(3 * row, no_color);
-    colors_.insert(colors_.end(), extra + count - 3, extra + count);
+    content_.colors.resize(3 * row, no_color);
+    content_.colors.insert(content_.colors.end(), extra + count - 3, extra + count);
   }
 
   Corner parseCorner(std::string_view word) const
@@ -158,26 +158,18 @@ private:
     return {first.data(), static_cast<std::size_t>(last.data() + last.size() - first.data())};
   }
 
-  /// Joins coordinates and colours; vertices without a colour are white.
+  /// Vertices without a colour are white.
   void finishColors()
   {
-    if (colors_.empty())
+    std::vector<double>& colors = content_.colors;
+    if (colors.empty())
       return;
-    const std::size_t count = content_.vertices.size() / 3;
-    colors_.resize(3 * count, no_color);
+    colors.resize(content_.vertices.size(), no_color);
     double largest = 0;
-    for (const double value : colors_)
+    for (const double value : colors)
       largest = std::max(largest, std::isfinite(value) ? value : 0);
-    const double white = fullColor(Scalar::float64, largest);
-    std::vector<double> joined;
-    joined.reserve(6 * count);
-    for (std::size_t i = 0; i < count; ++i) {
-      joined.insert(joined.end(), content_.vertices.data() + 3 * i, content_.vertices.data() + 3 * (i + 1));
-      for (std::size_t k = 0; k < 3; ++k)
-        joined.push_back(std::isnan(colors_[3 * i + k]) ? white : colors_[3 * i + k]);
-    }
-    content_.vertices = std::move(joined);
-    content_.has_colors = true;
+    for (double& value : colors)
+      value = std::isnan(value) ? fullColor(Scalar::float64, largest) : value;
   }
 
   /// Faces that name texture coordinates or normals of a file that has none.
@@ -213,7 +205,6 @@ private:
   static constexpr double no_color = std::numeric_limits<double>::quiet_NaN();
   TextScanner scanner_;
   ObjContent content_;
-  std::vector<double> colors_;
   std::vector<Corner> corners_;
   std::unordered_map<std::string, int> materials_; ///< their numbers
   int material_ = -1;
@@ -254,19 +245,23 @@ ObjContent parseObj(std::string_view content) { return ObjParser(content).parse(
 
 MeshTable objMesh(const ObjContent& content)
 {
-  std::vector<std::string> names(std::begin(xyz_names), std::end(xyz_names));
-  if (content.has_colors)
-    names.insert(names.end(), std::begin(color_names), std::end(color_names));
   const std::vector<double> normals = normalsPerVertex(content);
-  const std::size_t width = content.valuesPerVertex();
-  if (!normals.empty())
-    names.insert(names.end(), std::begin(normal_names), std::end(normal_names));
+  std::vector<std::string> names;
+  std::vector<const double*> values; ///< of vertices, three each
+  const auto add = [&](NameTriple triple, const std::vector<double>& of_vertices) {
+    if (of_vertices.empty())
+      return;
+    names.insert(names.end(), std::begin(triple), std::end(triple));
+    values.push_back(of_vertices.data());
+  };
+  add(xyz_names, content.vertices);
+  add(color_names, content.colors);
+  add(normal_names, normals);
   std::vector<double> rows;
-  for (std::size_t i = 0; i < normals.size() / 3; ++i) {
-    rows.insert(rows.end(), content.vertices.data() + width * i, content.vertices.data() + width * (i + 1));
-    rows.insert(rows.end(), normals.data() + 3 * i, normals.data() + 3 * (i + 1));
-  }
-  MeshTable mesh{tableOfRows(names, normals.empty() ? content.vertices : rows), {}};
+  for (Index i = 0; values.size() > 1 && i < content.vertexCount(); ++i)
+    for (const double* const of_vertices : values)
+      rows.insert(rows.end(), of_vertices + 3 * i, of_vertices + 3 * (i + 1));
+  MeshTable mesh{tableOfRows(names, values.size() > 1 ? rows : content.vertices), {}};
   mesh.faces.resize(3, content.triangles.size());
   for (Index f = 0; f < mesh.faces.cols(); ++f)
     mesh.faces.col(f) = Eigen::Vector3i::Map(content.triangles[f].vertices.data());

@@ -12,9 +12,8 @@ namespace {
 std::string propertyLines(const PointTable& table)
 {
   std::string lines;
-  for (const Column& column : table.columns)
-    for (const Column& value : singleValues(column))
-      lines += textOf("property ", plyTypeName(value.type), ' ', plainName(value.name), '\n');
+  for (const Column& value : singleValues(table.columns))
+    lines += textOf("property ", plyTypeName(value.type), ' ', plainName(value.name), '\n');
   return lines;
 }
 

@@ -71,11 +71,7 @@ std::string extraDescriptors(const RandomAccessFile& file, const LasHeader& head
 /// Fields of the points of a file: those of the format, then extra bytes, which replace one of their name.
 std::vector<LasField> fieldsOf(const RandomAccessFile& file, const LasHeader& header)
 {
-  std::vector<LasField> fields = lasFields(header.format);
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    fields[axis].scale = header.scale[Index(axis)];
-    fields[axis].origin = header.offset[Index(axis)];
-  }
+  std::vector<LasField> fields = lasFields(header.format, header.scale, header.offset);
   const std::string descriptors = extraDescriptors(file, header);
   std::size_t at = lasRecordBytes(header.format);
   for (std::size_t i = 0; i + las_descriptor_bytes <= descriptors.size(); i += las_descriptor_bytes) {

@@ -27,11 +27,12 @@ std::size_t lasRecordBytes(int format)
   return bytes[format];
 }
 
-std::vector<LasField> lasFields(int format)
+std::vector<LasField> lasFields(int format, const Eigen::Array3d& scale, const Eigen::Array3d& origin)
 {
   std::vector<LasField> fields;
   for (std::size_t axis = 0; axis < 3; ++axis)
-    fields.push_back({xyz_names[axis], Scalar::int32, 4 * axis, Scalar::float64});
+    fields.push_back(
+        {xyz_names[axis], Scalar::int32, 4 * axis, Scalar::float64, 1, 0, 0, scale[Index(axis)], origin[Index(axis)]});
   fields.push_back({"intensity", Scalar::uint16, 12, Scalar::float32});
   const bool modern = format >= 6;
   std::size_t at = modern ? 22 : 20; // behind what all formats have

@@ -18,8 +18,8 @@ struct LasField {
 /// Bytes of a record of a point format 0..10, without extra bytes.
 std::size_t lasRecordBytes(int format);
 
-/// x y z, with scale 1, and all further fields of a point format but waveforms.
-std::vector<LasField> lasFields(int format);
+/// x y z, of that scale and origin, and all further fields of a point format but waveforms.
+std::vector<LasField> lasFields(int format, const Eigen::Array3d& scale, const Eigen::Array3d& origin);
 
 /// What a descriptor of extra bytes says. @param offset in the record
 LasField lasExtraField(const std::uint8_t* descriptor, std::size_t offset);

@@ -34,22 +34,16 @@ public:
     const bool colors = table.find("red") != nullptr;
     format_ = !colors ? 6 : table.find("near_infrared") ? 8 : 7;
     placeCoordinates();
-    fields_ = lasFields(format_);
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      fields_[axis].scale = scale_;
-      fields_[axis].origin = offset_[Index(axis)];
-    }
+    fields_ = lasFields(format_, Eigen::Array3d::Constant(scale_), offset_);
     record_ = lasRecordBytes(format_);
-    for (const Column& column : table.columns) {
-      const auto same =
-          std::find_if(fields_.begin(), fields_.end(), [&](const auto& f) { return f.name == column.name; });
-      if (same != fields_.end() && (column.name != "intensity" || isWhole16(table, column)))
-        continue;
-      for (const Column& one : singleValues(column)) {
-        extra_.push_back(one);
-        record_ += one.bytes();
-      }
-    }
+    std::vector<Column> others;
+    for (const Column& column : table.columns)
+      if (std::none_of(fields_.begin(), fields_.end(), [&](const auto& f) { return f.name == column.name; }) ||
+          (column.name == "intensity" && !isWhole16(table, column)))
+        others.push_back(column);
+    extra_ = singleValues(others);
+    for (const Column& one : extra_)
+      record_ += one.bytes();
     require(record_ <= 65535, "too many fields for LAS");
   }
 

@@ -3,7 +3,6 @@
 #include "io/files/expect.h"
 #include "io/points/file_window.h"
 #include <fresco/core/point_table.h>
-#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -27,15 +26,14 @@ struct RowLayout {
 std::optional<RowLayout> plyRows(std::string_view begin);
 std::optional<RowLayout> pcdRows(std::string_view begin);
 
-/// Each value of a column as a column of its own: NAME_0, NAME_1 ... where there are several.
-inline std::vector<Column> singleValues(const Column& column)
+/// Each value of a row as a column of its own: NAME_0, NAME_1 ... where a column has several.
+inline std::vector<Column> singleValues(const std::vector<Column>& columns)
 {
-  std::vector<Column> values(column.count, column);
-  for (std::size_t k = 0; k < column.count; ++k) {
-    values[k].name += column.count > 1 ? concat('_', k) : "";
-    values[k].count = 1;
-    values[k].offset += k * scalarSize(column.type);
-  }
+  std::vector<Column> values;
+  for (const Column& column : columns)
+    for (std::size_t k = 0; k < column.count; ++k)
+      values.push_back({column.name + (column.count > 1 ? concat('_', k) : ""), column.type, 1,
+                        column.offset + k * scalarSize(column.type), column.full});
   return values;
 }
 

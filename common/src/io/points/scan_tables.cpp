@@ -4,12 +4,6 @@
 #include <limits>
 namespace fresco::io {
 namespace {
-template <typename T>
-void storeAt(std::uint8_t* at, T value)
-{
-  std::memcpy(at, &value, sizeof(T));
-}
-
 /// Whole numbers of a column.
 std::vector<Index> wholeNumbers(const PointTable& table, const char* name)
 {
@@ -79,8 +73,7 @@ PointTable readScanTable(ScanReader& reader, Index scan)
   Index done = 0;
   while (const Index more = done < table.rows ? reader.read(table, done, table.rows) : 0)
     done += more;
-  table.rows = done;
-  table.data.resize(done * table.stride);
+  table.allocate(done);
   if (info.sensor)
     table.sensor = SensorPose{*info.sensor, Eigen::Quaternionf::Identity()};
   organise(table);
@@ -186,8 +179,7 @@ PointTable readMergedTable(ScanReader& reader)
     attempt(nameOf(scan), errors, [&] { done = appendScan(reader, scan, merged, done); });
   tellDamage(errors, done > 0);
   expect(done != 0, "no points");
-  merged.rows = done;
-  merged.data.resize(done * merged.stride);
+  merged.allocate(done);
   if (sensors && used.size() == 1) {
     const ScanInfo& only = scans[used[0]];
     merged.sensor =

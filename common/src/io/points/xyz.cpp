@@ -98,15 +98,6 @@ private:
   std::string_view header_, comment_; ///< before the points
   std::optional<std::uint64_t> announced_;
 };
-
-std::vector<Column> valuesOfRows(const PointTable& table)
-{
-  std::vector<Column> values;
-  for (const Column& column : table.columns)
-    for (const Column& value : singleValues(column))
-      values.push_back(value);
-  return values;
-}
 } // namespace
 
 PointTable parseXyz(std::string_view content)
@@ -121,7 +112,7 @@ void writeXyz(const std::string& path, PointTable table)
   const bool csv = extension(path) == ".csv";
   const char* const between = csv ? "," : " ";
   OutputFile file(path);
-  const std::vector<Column> columns = valuesOfRows(table);
+  const std::vector<Column> columns = singleValues(table.columns);
   const char* separator = csv ? "" : "# ";
   for (const Column& column : columns)
     file.write(textOf(std::exchange(separator, between), plainName(column.name)));

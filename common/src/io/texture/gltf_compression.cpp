@@ -2,8 +2,8 @@
 // EXT_meshopt_compression: Kapoulkine et al., Khronos' registry of extensions.
 #include "io/texture/gltf_compression.h"
 #include "io/files/expect.h"
-#include <cstring>
 #include <fresco/core/point_table.h>
+#include <limits>
 #include <meshoptimizer.h>
 #include <nlohmann/json.hpp>
 namespace fresco::io {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include "io/texture/texture_io.h"
-#include <limits>
 #include <unordered_map>
 #include <vector>
 namespace fresco::io {

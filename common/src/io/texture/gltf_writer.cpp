@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "io/files/expect.h"
 #include "io/texture/gltf_compression.h"
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <fresco/io/file.h>

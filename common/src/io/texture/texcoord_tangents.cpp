@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <cmath>
 #include <fresco/core/require.h>
 #include <fresco/io/gltf.h>
 namespace fresco {

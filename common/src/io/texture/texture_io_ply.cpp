@@ -4,7 +4,6 @@
 #include "io/texture/texture_io.h"
 #include <filesystem>
 #include <fresco/io/image_io.h>
-#include <fresco/io/mesh_io.h>
 #include <fresco/io/ply_rows.h>
 namespace fresco::io {
 namespace {

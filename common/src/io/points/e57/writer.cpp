@@ -114,7 +114,7 @@ std::vector<Stream> streamsOf(const PointTable& table)
 {
   std::vector<Stream> streams;
   for (const Column& column : table.columns)
-    for (const Column& value : singleValues(column))
+    for (const Column& value : singleValues({column}))
       streams.push_back({fieldName(column.name) + value.name.substr(column.name.size()), value});
   return streams;
 }
