@@ -27,13 +27,14 @@ double bytesOf(const std::string& file)
 }
 
 /// Points of a file as its header tells; else judged by its size.
-double pointsOf(const std::string& file)
+double pointsOf(const ScanPath& path)
 {
+  const std::string& file = path.file;
   constexpr double bytes_a_point = 25; // of text, and of packed formats with colours
   if (holdsScans(file)) {
     double sum = 0;
     try {
-      for (const ScanInfo& scan : readScanInfos(file))
+      for (const ScanInfo& scan : readScanInfos(path))
         sum += double(scan.points);
     } catch (const std::runtime_error&) { // damaged: registration says so
     }
@@ -124,7 +125,7 @@ ModelPlan estimate(const Job& job)
   std::set<std::string> files;
   for (const ScanPath& scan : input.scans)
     if (files.insert(scan.file).second) {
-      const double points = pointsOf(scan.file);
+      const double points = pointsOf(scan);
       plan.points += points;
       largest = std::max(largest, points);
     }

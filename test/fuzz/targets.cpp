@@ -83,7 +83,7 @@ void readPointsAndCloud(const std::string& path)
 void readScans(const std::string& path)
 {
   std::vector<ScanPath> scans = scansOf({path});
-  scans.resize(std::min<std::size_t>(scans.size(), 8)); // each one costs a pass over the file
+  scans.resize(std::min<std::size_t>(scans.size(), 8)); // an E57 is opened anew for each
   for (const ScanPath& scan : scans) {
     const PointSet set = readPoints(scan);
     validatePointSet(set);

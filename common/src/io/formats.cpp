@@ -72,7 +72,7 @@ Format withRows(Format format, std::optional<RowLayout> (*row_layout)(std::strin
 template <auto open>
 PointTable readScans(const std::string& path)
 {
-  return namingFile(path, [&] { return readMergedTable(*open(path)); });
+  return namingFile(path, [&] { return readMergedTable(*open({path})); });
 }
 
 /// A format of several scans.

@@ -22,7 +22,7 @@ struct Station {
 /// Those of one file, in its order. @param first index into `scans`
 std::vector<Station> stationsOf(const std::vector<ScanPath>& scans, std::size_t first)
 {
-  const std::vector<ScanInfo> infos = readScanInfos(scans[first].file);
+  const std::vector<ScanInfo> infos = readScanInfos(scans[first]);
   std::vector<Station> stations;
   for (std::size_t s = first; s < scans.size() && scans[s].file == scans[first].file; ++s) {
     const ScanInfo& info = infos.at(std::max<Index>(0, scans[s].scan));

@@ -87,7 +87,7 @@ Standing standpointOf(const ScanPath& scan)
     return {Standpoint::many, {}};
   constexpr double most_hidden = 0.05; // 0.01 to 0.04 of scans of rooms, 0.08 to 0.3 of merged ones: docs/inputs.md
   if (holdsScans(scan.file)) {
-    const std::vector<ScanInfo> infos = readScanInfos(scan.file);
+    const std::vector<ScanInfo> infos = readScanInfos(scan);
     const ScanInfo& info = infos.at(std::max<Index>(scan.scan, 0));
     const bool placed = info.has_pose && !info.T_file_scan.matrix().isIdentity(); // else maybe all scans as one
     if (placed || info.sensor || infos.size() > 1) // files of several scans keep them apart

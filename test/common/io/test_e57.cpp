@@ -48,7 +48,7 @@ std::string stored(const std::string& bytes) { return test::stored("scan.e57", b
 /// All rows of a scan as the reader gives them, `window` at a time.
 io::PointTable rowsOf(const std::string& path, Index window, Index scan = 0)
 {
-  const auto reader = io::openE57(path);
+  const auto reader = io::openE57({path});
   io::PointTable all = reader->open(scan);
   all.allocate(reader->scans()[scan].points);
   Index done = 0;

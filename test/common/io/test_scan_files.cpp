@@ -2,8 +2,11 @@
 #include "common/io/e57_file.h"
 #include "common/io/las_writer.h"
 #include "common/io/test_io_data.h"
+#include <filesystem>
 #include <fresco/io/point_io.h>
+#include <fresco/io/reading.h>
 #include <fresco/io/scan_file.h>
+#include <fstream>
 #include <sstream>
 namespace {
 using namespace fresco;
@@ -124,22 +127,27 @@ TEST(ScanFiles, StationsAreScansWithPosesAndTogetherOneCloud)
   }
 }
 
+/// Points in the order of the file, from windows of 5.
+Points streamed(const ScanPath& scan)
+{
+  Points all(3, 0);
+  streamPoints(scan, 5, [&](const PointSet& window) {
+    EXPECT_LE(window.size(), 5);
+    const Index before = all.cols();
+    all.conservativeResize(3, before + window.size());
+    all.rightCols(window.size()) = window.points;
+    return true;
+  });
+  return all;
+}
+
 TEST(ScanFiles, WindowsTogetherAreTheScan)
 {
   for (const auto& [name, content] :
        {std::pair<std::string, std::string>{"a.ptx", ptxOf(farStations())}, {"a.e57", e57Of(farStations())}}) {
     const std::string path = stored(name, content);
-    for (const Index station : {0, 1}) { // the first does not read on into the second
-      Points all(3, 0);
-      streamPoints(ScanPath{path, station}, 5, [&](const PointSet& window) {
-        EXPECT_LE(window.size(), 5);
-        const Index before = all.cols();
-        all.conservativeResize(3, before + window.size());
-        all.rightCols(window.size()) = window.points;
-        return true;
-      });
-      EXPECT_TRUE(test::sameValues(all, farStations()[station].points)) << name << ' ' << station;
-    }
+    for (const Index station : {0, 1}) // the first does not read on into the second
+      EXPECT_TRUE(test::sameValues(streamed({path, station}), farStations()[station].points)) << name << ' ' << station;
     int calls = 0;
     streamPoints(ScanPath{path, 1}, 5, [&](const PointSet&) { return ++calls < 2; });
     EXPECT_EQ(calls, 2);
@@ -171,6 +179,69 @@ TEST(ScanFiles, AStationWithoutPointsKeepsItsPlace)
   }
   stations.pop_back();
   EXPECT_NE(test::errorOf([&] { readPoints(stored("b.e57", e57Of(stations))); }).find("no points"), std::string::npos);
+}
+
+/// Bytes that this process has read from files; nothing where the system does not count them.
+std::optional<double> bytesRead()
+{
+  std::ifstream counts("/proc/self/io");
+  std::string name;
+  double bytes = 0;
+  return counts >> name >> bytes ? std::optional(bytes) : std::nullopt;
+}
+
+TEST(Ptx, AllStationsTogetherCostTwoPasses)
+{
+  if (!bytesRead())
+    GTEST_SKIP() << "no /proc/self/io";
+  const Station station{somePose(0, {0, 0, 0}), test::randomPoints(500, 5, 9.f), 20};
+  const std::string path = stored("a.ptx", ptxOf(std::vector<Station>(24, station)));
+  const auto size = double(std::filesystem::file_size(path));
+  const double before = *bytesRead();
+  const std::vector<ScanPath> scans = scansOf({path});
+  EXPECT_EQ(posesOf(scans).size(), 24u);
+  const double listed = *bytesRead();
+  for (const ScanPath& scan : scans)
+    EXPECT_EQ(readPoints(scan).size(), 500);
+  const double read = *bytesRead();
+  for (const ScanPath& scan : scans)
+    streamPoints(scan, 100, [](const PointSet&) { return true; });
+  const double streamed = *bytesRead();
+  for (const double pass : {listed - before, read - listed, streamed - read})
+    EXPECT_LT(pass, 1.1 * size);
+}
+
+TEST(Ptx, AFileThatChangedIsSearchedAgain)
+{
+  const std::vector<Station> stations = farStations();
+  const std::string path = stored("a.ptx", ptxOf(stations));
+  const std::vector<ScanPath> scans = scansOf({path});
+  const auto time = std::filesystem::last_write_time(path);
+  const auto second = [&](const std::vector<Station>& now) {
+    stored("a.ptx", ptxOf(now));
+    std::filesystem::last_write_time(path, time + std::chrono::seconds(1)); // even if it is as long as before
+    return streamed(scans[1]);
+  };
+  EXPECT_TRUE(test::sameValues(second({stations[1], stations[0]}), stations[0].points));
+  EXPECT_TRUE(test::sameValues(second({stations[0], stations[0], stations[1]}), stations[0].points));
+  EXPECT_THROW(second({stations[0]}), std::runtime_error);
+}
+
+TEST(Ptx, DamageIsToldAtEachReading)
+{
+  const std::vector<Station> stations = farStations();
+  const std::string good = ptxOf(stations);
+  const std::string path = stored("a.ptx", "1\nx" + good.substr(good.find('\n') + 1) + good);
+  std::vector<std::string> told;
+  listenToReaders([&](const std::string& line) { told.push_back(line); });
+  const std::vector<ScanPath> scans = scansOf({path});
+  ASSERT_EQ(scans.size(), 4u);
+  for (Index i = 0; i < 2; ++i)
+    EXPECT_TRUE(test::sameValues(streamed(scans[2 + i]), stations[i].points));
+  listenToReaders({});
+  ASSERT_EQ(told.size(), 3u);
+  EXPECT_NE(told[0].find("a.ptx: could not be read: station 1: header, line 2"), std::string::npos) << told[0];
+  EXPECT_EQ(told[2], told[0]);
 }
 
 TEST(Ptx, BeamsWithoutAPointAreNotFinite)

@@ -6,12 +6,17 @@
 #include <fresco/core/poses.h>
 #include <fresco/io/cloud_file.h>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 /// Files of several scans (.e57, .ptx): each scan is a cloud in the frame of its scanner, with its place in the frame of
 /// the file.
 namespace fresco {
+namespace io {
+struct ScanIndex;
+}
+
 /// What a file says of one of its scans before the points are read.
 struct ScanInfo {
   std::string name;      ///< as the file calls it; may be empty
@@ -26,6 +31,9 @@ struct ScanInfo {
 struct FRESCO_EXPORT ScanPath {
   std::string file;
   Index scan = -1; ///< from 0; -1 = all scans as one cloud, in the frame of the file
+  /// Where the scans of a text file begin, as scansOf() found it: each of them is then read without a look at the others.
+  /// Without it, or if the file has changed since, they are searched.
+  std::shared_ptr<const io::ScanIndex> index = nullptr;
 
   /// "FILE", or "FILE scan N" with N from 1.
   std::string name() const;
@@ -37,6 +45,7 @@ FRESCO_EXPORT bool holdsScans(const std::string& path);
 /// The scans of a file whose format holdsScans().
 /// @throws std::runtime_error "PATH: reason" if it cannot be read, is malformed or has no scan
 FRESCO_EXPORT std::vector<ScanInfo> readScanInfos(const std::string& path);
+FRESCO_EXPORT std::vector<ScanInfo> readScanInfos(const ScanPath& path); ///< of its whole file
 
 /// The scans in files of points: one each, or as many as a file that holdsScans() has. A file without a scan is left out, which
 /// listeners hear, where others have one.

@@ -9,6 +9,9 @@
 #include <string>
 #include <string_view>
 #include <vector>
+namespace fresco {
+struct ScanPath;
+}
 namespace fresco::io {
 class ScanReader;
 struct RowLayout;
@@ -27,7 +30,7 @@ struct Format {
   std::optional<RowLayout> (*row_layout)(std::string_view begin) = nullptr;
 
   /// For formats of several scans, or larger than memory; read_points then reads all scans as one cloud.
-  std::unique_ptr<ScanReader> (*open_scans)(const std::string& path) = nullptr;
+  std::unique_ptr<ScanReader> (*open_scans)(const ScanPath& path) = nullptr;
 
   bool reads(FileKind kind) const;
   bool writes(FileKind kind) const;

@@ -58,13 +58,12 @@ bool LineReader::fill()
   offset_ += at_;
   window_.erase(0, at_);
   at_ = 0;
-  const std::uint64_t end = offset_ + window_.size();
-  if (end == file_.size())
-    return false;
   const std::size_t held = window_.size();
-  const std::size_t more = std::min<std::uint64_t>(window_size, file_.size() - end);
+  const std::size_t more = std::min<std::uint64_t>(window_size, end_ - offset_ - held);
+  if (more == 0)
+    return false;
   window_.resize(held + more);
-  file_.read(end, &window_[held], more);
+  file_.read(offset_ + held, &window_[held], more);
   return true;
 }
 

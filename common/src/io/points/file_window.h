@@ -23,15 +23,17 @@ private:
   std::uint64_t size_ = 0;
 };
 
-/// The lines of a text file from a place on, of which only a window is in memory. Lines end with LF or CR LF.
+/// The lines of a part of a text file, of which only a window is in memory. Lines end with LF or CR LF.
 class LineReader {
 public:
-  explicit LineReader(const RandomAccessFile& file, std::uint64_t offset = 0, std::uint64_t line = 1)
-      : file_(file), offset_(offset), line_(line)
+  explicit LineReader(const RandomAccessFile& file) : file_(file), end_(file.size()) {}
+  /// @param line number of the one that begins at byte `begin`
+  LineReader(const RandomAccessFile& file, std::uint64_t begin, std::uint64_t end, std::uint64_t line)
+      : file_(file), offset_(begin), end_(end), line_(line)
   {}
 
   /// @param text valid until the next call; without blanks at its ends
-  /// @return false at the end of the file
+  /// @return false at the end
   /// @throws std::runtime_error if a line has more than 2^20 bytes
   bool next(std::string_view& text);
   /// The line that next() gave last comes once more.
@@ -39,13 +41,13 @@ public:
 
   std::uint64_t line() const { return line_ - 1; }       ///< number of the line that next() gave, from 1
   std::uint64_t offset() const { return offset_ + at_; } ///< byte where the next line begins
-  std::uint64_t remaining() const { return file_.size() - offset(); }
+  std::uint64_t remaining() const { return end_ - offset(); }
 
 private:
   bool fill();
   const RandomAccessFile& file_;
-  std::uint64_t offset_; ///< of the window in the file
-  std::uint64_t line_;
+  std::uint64_t offset_ = 0, end_; ///< in the file: of the window, behind the last line
+  std::uint64_t line_ = 1;
   std::string window_;
   std::size_t at_ = 0, last_ = 0; ///< in the window: next line, the one before
 };

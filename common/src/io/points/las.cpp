@@ -190,5 +190,5 @@ private:
 };
 } // namespace
 
-std::unique_ptr<ScanReader> openLas(const std::string& path) { return std::make_unique<LasReader>(path); }
+std::unique_ptr<ScanReader> openLas(const ScanPath& path) { return std::make_unique<LasReader>(path.file); }
 } // namespace fresco::io

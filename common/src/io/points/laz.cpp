@@ -54,12 +54,12 @@ void runLaszip(const std::string& from, const std::string& to)
 }
 } // namespace
 
-std::unique_ptr<ScanReader> openLaz(const std::string& path)
+std::unique_ptr<ScanReader> openLaz(const ScanPath& path)
 {
-  expect(std::filesystem::is_regular_file(path), "no such file");
+  expect(std::filesystem::is_regular_file(path.file), "no such file");
   const TemporaryFolder folder;
-  runLaszip(path, folder.file("points.las"));
-  return openLas(folder.file("points.las")); // which stays open
+  runLaszip(path.file, folder.file("points.las"));
+  return openLas({folder.file("points.las")}); // which stays open
 }
 
 void writeLaz(const std::string& path, PointTable table)

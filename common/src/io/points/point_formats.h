@@ -25,17 +25,17 @@ void writeXyz(const std::string& path, PointTable table);
 /// point is "0 0 0 ..." and becomes NaN. A station that cannot be read, or has another number of lines than it announces,
 /// has no points and is remarked.
 /// @throws std::runtime_error if none can be read
-std::unique_ptr<ScanReader> openPtx(const std::string& path);
+std::unique_ptr<ScanReader> openPtx(const ScanPath& path);
 
 /// Leica's PTS: a line with the number of points, then lines as in PTX; several such blocks are several scans in the same
 /// frame. The first block may lack its number. A block that cannot be read has no points and is remarked.
 /// @throws std::runtime_error if none can be read
-std::unique_ptr<ScanReader> openPts(const std::string& path);
+std::unique_ptr<ScanReader> openPts(const ScanPath& path);
 
 /// ASPRS LAS 1.0 to 1.4, point formats 0 to 10: one scan without a pose. Extra bytes are columns, under the names of their
 /// descriptors where the file has them. Waveforms are left out.
 /// @throws std::runtime_error
-std::unique_ptr<ScanReader> openLas(const std::string& path);
+std::unique_ptr<ScanReader> openLas(const ScanPath& path);
 
 /// LAS 1.4, point format 6, 7 (colours) or 8 (near infrared); coordinates in steps of a ten millionth of the extent. Fields
 /// without a place there become extra bytes, as do intensities that are no whole numbers up to 65535. Points that are not
@@ -44,13 +44,13 @@ void writeLas(const std::string& path, PointTable table);
 
 /// The same compressed (LAZ), by the program laszip where it is installed.
 /// @throws std::runtime_error that names it where it is not
-std::unique_ptr<ScanReader> openLaz(const std::string& path);
+std::unique_ptr<ScanReader> openLaz(const ScanPath& path);
 void writeLaz(const std::string& path, PointTable table);
 
 /// ASTM E2807, "E57": Cartesian or spherical points, packed whole numbers of any width or floats, colours, intensity,
 /// normals (extension), row and column, and whatever else the prototype has. Page checksums are verified.
 /// @throws std::runtime_error
-std::unique_ptr<ScanReader> openE57(const std::string& path);
+std::unique_ptr<ScanReader> openE57(const ScanPath& path);
 
 /// One scan, in the frame of its sensor where that is known.
 void writeE57Points(const std::string& path, const PointTable& points, bool compressed);

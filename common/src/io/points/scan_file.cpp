@@ -7,11 +7,11 @@
 #include <fresco/io/scan_file.h>
 namespace fresco {
 namespace {
-std::unique_ptr<io::ScanReader> openScans(const std::string& path)
+std::unique_ptr<io::ScanReader> openScans(const ScanPath& path)
 {
-  const io::Format& format = io::formatToRead(path, FileKind::points);
-  expect(format.open_scans, path, ": holds one cloud, there is no scan to choose");
-  return io::namingFile(path, [&] { return format.open_scans(path); });
+  const io::Format& format = io::formatToRead(path.file, FileKind::points);
+  expect(format.open_scans, path.file, ": holds one cloud, there is no scan to choose");
+  return io::namingFile(path.file, [&] { return format.open_scans(path); });
 }
 
 void checkScan(const io::ScanReader& reader, Index scan)
@@ -28,10 +28,12 @@ bool holdsScans(const std::string& path)
   return isReadable(path, FileKind::points) && io::formatToRead(path, FileKind::points).open_scans != nullptr;
 }
 
-std::vector<ScanInfo> readScanInfos(const std::string& path)
+std::vector<ScanInfo> readScanInfos(const std::string& path) { return readScanInfos(ScanPath{path}); }
+
+std::vector<ScanInfo> readScanInfos(const ScanPath& path)
 {
   const auto reader = openScans(path);
-  expect(!reader->scans().empty(), path, ": no scan in it");
+  expect(!reader->scans().empty(), path.file, ": no scan in it");
   return reader->scans();
 }
 
@@ -41,9 +43,13 @@ std::vector<ScanPath> scansOf(const std::vector<std::string>& files, bool keep_b
   std::vector<std::string> without;
   for (const std::string& file : files) {
     std::vector<ScanInfo> infos(1);
+    std::shared_ptr<const io::ScanIndex> index;
     try {
-      if (holdsScans(file))
-        infos = openScans(file)->scans();
+      if (holdsScans(file)) {
+        const auto reader = openScans({file});
+        infos = reader->scans();
+        index = reader->index();
+      }
     } catch (const std::runtime_error&) {
       if (!keep_broken)
         throw;
@@ -54,7 +60,7 @@ std::vector<ScanPath> scansOf(const std::vector<std::string>& files, bool keep_b
       scans.push_back({file, -1});
     else
       for (Index i = 0; i < Index(infos.size()); ++i)
-        scans.push_back({file, i});
+        scans.push_back({file, i, index});
   }
   if (scans.empty() && !without.empty())
     readScanInfos(without[0]); // which throws
@@ -70,7 +76,7 @@ std::vector<Pose> posesOf(const std::vector<ScanPath>& scans)
   std::vector<ScanInfo> infos;
   for (const ScanPath& path : scans) {
     if (path.scan >= 0 && path.file != known) {
-      infos = readScanInfos(path.file);
+      infos = readScanInfos(path);
       known = path.file;
     }
     const bool placed = path.scan >= 0 && path.scan < Index(infos.size()) && infos[path.scan].has_pose;
@@ -84,7 +90,7 @@ PointTable readTable(const ScanPath& path)
 {
   if (path.scan < 0)
     return readTable(path.file);
-  const auto reader = openScans(path.file);
+  const auto reader = openScans(path);
   return namingFile(path.file, [&] {
     checkScan(*reader, path.scan);
     return readScanTable(*reader, path.scan);
@@ -106,7 +112,7 @@ void streamPoints(const ScanPath& path, Index window, const std::function<bool(c
     receive(readPoints(path));
     return;
   }
-  const auto reader = openScans(path.file);
+  const auto reader = openScans(path);
   const Index scan = std::max<Index>(path.scan, 0);
   io::PointTable table = io::namingFile(path.file, [&] {
     checkScan(*reader, scan);

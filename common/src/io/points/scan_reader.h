@@ -8,6 +8,11 @@
 #include <string>
 #include <vector>
 namespace fresco::io {
+/// Where the scans of a file are, for formats that tell it only to who has read all of the file.
+struct ScanIndex {
+  virtual ~ScanIndex() = default;
+};
+
 /// The scans of a file, read in windows of rows. Errors come without the path.
 class ScanReader {
 public:
@@ -17,6 +22,7 @@ public:
   ScanReader& operator=(const ScanReader&) = delete;
 
   const std::vector<ScanInfo>& scans() const { return scans_; }
+  virtual std::shared_ptr<const ScanIndex> index() const { return {}; }
 
   /// Goes to the begin of a scan. @return its columns, without rows. Coordinates are in the frame of the scan, float64
   /// unless the file itself has float32.

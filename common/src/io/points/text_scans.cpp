@@ -5,17 +5,19 @@
 #include "io/points/text_table.h"
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <fresco/core/poses.h>
 #include <limits>
 namespace fresco::io {
 namespace {
 /// Points of one station.
 struct Block {
-  std::uint64_t offset = 0, line = 1; ///< of its first point
-  std::size_t words = 0;              ///< of each line: x y z [intensity] [r g b [nx ny nz]]
-  Index rows = 0;                     ///< of an organised station; 0: a list
-  double scale = 1;                   ///< of its matrix
-  double full_color = 255;            ///< see fullColor()
+  std::uint64_t begin = 0, end = 0; ///< bytes in the file, without its header
+  std::uint64_t line = 1;           ///< of its first point
+  std::size_t words = 0;            ///< of each line: x y z [intensity] [r g b [nx ny nz]]
+  Index rows = 0;                   ///< of an organised station; 0: a list
+  double scale = 1;                 ///< of its matrix
+  double full_color = 255;          ///< see fullColor()
 
   bool hasIntensity() const { return words == 4 || words == 7 || words == 10; }
   bool hasColors() const { return words >= 6; }
@@ -61,6 +63,13 @@ Index checkedCount(std::uint64_t count, const LineReader& lines)
   return count;
 }
 
+Index countIn(std::string_view line, const LineReader& lines)
+try {
+  return checkedCount(parseNumber<std::uint64_t>(line), lines);
+} catch (const std::runtime_error& error) {
+  throw std::runtime_error(concat("line ", lines.line(), ": ", error.what()));
+}
+
 void checkWords(std::size_t words, const Block& block)
 {
   expect(words == block.words, "wants ", block.words, " numbers");
@@ -95,7 +104,7 @@ Index measurePoints(LineReader& lines, Block& block)
   Index count = 0;
   double largest = 0;
   Words words;
-  block.offset = lines.offset();
+  block.begin = lines.offset();
   block.line = lines.line() + 1;
   forEachPoint(lines, [&](std::string_view line) {
     TableDialect().split(line, words);
@@ -107,6 +116,7 @@ Index measurePoints(LineReader& lines, Block& block)
         largest = std::max(largest, value);
     return true;
   });
+  block.end = lines.offset();
   block.full_color = fullColor(Scalar::float64, largest);
   return count;
 }
@@ -132,16 +142,89 @@ Eigen::Isometry3d poseOf(LineReader& lines, double& scale)
   return T;
 }
 
+/// What a pass over a file finds.
+struct BlockIndex : ScanIndex {
+  std::string file;
+  std::uint64_t size = 0;
+  std::filesystem::file_time_type time;
+  std::vector<Block> blocks;
+  std::vector<ScanInfo> scans;
+  std::vector<std::string> remarks, errors; ///< to be told whenever the file is opened
+
+  /// @param announced points, nothing where the file does not say
+  void add(LineReader& lines, Block block, ScanInfo info, std::optional<Index> announced)
+  {
+    info.points = measurePoints(lines, block);
+    const std::string counts = concat(announced.value_or(0), " points announced, ", info.points, " there (line ",
+                                      block.line + info.points, ")");
+    const bool has_more = announced && *announced < info.points;
+    expect(!announced || *announced == info.points || (has_more && block.rows == 0), counts);
+    if (has_more)
+      remarks.push_back(counts);
+    blocks.push_back(block);
+    scans.push_back(std::move(info));
+  }
+};
+
+void skipPoints(LineReader& lines)
+{
+  std::string_view line;
+  while (lines.next(line))
+    if (!line.empty() && isSingleWord(line)) {
+      lines.unread();
+      return;
+    }
+}
+
+/// Adds the block that begins in the next line.
+using ReadBlock = void (*)(LineReader& lines, BlockIndex& found);
+
+/// @param name of a block, for errors
+std::shared_ptr<const BlockIndex> findBlocks(const std::string& path, const RandomAccessFile& file, const char* name,
+                                             ReadBlock read)
+{
+  const auto found = std::make_shared<BlockIndex>();
+  found->file = path;
+  found->size = file.size();
+  found->time = std::filesystem::last_write_time(path);
+  LineReader lines(file);
+  std::string_view line;
+  while (lines.next(line)) {
+    if (line.empty())
+      continue;
+    lines.unread();
+    if (!attempt(concat(name, ' ', found->scans.size() + 1), found->errors, [&] { read(lines, *found); })) {
+      found->blocks.emplace_back();
+      found->scans.emplace_back();
+      skipPoints(lines);
+    }
+  }
+  return found;
+}
+
 /// What PTX and PTS have in common: blocks of lines, found by a first pass over the file. A block that cannot be read
 /// has no points and is remarked, unless none can.
 class TextReader : public ScanReader {
 public:
-  TextReader(const std::string& path, const char* block_name) : file_(path), block_name_(block_name) {}
+  TextReader(const ScanPath& path, const char* block_name, ReadBlock read)
+      : file_(path.file), index_(std::dynamic_pointer_cast<const BlockIndex>(path.index))
+  {
+    if (!index_ || index_->file != path.file || index_->size != file_.size() ||
+        index_->time != std::filesystem::last_write_time(path.file))
+      index_ = findBlocks(path.file, file_, block_name, read);
+    scans_ = index_->scans;
+    for (const std::string& text : index_->remarks)
+      remark(text);
+    tellDamage(index_->errors, hasPoints());
+    expect(!scans_.empty(), "no ", block_name);
+  }
+
+  std::shared_ptr<const ScanIndex> index() const override { return index_; }
 
   PointTable open(Index scan) override
   {
-    block_ = blocks_[scan];
-    lines_ = std::make_unique<LineReader>(file_, block_.offset, block_.line);
+    block_ = index_->blocks[scan];
+    lines_ = std::make_unique<LineReader>(file_, block_.begin, block_.end, block_.line);
     point_ = 0;
     PointTable layout;
     const auto add = [&](NameTriple names, Scalar type) {
@@ -173,54 +256,7 @@ public:
     return at - begin;
   }
 
-protected:
-  /// read(lines) reads blocks one after the other.
-  template <typename Read>
-  void readBlocks(const Read& read)
-  {
-    LineReader lines(file_);
-    std::string_view line;
-    std::vector<std::string> errors;
-    while (lines.next(line)) {
-      if (line.empty())
-        continue;
-      lines.unread();
-      if (!attempt(concat(block_name_, ' ', scans_.size() + 1), errors, [&] { read(lines); })) {
-        blocks_.emplace_back();
-        scans_.resize(blocks_.size());
-        skipBlock(lines);
-      }
-    }
-    tellDamage(errors, hasPoints());
-    expect(!scans_.empty(), "no ", block_name_);
-  }
-
-  /// @param announced points, nothing where the file does not say
-  void addBlock(LineReader& lines, Block block, ScanInfo info, std::optional<Index> announced)
-  {
-    info.points = measurePoints(lines, block);
-    const std::string counts = concat(announced.value_or(0), " points announced, ", info.points, " there (line ",
-                                      block.line + info.points, ")");
-    const bool has_more = announced && *announced < info.points;
-    expect(!announced || *announced == info.points || (has_more && block.rows == 0), counts);
-    if (has_more)
-      remark(counts);
-    blocks_.push_back(block);
-    scans_.push_back(std::move(info));
-  }
-
 private:
-  /// To where the next block may begin.
-  static void skipBlock(LineReader& lines)
-  {
-    std::string_view line;
-    while (lines.next(line))
-      if (!line.empty() && isSingleWord(line)) {
-        lines.unread();
-        return;
-      }
-  }
-
   void storeLine(std::string_view line, std::uint8_t* row)
   {
     TableDialect().split(line, words_);
@@ -243,9 +279,8 @@ private:
   }
 
   RandomAccessFile file_;
-  const char* block_name_;
-  std::vector<Block> blocks_;
-  Block block_;
+  std::shared_ptr<const BlockIndex> index_;
+  Block block_; ///< that is read
   std::unique_ptr<LineReader> lines_;
   std::vector<Column> columns_; ///< of the table that open() gave
   Words words_;
@@ -253,66 +288,52 @@ private:
   Index point_ = 0; ///< next one of the block
 };
 
-class PtxReader : public TextReader {
-public:
-  explicit PtxReader(const std::string& path) : TextReader(path, "station")
-  {
-    readBlocks([&](LineReader& lines) { addStation(lines); });
-  }
-
-private:
-  void addStation(LineReader& lines)
-  {
-    Block block;
-    ScanInfo info;
-    std::uint64_t columns = 0, rows = 0;
-    try {
-      columns = parseNumber<std::uint32_t>(contentLine(lines));
-      rows = parseNumber<std::uint32_t>(contentLine(lines));
-      const Eigen::Vector3d position = Eigen::Vector3d::Map(numbersOf(contentLine(lines), 3).data());
-      for (int axis = 0; axis < 3; ++axis)
-        numbersOf(contentLine(lines), 3); // the matrix says it again
-      info.T_file_scan = poseOf(lines, block.scale);
-      info.sensor = info.T_file_scan.inverse() * position;
-    } catch (const std::runtime_error& error) {
-      throw std::runtime_error(concat("header, line ", lines.line(), ": ", error.what()));
-    }
-    info.has_pose = true;
-    info.intensity_limits = Eigen::Array2d(0, 1);
-    block.rows = rows;
-    addBlock(lines, block, std::move(info), checkedCount(columns * rows, lines));
-  }
-};
-
-class PtsReader : public TextReader {
-public:
-  explicit PtsReader(const std::string& path) : TextReader(path, "block")
-  {
-    readBlocks([&](LineReader& lines) {
-      std::optional<Index> announced;
-      Words words;
-      const std::string_view line = contentLine(lines);
-      TableDialect().split(line, words);
-      if (isSingleWord(line))
-        announced = countIn(line, lines);
-      else if (!isHeader(words)) // names of columns say nothing new
-        lines.unread();
-      ScanInfo info;
-      info.intensity_limits = Eigen::Array2d(-2048, 2047); // as Cyclone writes them
-      addBlock(lines, {}, info, announced);
-    });
-  }
-
-private:
-  static Index countIn(std::string_view line, const LineReader& lines)
+void readStation(LineReader& lines, BlockIndex& found)
+{
+  Block block;
+  ScanInfo info;
+  std::uint64_t columns = 0, rows = 0;
   try {
-    return checkedCount(parseNumber<std::uint64_t>(line), lines);
+    columns = parseNumber<std::uint32_t>(contentLine(lines));
+    rows = parseNumber<std::uint32_t>(contentLine(lines));
+    const Eigen::Vector3d position = Eigen::Vector3d::Map(numbersOf(contentLine(lines), 3).data());
+    for (int axis = 0; axis < 3; ++axis)
+      numbersOf(contentLine(lines), 3); // the matrix says it again
+    info.T_file_scan = poseOf(lines, block.scale);
+    info.sensor = info.T_file_scan.inverse() * position;
   } catch (const std::runtime_error& error) {
-    throw std::runtime_error(concat("line ", lines.line(), ": ", error.what()));
+    throw std::runtime_error(concat("header, line ", lines.line(), ": ", error.what()));
   }
-};
+  info.has_pose = true;
+  info.intensity_limits = Eigen::Array2d(0, 1);
+  block.rows = rows;
+  found.add(lines, block, std::move(info), checkedCount(columns * rows, lines));
+}
+
+/// A number of points or names of columns, which say nothing new, may come before the points.
+void readPtsBlock(LineReader& lines, BlockIndex& found)
+{
+  std::optional<Index> announced;
+  Words words;
+  const std::string_view line = contentLine(lines);
+  TableDialect().split(line, words);
+  if (isSingleWord(line))
+    announced = countIn(line, lines);
+  else if (!isHeader(words))
+    lines.unread();
+  ScanInfo info;
+  info.intensity_limits = Eigen::Array2d(-2048, 2047); // as Cyclone writes them
+  found.add(lines, {}, info, announced);
+}
 } // namespace
 
-std::unique_ptr<ScanReader> openPtx(const std::string& path) { return std::make_unique<PtxReader>(path); }
-std::unique_ptr<ScanReader> openPts(const std::string& path) { return std::make_unique<PtsReader>(path); }
+std::unique_ptr<ScanReader> openPtx(const ScanPath& path)
+{
+  return std::make_unique<TextReader>(path, "station", readStation);
+}
+
+std::unique_ptr<ScanReader> openPts(const ScanPath& path)
+{
+  return std::make_unique<TextReader>(path, "block", readPtsBlock);
+}
 } // namespace fresco::io

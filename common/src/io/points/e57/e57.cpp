@@ -286,5 +286,5 @@ private:
 } // namespace
 } // namespace e57
 
-std::unique_ptr<ScanReader> openE57(const std::string& path) { return std::make_unique<e57::Reader>(path); }
+std::unique_ptr<ScanReader> openE57(const ScanPath& path) { return std::make_unique<e57::Reader>(path.file); }
 } // namespace fresco::io

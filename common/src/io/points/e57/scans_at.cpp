@@ -20,14 +20,14 @@ void writeScansAt(const std::string& path, const std::vector<ScanPath>& scans, c
   for (std::size_t i = 0; i < scans.size(); ++i) {
     if (!poses[i])
       continue;
-    const auto& [file, scan] = scans[i];
+    const auto& [file, scan, index] = scans[i];
     Written& entry = written[file][scan];
     const Eigen::Isometry3d T_world_scan(*poses[i]);
     entry = {Index(clouds.size()), T_world_scan};
     std::string name = scans[i].name();
     if (holdsScans(file) && scan >= 0) {
       if (infos.count(file) == 0)
-        infos[file] = readScanInfos(file);
+        infos[file] = readScanInfos(scans[i]);
       const ScanInfo& info = infos[file].at(scan);
       entry.T_world_before = T_world_scan * info.T_file_scan.inverse();
       name = info.name.empty() ? name : info.name;
