@@ -143,10 +143,7 @@ void giveName(const std::string& temporary, const std::string& path)
 /// Opens a new file that no other process removes. @return its descriptor, -1 with errno
 int openTemporary(const std::string& path)
 {
-  {
-    const Lock lock(unfinished().mutex);
-    unfinished().paths.insert(path);
-  }
+  addUnfinishedFile(path);
   const int descriptor = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
   struct stat made = {};
   if (descriptor >= 0 && lockedAlone(descriptor) && ::fstat(descriptor, &made) == 0 && made.st_nlink > 0)
@@ -210,11 +207,7 @@ OutputFile::~OutputFile()
 {
   if (descriptor_ < 0)
     return;
-  {
-    const Lock lock(unfinished().mutex);
-    ::unlink(temporary_.c_str());
-    unfinished().paths.erase(temporary_);
-  }
+  dropUnfinishedFile(temporary_);
   ::close(descriptor_);
 }
 
