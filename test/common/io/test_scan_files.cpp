@@ -6,6 +6,7 @@
 #include <fresco/io/point_io.h>
 #include <fresco/io/reading.h>
 #include <fresco/io/scan_file.h>
+#include <fresco/io/scan_writer.h>
 #include <fstream>
 #include <sstream>
 namespace {
@@ -209,6 +210,8 @@ TEST(Ptx, AllStationsTogetherCostTwoPasses)
   const double streamed = *bytesRead();
   for (const double pass : {listed - before, read - listed, streamed - read})
     EXPECT_LT(pass, 1.1 * size);
+  EXPECT_EQ(readPlacedClouds(path).size(), 24u);
+  EXPECT_LT(*bytesRead() - streamed, 2.2 * size);
 }
 
 TEST(Ptx, AFileThatChangedIsSearchedAgain)

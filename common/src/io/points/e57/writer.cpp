@@ -341,13 +341,14 @@ void fresco::io::writeE57Points(const std::string& path, const PointTable& point
 std::vector<fresco::PlacedCloud> fresco::readPlacedClouds(const std::string& path)
 {
   std::vector<PlacedCloud> clouds;
-  const std::vector<ScanInfo> infos = readScanInfos(path);
+  const ScanPath any = scansOf({path})[0]; // with an index where that spares passes over the file
+  const std::vector<ScanInfo> infos = readScanInfos(any);
   for (Index i = 0; i < Index(infos.size()); ++i) {
     PlacedCloud cloud{infos[i].name, {}, {}};
     if (infos[i].has_pose)
       cloud.T_file_scan = infos[i].T_file_scan;
     if (infos[i].points > 0)
-      cloud.cloud = readCloud(ScanPath{path, i});
+      cloud.cloud = readCloud(ScanPath{path, i, any.index});
     clouds.push_back(std::move(cloud));
   }
   return clouds;
