@@ -127,7 +127,7 @@ const char* nameOf(FileKind kind)
 }
 
 /// ".a, .b or .c" of the formats that have the ability.
-std::string listOf(FileKind kind, Ability ability)
+std::string formatsThat(FileKind kind, Ability ability)
 {
   std::vector<std::string> all;
   for (const Format& format : formats())
@@ -176,8 +176,8 @@ void writeTable(const std::string& path, const PointTable& table, bool compresse
 }
 } // namespace io
 
-std::string readableExtensions(FileKind kind) { return io::listOf(kind, &io::Format::reads); }
-std::string writableExtensions(FileKind kind) { return io::listOf(kind, &io::Format::writes); }
+std::string readableExtensions(FileKind kind) { return io::formatsThat(kind, &io::Format::reads); }
+std::string writableExtensions(FileKind kind) { return io::formatsThat(kind, &io::Format::writes); }
 bool isReadable(const std::string& path, FileKind kind) { return io::find(path, kind, &io::Format::reads) != nullptr; }
 bool isWritable(const std::string& path, FileKind kind) { return io::find(path, kind, &io::Format::writes) != nullptr; }
 

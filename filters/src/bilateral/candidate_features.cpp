@@ -12,7 +12,7 @@ using Eigen::Vector3f;
 namespace {
 constexpr Index nearest = 8, wide = 24; // neighbours across the beam
 constexpr int ring_count = 4;
-constexpr Index rings[] = {8, 16, 32};                   // nearest neighbours counted apart, then all
+constexpr Index ring_sizes[] = {8, 16, 32};              // nearest neighbours counted apart, then all
 constexpr float held = 2.5f, close = 1.2f, beyond = 4.f; // deviations of the noise
 
 // Where features stand; the first are of the candidate and the place of its plane.
@@ -66,9 +66,9 @@ void NormalCandidateFeatures::sortIntoRings(const std::vector<CandidateNeighbor>
     order_.emplace_back(neighbors[j].offset.squaredNorm(), j);
   auto end = order_.end();
   for (int ring = ring_count - 2; ring >= 0; --ring)
-    if (order_.begin() + rings[ring] < end) {
-      std::nth_element(order_.begin(), order_.begin() + rings[ring], end);
-      end = order_.begin() + rings[ring];
+    if (order_.begin() + ring_sizes[ring] < end) {
+      std::nth_element(order_.begin(), order_.begin() + ring_sizes[ring], end);
+      end = order_.begin() + ring_sizes[ring];
     }
 }
 
@@ -149,7 +149,7 @@ void NormalCandidateFeatures::countRings(const Vector3f& direction, Features& fe
   const ArrayXf front = (height_ > beyond).cast<float>(), behind = (height_ < -beyond).cast<float>();
   int at = from_rings;
   for (int ring = 0; ring < ring_count; ++ring) {
-    const Index end = ring < ring_count - 1 ? std::min(rings[ring], held_.size()) : held_.size();
+    const Index end = ring < ring_count - 1 ? std::min(ring_sizes[ring], held_.size()) : held_.size();
     for (const ArrayXf* counted :
          std::initializer_list<const ArrayXf*>{&inside, &held_, &same, &other, &front, &behind})
       features[at++] = logCount(counted->head(end).sum());

@@ -14,12 +14,12 @@ constexpr std::size_t eighth = 7;       // beam, in a grid a diagonal away
 
 using Places = std::array<const BeamWindow::Beam*, most_beams>;
 
-struct Plane {
+struct DepthPlane {
   Eigen::Vector3d inverse_depth; ///< at the middle, and per unit of place
   double leverage = 0;           ///< variance of its value at the middle / variance of a beam's
 };
 
-Plane fitInverseDepth(const Places& beams, int count)
+DepthPlane fitInverseDepth(const Places& beams, int count)
 {
   Eigen::Matrix3d A = 1e-9 * Eigen::Matrix3d::Identity();
   Eigen::Vector3d b = Eigen::Vector3d::Zero();
@@ -37,7 +37,7 @@ struct Misfit {
   int worst = 0;
 };
 
-Misfit misfitOf(const Plane& plane, const Places& beams, int count)
+Misfit misfitOf(const DepthPlane& plane, const Places& beams, int count)
 {
   Misfit misfit;
   double largest = -1;
@@ -121,7 +121,7 @@ std::optional<Continuation> continueSide(const BeamWindow& window, const WindowS
       beams[count++] = &beam;
   const int fewest = std::max(4, count * 2 / 3);
   for (; count >= fewest; --count) {
-    const Plane plane = fitInverseDepth(beams, count);
+    const DepthPlane plane = fitInverseDepth(beams, count);
     const Eigen::Vector3d& at = plane.inverse_depth;
     if (!(at[0] * window.range > 1e-3))
       return {};
@@ -151,7 +151,7 @@ RangeNoise measureNoise(const BeamScan& scan, int threads)
       const int count = std::min<int>(around, window.beams.size());
       for (int k = 0; k < count; ++k)
         beams[k] = &window.beams[k];
-      const Plane plane = fitInverseDepth(beams, count);
+      const DepthPlane plane = fitInverseDepth(beams, count);
       const float at = 1 / plane.inverse_depth[0]; // unlike the range free of the beam's own noise
       const float off = std::abs(window.range - at) / std::sqrt(1 + std::min(largest_leverage, float(plane.leverage)));
       const bool known = count >= 4 && std::isfinite(off) && at > 0;

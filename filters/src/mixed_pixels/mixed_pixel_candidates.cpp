@@ -7,18 +7,18 @@
 #include <fresco/core/parallel.h>
 namespace fresco::filters {
 namespace {
-constexpr float clear = 3;         // deviations: what noise hardly reaches
-constexpr std::size_t beside = 12; // nearest beams: those around one in a grid, and four more for beams in no order
-constexpr Index reach = 64;        // nearest beams of the second network: four rings of a grid, nearly
+constexpr float beyond_noise = 3;        // deviations: what noise hardly reaches
+constexpr std::size_t nearby_beams = 12; // nearest: those around one in a grid, and four for beams in no order
+constexpr Index reach = 64;              // nearest beams of the second network: four rings of a grid, nearly
 
 /// Whether a point has nearer and farther ones beside it, and few that a surface could join it with.
 bool isBetween(const BeamWindow& window, float noise, float slope)
 {
   constexpr float most_joined = 0.75f; // share of the nearer half of the beams around
   bool front = false, behind = false;
-  for (std::size_t k = 0; k < window.beams.size() && k < beside; ++k) {
-    front |= window.beams[k].range < window.range - clear * noise;
-    behind |= window.beams[k].range > window.range + clear * noise;
+  for (std::size_t k = 0; k < window.beams.size() && k < nearby_beams; ++k) {
+    front |= window.beams[k].range < window.range - beyond_noise * noise;
+    behind |= window.beams[k].range > window.range + beyond_noise * noise;
   }
   return front && behind && joinedShare(window, noise, slope) <= most_joined;
 }
@@ -36,7 +36,7 @@ public:
     noise_ = scan_.noise.at(scan_.ranges[i]);
     BeamWindow& listed = scan_.thinned ? wide_ : near_;
     fillWindow(scan_, i, scan_.lists.first(i), scan_.lists.last(i), listed);
-    if (listed.beams.size() < beside)
+    if (listed.beams.size() < nearby_beams)
       return false;
     if (!scan_.thinned)
       return isBetween(near_, noise_, slope_);
@@ -44,7 +44,7 @@ public:
       return false;
     listNearest(i, k_);
     fillFromList(i, near_);
-    return near_.beams.size() >= beside && (isBetween(wide_, noise_, slope_) || isBetween(near_, noise_, slope_));
+    return near_.beams.size() >= nearby_beams && (isBetween(wide_, noise_, slope_) || isBetween(near_, noise_, slope_));
   }
 
   /// Without beams of positive scores, where enough others are there.
@@ -54,7 +54,7 @@ public:
       const auto high = [&](int j) { return j != i && scores[j] > 0; };
       list_.erase(std::remove_if(list_.begin(), list_.end(), high), list_.end());
       list_.resize(std::min<std::size_t>(list_.size(), k_ + 1));
-      return list_.size() > beside;
+      return list_.size() > nearby_beams;
     };
     listNearest(i, reach);
     if (leaveOut())
@@ -97,7 +97,7 @@ private:
       least = std::min(least, beam.range);
       most = std::max(most, beam.range);
     }
-    return least < wide_.range - clear * noise_ && most > wide_.range + clear * noise_;
+    return least < wide_.range - beyond_noise * noise_ && most > wide_.range + beyond_noise * noise_;
   }
 
   const BeamScan& scan_;

@@ -6,10 +6,6 @@
 #include <fresco/core/require.h>
 #include <fresco/io/image_io.h>
 namespace fresco::model {
-namespace {
-std::string stemOf(const std::string& name) { return std::filesystem::path(name).stem().string(); }
-} // namespace
-
 Index numberOfName(const std::string& name)
 {
   const std::string stem = stemOf(name);

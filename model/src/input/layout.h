@@ -2,10 +2,14 @@
 #pragma once
 #include "input/model_input.h"
 #include "input/survey.h"
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
 namespace fresco::model {
+/// Name of a file without folder and extension.
+inline std::string stemOf(const std::string& path) { return std::filesystem::path(path).stem().string(); }
+
 /// What the things in a folder are taken for.
 enum class Reading {
   scans,       ///< each from one place, in a frame of its own

@@ -15,8 +15,6 @@ namespace fresco::model {
 namespace {
 namespace fs = std::filesystem;
 
-std::string stemOf(const std::string& path) { return fs::path(path).stem().string(); }
-
 /// "PCD", "E57 and LAS".
 std::string kindsOf(const std::vector<std::string>& names)
 {

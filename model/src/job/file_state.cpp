@@ -17,7 +17,7 @@ std::optional<struct stat> lookedUp(const std::string& file)
   return ::stat(file.c_str(), &found) == 0 ? std::optional(found) : std::nullopt;
 }
 
-std::string stampOf(const struct stat& found)
+std::string statStamp(const struct stat& found)
 {
   return concat(found.st_ino, " ", found.st_size, " ", found.st_ctim.tv_sec, ".", found.st_ctim.tv_nsec);
 }
@@ -38,7 +38,7 @@ std::string contentHash(const std::string& file)
 std::string stampOf(const std::string& file)
 {
   const auto found = lookedUp(file);
-  return found ? stampOf(*found) : "";
+  return found ? statStamp(*found) : "";
 }
 
 Json stateOf(const std::string& file, system_clock::time_point since)
@@ -54,7 +54,7 @@ Json stateOf(const std::string& file, system_clock::time_point since)
     return {};
   Json state{{"size", found->st_size}, {"hash", hash}};
   if (system_clock::now() - changed > rest)
-    state["stamp"] = stampOf(*found);
+    state["stamp"] = statStamp(*found);
   return state;
 }
 
@@ -65,6 +65,6 @@ bool isAs(const Json& state, const std::string& file)
     return state == "none";
   if (!state.is_object() || state.at("size") != found->st_size)
     return false;
-  return state.value("stamp", "") == stampOf(*found) || state.at("hash") == contentHash(file);
+  return state.value("stamp", "") == statStamp(*found) || state.at("hash") == contentHash(file);
 }
 } // namespace fresco::model

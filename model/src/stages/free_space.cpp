@@ -16,16 +16,16 @@ constexpr int smoothing_rounds = 2;
 constexpr float least_kept = 0.75f;
 constexpr double depth_noise = 0.02; ///< of depth cameras and their poses, share of the depth
 
-struct Range {
+struct DepthRange {
   float least = 0, most = 0; ///< metres; 0 = not known
 };
 
 /// Depths in the 5x5 pixels around a place; not known where a third of them has no depth.
-Range depthAround(const Image16& image, float unit, const Eigen::Vector2d& pixel)
+DepthRange depthAround(const Image16& image, float unit, const Eigen::Vector2d& pixel)
 {
   constexpr int reach = 2;
   const int x = static_cast<int>(pixel.x()), y = static_cast<int>(pixel.y());
-  Range range{1e30f, 0.f};
+  DepthRange range{1e30f, 0.f};
   int known = 0;
   for (int v = y - reach; v <= y + reach; ++v)
     for (int u = x - reach; u <= x + reach; ++u) {
@@ -38,7 +38,7 @@ Range depthAround(const Image16& image, float unit, const Eigen::Vector2d& pixel
       range.most = std::max(range.most, unit * raw);
       ++known;
     }
-  return 3 * known < 2 * (2 * reach + 1) * (2 * reach + 1) ? Range{} : range;
+  return 3 * known < 2 * (2 * reach + 1) * (2 * reach + 1) ? DepthRange{} : range;
 }
 
 /// Angle, as length of a chord, within which most beams have `beams_around` neighbours; twice that is a gap.
@@ -82,7 +82,7 @@ void FreeSpace::ask(const Image16& depth, const CameraModel& camera, const Eigen
     const Eigen::Vector2d pixel = project(camera, p);
     if (!(pixel.x() >= 0 && pixel.y() >= 0 && pixel.x() < depth.width && pixel.y() < depth.height))
       return Answer::Unknown;
-    const Range range = depthAround(depth, unit, pixel);
+    const DepthRange range = depthAround(depth, unit, pixel);
     const double slack = tolerance_ + depth_noise * p.z();
     if (range.most == 0.f || p.z() > range.most + slack)
       return Answer::Unknown;

@@ -8,7 +8,7 @@
 #include <regex>
 namespace fresco::model {
 namespace {
-using Json = nlohmann::json;
+using Sorted = nlohmann::json; // by name
 
 void validate(const std::string& glb, const ViewerOptions& options)
 {
@@ -22,29 +22,29 @@ void validate(const std::string& glb, const ViewerOptions& options)
   }
 }
 
-Json listOf(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
+Sorted coordinates(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 
 /// As JavaScript that may stand inside of a <script> element.
 std::string optionsText(const ViewerOptions& options)
 {
-  Json places = Json::array();
+  Sorted places = Sorted::array();
   for (const ViewerPlace& place : options.places) {
     places.push_back({{"name", place.name},
                       {"group", place.group},
-                      {"eye", listOf(place.eye)},
-                      {"look", listOf(place.look)},
+                      {"eye", coordinates(place.eye)},
+                      {"look", coordinates(place.look)},
                       {"angle", place.angle}});
     if (!place.photograph.empty())
       places.back().update(
           {{"aspect", place.aspect}, {"photograph", "data:image/jpeg;base64," + base64(place.photograph)}});
   }
-  Json walls = Json::array();
+  Sorted walls = Sorted::array();
   for (const ViewerWall& wall : options.walls)
-    walls.push_back({listOf(wall.from), listOf(wall.to)});
-  Json all = {{"up", listOf(options.up)}, {"places", places}, {"walls", walls}};
+    walls.push_back({coordinates(wall.from), coordinates(wall.to)});
+  Sorted all = {{"up", coordinates(options.up)}, {"places", places}, {"walls", walls}};
   if (options.floor)
     all["floor"] = *options.floor;
-  return std::regex_replace(all.dump(-1, ' ', true, Json::error_handler_t::replace), std::regex("<"), "\\u003c");
+  return std::regex_replace(all.dump(-1, ' ', true, Sorted::error_handler_t::replace), std::regex("<"), "\\u003c");
 }
 } // namespace
 

@@ -7,7 +7,7 @@
 namespace fresco::registration {
 namespace {
 // Overlap of two scans of one room, or of equal rooms: all but what is seen through doors and behind furniture.
-constexpr double one_room = 0.9;
+constexpr double twin_overlap = 0.9;
 
 enum class Likeness { none, together, apart };
 
@@ -19,7 +19,7 @@ Likeness likenessOf(const PairAlignment& pair, const GraphInput& input, const st
   const ScanCluster& cluster = clusters[a.cluster];
   Likeness likeness = Likeness::none;
   for (const VerifiedHypothesis& hypothesis : pair.hypotheses) {
-    if (hypothesis.check.overlap < one_room || hypothesis.check.color) // colours tell rooms apart themselves
+    if (hypothesis.check.overlap < twin_overlap || hypothesis.check.color) // colours tell rooms apart themselves
       continue;
     const bool together = a.cluster == b.cluster &&
                           poseDistance(cluster.poses[a.position].inverse() * cluster.poses[b.position],

@@ -15,7 +15,7 @@ namespace {
 constexpr float final_distance = 2.f; // voxels of a level: correspondences at its end, neighbours of the right cell
 
 // What one task handles.
-struct Block {
+struct PairSamples {
   std::size_t pair;
   SampleRange range;
 };
@@ -67,7 +67,7 @@ private:
   const JointOptions& options_;
   IsometryVector poses_, first_poses_;
   std::vector<DirectedPair> pairs_;
-  std::vector<Block> blocks_;
+  std::vector<PairSamples> blocks_;
   int level_ = 0, iterations_ = 0;
   bool converged_ = false;
 };

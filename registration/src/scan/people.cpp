@@ -9,7 +9,7 @@ constexpr float chest = 0.7f, least_top = 0.8f, most_top = 1.25f, least_height =
 constexpr float floor_layer = 0.08f, radius = 0.3f; // of what is below: feet and elbows
 
 // Whether most neighbours of a point lie in its plane.
-bool isFlat(const ScanLevel& level, Index point)
+bool liesInPlane(const ScanLevel& level, Index point)
 {
   constexpr float parallel = 0.97f, off = 0.25f; // cosine of 14 degrees; voxels
   constexpr int least = 6;                       // of seven
@@ -72,7 +72,7 @@ std::vector<char> findWalls(const ScanLevel& level, const Points& placed, float 
 {
   std::vector<char> found(placed.cols());
   for (Index i = 0; i < placed.cols(); ++i)
-    found[i] = isFlat(level, i);
+    found[i] = liesInPlane(level, i);
   UnionFind sets = connect(level, found);
   const std::vector<Eigen::AlignedBox3f> boxes = boxesOf(sets, found, placed);
   for (Index i = 0; i < placed.cols(); ++i) {

@@ -66,19 +66,19 @@ private:
   int turns_, side_;
 };
 
-struct Candidate {
+struct RatedPlace {
   Eigen::Vector3f place;
   double hidden;
-  bool operator<(const Candidate& other) const { return hidden < other.hidden; }
+  bool operator<(const RatedPlace& other) const { return hidden < other.hidden; }
 };
 
-std::vector<Candidate> rated(const HiddenPoints& hidden, const std::vector<Eigen::Vector3f>& places, int threads)
+std::vector<RatedPlace> rated(const HiddenPoints& hidden, const std::vector<Eigen::Vector3f>& places, int threads)
 {
-  return mapTasks(places.size(), threads, [&](Index k) { return Candidate{places[k], hidden.share(places[k])}; });
+  return mapTasks(places.size(), threads, [&](Index k) { return RatedPlace{places[k], hidden.share(places[k])}; });
 }
 
 // The best places of a grid over the middle of the points.
-std::vector<Candidate> coarseSearch(const Points& points, int threads)
+std::vector<RatedPlace> coarseSearch(const Points& points, int threads)
 {
   constexpr Index few = 4000;     // points: their coarse cells see only large surfaces
   constexpr int steps = 7;        // per axis: half a metre in a room, within which the finer search finds the place
@@ -99,7 +99,7 @@ std::vector<Candidate> coarseSearch(const Points& points, int threads)
     const Eigen::Array3f at(k % steps, k / steps % steps, k / steps / steps);
     places.push_back(low + Eigen::Vector3f(at / (steps - 1)).cwiseProduct(high - low));
   }
-  std::vector<Candidate> candidates = rated(HiddenPoints(sparse, 1), places, threads);
+  std::vector<RatedPlace> candidates = rated(HiddenPoints(sparse, 1), places, threads);
   std::stable_sort(candidates.begin(), candidates.end());
   candidates.resize(kept);
   return candidates;
@@ -119,12 +119,12 @@ std::vector<Eigen::Vector3f> around(const Eigen::Vector3f& place, float step)
 }
 
 // Compass search: to the best of the places around, with half the step where none is better.
-Candidate descend(const HiddenPoints& hidden, Candidate best, float size, int threads)
+RatedPlace descend(const HiddenPoints& hidden, RatedPlace best, float size, int threads)
 {
   for (double step = 0.1; step > 0.004; step *= 0.5) // of the size: from the grid's to centimetres in a room
     for (bool moved = true; moved;) {
-      const std::vector<Candidate> next = rated(hidden, around(best.place, step * size), threads);
-      const Candidate& least = *std::min_element(next.begin(), next.end());
+      const std::vector<RatedPlace> next = rated(hidden, around(best.place, step * size), threads);
+      const RatedPlace& least = *std::min_element(next.begin(), next.end());
       moved = least.hidden < best.hidden;
       best = moved ? least : best;
     }
@@ -132,7 +132,7 @@ Candidate descend(const HiddenPoints& hidden, Candidate best, float size, int th
 }
 
 // Whether hardly anything lies behind other things as seen from a place, and more does as seen from anywhere around.
-bool isSeenFrom(const Points& points, const HiddenPoints& hidden, const Candidate& candidate, float size, int threads)
+bool isSeenFrom(const Points& points, const HiddenPoints& hidden, const RatedPlace& candidate, float size, int threads)
 {
   constexpr double most_hidden = 0.05;   // from the true place: mixed pixels and surfaces at a slant are half of it
   constexpr double least_coverage = 0.5; // of all directions: scanners of a narrow view stand outside of their points
@@ -141,7 +141,7 @@ bool isSeenFrom(const Points& points, const HiddenPoints& hidden, const Candidat
   constexpr double least_rise = 10.0;    // and by more than the outliers of one beam or edge
   if (candidate.hidden > most_hidden)
     return false;
-  const std::vector<Candidate> near = rated(hidden, around(candidate.place, apart * size), threads);
+  const std::vector<RatedPlace> near = rated(hidden, around(candidate.place, apart * size), threads);
   const double there = std::min_element(near.begin(), near.end())->hidden * points.cols();
   return there - candidate.hidden * points.cols() >= least_rise + deviations * std::sqrt(there) &&
          ScanFreeSpace(points, candidate.place, size).coverage() > least_coverage;
@@ -159,10 +159,10 @@ std::optional<Eigen::Vector3f> findViewpoint(const Points& points, float size, i
 {
   const Points few = everyNth(points, most_points);
   const HiddenPoints hidden(few, fine_turns);
-  std::vector<Candidate> found;
-  for (const Candidate& start : coarseSearch(points, threads))
+  std::vector<RatedPlace> found;
+  for (const RatedPlace& start : coarseSearch(points, threads))
     found.push_back(descend(hidden, {start.place, hidden.share(start.place)}, size, threads));
-  const Candidate best = *std::min_element(found.begin(), found.end());
+  const RatedPlace best = *std::min_element(found.begin(), found.end());
   if (!isSeenFrom(few, hidden, best, size, threads))
     return {};
   return best.place;

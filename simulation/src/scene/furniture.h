@@ -11,6 +11,12 @@ Eigen::Vector3f vectorOf(const Json& numbers);
 /// (default x). Things face +y; those on walls have their origin in the middle of their back.
 Eigen::Isometry3f poseOf(const Json& described);
 
+/// A closed box between two opposite corners.
+inline Box solid(const Eigen::Vector3f& a, const Eigen::Vector3f& b, int material)
+{
+  return {a.cwiseMin(b), a.cwiseMax(b), allSides(material), true};
+}
+
 /// A picture as material, named by "picture" (see artwork.h) with "pixels" [width, height] and "emission".
 /// @param seed of what is drawn; "seed" is added
 Material printed(const Json& described, std::uint64_t seed);

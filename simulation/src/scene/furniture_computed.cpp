@@ -12,7 +12,6 @@ using Pair = std::array<float, 2>;
 
 constexpr float gap = 0.003f; // metres between a wall and what hangs on it
 
-Box solid(const Vector3f& min, const Vector3f& max, int material) { return {min, max, allSides(material), true}; }
 Box hole(const Vector3f& min, const Vector3f& max, int material) { return {min, max, allSides(material), false}; }
 
 std::uint64_t seedOf(const Json& placed) { return placed.value("seed", 1u); }

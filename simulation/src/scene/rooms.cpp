@@ -17,15 +17,10 @@ using Pair = std::array<float, 2>;
 constexpr float skirting_height = 0.08f, skirting_depth = 0.015f;
 
 /// Rectangle of floor [x, y, x, y].
-AlignedBox2f floorOf(const Json& numbers)
+AlignedBox2f floorPlan(const Json& numbers)
 {
   const auto corners = numbers.get<std::array<float, 4>>();
   return {Vector2f(corners[0], corners[1]), Vector2f(corners[2], corners[3])};
-}
-
-Box solid(const Vector3f& a, const Vector3f& b, int material)
-{
-  return {a.cwiseMin(b), a.cwiseMax(b), allSides(material), true};
 }
 
 bool within(float at, float low, float high) { return at > low - 1e-4f && at < high + 1e-4f; }
@@ -48,12 +43,12 @@ std::vector<Vector2f> remaining(float low, float high, std::vector<Vector2f> cut
 /// Skirting board along the four walls of the room "skirting"; "gaps" (openings) are cut out of it.
 void addSkirting(Furniture& f, Shell& shell, const Json& described)
 {
-  const AlignedBox2f room = floorOf(described.at("skirting"));
+  const AlignedBox2f room = floorPlan(described.at("skirting"));
   for (const bool upper : {false, true}) {
     std::vector<Vector2f> x_cuts, y_cuts;
     const Vector2f wall = upper ? room.max() : room.min();
     for (const Json& numbers : described.at("gaps")) {
-      const AlignedBox2f gap = floorOf(numbers);
+      const AlignedBox2f gap = floorPlan(numbers);
       if (within(wall.x(), gap.min().x(), gap.max().x()))
         y_cuts.push_back({gap.min().y(), gap.max().y()});
       if (within(wall.y(), gap.min().y(), gap.max().y()))
@@ -113,7 +108,7 @@ void addDoor(Furniture& f, Shell& shell, const Json& described)
 /// A lit "panel" let into the ceiling at "z", and its lamp.
 void addCeilingPanel(Furniture& f, Shell& shell, const Json& described)
 {
-  const AlignedBox2f plan = floorOf(described.at("panel"));
+  const AlignedBox2f plan = floorPlan(described.at("panel"));
   const Vector2f a = plan.min(), b = plan.max(), middle = 0.5f * (a + b), half = 0.48f * (b - a);
   const float z = described.at("z");
   Box recess{{a.x(), a.y(), z}, {b.x(), b.y(), z + 0.03f}, allSides(f.material("frame")), false};

@@ -14,7 +14,7 @@ using Eigen::Vector3f;
 namespace {
 constexpr int block = 2; // pixels along the side of a ray packet's square
 constexpr float corners[4][2] = {{0.25f, 0.25f}, {0.75f, 0.25f}, {0.25f, 0.75f}, {0.75f, 0.75f}}; // rays within a pixel
-constexpr int packet_size = 4 * block * block; // rays traced together
+constexpr int pixel_rays = 4 * block * block; // rays traced together
 const Vector3f background(0.7f, 0.75f, 0.8f);
 
 /// Noise of a pixel, deviation 1: twelve random bits of a hash each, four a channel (Irwin-Hall).
@@ -66,11 +66,11 @@ Image develop(const std::vector<Vector3f>& light, const Shot& shot, int threads)
 }
 
 /// Rays of the pixels at (x, y) .. (x + 1, y + 1), four a pixel.
-RayPacket<packet_size> pixelRays(const Shot& shot, const Vector3f& center, const Eigen::Vector2i& at)
+RayPacket<pixel_rays> pixelRays(const Shot& shot, const Vector3f& center, const Eigen::Vector2i& at)
 {
   const Eigen::Matrix3d R_world_camera = shot.view.T_camera_world.linear().transpose();
-  RayPacket<packet_size> packet;
-  for (int i = 0; i < packet_size; ++i) {
+  RayPacket<pixel_rays> packet;
+  for (int i = 0; i < pixel_rays; ++i) {
     const int pixel = i / 4;
     const Vector2d where(at.x() + pixel % block + corners[i % 4][0], at.y() + pixel / block + corners[i % 4][1]);
     const bool around = shot.camera.projection == CameraProjection::spherical;
@@ -153,8 +153,8 @@ Image takePhotograph(const LitScene& lit, const Shot& shot, int threads)
       [&](Index row) {
         for (int x = 0; x < camera.width; x += block) {
           const Eigen::Vector2i at(x, row * block);
-          const RayPacket<packet_size> packet = pixelRays(shot, center, at);
-          const HitPacket<packet_size> hits = lit.rays.intersect(packet, RayOrder::coherent);
+          const RayPacket<pixel_rays> packet = pixelRays(shot, center, at);
+          const HitPacket<pixel_rays> hits = lit.rays.intersect(packet, RayOrder::coherent);
           for (int pixel = 0; pixel < block * block; ++pixel) {
             const Eigen::Vector2i own = at + Eigen::Vector2i(pixel % block, pixel / block);
             if (own.x() >= camera.width || own.y() >= camera.height)

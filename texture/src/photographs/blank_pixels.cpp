@@ -88,24 +88,24 @@ std::vector<Filling> fillingsOf(const cv::Mat& photo)
 }
 
 /// A connected region of pixels like the filling.
-struct Region {
+struct LabelledRegion {
   std::size_t pixels = 0, exact = 0;
   std::size_t ring = 0, outline = 0; ///< pixels along the image's border, sides of pixels along the picture
 };
 
 /// Whether it lies along the image's border, as what is beyond a picture does: things in the picture are bounded by it.
-bool isBeyondPicture(const Region& r, std::size_t ring)
+bool isBeyondPicture(const LabelledRegion& r, std::size_t ring)
 {
   return r.outline > 0 && r.ring >= block && 2 * r.exact >= r.pixels && (2 * r.ring >= r.outline || 2 * r.ring >= ring);
 }
 
-std::vector<Region> measureRegions(const cv::Mat& labels, const cv::Mat& exact, int count)
+std::vector<LabelledRegion> measureRegions(const cv::Mat& labels, const cv::Mat& exact, int count)
 {
-  std::vector<Region> out(count);
+  std::vector<LabelledRegion> out(count);
   for (int y = 0; y < labels.rows; ++y)
     for (int x = 0; x < labels.cols; ++x) {
       const int label = labels.at<int>(y, x);
-      Region& r = out[label];
+      LabelledRegion& r = out[label];
       ++r.pixels;
       r.exact += exact.at<uchar>(y, x) != 0;
       r.ring += x == 0 || y == 0 || x + 1 == labels.cols || y + 1 == labels.rows;
@@ -125,7 +125,7 @@ cv::Mat filledFromBorder(const cv::Mat& photo, const Filling& filling)
   cv::Mat near, labels;
   cv::dilate(exact, near, cv::Mat::ones(2 * block + 1, 2 * block + 1, CV_8U));
   const int count = cv::connectedComponents(filling.within(photo, ringing) & near, labels, 4, CV_32S);
-  const std::vector<Region> regions = measureRegions(labels, exact, count);
+  const std::vector<LabelledRegion> regions = measureRegions(labels, exact, count);
   const std::size_t ring = 2 * (photo.cols + photo.rows) - 4;
   cv::Mat out(photo.size(), CV_8U, cv::Scalar(0));
   for (int y = 0; y < out.rows; ++y)

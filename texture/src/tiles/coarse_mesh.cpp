@@ -32,9 +32,9 @@ struct Cell {
   }
 };
 
-class Grid {
+class VertexGrid {
 public:
-  Grid(const TriangleMesh& mesh, double size, const Eigen::Vector3f& low) : mesh_(mesh), size_(size), low_(low)
+  VertexGrid(const TriangleMesh& mesh, double size, const Eigen::Vector3f& low) : mesh_(mesh), size_(size), low_(low)
   {
     for (Index f = 0; f < mesh.faceCount(); ++f)
       addFace(f);
@@ -110,7 +110,7 @@ TriangleMesh coarseMesh(const TriangleMesh& mesh, Index most_faces)
   double size = std::max(std::sqrt(faces_per_area * surfaceArea(mesh) / most_faces),
                          least_share * double(box.sizes().maxCoeff()));
   for (;; size *= 1.2)
-    if (const Grid grid(mesh, size, box.min()); grid.faces() <= most_faces)
+    if (const VertexGrid grid(mesh, size, box.min()); grid.faces() <= most_faces)
       return grid.finish();
 }
 } // namespace fresco::texture

@@ -6,7 +6,7 @@
 #include <fresco/core/polygon_fans.h>
 namespace fresco::io {
 namespace {
-Scalar parseType(std::string_view word)
+Scalar vtkType(std::string_view word)
 {
   static constexpr std::pair<const char*, Scalar> others[] = {{"signed_char", Scalar::int8},
                                                               {"long", Scalar::int64},
@@ -89,7 +89,7 @@ private:
     if (keyword == "points") {
       expect(points_.bytes.empty(), "VTK: two sections POINTS");
       const std::size_t count = nextCount();
-      const Scalar type = parseType(scanner_.wordAcrossLines());
+      const Scalar type = vtkType(scanner_.wordAcrossLines());
       points_ = readArray("points", type, 3, count);
     } else if (keyword == "vertices" || keyword == "lines") {
       readCells([](const std::int64_t*, std::size_t) {});
@@ -132,7 +132,7 @@ private:
       components = nextCount();
     else if (keyword != "scalars" && keyword != "normals" && keyword != "vectors" && keyword != "tensors")
       throw std::runtime_error(concat("VTK: unknown section '", keyword.substr(0, 40), "'"));
-    const Scalar type = parseType(scanner_.wordAcrossLines());
+    const Scalar type = vtkType(scanner_.wordAcrossLines());
     if (keyword == "scalars")
       components = parseScalarsRest();
     keep(readArray(keyword == "normals" ? "normals" : name, type, components, tuples_));
@@ -159,7 +159,7 @@ private:
         word = scanner_.wordAcrossLines();
       }
       const std::size_t components = nextCount(), tuples = nextCount();
-      const Scalar type = parseType(scanner_.wordAcrossLines());
+      const Scalar type = vtkType(scanner_.wordAcrossLines());
       keep(readArray(decodeName(word), type, components, tuples));
     }
   }
@@ -217,10 +217,10 @@ private:
   void readOffsetCells(std::size_t count, std::size_t size, const Add& add)
   {
     scanner_.wordAcrossLines();
-    const Scalar offset_type = parseType(scanner_.wordAcrossLines());
+    const Scalar offset_type = vtkType(scanner_.wordAcrossLines());
     const std::vector<std::int64_t> offsets = readArray("offsets", offset_type, 1, count).integers();
     expect(lowerCase(scanner_.wordAcrossLines()) == "connectivity", "VTK: OFFSETS without CONNECTIVITY");
-    const Scalar type = parseType(scanner_.wordAcrossLines());
+    const Scalar type = vtkType(scanner_.wordAcrossLines());
     const std::vector<std::int64_t> corners = readArray("connectivity", type, 1, size).integers();
     for (std::size_t i = 1; i < offsets.size(); ++i) {
       const std::int64_t begin = offsets[i - 1], end = offsets[i];

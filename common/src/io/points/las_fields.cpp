@@ -5,7 +5,7 @@ namespace {
 /// Types of extra bytes from 1 on.
 constexpr Scalar extra_types[] = {Scalar::uint8, Scalar::int8,   Scalar::uint16, Scalar::int16,   Scalar::uint32,
                                   Scalar::int32, Scalar::uint64, Scalar::int64,  Scalar::float32, Scalar::float64};
-constexpr unsigned types = std::size(extra_types);
+constexpr unsigned type_count = std::size(extra_types);
 
 bool hasColors(int format)
 {
@@ -68,12 +68,12 @@ LasField lasExtraField(const std::uint8_t* descriptor, std::size_t offset)
   const unsigned type = descriptor[2], options = descriptor[3];
   const auto* text = reinterpret_cast<const char*>(descriptor + 4);
   LasField field{standardName(std::string(text, ::strnlen(text, 32))), Scalar::uint8, offset};
-  if (type == 0 || type > 3 * types) { // bytes of which nothing is said
+  if (type == 0 || type > 3 * type_count) { // bytes of which nothing is said
     field.count = std::max(1U, options);
     return field;
   }
-  field.stored = field.column = extra_types[(type - 1) % types];
-  field.count = (type - 1) / types + 1; // two or three values: deprecated
+  field.stored = field.column = extra_types[(type - 1) % type_count];
+  field.count = (type - 1) / type_count + 1; // two or three values: deprecated
   const auto value = [&](std::size_t at) { return loadScalar<double>(descriptor + at); };
   if ((options & scaled) != 0)
     field.scale = value(112);
@@ -92,7 +92,7 @@ LasField lasExtraField(const std::uint8_t* descriptor, std::size_t offset)
 std::string lasExtraDescriptor(const Column& column)
 {
   std::string descriptor(las_descriptor_bytes, '\0');
-  for (unsigned type = 1; type <= types; ++type)
+  for (unsigned type = 1; type <= type_count; ++type)
     if (extra_types[type - 1] == column.type)
       descriptor[2] = char(type);
   descriptor.replace(4, std::min<std::size_t>(column.name.size(), 32), column.name.substr(0, 32));

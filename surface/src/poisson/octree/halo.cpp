@@ -4,14 +4,14 @@
 namespace fresco::poisson {
 namespace {
 /// A part of the halo: where it begins and ends on each axis.
-struct Part {
+struct HaloPart {
   int first[3], last[3];
 };
 
 /// @param d offset of the brick that the nodes lie in
-constexpr Part partAt(const int d[3])
+constexpr HaloPart partAt(const int d[3])
 {
-  Part part{};
+  HaloPart part{};
   for (int a = 0; a < 3; ++a) {
     part.first[a] = d[a] < 0 ? -1 : d[a] > 0 ? brick_cells : 0;
     part.last[a] = d[a] == 0 ? brick_cells - 1 : part.first[a];
@@ -21,7 +21,7 @@ constexpr Part partAt(const int d[3])
 
 /// @param from   the part's first node; nullptr for zeros
 /// @param step_y, step_z to the next node of `from`; to that on the x axis it is 1
-inline void copyPart(const Part& part, const float* from, int step_y, int step_z, float* halo)
+inline void copyPart(const HaloPart& part, const float* from, int step_y, int step_z, float* halo)
 {
   const bool row = part.first[0] < part.last[0];
   for (int z = part.first[2]; z <= part.last[2]; ++z)
@@ -39,7 +39,7 @@ inline void copyPart(const Part& part, const float* from, int step_y, int step_z
 void copyRim(const BrickLevel& level, const Neighbors& neighbors, const NodeField& field, const int d[3], float* halo)
 {
   const int above = (d[0] > 0) | (d[1] > 0) << 1 | (d[2] > 0) << 2;
-  const Part part = partAt(d);
+  const HaloPart part = partAt(d);
   for (int axes = 1; axes < 8; ++axes) {
     if ((axes & above) != axes)
       continue;
@@ -66,7 +66,7 @@ inline void loadPart(const BrickLevel& level, const Neighbors& neighbors, const 
   const int n = neighbors[offset];
   if (n < 0)
     return copyRim(level, neighbors, field, d, halo);
-  constexpr Part part = partAt(d);
+  constexpr HaloPart part = partAt(d);
   constexpr int first = ownIndex(part.first[0] & 3, part.first[1] & 3, part.first[2] & 3);
   copyPart(part, field.own(n) + first, brick_cells, brick_cells * brick_cells, halo);
 }

@@ -4,12 +4,12 @@
 #include <algorithm>
 namespace fresco::poisson {
 namespace {
-using Runs = std::vector<VolumetricPart::Run>;
+using PartRuns = std::vector<VolumetricPart::Run>;
 
 /// Runs of all ranks, by rank, with which rank 0 takes what they hold.
 class ToFirst {
 public:
-  ToFirst(Exchange& exchange, const Runs& own, Index count) : exchange_(exchange), count_(count)
+  ToFirst(Exchange& exchange, const PartRuns& own, Index count) : exchange_(exchange), count_(count)
   {
     Exchange::Bytes message;
     append(message, own.data(), own.size());
@@ -61,7 +61,7 @@ private:
 
   Exchange& exchange_;
   Index count_;
-  std::vector<Runs> runs_;
+  std::vector<PartRuns> runs_;
 };
 } // namespace
 
