@@ -41,6 +41,16 @@ function(fresco_precompile target)
   target_compile_options(${target} PRIVATE $<$<AND:$<COMPILE_LANGUAGE:CXX>,$<CXX_COMPILER_ID:GNU>>:-fpch-preprocess>)
 endfunction()
 
+# Templates of Eigen that several files of a module use are instantiated once for twelve files. Names of a module's files
+# are unlike for that, those of the innermost namespaces too.
+option(FRESCO_UNITY "Compile files of a module together: less time from nothing, more after a change of one file" ON)
+function(fresco_unite target)
+  if(FRESCO_UNITY AND NOT FRESCO_SANITIZE)
+    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 12)
+    target_compile_options(${target} PRIVATE -Wno-shadow) # of names of other files
+  endif()
+endfunction()
+
 # Warnings for our own targets only.
 add_library(fresco_warnings INTERFACE)
 target_compile_options(fresco_warnings INTERFACE -Wall -Wextra -Wpedantic -Wshadow)
