@@ -47,13 +47,13 @@ option(FRESCO_UNITY "Compile files of a module together: less time from nothing,
 function(fresco_unite target)
   if(FRESCO_UNITY AND NOT FRESCO_SANITIZE)
     set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 12)
-    target_compile_options(${target} PRIVATE -Wno-shadow) # of names of other files
   endif()
 endfunction()
 
 # Warnings for our own targets only.
 add_library(fresco_warnings INTERFACE)
-target_compile_options(fresco_warnings INTERFACE -Wall -Wextra -Wpedantic -Wshadow)
+target_compile_options(fresco_warnings INTERFACE -Wall -Wextra -Wpedantic
+                       $<$<NOT:$<BOOL:$<TARGET_PROPERTY:UNITY_BUILD>>>:-Wshadow>) # else of names of other files
 
 set(FRESCO_SANITIZE "" CACHE STRING "Sanitizers to build with, as in -fsanitize=..., e.g. address,undefined")
 if(FRESCO_SANITIZE)

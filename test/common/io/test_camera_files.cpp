@@ -263,6 +263,9 @@ TEST_F(CameraFiles, ProjectAsTheirDocumentationSays)
     ASSERT_EQ(points.size(), format.points) << format.file;
     for (const SparsePoint& point : points) {
       EXPECT_EQ(point.position, Vector3d(1, 2, 3));
+      if (format.file == std::string("sfm_data.json")) { // has no colours
+        EXPECT_TRUE(point.color.isZero()) << point.color.transpose().cast<int>();
+      }
       ASSERT_FALSE(point.track.empty());
       EXPECT_EQ(point.track[0].view, 0);
       EXPECT_EQ(point.track[0].pixel, Vector2d(330, format.file == std::string("bundle.out") ? 219.5 : 260.5));

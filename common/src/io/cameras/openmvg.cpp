@@ -67,7 +67,7 @@ void addPoints(const Json& json, const std::map<std::int64_t, int>& numbers, Cam
     for (const auto& [view, seen] : valuesOf(*point, "observations"))
       if (const auto number = numbers.find(view); number != numbers.end())
         track.push_back({number->second, member<2>(*seen, "x", "an observation").array() + half});
-    cameras.addPoint(member<3>(*point, "X", "a point"), {}, track);
+    cameras.addPoint(member<3>(*point, "X", "a point"), Eigen::Vector3d::Zero(), track);
   }
 }
 } // namespace

@@ -206,12 +206,12 @@ std::shared_ptr<const BlockIndex> findBlocks(const std::string& path, const Rand
 /// has no points and is remarked, unless none can.
 class TextReader : public ScanReader {
 public:
-  TextReader(const ScanPath& path, const char* block_name, ReadBlock read)
+  TextReader(const ScanPath& path, const char* block_name, ReadBlock read_block)
       : file_(path.file), index_(std::dynamic_pointer_cast<const BlockIndex>(path.index))
   {
     if (!index_ || index_->file != path.file || index_->size != file_.size() ||
         index_->time != std::filesystem::last_write_time(path.file))
-      index_ = findBlocks(path.file, file_, block_name, read);
+      index_ = findBlocks(path.file, file_, block_name, read_block);
     scans_ = index_->scans;
     for (const std::string& text : index_->remarks)
       remark(text);
