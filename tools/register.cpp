@@ -22,6 +22,22 @@ struct Request {
   CommonOptions common;
 };
 
+// What the search and the refinement go by.
+void declare(Args& args, ScanRegistrationOptions& options)
+{
+  args.option("voxel", options.voxel, Range::above(0).zero("from the data"), "finest thinning, unit of the points");
+  args.option("max_distance", options.max_distance, Range::above(0).zero("20 voxels"),
+              "how far start poses may be off, unit of the points");
+  args.option("min_overlap", options.min_overlap, Range::above(0).atMost(1),
+              "share of a scan from which a pair of scans is used");
+  args.option("max_violation", options.max_violation, Range::within(0, 1),
+              "share of a scan in space that the other saw through from which a pair is wrong");
+  args.option("confidence", options.confidence, Range::within(0.5, 0.9999).zero("the joins decide"),
+              "probability from which a place is taken: those of less are lost, candidates of more are gained");
+  args.flag("upright", options.upright, "all scanners stood upright to 10 degrees, z upwards");
+  args.option("iterations", options.max_iterations, Range::atLeast(1), "of the joint refinement per resolution");
+}
+
 Request parse(int argc, char** argv)
 {
   Request request;
@@ -47,17 +63,7 @@ Request parse(int argc, char** argv)
   args.option("e57", request.e57, "write the placed scans into this file, each with its pose, all fields and pictures");
   args.option("to_world", request.to_world,
               "for -e57: a file of 16 numbers, row by row, from the frame of the result to that of the world");
-  args.option("voxel", request.options.voxel, Range::above(0).zero("from the data"),
-              "finest thinning, unit of the points");
-  args.option("max_distance", request.options.max_distance, Range::above(0).zero("20 voxels"),
-              "how far start poses may be off, unit of the points");
-  args.option("min_overlap", request.options.min_overlap, Range::above(0).atMost(1),
-              "share of a scan from which a pair of scans is used");
-  args.option("max_violation", request.options.max_violation, Range::within(0, 1),
-              "share of a scan in space that the other saw through from which a pair is wrong");
-  args.flag("upright", request.options.upright, "all scanners stood upright to 10 degrees, z upwards");
-  args.option("iterations", request.options.max_iterations, Range::atLeast(1),
-              "of the joint refinement per resolution");
+  declare(args, request.options);
   declareColumns(args);
   request.common.declare(args);
   args.note("example: fresco_register scans/*.pcd -o registered");

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "registration_result.h"
+#include "answer/odds.h"
 #include "answer/places.h"
 #include "scan/floor_plan.h"
 #include "scan/lists.h"
@@ -107,7 +108,7 @@ private:
   void addTriedPairs();
   void drawOutlines();
   void describeHints(const Placement& placement);
-  void findCandidates(const std::vector<ScanCluster>& groups);
+  void findCandidates(const std::vector<ScanCluster>& groups, const FreeSpaceJudge& judge);
   Refusal refusalOf(Index group) const;
 
   const RegistrationState& state_;
@@ -315,12 +316,11 @@ void Description::drawOutlines()
   }
 }
 
-void Description::findCandidates(const std::vector<ScanCluster>& groups)
+void Description::findCandidates(const std::vector<ScanCluster>& groups, const FreeSpaceJudge& judge)
 {
   constexpr std::size_t most = 4;        // of a group: a person looks at no more
   constexpr double least_overlap = 0.02; // of two scans: of less, nobody can tell whether they fit
   const PlaceFinder finder(scans_, state_.tried, state_.plan_places, options_);
-  const FreeSpaceJudge judge(scans_);
   const auto found = mapTasks(groups.size(), options_.threads, [&](Index g) {
     std::vector<CandidatePlace> candidates;
     Places places;
@@ -362,6 +362,7 @@ ScanRegistrationResult Description::run()
     for (const std::vector<Index>& group : acceptedGroups(placement, scans_.size(), options_.max_violation)) {
       ScanCluster& cluster = groups.emplace_back();
       cluster.scans = group;
+      cluster.hinted = placement.hinted;
       for (const Index i : group) {
         scan(i).group = result_.groups;
         cluster.poses.push_back(Eigen::Isometry3d(scan(i).T_group_scan) * Eigen::Translation3d(scans_[i].center));
@@ -369,7 +370,9 @@ ScanRegistrationResult Description::run()
       same_frame.push_back(&placement == &placements.front());
       ++result_.groups;
     }
-  findCandidates(groups);
+  const FreeSpaceJudge judge(scans_);
+  findCandidates(groups, judge);
+  describeOdds(groups, judge, options_.threads, result_);
   for (std::size_t g = 0; g < groups.size(); ++g)
     if (g == 0)
       placeMain(groups[0].scans);

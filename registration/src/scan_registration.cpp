@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "answer/hints.h"
 #include "answer/more_pairs.h"
+#include "answer/odds.h"
 #include "answer/pair_memory.h"
 #include "global_alignment.h"
 #include "graph/equal_rooms.h"
@@ -30,6 +31,8 @@ void validate(const ScanSource& scans, const std::vector<Pose>& start, const Sca
           " is not in 0..1");
   require(options.max_violation >= 0.f && options.max_violation <= 1.f, "registration: max_violation ",
           options.max_violation, " is not in 0..1");
+  require(options.confidence == 0.0 || (options.confidence >= 0.5 && options.confidence < 1.0),
+          "registration: confidence ", options.confidence, " is not 0 and not in 0.5..1");
   require(options.max_iterations >= 1, "registration: max_iterations ", options.max_iterations, " is below 1");
   require(options.names.empty() || names == count, "registration: ", count, " scans, ", names, " names");
   const bool any_start = std::any_of(start.begin(), start.end(), [](const Pose& pose) { return pose.has_value(); });
@@ -152,6 +155,29 @@ Placement toPlacement(const ScanCluster& cluster, const RegistrationState& state
   return placement;
 }
 
+// What comes of clusters and hints.
+ScanRegistrationResult refineAll(const AlignmentInput& input, const std::vector<Pose>& start,
+                                 const ScanRegistrationOptions& options, GlobalAlignment alignment,
+                                 const Progress& progress)
+{
+  Index world_scan = -1;
+  std::vector<std::string> said;
+  std::vector<ScanCluster>& clusters = alignment.graph.clusters;
+  if (!options.hints.empty() && !clusters.empty()) {
+    if (input.known.scans.empty())
+      world_scan = fixWorld(input.scans, clusters[0]);
+    followHints(input, options, alignment, said);
+  }
+  RegistrationState state{input.scans, start, options, {}, std::move(alignment.pairs), alignment.graph.places, said};
+  const double step = 1.0 / clusters.size();
+  for (const ScanCluster& cluster : clusters) {
+    const double done = state.placements.size() * step;
+    state.placements.push_back(toPlacement(cluster, state, state.placements.empty() ? world_scan : -1));
+    refinePlacement(input.scans, options, state.placements.back(), subProgress(progress, done, done + step));
+  }
+  return describeRegistration(state);
+}
+
 ScanRegistrationResult findPoses(const ScanSource& scans, const std::vector<Pose>& start,
                                  const ScanRegistrationOptions& given, const Progress& progress)
 {
@@ -174,22 +200,12 @@ ScanRegistrationResult findPoses(const ScanSource& scans, const std::vector<Pose
   GlobalAlignment alignment =
       findClusters(input, options, memoryKey(survey, start, options), scans.memory, subProgress(progress, 0.3, 0.6));
   partEqualRooms({prepared, alignment.pairs, graphOptions(options)}, known, alignment.graph.clusters);
-  Index world_scan = -1;
-  std::vector<std::string> said;
-  if (!options.hints.empty() && !alignment.graph.clusters.empty()) {
-    if (known.scans.empty())
-      world_scan = fixWorld(prepared, alignment.graph.clusters[0]);
-    followHints(input, options, alignment, said);
+  OddsFollower odds(known, options);
+  for (;;) {
+    ScanRegistrationResult result = refineAll(input, start, options, alignment, subProgress(progress, 0.6, 1.0));
+    if (!odds.follow(result, alignment.graph.clusters))
+      return result;
   }
-  RegistrationState state{prepared, start, options, {}, std::move(alignment.pairs), alignment.graph.places, said};
-  const double step = 1.0 / alignment.graph.clusters.size();
-  for (const ScanCluster& cluster : alignment.graph.clusters) {
-    const double done = state.placements.size() * step;
-    state.placements.push_back(toPlacement(cluster, state, state.placements.empty() ? world_scan : -1));
-    refinePlacement(prepared, options, state.placements.back(),
-                    subProgress(progress, 0.6 + 0.4 * done, 0.6 + 0.4 * (done + step)));
-  }
-  return describeRegistration(state);
 }
 } // namespace
 

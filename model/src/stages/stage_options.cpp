@@ -25,6 +25,7 @@ std::vector<Row> rowsOf(StageOptions& o)
           {"register.max_distance", &o.registration.max_distance, Range::above(0).zero("20 voxels")},
           {"register.min_overlap", &o.registration.min_overlap, Range::above(0).atMost(1)},
           {"register.max_violation", &o.registration.max_violation, Range::within(0, 1)},
+          {"register.confidence", &o.registration.confidence, Range::within(0.5, 0.9999).zero("the joins decide")},
           {"register.max_iterations", &o.registration.max_iterations, Range::atLeast(1)},
           {"register.upright", &o.registration.upright, flag},
           {"filter.outlier_neighbors", &o.outliers.k, Range::atLeast(1)},

@@ -46,9 +46,10 @@ public:
   {
     const ScanResult& scan = result_.scans[i];
     Json json = {
-        {"file", scanName(options, i)}, {"name", std::filesystem::path(scanName(options, i)).filename().string()},
-        {"placed", scan.placed},        {"group", scan.duplicate_of < 0 ? scan.group : -1},
-        {"problem", scan.problem},      {"hint", scan.hint}};
+        {"file", scanName(options, i)},   {"name", std::filesystem::path(scanName(options, i)).filename().string()},
+        {"placed", scan.placed},          {"group", scan.duplicate_of < 0 ? scan.group : -1},
+        {"problem", scan.problem},        {"hint", scan.hint},
+        {"probability", scan.probability}};
     if (scan.group < 0)
       return json;
     const Eigen::Vector2d station = place(scan, scan.found_viewpoint.value_or(Eigen::Vector3d::Zero()));

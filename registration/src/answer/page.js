@@ -109,6 +109,12 @@ const placed = inGroup(0).filter(scan => scan.placed);
 const number = (value, digits) => value.toFixed(digits);
 const pointsOfAll = (scans, motion) => scans.flatMap(scan => pointsOf(scan, motion));
 
+// As bets have it, too.
+function odds(p) {
+  if (p < 0.01) return "below 0.01";
+  return `${number(p, p > 0.9 ? 3 : 2)} (${p < 0.5 ? `1:${number(1 / p - 1, 0)}` : `${number(p / (1 - p), 0)}:1`})`;
+}
+
 function takeLine(parent, line) {
   const take = add(parent, "div", undefined, {class: "take"});
   const code = add(take, "code", line);
@@ -135,6 +141,7 @@ function drawCandidate(parent, candidate, members, place) {
     add(line, "td", name);
     add(line, "td", value, bad ? {class: "bad"} : {});
   };
+  row("probability", odds(candidate.probability));
   row("surfaces that agree", `those of ${number(candidate.agree, 2)} scans`);
   row("contradicted", candidate.contradicted
     ? `yes: ${number(100 * candidate.contradict, 1)} % of a scan lies where others saw through`
@@ -189,6 +196,9 @@ function drawAll() {
   if (placed.length > 0)
     drawPlan(section, [{scans: placed, motion: identity, color: PLACED, stations: STATION}],
              boxOf(pointsOfAll(placed, identity)), "wide");
+  const sure = [...placed].sort((a, b) => a.probability - b.probability);
+  add(section, "p", "Probability of each place, the least sure first: "
+                    + sure.map(scan => `${shortName(scan)} ${odds(scan.probability)}`).join(", "));
   const hinted = placed.filter(scan => scan.hint);
   if (hinted.length > 0)
     add(section, "p", "Placed by hints: " + hinted.map(scan => `${shortName(scan)} (${scan.hint})`).join(", "));

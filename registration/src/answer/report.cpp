@@ -39,9 +39,10 @@ Json pairJson(const PairResult& pair)
 }
 
 // By RefusalReason.
-constexpr const char* reason_names[] = {"none",         "unusable", "nothing_found", "too_little", "contradicted",
-                                        "second_place", "repeats",  "claimed",       "loose",      "apart"};
-static_assert(std::size(reason_names) == static_cast<std::size_t>(RefusalReason::apart) + 1);
+constexpr const char* reason_names[] = {"none",         "unusable",     "nothing_found", "too_little",
+                                        "contradicted", "second_place", "repeats",       "claimed",
+                                        "loose",        "apart",        "unsure"};
+static_assert(std::size(reason_names) == static_cast<std::size_t>(RefusalReason::unsure) + 1);
 
 Json refusalJson(const Refusal& refusal)
 {
@@ -59,6 +60,7 @@ Json scanJson(const std::string& file, const ScanResult& scan, const Pose& pose)
   json["problem"] = scan.problem;
   json["refusal"] = scan.placed ? Json() : refusalJson(scan.refusal);
   json["hint"] = scan.hint;
+  json["probability"] = scan.probability;
   json["duplicate_of"] = scan.duplicate_of;
   json["viewpoint_problem"] = scan.viewpoint_problem;
   if (scan.found_viewpoint)
@@ -86,6 +88,7 @@ Json candidateJson(const CandidatePlace& place, const ScanRegistrationOptions& o
           {"agree", place.agree},
           {"contradict", place.contradict},
           {"contradicted", place.contradicted},
+          {"probability", place.probability},
           {"hint", hintLine(place, options)}};
 }
 } // namespace registration
@@ -94,7 +97,7 @@ std::string registrationJson(const ScanRegistrationResult& result, const ScanReg
 {
   using namespace registration;
   Json json;
-  for (const char* list : {"scans", "unplaced", "pairs", "candidates"})
+  for (const char* list : {"scans", "unplaced", "pairs", "candidates", "links"})
     json[list] = Json::array();
   for (std::size_t i = 0; i < result.scans.size(); ++i) {
     json["scans"].push_back(scanJson(scanName(options, i), result.scans[i], result.poses[i]));
@@ -105,6 +108,11 @@ std::string registrationJson(const ScanRegistrationResult& result, const ScanReg
     json["pairs"].push_back(pairJson(pair));
   for (const CandidatePlace& place : result.candidates)
     json["candidates"].push_back(candidateJson(place, options));
+  for (const CandidatePlace& link : result.links) {
+    Json& place = json["links"].emplace_back(candidateJson(link, options));
+    place["part"] = link.part;
+    place.erase("hint");
+  }
   json["hints"] = result.hints;
   json["warnings"] = registrationWarnings(result, options);
   json["groups"] = result.groups;

@@ -74,6 +74,8 @@ std::string refusalText(const Refusal& refusal, const ScanRegistrationOptions& o
     return "what holds its place leaves it free";
   case RefusalReason::apart:
     return "a hint keeps it apart from " + other;
+  case RefusalReason::unsure:
+    return concat("its place beside ", other, agrees, ", is less probable than asked for");
   }
   return "";
 }

@@ -36,6 +36,8 @@ public:
   bool getUpright() const { return options_.upright; }
   void setMaxViolation(float share) { options_.max_violation = share; }
   float getMaxViolation() const { return options_.max_violation; }
+  void setConfidence(double probability) { options_.confidence = probability; }
+  double getConfidence() const { return options_.confidence; }
   void setMaximumIterations(int iterations) { options_.max_iterations = iterations; }
   int getMaximumIterations() const { return options_.max_iterations; }
   void setNumberOfThreads(int threads) { options_.threads = threads; }

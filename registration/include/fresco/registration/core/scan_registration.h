@@ -32,10 +32,13 @@ struct ScanRegistrationOptions {
   float max_distance = 0.f;    ///< how far start poses may be off, length; 0 = 20 voxels, too far to place what slides
   float min_overlap = 0.1f;    ///< share of a scan's points with a counterpart from which a pair is used, 0..1
   float max_violation = 0.04f; ///< share of a scan's points in space that the other saw through: above, a pair is wrong
-  int max_iterations = 40;     ///< of the joint refinement, per resolution, >= 1
-  bool fixed = false;          ///< scans with a start pose keep it exactly; only the others are placed
-  bool upright = false; ///< whether all scanners stood upright to 10 degrees, z upwards: fewer poses are possible
-  int threads = 0;      ///< 0 = all cores; the result does not depend on it
+  /// Probability from which a place is taken, 0.5..0.9999: those of less are lost, others gained. 0 = those that the joining
+  /// steps take, whatever their probability.
+  double confidence = 0.0;
+  int max_iterations = 40; ///< of the joint refinement, per resolution, >= 1
+  bool fixed = false;      ///< scans with a start pose keep it exactly; only the others are placed
+  bool upright = false;    ///< whether all scanners stood upright to 10 degrees, z upwards: fewer poses are possible
+  int threads = 0;         ///< 0 = all cores; the result does not depend on it
   std::vector<std::string> names;      ///< of the scans, for messages; empty = their numbers
   std::vector<RegistrationHint> hints; ///< followed where free space does not contradict them
 };
@@ -104,7 +107,8 @@ enum class RefusalReason {
   repeats,       ///< a scan maps onto itself: an equal room or bay is near
   claimed,       ///< other scans that cannot be there have as good a place for it
   loose,         ///< what holds its place leaves it free
-  apart          ///< a hint
+  apart,         ///< a hint
+  unsure         ///< less probable than ScanRegistrationOptions::confidence
 };
 
 /// What spoke against a place.
@@ -115,9 +119,9 @@ struct Refusal {
   double contradict = 0.0; ///< likewise
 };
 
-/// Where a scan or group that is not placed may be.
+/// Where a scan or group that is not placed may be, or where a part of a group is.
 struct CandidatePlace {
-  Index group = 0;            ///< that is not placed
+  Index group = 0;            ///< that is not placed, or that holds the part
   Index scan = 0, beside = 0; ///< one of its scans, and one of a larger group, mostly a placed one
   Index number = 0; ///< of the places that the two have, from 1, see HintKind::choose; 0 = found for the whole group
   Eigen::Matrix4d T_beside_scan = Eigen::Matrix4d::Identity();
@@ -125,10 +129,12 @@ struct CandidatePlace {
   double overlap = 0.0;                                         ///< of the two scans there, as PairResult::overlap
   double violation = 0.0;                                       ///< likewise
   /// Points of both groups as deep as the other side measured, over the points of one scan; those of one
-  /// count for each scan that sees them. No probability: of equal rooms the wrong one may have more.
+  /// count for each scan that sees them. Of equal rooms the wrong one may have more.
   double agree = 0.0;
   double contradict = 0.0;   ///< those in space that the other side saw through, together with their neighbours
   bool contradicted = false; ///< that is more than errors and panes explain
+  double probability = 0.0;  ///< that it is right, see docs/hints.md#probability
+  std::vector<Index> part;   ///< of ScanRegistrationResult::links: the scans whose place it is
 };
 
 /// One scan at the end. Lengths are in the unit of the points.
@@ -137,6 +143,7 @@ struct ScanResult {
   std::string problem;           ///< why it was not placed, or what is doubtful about its place
   Refusal refusal;               ///< of a scan without a place
   std::string hint;              ///< that its place rests on; empty = none
+  double probability = 0.0;      ///< that its place among the placed scans, or else the likeliest candidate, is right
   std::string viewpoint_problem; ///< why what it saw through is not used; empty = it is
   /// Where it was seen from, in its own frame, to about a decimetre in rooms; only where its file does not tell and its
   /// points do.
@@ -160,6 +167,7 @@ struct ScanRegistrationResult {
   std::vector<ScanResult> scans;
   Index groups = 0;
   std::vector<CandidatePlace> candidates; ///< by group, the best first: not contradicted, then of more overlap
+  std::vector<CandidatePlace> links;      ///< what holds groups together, each as the place of the smaller part
   std::vector<std::string> hints;         ///< what became of each hint, a line each
   double rms = 0.0;                       ///< point-to-plane distance over all accepted pairs, length
   float voxel = 0.f;                      ///< that was used
