@@ -101,13 +101,28 @@ TEST(Odds, MoreConfidenceNeverPlacesMore)
     EXPECT_LE(placedCount(result), before) << confidence;
     before = placedCount(result);
     for (std::size_t i = 0; i < result.scans.size(); ++i) {
-      EXPECT_TRUE(!result.scans[i].placed || before == 1 || result.scans[i].probability >= confidence) << i;
+      EXPECT_TRUE(!result.scans[i].placed || before == 1 ||
+                  result.scans[i].probability >= std::min(confidence, registration::largestClaim()))
+          << i;
       if (alone.scans[i].placed && !result.scans[i].placed) {
         EXPECT_EQ(result.scans[i].refusal.reason, RefusalReason::unsure) << i;
       }
     }
   }
-  EXPECT_EQ(before, 1) << "nothing is as certain as that";
+}
+
+TEST(Odds, WhatNothingReachesIsSaid)
+{
+  ScanRegistrationOptions options;
+  const auto warnings = [&](double confidence) {
+    options.confidence = confidence;
+    return registrationWarnings({}, options);
+  };
+  EXPECT_TRUE(warnings(0.99).empty());
+  ASSERT_EQ(warnings(0.9999).size(), 1u);
+  EXPECT_EQ(warnings(0.9999)[0].rfind("confidence 0.9999: ", 0), 0u) << warnings(0.9999)[0];
+  EXPECT_EQ(registrationJson(registerTwins(registration::largestClaim()), {}),
+            registrationJson(registerTwins(0.9999), {}));
 }
 
 TEST(Odds, APersonCountsAsBefore)

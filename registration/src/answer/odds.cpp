@@ -20,6 +20,8 @@ double logOdds(const CandidatePlace& place, bool joined)
 }
 } // namespace
 
+double largestClaim() { return largest_claim; }
+
 std::vector<double> oddsOf(const std::vector<CandidatePlace>& places, bool joined)
 {
   std::vector<double> odds;
@@ -154,13 +156,14 @@ RegistrationHint hintOf(const CandidatePlace& place)
 }
 } // namespace
 
+double OddsFollower::asked() const { return std::min(options_.confidence, largest_claim); }
+
 bool OddsFollower::lose(const std::vector<CandidatePlace>& links, std::vector<ScanCluster>& clusters)
 {
   bool lost = false;
   for (const CandidatePlace& link : links) {
     const auto in = [&](Index scan) { return std::find(link.part.begin(), link.part.end(), scan) != link.part.end(); };
-    if (link.group > 0 || link.probability >= options_.confidence ||
-        std::any_of(known_.scans.begin(), known_.scans.end(), in))
+    if (link.group > 0 || link.probability >= asked() || std::any_of(known_.scans.begin(), known_.scans.end(), in))
       continue;
     const auto own = options_.hints.begin() + given_;
     const auto holding =
@@ -180,8 +183,7 @@ bool OddsFollower::gain(const std::vector<CandidatePlace>& places)
 {
   const CandidatePlace* best = nullptr;
   for (const CandidatePlace& place : places)
-    if (!place.contradicted &&
-        (best ? place.probability > best->probability : place.probability >= options_.confidence) &&
+    if (!place.contradicted && (best ? place.probability > best->probability : place.probability >= asked()) &&
         tried_.count({place.beside, place.scan, place.number}) == 0)
       best = &place;
   if (best == nullptr)

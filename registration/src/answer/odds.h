@@ -8,6 +8,9 @@ namespace fresco::registration {
 /// @param joined whether the joining steps took it
 std::vector<double> oddsOf(const std::vector<CandidatePlace>& places, bool joined);
 
+/// Above it nothing is claimed: more examples would be needed.
+double largestClaim();
+
 /// Probabilities of candidates, links and scans. A scan is as sure of its place as the weakest link between it and the largest part
 /// of its group.
 /// @param groups with their hints; what these hold was not taken by the joining steps
@@ -30,6 +33,7 @@ public:
   bool follow(const ScanRegistrationResult& result, std::vector<ScanCluster>& clusters);
 
 private:
+  double asked() const;
   bool lose(const std::vector<CandidatePlace>& links, std::vector<ScanCluster>& clusters);
   bool gain(const std::vector<CandidatePlace>& places);
   const ScanCluster& known_;

@@ -52,7 +52,10 @@ Json refusalJson(const Refusal& refusal)
           {"contradict", refusal.contradict}};
 }
 
-Json scanJson(const std::string& file, const ScanResult& scan, const Pose& pose)
+double oddsOfProbability(double p) { return p / (1.0 - p); }
+
+Json scanJson(const std::string& file, const ScanResult& scan, const Pose& pose,
+              const std::vector<CandidatePlace>& candidates)
 {
   Json json = {{"file", file}, {"placed", scan.placed}, {"group", scan.group}};
   json["pose"] = pose ? rowsJson(*pose) : Json();
@@ -61,6 +64,11 @@ Json scanJson(const std::string& file, const ScanResult& scan, const Pose& pose)
   json["refusal"] = scan.placed ? Json() : refusalJson(scan.refusal);
   json["hint"] = scan.hint;
   json["probability"] = scan.probability;
+  json["odds"] = oddsOfProbability(scan.probability);
+  json["alternatives"] = Json::array();
+  for (std::size_t k = 0; k < candidates.size(); ++k)
+    if (scan.group >= 0 && candidates[k].group == scan.group)
+      json["alternatives"].push_back(k);
   json["duplicate_of"] = scan.duplicate_of;
   json["viewpoint_problem"] = scan.viewpoint_problem;
   if (scan.found_viewpoint)
@@ -89,6 +97,7 @@ Json candidateJson(const CandidatePlace& place, const ScanRegistrationOptions& o
           {"contradict", place.contradict},
           {"contradicted", place.contradicted},
           {"probability", place.probability},
+          {"odds", oddsOfProbability(place.probability)},
           {"hint", hintLine(place, options)}};
 }
 } // namespace registration
@@ -100,7 +109,7 @@ std::string registrationJson(const ScanRegistrationResult& result, const ScanReg
   for (const char* list : {"scans", "unplaced", "pairs", "candidates", "links"})
     json[list] = Json::array();
   for (std::size_t i = 0; i < result.scans.size(); ++i) {
-    json["scans"].push_back(scanJson(scanName(options, i), result.scans[i], result.poses[i]));
+    json["scans"].push_back(scanJson(scanName(options, i), result.scans[i], result.poses[i], result.candidates));
     if (!result.scans[i].placed)
       json["unplaced"].push_back(scanName(options, i));
   }

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "answer/odds.h"
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -117,6 +118,9 @@ std::vector<std::string> registrationWarnings(const ScanRegistrationResult& resu
       warnings.push_back(concat("another group: ", group.size(), " scans hang together, but not with the placed ones: ",
                                 namesOf(group, options), ": ", result.scans[group[0]].problem,
                                 firstPlace(result, result.scans[group[0]].group, options)));
+  if (options.confidence > registration::largestClaim())
+    warnings.push_back(concat("confidence ", options.confidence, ": no place is known to be surer than ",
+                              registration::largestClaim(), ", which is asked for instead"));
   warnings.insert(warnings.end(), result.hints.begin(), result.hints.end());
   return warnings;
 }

@@ -8,7 +8,7 @@
 #include <optional>
 namespace fresco::io {
 namespace {
-constexpr std::string_view blank_or_tab = " \t";
+constexpr std::string_view gaps = " \t";
 
 bool hasOnly(std::string_view text, std::string_view characters)
 {
@@ -59,8 +59,7 @@ void TableDialect::split(std::string_view row, std::vector<std::string_view>& ce
   cells.clear();
   const std::string_view parts = decimal_comma ? ";|" : ",;|", ends = decimal_comma ? " \t;|" : " \t,;|";
   bool parted = true; // what comes next is a cell, even if it is empty
-  for (std::size_t at = row.find_first_not_of(blank_or_tab); at < row.size();
-       at = row.find_first_not_of(blank_or_tab, at)) {
+  for (std::size_t at = row.find_first_not_of(gaps); at < row.size(); at = row.find_first_not_of(gaps, at)) {
     if (row[at] == '#' || row.substr(at, 2) == "//")
       return;
     if (parts.find(row[at]) != std::string_view::npos) {
