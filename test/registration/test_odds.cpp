@@ -42,7 +42,10 @@ CandidatePlace placeWith(double agree, double contradict, double violation = 0.0
   return place;
 }
 
-double oddsOf(const CandidatePlace& place, bool joined = false) { return registration::oddsOf({place}, joined)[0]; }
+double oddsOf(const CandidatePlace& place, bool joined = false, double usual = 0.0)
+{
+  return registration::oddsOf({place}, joined, usual)[0];
+}
 
 TEST(Odds, RiseWithAgreementAndFallWithContradiction)
 {
@@ -54,6 +57,7 @@ TEST(Odds, RiseWithAgreementAndFallWithContradiction)
       EXPECT_LT(oddsOf(placeWith(agree, 2.0 * contradict)), p);
       EXPECT_LT(oddsOf(placeWith(agree, contradict, 0.01)), p);
       EXPECT_GT(oddsOf(placeWith(agree, contradict), true), p) << "what the joining steps took";
+      EXPECT_GT(oddsOf(placeWith(agree, contradict), false, 0.02), p) << "where all pairs contradict a little";
     }
 }
 
@@ -62,7 +66,7 @@ TEST(Odds, OfPlacesThatExcludeEachOtherAddUpToLessThanOne)
   const CandidatePlace place = placeWith(2.0, 0.0);
   double before = oddsOf(place);
   for (Index count = 2; count < 6; ++count) {
-    const std::vector<double> odds = registration::oddsOf(std::vector<CandidatePlace>(count, place), false);
+    const std::vector<double> odds = registration::oddsOf(std::vector<CandidatePlace>(count, place), false, 0.0);
     EXPECT_LT(odds[0], before);
     EXPECT_LT(count * odds[0], 1.0);
     EXPECT_EQ(odds.front(), odds.back());

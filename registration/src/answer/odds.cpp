@@ -3,37 +3,49 @@
 #include "scan/lists.h"
 #include <cmath>
 #include <fresco/core/require.h>
+#include <fresco/core/statistics.h>
 #include <fresco/core/union_find.h>
 namespace fresco::registration {
 namespace {
-// Of log-odds: constant, if joined, agree / (1 + agree), log(1 + 1000 contradict), log(1 + 1000 violation), overlap^4; then the
-// largest claim that the examples allow. Printed by benchmark/experiments/odds_fit.py FLOOR..., see
+// Of log-odds: constant, if joined, agree / (1 + agree), log(1 + contradict / u), log(1 + violation / u), overlap^4, u = 0.001 + what
+// is usual; then the largest claim that the examples allow. Printed by benchmark/experiments/odds_fit.py FLOOR..., see
 // docs/measurements/registration_evidence.md#probability; not to be changed by hand.
 constexpr double fitted[] = {-3.382, 2.416, 7.753, -2.352, -0.8561, -3.834, 0.9915};
 constexpr double largest_claim = fitted[6];
 
-double logOdds(const CandidatePlace& place, bool joined)
+double logOdds(const CandidatePlace& place, bool joined, double usual_violation)
 {
+  const double unit = 0.001 + usual_violation;
   return fitted[0] + (joined ? fitted[1] : 0.0) + fitted[2] * place.agree / (1.0 + place.agree) +
-         fitted[3] * std::log1p(1000.0 * place.contradict) + fitted[4] * std::log1p(1000.0 * place.violation) +
+         fitted[3] * std::log1p(place.contradict / unit) + fitted[4] * std::log1p(place.violation / unit) +
          fitted[5] * std::pow(place.overlap, 4);
 }
 } // namespace
 
 double largestClaim() { return largest_claim; }
 
-std::vector<double> oddsOf(const std::vector<CandidatePlace>& places, bool joined)
+std::vector<double> oddsOf(const std::vector<CandidatePlace>& places, bool joined, double usual_violation)
 {
   std::vector<double> odds;
   double sum = 1.0; // that none is right
   for (const CandidatePlace& place : places)
-    sum += odds.emplace_back(std::exp(logOdds(place, joined)));
+    sum += odds.emplace_back(std::exp(logOdds(place, joined, usual_violation)));
   for (double& value : odds)
     value = std::min(value / sum, largest_claim);
   return odds;
 }
 
 namespace {
+// Median of accepted pairs: people, panes and errors of range contradict right places, too.
+double medianViolation(const std::vector<PairResult>& pairs)
+{
+  std::vector<double> found;
+  for (const PairResult& pair : pairs)
+    if (pair.accepted)
+      found.push_back(pair.violation);
+  return found.empty() ? 0.0 : median(found);
+}
+
 // Accepted pairs that hold a group, of most overlap, without circles.
 std::vector<PairResult> treeOf(const ScanCluster& group, std::vector<PairResult> pairs)
 {
@@ -66,7 +78,7 @@ ScanCluster partOn(const PairResult& link, const ScanCluster& group, const std::
 }
 
 CandidatePlace placeOf(const PairResult& link, const ScanCluster& part, const ScanCluster& group,
-                       const FreeSpaceJudge& judge)
+                       const FreeSpaceJudge& judge, double usual)
 {
   const FreeSpaceEvidence evidence = judge.judge(divide(group, part.scans).second, part, Eigen::Isometry3d::Identity());
   CandidatePlace place;
@@ -83,20 +95,20 @@ CandidatePlace placeOf(const PairResult& link, const ScanCluster& part, const Sc
   const bool hinted = std::any_of(group.hinted.begin(), group.hinted.end(), [&](const HintedJoin& join) {
     return contains(part, join.a) != contains(part, join.b);
   });
-  place.probability = oddsOf({place}, !hinted)[0];
+  place.probability = oddsOf({place}, !hinted, usual)[0];
   return place;
 }
 
 std::vector<CandidatePlace> linksOf(const ScanCluster& group, const std::vector<PairResult>& pairs,
-                                    const FreeSpaceJudge& judge, int threads)
+                                    const FreeSpaceJudge& judge, int threads, double usual)
 {
   const std::vector<PairResult> tree = treeOf(group, pairs);
   return mapTasks(tree.size(), threads,
-                  [&](Index k) { return placeOf(tree[k], partOn(tree[k], group, tree), group, judge); });
+                  [&](Index k) { return placeOf(tree[k], partOn(tree[k], group, tree), group, judge, usual); });
 }
 
 // Those of one group beside one other group exclude each other.
-void describeCandidates(ScanRegistrationResult& result)
+void describeCandidates(ScanRegistrationResult& result, double usual)
 {
   const auto other = [&](const CandidatePlace& place) { return result.scans[place.beside].group; };
   for (CandidatePlace& place : result.candidates) {
@@ -104,7 +116,7 @@ void describeCandidates(ScanRegistrationResult& result)
     for (const CandidatePlace& rival : result.candidates)
       if (&rival != &place && rival.group == place.group && other(rival) == other(place))
         rivals.push_back(rival);
-    place.probability = oddsOf(rivals, false)[0];
+    place.probability = oddsOf(rivals, false, usual)[0];
   }
 }
 } // namespace
@@ -112,7 +124,8 @@ void describeCandidates(ScanRegistrationResult& result)
 void describeOdds(const std::vector<ScanCluster>& groups, const FreeSpaceJudge& judge, int threads,
                   ScanRegistrationResult& result)
 {
-  describeCandidates(result);
+  const double usual = medianViolation(result.pairs);
+  describeCandidates(result, usual);
   for (ScanResult& scan : result.scans)
     scan.probability = scan.group == 0 ? largest_claim : 0.0;
   for (const CandidatePlace& place : result.candidates)
@@ -120,7 +133,7 @@ void describeOdds(const std::vector<ScanCluster>& groups, const FreeSpaceJudge& 
       for (const Index i : groups[place.group].scans)
         result.scans[i].probability = std::max(result.scans[i].probability, place.probability);
   for (std::size_t g = 0; g < groups.size(); ++g)
-    for (CandidatePlace& link : linksOf(groups[g], result.pairs, judge, threads)) {
+    for (CandidatePlace& link : linksOf(groups[g], result.pairs, judge, threads, usual)) {
       link.group = g;
       for (const Index i : link.part)
         result.scans[i].probability = std::min(result.scans[i].probability, link.probability);

@@ -5,8 +5,9 @@
 #include <set>
 namespace fresco::registration {
 /// Probability of each of some places of one part, of which one at most is right, by what agrees there and what contradicts.
-/// @param joined whether the joining steps took it
-std::vector<double> oddsOf(const std::vector<CandidatePlace>& places, bool joined);
+/// @param joined          whether the joining steps took it
+/// @param usual_violation of pairs of these scans
+std::vector<double> oddsOf(const std::vector<CandidatePlace>& places, bool joined, double usual_violation);
 
 /// Above it nothing is claimed: more examples would be needed.
 double largestClaim();
