@@ -4,7 +4,7 @@
 
 FLOOR: poses.txt (the truth) and registered/registration.json, as office_floors.py leaves them. Examples are all candidates
 and links. Of one group's candidates beside another group one at most is right: a multinomial logistic regression with the
-outcome that none is, by Newton's method of scipy, tied to zero. The largest claim is the best rate of right ones, by
+outcome that none is, by scipy's BFGS, weights tied to zero. The largest claim is the best rate of right ones, by
 Laplace's rule of succession, among any number of the surest examples. Prints the numbers of the model, and of claims in bins
 the share that is right; with -check also of floors that nothing is fitted to."""
 import argparse

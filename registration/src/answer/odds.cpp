@@ -11,7 +11,6 @@ namespace {
 // is usual; then the largest claim that the examples allow. Printed by benchmark/experiments/odds_fit.py FLOOR..., see
 // docs/measurements/registration_evidence.md#probability; not to be changed by hand.
 constexpr double fitted[] = {-3.382, 2.416, 7.753, -2.352, -0.8561, -3.834, 0.9915};
-constexpr double largest_claim = fitted[6];
 
 double logOdds(const CandidatePlace& place, bool joined, double usual_violation)
 {
@@ -22,7 +21,7 @@ double logOdds(const CandidatePlace& place, bool joined, double usual_violation)
 }
 } // namespace
 
-double largestClaim() { return largest_claim; }
+double largestClaim() { return fitted[6]; }
 
 std::vector<double> oddsOf(const std::vector<CandidatePlace>& places, bool joined, double usual_violation)
 {
@@ -31,7 +30,7 @@ std::vector<double> oddsOf(const std::vector<CandidatePlace>& places, bool joine
   for (const CandidatePlace& place : places)
     sum += odds.emplace_back(std::exp(logOdds(place, joined, usual_violation)));
   for (double& value : odds)
-    value = std::min(value / sum, largest_claim);
+    value = std::min(value / sum, largestClaim());
   return odds;
 }
 
@@ -127,7 +126,7 @@ void describeOdds(const std::vector<ScanCluster>& groups, const FreeSpaceJudge& 
   const double usual = medianViolation(result.pairs);
   describeCandidates(result, usual);
   for (ScanResult& scan : result.scans)
-    scan.probability = scan.group == 0 ? largest_claim : 0.0;
+    scan.probability = scan.group == 0 ? largestClaim() : 0.0;
   for (const CandidatePlace& place : result.candidates)
     if (result.scans[place.beside].group == 0)
       for (const Index i : groups[place.group].scans)
@@ -169,14 +168,12 @@ RegistrationHint hintOf(const CandidatePlace& place)
 }
 } // namespace
 
-double OddsFollower::asked() const { return std::min(options_.confidence, largest_claim); }
-
 bool OddsFollower::lose(const std::vector<CandidatePlace>& links, std::vector<ScanCluster>& clusters)
 {
   bool lost = false;
   for (const CandidatePlace& link : links) {
     const auto in = [&](Index scan) { return std::find(link.part.begin(), link.part.end(), scan) != link.part.end(); };
-    if (link.group > 0 || link.probability >= asked() || std::any_of(known_.scans.begin(), known_.scans.end(), in))
+    if (link.group > 0 || link.probability >= asked_ || std::any_of(known_.scans.begin(), known_.scans.end(), in))
       continue;
     const auto own = options_.hints.begin() + given_;
     const auto holding =
@@ -196,7 +193,7 @@ bool OddsFollower::gain(const std::vector<CandidatePlace>& places)
 {
   const CandidatePlace* best = nullptr;
   for (const CandidatePlace& place : places)
-    if (!place.contradicted && (best ? place.probability > best->probability : place.probability >= asked()) &&
+    if (!place.contradicted && (best ? place.probability > best->probability : place.probability >= asked_) &&
         tried_.count({place.beside, place.scan, place.number}) == 0)
       best = &place;
   if (best == nullptr)
@@ -208,6 +205,6 @@ bool OddsFollower::gain(const std::vector<CandidatePlace>& places)
 
 bool OddsFollower::follow(const ScanRegistrationResult& result, std::vector<ScanCluster>& clusters)
 {
-  return options_.confidence > 0.0 && (lose(result.links, clusters) || gain(result.candidates));
+  return lose(result.links, clusters) || gain(result.candidates);
 }
 } // namespace fresco::registration

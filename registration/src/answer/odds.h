@@ -18,7 +18,7 @@ double largestClaim();
 void describeOdds(const std::vector<ScanCluster>& groups, const FreeSpaceJudge& judge, int threads,
                   ScanRegistrationResult& result);
 
-/// Changes what a registration starts from until all its places have the probability that the options ask for.
+/// Changes what a registration starts from until all its places have the probability that the options ask for, above 0.
 class OddsFollower {
 public:
   /// @param known scans with a start pose, which keep their places
@@ -34,11 +34,11 @@ public:
   bool follow(const ScanRegistrationResult& result, std::vector<ScanCluster>& clusters);
 
 private:
-  double asked() const;
   bool lose(const std::vector<CandidatePlace>& links, std::vector<ScanCluster>& clusters);
   bool gain(const std::vector<CandidatePlace>& places);
   const ScanCluster& known_;
   ScanRegistrationOptions& options_;
+  const double asked_ = std::min(options_.confidence, largestClaim());
   std::ptrdiff_t given_;                 // hints of a person come first
   std::set<std::array<Index, 3>> tried_; // places that were taken, whether they were kept or not
 };
