@@ -33,7 +33,7 @@ void declare(Args& args, ScanRegistrationOptions& options)
   args.option("max_violation", options.max_violation, Range::within(0, 1),
               "share of a scan in space that the other saw through from which a pair is wrong");
   args.option("confidence", options.confidence, Range::within(0.5, 0.9999).zero("the joins decide"),
-              "probability from which a place is taken: those of less are lost, candidates of more are gained");
+              "probability below which scans lose their places and become candidates");
   args.flag("upright", options.upright, "all scanners stood upright to 10 degrees, z upwards");
   args.option("iterations", options.max_iterations, Range::atLeast(1), "of the joint refinement per resolution");
 }

@@ -27,21 +27,21 @@ class Examples:
         for folder in folders:
             self.add(folder, json.load(open(folder + "/registered/registration.json")), read_poses(folder + "/poses.txt"))
         self.signs, self.right = np.array(self.signs, float), np.array(self.right, bool)
-        self.joined = self.signs[:, 1] > 0
+        self.joined = self.signs[:, 4] > 0
         self.choice = np.unique(self.choice, return_inverse=True)[1]
 
     def add(self, folder, report, truth):
         group = [scan["group"] for scan in report["scans"]]
-        found = sorted(pair["violation"] for pair in report["pairs"] if pair["accepted"])
-        usual = 0.001 + (found[len(found) // 2] if found else 0)
+        found = [pair["violation"] for pair in report["pairs"] if pair["accepted"]]
+        usual = sum(found) / max(1, len(found))
         for joined, list_ in ((0, report["candidates"]), (1, report["links"])):
             for k, place in enumerate(list_):
                 a, b = place["beside"], place["scan"]
                 D = np.linalg.inv(np.linalg.inv(truth[a]) @ truth[b]) @ self.pose(report, place, joined)
                 most = (FALSE_DISTANCE, FALSE_DEGREES) if joined else (MENDED_DISTANCE, MENDED_DEGREES)
                 self.right.append(np.linalg.norm(D[:3, 3]) < most[0] and degrees(D[:3, :3]) < most[1])
-                self.signs.append([1, joined, place["agree"] / (1 + place["agree"]), np.log1p(place["contradict"] / usual),
-                                   np.log1p(place["violation"] / usual), place["overlap"] ** 4])
+                u = np.log1p(1000 * max(0, place["contradict"] - 2 * usual * place["agree"]))
+                self.signs.append([1, place["agree"] / (1 + place["agree"]), place["overlap"] ** 4, u, joined, joined * u])
                 self.choice.append(f"{folder} {joined} {k if joined else (group[a], group[b])}")
 
     def pose(self, report, place, joined):

@@ -201,12 +201,9 @@ ScanRegistrationResult findPoses(const ScanSource& scans, const std::vector<Pose
       findClusters(input, options, memoryKey(survey, start, options), scans.memory, subProgress(progress, 0.3, 0.6));
   partEqualRooms({prepared, alignment.pairs, graphOptions(options)}, known, alignment.graph.clusters);
   const Progress refining = subProgress(progress, 0.6, 1.0);
-  if (options.confidence == 0.0)
-    return refineAll(input, start, options, std::move(alignment), refining);
-  OddsFollower odds(known, options);
   for (;;) {
     ScanRegistrationResult result = refineAll(input, start, options, alignment, refining);
-    if (!odds.follow(result, alignment.graph.clusters))
+    if (!loseUnsure(result, known, options, alignment.graph.clusters))
       return result;
   }
 }

@@ -55,8 +55,9 @@ TEST(Odds, RiseWithAgreementAndFallWithContradiction)
       EXPECT_GT(p, 0.0);
       EXPECT_GT(oddsOf(placeWith(2.0 * agree, contradict)), p);
       EXPECT_LT(oddsOf(placeWith(agree, 2.0 * contradict)), p);
-      EXPECT_LT(oddsOf(placeWith(agree, contradict, 0.01)), p);
-      EXPECT_GT(oddsOf(placeWith(agree, contradict), true), p) << "what the joining steps took";
+      EXPECT_GT(oddsOf(placeWith(agree, 0.0), true), oddsOf(placeWith(agree, 0.0))) << "what the joining steps took";
+      const double joined_falls = oddsOf(placeWith(agree, contradict), true) / oddsOf(placeWith(agree, 0.0), true);
+      EXPECT_LT(joined_falls, p / oddsOf(placeWith(agree, 0.0))) << "it is refined: no small motion mends it";
       EXPECT_GT(oddsOf(placeWith(agree, contradict), false, 0.02), p) << "where all pairs contradict a little";
     }
 }
@@ -147,6 +148,31 @@ TEST(Odds, APersonCountsAsBefore)
     for (const RegistrationHint& hint : hints)
       EXPECT_EQ(result.scans[hint.b].hint, hint.source) << confidence;
   }
+}
+
+TEST(Odds, WhatAPersonSaysIsNotLost)
+{
+  const test::ScannedScene scene = test::scanTwoRooms(20000);
+  PairMemory memory;
+  const auto place = [&](double confidence, const std::vector<RegistrationHint>& hints) {
+    ScanSource source(scene.scans.size(), [&](Index i) { return scene.scans[i]; });
+    source.memory = &memory;
+    ScanRegistrationOptions options;
+    options.confidence = confidence;
+    options.hints = hints;
+    return registerScans(source, {}, options);
+  };
+  const ScanRegistrationResult alone = place(0.0, {});
+  ASSERT_LT(placedCount(place(0.9999, {})), placedCount(alone));
+  std::vector<RegistrationHint> hints;
+  for (const CandidatePlace& link : alone.links)
+    if (link.group == 0) {
+      RegistrationHint& hint = hints.emplace_back();
+      hint.kind = HintKind::link;
+      hint.a = link.scan;
+      hint.b = link.beside;
+    }
+  EXPECT_EQ(placedCount(place(0.9999, hints)), placedCount(alone));
 }
 
 TEST(Odds, DoNotDependOnThreads)

@@ -1,23 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "answer/odds.h"
 #include "scan/lists.h"
+#include <algorithm>
 #include <cmath>
-#include <fresco/core/require.h>
-#include <fresco/core/statistics.h>
 #include <fresco/core/union_find.h>
 namespace fresco::registration {
 namespace {
-// Of log-odds: constant, if joined, agree / (1 + agree), log(1 + contradict / u), log(1 + violation / u), overlap^4, u = 0.001 + what
-// is usual; then the largest claim that the examples allow. Printed by benchmark/experiments/odds_fit.py FLOOR..., see
+// Of log-odds: constant, agree / (1 + agree), overlap^4, u = log(1 + 1000 times what contradicts beyond twice the usual); if joined,
+// constant, u; then the largest claim that the examples allow. Printed by benchmark/experiments/odds_fit.py FLOOR..., see
 // docs/measurements/registration_evidence.md#probability; not to be changed by hand.
-constexpr double fitted[] = {-3.382, 2.416, 7.753, -2.352, -0.8561, -3.834, 0.9915};
+constexpr double fitted[] = {-3.528, 7.09, -3.19, -1.061, 2.201, -3.712, 0.9901};
 
 double logOdds(const CandidatePlace& place, bool joined, double usual_violation)
 {
-  const double unit = 0.001 + usual_violation;
-  return fitted[0] + (joined ? fitted[1] : 0.0) + fitted[2] * place.agree / (1.0 + place.agree) +
-         fitted[3] * std::log1p(place.contradict / unit) + fitted[4] * std::log1p(place.violation / unit) +
-         fitted[5] * std::pow(place.overlap, 4);
+  const double unusual = std::max(0.0, place.contradict - 2.0 * usual_violation * place.agree);
+  const double u = std::log1p(1000.0 * unusual);
+  return fitted[0] + fitted[1] * place.agree / (1.0 + place.agree) + fitted[2] * std::pow(place.overlap, 4) +
+         fitted[3] * u + (joined ? fitted[4] + fitted[5] * u : 0.0);
 }
 } // namespace
 
@@ -35,14 +34,21 @@ std::vector<double> oddsOf(const std::vector<CandidatePlace>& places, bool joine
 }
 
 namespace {
-// Median of accepted pairs: people, panes and errors of range contradict right places, too.
-double medianViolation(const std::vector<PairResult>& pairs)
+bool isOfPart(const CandidatePlace& link, Index scan)
 {
-  std::vector<double> found;
+  return std::find(link.part.begin(), link.part.end(), scan) != link.part.end();
+}
+
+// Mean of accepted pairs: people, panes and errors of range contradict right places, too.
+double usualViolation(const std::vector<PairResult>& pairs)
+{
+  double sum = 0.0, count = 0.0;
   for (const PairResult& pair : pairs)
-    if (pair.accepted)
-      found.push_back(pair.violation);
-  return found.empty() ? 0.0 : median(found);
+    if (pair.accepted) {
+      sum += pair.violation;
+      count += 1.0;
+    }
+  return sum / std::max(count, 1.0);
 }
 
 // Accepted pairs that hold a group, of most overlap, without circles.
@@ -61,27 +67,44 @@ std::vector<PairResult> treeOf(const ScanCluster& group, std::vector<PairResult>
   return pairs;
 }
 
-// The smaller one of what a pair of the tree holds together.
-ScanCluster partOn(const PairResult& link, const ScanCluster& group, const std::vector<PairResult>& tree)
+// Which scans are on the smaller one of the two sides that a pair of the tree holds together.
+std::vector<bool> partOn(const PairResult& link, const ScanCluster& group, const std::vector<PairResult>& tree)
 {
   UnionFind held(group.scans.size());
   for (const PairResult& pair : tree)
     if (&pair != &link)
       held.join(positionOf(group, pair.a), positionOf(group, pair.b));
-  ScanCluster sides[2];
-  for (const bool second : {false, true})
-    for (std::size_t k = 0; k < group.scans.size(); ++k)
-      if (held.root(k) == held.root(positionOf(group, second ? link.b : link.a)))
-        append(sides[second], {{group.scans[k]}, {group.poses[k]}}, Eigen::Isometry3d::Identity());
-  return sides[sides[1].scans.size() <= sides[0].scans.size()];
+  const Index with_a = held.root(positionOf(group, link.a));
+  std::vector<bool> in_part;
+  for (std::size_t k = 0; k < group.scans.size(); ++k)
+    in_part.push_back(held.root(k) != with_a);
+  if (2 * std::count(in_part.begin(), in_part.end(), true) > std::ptrdiff_t(in_part.size()))
+    in_part.flip();
+  return in_part;
 }
 
-CandidatePlace placeOf(const PairResult& link, const ScanCluster& part, const ScanCluster& group,
-                       const FreeSpaceJudge& judge, double usual)
+// What free space says of all pairs of a group, each judged once: the links of a chain of n scans ask for n^3 / 6.
+std::vector<std::vector<FreeSpaceEvidence>> evidenceOf(const ScanCluster& group, const FreeSpaceJudge& judge,
+                                                       int threads)
 {
-  const FreeSpaceEvidence evidence = judge.judge(divide(group, part.scans).second, part, Eigen::Isometry3d::Identity());
+  return mapTasks(group.scans.size(), threads, [&](Index k) {
+    std::vector<FreeSpaceEvidence> row;
+    for (Index i = 0; i < k; ++i)
+      row.push_back(judge.judge(group.scans[i], group.scans[k], group.poses[i].inverse() * group.poses[k]));
+    return row;
+  });
+}
+
+CandidatePlace placeOf(const PairResult& link, const std::vector<bool>& in_part, const ScanCluster& group,
+                       const std::vector<std::vector<FreeSpaceEvidence>>& pairs, double usual)
+{
+  FreeSpaceEvidence evidence;
+  for (std::size_t i = 0; i < in_part.size(); ++i)
+    for (std::size_t k = 0; k < in_part.size(); ++k)
+      if (in_part[k] && !in_part[i])
+        evidence += pairs[std::max(i, k)][std::min(i, k)];
+  const bool turned = in_part[positionOf(group, link.a)];
   CandidatePlace place;
-  const bool turned = contains(part, link.a);
   place.scan = turned ? link.a : link.b;
   place.beside = turned ? link.b : link.a;
   place.T_beside_scan = turned ? link.T_a_b.inverse().eval() : link.T_a_b;
@@ -90,9 +113,11 @@ CandidatePlace placeOf(const PairResult& link, const ScanCluster& part, const Sc
   place.agree = evidence.agree;
   place.contradict = evidence.clustered;
   place.contradicted = isContradicted(evidence);
-  place.part = part.scans;
+  for (std::size_t k = 0; k < in_part.size(); ++k)
+    if (in_part[k])
+      place.part.push_back(group.scans[k]);
   const bool hinted = std::any_of(group.hinted.begin(), group.hinted.end(), [&](const HintedJoin& join) {
-    return contains(part, join.a) != contains(part, join.b);
+    return isOfPart(place, join.a) != isOfPart(place, join.b);
   });
   place.probability = oddsOf({place}, !hinted, usual)[0];
   return place;
@@ -102,8 +127,11 @@ std::vector<CandidatePlace> linksOf(const ScanCluster& group, const std::vector<
                                     const FreeSpaceJudge& judge, int threads, double usual)
 {
   const std::vector<PairResult> tree = treeOf(group, pairs);
-  return mapTasks(tree.size(), threads,
-                  [&](Index k) { return placeOf(tree[k], partOn(tree[k], group, tree), group, judge, usual); });
+  const auto evidence = evidenceOf(group, judge, threads);
+  std::vector<CandidatePlace> links;
+  for (const PairResult& link : tree)
+    links.push_back(placeOf(link, partOn(link, group, tree), group, evidence, usual));
+  return links;
 }
 
 // Those of one group beside one other group exclude each other.
@@ -123,7 +151,7 @@ void describeCandidates(ScanRegistrationResult& result, double usual)
 void describeOdds(const std::vector<ScanCluster>& groups, const FreeSpaceJudge& judge, int threads,
                   ScanRegistrationResult& result)
 {
-  const double usual = medianViolation(result.pairs);
+  const double usual = usualViolation(result.pairs);
   describeCandidates(result, usual);
   for (ScanResult& scan : result.scans)
     scan.probability = scan.group == 0 ? largestClaim() : 0.0;
@@ -154,57 +182,24 @@ bool cut(const CandidatePlace& link, std::vector<ScanCluster>& clusters)
   clusters.push_back(part);
   return true;
 }
-
-RegistrationHint hintOf(const CandidatePlace& place)
-{
-  RegistrationHint hint;
-  hint.kind = place.number > 0 ? HintKind::choose : HintKind::relative;
-  hint.a = place.beside;
-  hint.b = place.scan;
-  hint.number = place.number;
-  hint.T_a_b = place.T_beside_scan;
-  hint.source = concat("probability ", std::round(1000.0 * place.probability) / 1000.0);
-  return hint;
-}
 } // namespace
 
-bool OddsFollower::lose(const std::vector<CandidatePlace>& links, std::vector<ScanCluster>& clusters)
+bool loseUnsure(const ScanRegistrationResult& result, const ScanCluster& known, const ScanRegistrationOptions& options,
+                std::vector<ScanCluster>& clusters)
 {
+  const double asked = std::min(options.confidence, largestClaim());
   bool lost = false;
-  for (const CandidatePlace& link : links) {
-    const auto in = [&](Index scan) { return std::find(link.part.begin(), link.part.end(), scan) != link.part.end(); };
-    if (link.group > 0 || link.probability >= asked_ || std::any_of(known_.scans.begin(), known_.scans.end(), in))
-      continue;
-    const auto own = options_.hints.begin() + given_;
-    const auto holding =
-        std::find_if(own, options_.hints.end(), [&](const auto& hint) { return in(hint.a) != in(hint.b); });
-    if (holding != options_.hints.end()) { // it looked better before all scans were refined
-      options_.hints.erase(holding);
-      lost = true;
-    } else {
+  for (const CandidatePlace& link : result.links) {
+    const bool started =
+        std::any_of(known.scans.begin(), known.scans.end(), [&](Index scan) { return isOfPart(link, scan); });
+    const bool said = std::any_of(options.hints.begin(), options.hints.end(), [&](const RegistrationHint& hint) {
+      const bool with_b = hint.kind != HintKind::near && isOfPart(link, hint.b);
+      return hint.kind != HintKind::apart && isOfPart(link, hint.a) != with_b;
+    });
+    if (link.group == 0 && link.probability < asked && !started && !said)
       lost = cut(link, clusters) || lost;
-    }
   }
-  sortBySize(clusters, known_.scans.empty() ? 0 : 1);
+  sortBySize(clusters, known.scans.empty() ? 0 : 1);
   return lost;
-}
-
-bool OddsFollower::gain(const std::vector<CandidatePlace>& places)
-{
-  const CandidatePlace* best = nullptr;
-  for (const CandidatePlace& place : places)
-    if (!place.contradicted && (best ? place.probability > best->probability : place.probability >= asked_) &&
-        tried_.count({place.beside, place.scan, place.number}) == 0)
-      best = &place;
-  if (best == nullptr)
-    return false;
-  tried_.insert({best->beside, best->scan, best->number});
-  options_.hints.push_back(hintOf(*best));
-  return true;
-}
-
-bool OddsFollower::follow(const ScanRegistrationResult& result, std::vector<ScanCluster>& clusters)
-{
-  return lose(result.links, clusters) || gain(result.candidates);
 }
 } // namespace fresco::registration

@@ -32,9 +32,9 @@ struct ScanRegistrationOptions {
   float max_distance = 0.f;    ///< how far start poses may be off, length; 0 = 20 voxels, too far to place what slides
   float min_overlap = 0.1f;    ///< share of a scan's points with a counterpart from which a pair is used, 0..1
   float max_violation = 0.04f; ///< share of a scan's points in space that the other saw through: above, a pair is wrong
-  /// Probability from which a place is taken, 0.5..0.9999: those of less are lost, others gained. 0 = those that the joining
-  /// steps take, whatever their probability.
-  double confidence = 0.0;
+  /// Probability below which a place is lost, 0.5..0.9999, but not where a person said so. 0 = those that the joining steps
+  /// take stay, whatever their probability.
+  double confidence = 0.7;
   int max_iterations = 40; ///< of the joint refinement, per resolution, >= 1
   bool fixed = false;      ///< scans with a start pose keep it exactly; only the others are placed
   bool upright = false;    ///< whether all scanners stood upright to 10 degrees, z upwards: fewer poses are possible
