@@ -96,26 +96,4 @@ bool PartCheck::mayBeMoved(const ClusterPart& placed, const IsometryVector& moti
     return isUndecided(placed.here, judge_.judge(placed.rest, placed.part, T), false);
   });
 }
-
-bool PartCheck::haveTwinPlaces(const ScanCluster& whole, const ScanCluster& part, const ScanCluster& rest) const
-{
-  const auto common = [&](const ClusterFits& fits, const ClusterFits& others) {
-    ClusterFits found;
-    for (const ClusterFit& fit : fits)
-      if (std::any_of(others.begin(), others.end(),
-                      [&](const ClusterFit& other) { return fitter_.isSame(part, fit.T, other.T, 3.0); }))
-        found.push_back(fit);
-    return found;
-  };
-  const ClusterFits of_rest = fitter_.rough(whole, rest);
-  ClusterFits shared = common(fitter_.rough(whole, part), of_rest);
-  if (shared.size() < 2) // to judge them costs much
-    return false;
-  shared = fitter_.uncontradicted(whole, part, shared);
-  shared = common(shared, fitter_.uncontradicted(whole, rest, common(of_rest, shared)));
-  return std::any_of(shared.begin(), shared.end(), [&](const ClusterFit& fit) {
-    return std::any_of(shared.begin(), shared.end(),
-                       [&](const ClusterFit& other) { return &fit != &other && rivals(other, fit, judge_.unit()); });
-  });
-}
 } // namespace fresco::registration

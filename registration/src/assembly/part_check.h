@@ -32,9 +32,6 @@ public:
   /// and free space contradicts that cluster and the rest where this place leads to.
   bool isClaimed(const ScanCluster& claimer, const ClusterPart& placed) const;
 
-  /// Whether two parts of one cluster fit at two places of another one alike: they may be at one each.
-  bool haveTwinPlaces(const ScanCluster& whole, const ScanCluster& part, const ScanCluster& rest) const;
-
 private:
   bool isUndecided(const FreeSpaceEvidence& here, const FreeSpaceEvidence& there, bool certain) const;
 

@@ -70,7 +70,6 @@ private:
   bool isClaimed(std::size_t group, const ClusterPart& placed) const;
   IsometryVector twinMotions(std::size_t group) const;
   bool splitContested(std::size_t group);
-  bool splitTwins(std::size_t group);
   void split(std::size_t group, const std::vector<Index>& listed);
 
   const GraphInput& input_;
@@ -273,24 +272,6 @@ bool Assembler::splitContested(std::size_t group)
   return true;
 }
 
-// What was joined by the sight of equal rooms falls apart once another group shows that there are two of them.
-bool Assembler::splitTwins(std::size_t group)
-{
-  const ScanCluster cluster = groups_[group].cluster;
-  for (const std::vector<Index>& listed : groups_[group].parts) {
-    const auto [part, rest] = divide(cluster, listed);
-    if (part.scans.empty() || rest.scans.empty())
-      continue;
-    for (std::size_t other = 0; other < groups_.size(); ++other)
-      if (other != group && groups_[other].cluster.scans.size() > 1 &&
-          parts_.haveTwinPlaces(groups_[other].cluster, part, rest)) {
-        split(group, listed);
-        return true;
-      }
-  }
-  return false;
-}
-
 // Scans that see the same room as the part may be the wrong ones as well, and become alone. What only the part held
 // together falls apart.
 void Assembler::split(std::size_t group, const std::vector<Index>& listed)
@@ -321,8 +302,6 @@ ScanGraph Assembler::checked()
 {
   for (std::size_t g = 0; g < groups_.size();)
     g += splitContested(g) ? 0 : 1;
-  for (std::size_t g = 0; g < groups_.size();)
-    g += splitTwins(g) ? 0 : 1;
   ScanGraph graph;
   for (const Group& group : groups_)
     graph.clusters.push_back(group.cluster);
