@@ -57,43 +57,58 @@ TEST(ColorFringe, IsNotFoundWhereThereIsNone)
   EXPECT_EQ(fringeWidth(Image(side, side, 3, 255)), 0);
 }
 
-/// A wall that one photograph shows overexposed, and one of half the light as far as y = 0.2 or so.
+/// A wall of grey that grows upwards, which one photograph shows overexposed, and one of less light as far as y = 0.2 or so.
 struct OverexposedWall {
+  double middle, rise;    ///< grey levels of the wall
+  Eigen::Vector3d factor; ///< of the light of the first photograph
   TriangleMesh mesh;
   std::vector<TextureView> views;
 
-  static Eigen::Vector3d color(const Eigen::Vector3d& p)
+  Eigen::Vector3d color(const Eigen::Vector3d& p) const
   {
-    const double wall = 155 + 10 * p.z(), other = 70 + 30 * std::sin(4 * p.x() + 5 * p.y() + 3 * p.z());
+    const double wall = middle + rise * p.z(), other = 70 + 30 * std::sin(4 * p.x() + 5 * p.y() + 3 * p.z());
     return Eigen::Vector3d::Constant(p.x() > 0.999 ? wall : other);
   }
 
-  OverexposedWall()
+  OverexposedWall(double grey, double more, const Eigen::Vector3d& gain) : middle(grey), rise(more), factor(gain)
   {
     appendBox({-1, -1, -1}, {1, 1, 1}, true, mesh);
     const CameraModel wide = camera(side, side, 70);
-    const Eigen::Vector3d twice = Eigen::Vector3d::Constant(2);
-    views.push_back(photograph(mesh, color, wide, lookAt({-0.7, 0, 0}, {1, 0, 0}), twice));
-    views.push_back(photograph(mesh, color, wide, lookAt({-0.7, -0.7, 0}, {0, 1, 0})));
-    views.push_back(photograph(mesh, color, wide, lookAt({0.5, 0.5, 0}, {-1, 0, 0})));
+    const auto light = [this](const Eigen::Vector3d& p) { return color(p); };
+    views.push_back(photograph(mesh, light, wide, lookAt({-0.7, 0, 0}, {1, 0, 0}), factor));
+    views.push_back(photograph(mesh, light, wide, lookAt({-0.7, -0.7, 0}, {0, 1, 0})));
+    views.push_back(photograph(mesh, light, wide, lookAt({0.5, 0.5, 0}, {-1, 0, 0})));
+  }
+
+  TextureResult texture() const
+  {
+    TextureOptions options = withThreads(2);
+    options.refine = false;
+    return reconstructTexture(mesh, views, options);
+  }
+
+  /// visit(place of the wall, its colour in the model)
+  template <typename Visit>
+  void forWall(const TexturedMesh& model, const Visit& visit) const
+  {
+    forPlaces(mesh, 3000, [&](Index f, const Eigen::Vector3d& weights) {
+      const Eigen::Vector3d p = pointAt(mesh, f, weights);
+      if (p.x() > 0.999 && std::abs(p.y()) < 0.9 && std::abs(p.z()) < 0.9)
+        visit(p, colorAt(model, f, weights));
+    });
   }
 };
 
 TEST(Overexposed, WhatOnlyClippedPhotographsShowContinuesItsSurroundings)
 {
-  const OverexposedWall scene;
-  TextureOptions options = withThreads(2);
-  options.refine = false;
-  const TextureResult result = reconstructTexture(scene.mesh, scene.views, options);
+  const OverexposedWall scene(155, 10, {2, 2, 2});
+  const TextureResult result = scene.texture();
   const double gain = result.gains(1, 0), least = 255 * gain;
   EXPECT_NEAR(result.gains(1, 1) / gain, 2, 0.1);
   constexpr int bins = 36;
   Eigen::ArrayXd sum = Eigen::ArrayXd::Zero(bins), count = sum;
-  forPlaces(scene.mesh, 3000, [&](Index f, const Eigen::Vector3d& weights) {
-    const Eigen::Vector3d p = pointAt(scene.mesh, f, weights);
-    if (p.x() < 0.999 || std::abs(p.y()) > 0.9 || std::abs(p.z()) > 0.9)
-      return;
-    const double value = colorAt(result.model, f, weights).mean();
+  scene.forWall(result.model, [&](const Eigen::Vector3d& p, const Eigen::Vector3d& color) {
+    const double value = color.mean();
     EXPECT_GT(value, least - 2);
     const int bin = static_cast<int>((p.y() + 0.9) / 1.8 * bins);
     sum[bin] += value;
@@ -105,6 +120,25 @@ TEST(Overexposed, WhatOnlyClippedPhotographsShowContinuesItsSurroundings)
     step = std::max(step, std::abs(mean[b] - mean[b - 1]));
   EXPECT_LT(step, 4) << mean.transpose();
   EXPECT_GT(mean.maxCoeff(), least + 10) << "a part is seen as bright as it is";
+}
+
+/// Red is clipped first, then green: what is left of them tells the light, not the hue.
+TEST(Overexposed, WhatIsClippedHasTheHueOfItsSurroundings)
+{
+  for (const double rise : {10, 25}) {
+    const OverexposedWall scene(rise < 20 ? 155 : 130, rise, {2.2, 2, 1.8});
+    const TextureResult result = scene.texture();
+    const Eigen::Vector3d clear = result.gains.col(1).cast<double>(), least = 255 * result.gains.col(0).cast<double>();
+    double tint = 0, dull = 0;
+    scene.forWall(result.model, [&](const Eigen::Vector3d& p, const Eigen::Vector3d& color) {
+      const Eigen::Vector3d grey = color.cwiseQuotient(clear);
+      tint = std::max(tint, grey.maxCoeff() - grey.minCoeff());
+      const Eigen::Vector3d shown = scene.factor.cwiseProduct(scene.color(p)); // by the first photograph
+      dull = std::max(dull, (shown.array() > 260).select(least - color, 0).maxCoeff());
+    });
+    EXPECT_LT(tint, 8) << rise;
+    EXPECT_LT(dull, 3) << rise;
+  }
 }
 } // namespace
 } // namespace fresco::test

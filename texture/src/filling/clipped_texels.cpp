@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "filling/clipped_texels.h"
+#include "filling/color_diffusion.h"
 #include "painting/patch_frame.h"
 #include <algorithm>
 #include <fresco/core/parallel.h>
@@ -15,12 +16,15 @@ void continuePatch(const PaintScene& scene, Index patch, const Projector& view, 
   frame.forTexels([&](const Eigen::Vector2f& center, int x, int y) {
     const Eigen::Vector3f inside = frame.inside(center);
     const Eigen::Vector2f at = frame.map.place(inside), shown = frame.map.pixel(at.x(), at.y());
-    const Eigen::Vector3f value = samplePhotoQuickly(photo, shown.x(), shown.y()), around = colors * inside;
+    const Eigen::Vector3f clipped = samplePhotoQuickly(photo, shown.x(), shown.y()).unaryExpr(&clippedShare);
+    const Eigen::Vector3f around = (colors * inside).cwiseMax(1.f), known = around - clipped.cwiseProduct(around);
     std::uint8_t* pixel = atlases[frame.chart.atlas].pixel(frame.chart.x + x, frame.chart.y + y);
-    const float light = Eigen::Vector3f(pixel[0], pixel[1], pixel[2]).cwiseQuotient(around.cwiseMax(1.f)).maxCoeff();
-    const Eigen::Vector3f least = (std::max(1.f, light) * around).cwiseMin(255.f); // no channel alone is brighter
+    const Eigen::Vector3f painted(pixel[0], pixel[1], pixel[2]);
+    const float all = clipped.minCoeff() * around.squaredNorm(); // where no channel tells
+    const float light =
+        (known.dot(painted) + all * lightAbove(around, painted)) / (known.dot(around) + all); // least squares
     for (int c = 0; c < 3; ++c)
-      pixel[c] += clippedShare(value[c]) * std::max(0.f, least[c] - pixel[c]) + 0.5f;
+      pixel[c] += clipped[c] * std::max(0.f, std::min(light * around[c], 255.f) - pixel[c]) + 0.5f;
   });
 }
 } // namespace
@@ -30,7 +34,7 @@ std::vector<char> clippedPatches(const PaintScene& scene, const Candidates& cand
   std::vector<char> out(scene.patches.size());
   for (Index i = 0; i < scene.patches.size(); ++i)
     if (const Candidate* at = scene.isSeen(i) ? candidates.find(i, scene.view[i]) : nullptr)
-      out[i] = at->clipped;
+      out[i] = at->clipped || clippedShare(*std::max_element(at->color.begin(), at->color.end())) > 0.5f;
   return out;
 }
 

@@ -59,14 +59,24 @@ Links linksOf(const SmoothCorners& corners, std::vector<float> over_crease)
 }
 
 struct Known {
-  Points value, least;     ///< 3xN; the least that a value may be which is continued
+  Points value;            ///< 3xN, above `base`
   std::vector<char> fixed; ///< N: value is given, not continued
+  Points least;            ///< 3xN, colours that what is continued is not darker than
+  Points base;             ///< 3xN, colours of the mesh's own, or 0
+
+  /// A value that is continued, as bright as it has to be in its own hue: what is overexposed tells of none.
+  Eigen::Vector3f raised(Index node, const Eigen::Vector3f& continued) const
+  {
+    const Eigen::Vector3f color = (continued + base.col(node)).cwiseMax(1.f);
+    return (continued + (lightAbove(color, least.col(node)) - 1) * color).cwiseMax(least.col(node) - base.col(node));
+  }
 };
 
 Known seenNodes(const PatchMesh& patches, const SmoothCorners& corners, const Points& patch_colors,
                 const std::vector<char>& seen)
 {
-  Known known{Points::Zero(3, corners.size()), Points::Zero(3, corners.size()), std::vector<char>(corners.size(), 0)};
+  const Points none = Points::Zero(3, corners.size());
+  Known known{none, std::vector<char>(corners.size(), 0), none, none};
   Eigen::VectorXf weight = Eigen::VectorXf::Zero(corners.size());
   for (Index i = 0; i < patches.size(); ++i)
     for (int k = 0; k < 3; ++k) {
@@ -120,18 +130,18 @@ std::vector<int> spread(const Links& links, const std::vector<int>& vertex, Know
     done[v] = 1;
     if (known.fixed[v])
       continue;
-    known.value.col(v) = (sum / total).cwiseMax(known.least.col(v));
+    known.value.col(v) = known.raised(v, sum / total);
     order.push_back(v);
   }
   return order;
 }
 
 /// Rounds of means over the nodes beside, with the factors of Golub & Varga 1961 (Chebyshev's semi-iteration).
-void smooth(const Links& links, const std::vector<int>& free, const Points& least, int threads, Points& value)
+void smooth(const Links& links, const std::vector<int>& free, int threads, Known& known)
 {
   constexpr int rounds = 20; // takes the streaks of the outward start away; a solution to the last digit is not needed
-  constexpr float radius = 0.99f; // spectral, of what is to go
-  Points other = value;           // of the round before, then of the next
+  constexpr float radius = 0.99f;             // spectral, of what is to go
+  Points &value = known.value, other = value; // of the round before, then of the next
   float factor = 1;
   for (int round = 0; round < rounds; ++round) {
     parallelFor(free.size(), threads, [&](Index i) {
@@ -142,20 +152,11 @@ void smooth(const Links& links, const std::vector<int>& free, const Points& leas
         sum += links.weight[r] * value.col(links.rings.list[r]);
         total += links.weight[r];
       }
-      other.col(v) = (other.col(v) + factor * (sum / total - other.col(v))).cwiseMax(least.col(v)).eval();
+      other.col(v) = known.raised(v, other.col(v) + factor * (sum / total - other.col(v)));
     });
     value.swap(other);
     factor = 1 / (1 - radius * radius * (round == 0 ? 0.5f : 0.25f * factor));
   }
-}
-
-/// 3xP, 3 per patch: of its corners.
-Points atCorners(const SmoothCorners& corners, const Points& value)
-{
-  Points out(3, corners.node.size());
-  for (Index c = 0; c < out.cols(); ++c)
-    out.col(c) = value.col(corners.node.data()[c]).cwiseMax(0.f).cwiseMin(255.f);
-  return out;
 }
 } // namespace
 
@@ -168,24 +169,23 @@ Points diffuseColors(const PatchMesh& patches, const Points& colors, const std::
     seen[i] = colors(0, i) >= 0 && !clipped[i];
   Known known = seenNodes(patches, corners, colors, seen);
   const bool colored = patches.colors.cols() > 0;
+  if (colored)
+    known.base = patches.colors(Eigen::all, corners.vertex);
+  known.value -= known.base;
   Eigen::Vector3f mean = Eigen::Vector3f::Zero();
   float count = 0;
   for (Index v = 0; v < known.value.cols(); ++v) {
-    for (Points* values : {&known.value, &known.least})
-      if (colored)
-        values->col(v) -= patches.colors.col(corners.vertex[v]);
     mean += known.fixed[v] * known.value.col(v);
     count += known.fixed[v];
   }
   mean = count > 0 ? Eigen::Vector3f(mean / count) : Eigen::Vector3f::Constant(colored ? 0 : mid_grey);
   for (Index v = 0; v < known.value.cols(); ++v)
     if (!known.fixed[v])
-      known.value.col(v) = mean.cwiseMax(known.least.col(v));
+      known.value.col(v) = known.raised(v, mean);
   const Links links = linksOf(corners, weightsOverCreases(patches, corners, seen));
-  smooth(links, spread(links, corners.vertex, known), known.least, threads, known.value);
-  if (colored)
-    for (Index v = 0; v < corners.size(); ++v)
-      known.value.col(v) += patches.colors.col(corners.vertex[v]);
-  return atCorners(corners, known.value);
+  smooth(links, spread(links, corners.vertex, known), threads, known);
+  known.value += known.base;
+  const Eigen::Map<const Eigen::VectorXi> nodes(corners.node.data(), corners.node.size());
+  return known.value(Eigen::all, nodes).cwiseMax(0.f).cwiseMin(255.f);
 }
 } // namespace fresco::texture

@@ -67,9 +67,7 @@ private:
   BlendShare shareOf(Index patch, int view) const
   {
     BlendShare share{view, Eigen::Vector3f::Zero(), Eigen::Matrix3f::Zero()};
-    bool known[3] = {false, false, false};
-    Eigen::Vector3f mean = Eigen::Vector3f::Zero();
-    float count = 0;
+    Eigen::Array3f known = Eigen::Array3f::Zero();
     for (int k = 0; k < 3; ++k) {
       const int v = patches_.faces(k, patch);
       for (std::size_t s = 0; s < shares_[v].size(); ++s)
@@ -77,15 +75,14 @@ private:
           share.weights[k] = shares_[v][s].weight;
           if (offsets_.offsets.cols() > 0) {
             share.offsets.col(k) = offsets_.offsets.col(offsets_.begin[v] + s);
-            mean += share.offsets.col(k);
-            known[k] = true;
-            ++count;
+            known[k] = 1;
           }
         }
     }
+    const Eigen::Vector3f mean = share.offsets.rowwise().sum() / std::max(1.f, known.sum());
     for (int k = 0; k < 3; ++k)
-      if (!known[k] && count > 0)
-        share.offsets.col(k) = mean / count;
+      if (known[k] == 0)
+        share.offsets.col(k) = mean;
     return share;
   }
 

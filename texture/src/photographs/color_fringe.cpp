@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "photographs/color_fringe.h"
 #include "photographs/distance_field.h"
+#include <Eigen/Core>
 #include <algorithm>
-#include <vector>
 namespace fresco::texture {
 namespace {
 using Color = cv::Vec3b;
@@ -20,12 +20,6 @@ cv::Mat clippedOf(const cv::Mat& photo)
     cv::morphologyEx(out, out, cv::MORPH_OPEN, cv::Mat::ones(3, 3, CV_8U));
   return out;
 }
-
-/// Of strong edges, those whose pixels at one distance from what is clipped are violet.
-struct EdgeCount {
-  int all = 0, violet = 0;
-  double share() const { return all < 100 ? 0 : 1.0 * violet / all; } ///< fewer pixels tell nothing
-};
 } // namespace
 
 int fringeWidth(const Image& given)
@@ -37,24 +31,22 @@ int fringeWidth(const Image& given)
   if (cv::countNonZero(clipped) == 0)
     return 0;
   const DistanceField around(clipped);
-  const int widest = std::max(4, given.width / 160); // lenses are off by such a share of the image at most
-  std::vector<EdgeCount> at(widest + 1);             // by distance
-  around.forNear(widest, [&](const cv::Point& p, int distance) {
-    const cv::Point q = around.further(p, widest + 2 - distance / 2);
+  const int widest = std::max(6, given.width / 160); // lenses are off by such a share of the image at most
+  Eigen::ArrayXi all = Eigen::ArrayXi::Zero(2 * widest + 1), found = all; // of strong edges, by distance; violet ones
+  around.forNear(2 * widest, [&](const cv::Point& p, int distance) {
+    const cv::Point q = around.further(p, widest + 2 - std::min(distance, widest) / 2);
     if (q.x < 0 || photo.at<Color>(q)[1] >= dark)
       return;
     const int here = violet(photo.at<Color>(p)), beyond = violet(photo.at<Color>(q));
-    ++at[distance].all;
-    at[distance].violet += here - std::max(0, beyond) > fringed;
+    ++all[distance];
+    found[distance] += here - std::max(0, beyond) > fringed;
   });
-  double most = 0;
-  for (const EdgeCount& count : at)
-    most = std::max(most, count.share());
+  const Eigen::ArrayXd share = (all < 100).select(0.0, found.cast<double>() / all.cast<double>()); // few tell nothing
+  const double most = share.maxCoeff();
   int width = 0;
-  for (int k = 1; k <= widest && most > many; ++k)
-    if (at[k].share() > 0.5 * most)
-      width = k;
-  return width;
+  for (int k = 1; k <= 2 * widest && most > many; ++k)
+    width = share[k] > 0.5 * most ? k : width;
+  return width <= widest ? width : 0; // a fringe ends; what is violet further away is a thing
 }
 
 Image withoutFringe(const Image& given, int width)

@@ -52,21 +52,18 @@ Points solveGains(const ColorRatios& pairs, const std::vector<int>& owner)
   Points gains = Points::Ones(3, views);
   for (int c = 0; c < 3 && views > 0; ++c) {
     std::vector<Equation> equations;
-    std::vector<char> known(views, 0);
+    Eigen::VectorXd known = Eigen::VectorXd::Zero(views);
     for (const auto& [key, ratios] : pairs)
       if (ratios.size() >= least_samples) {
         equations.push_back({key.first, key.second, channelMedian(ratios, c), std::sqrt(ratios.size())});
         known[key.first] = known[key.second] = 1;
       }
-    const double count = std::count(known.begin(), known.end(), 1);
-    if (!(count > 0))
+    if (equations.empty())
       break;
     const Eigen::VectorXd x = solve(equations, views);
-    double mean = 0;
+    const double mean = known.dot(x) / known.sum();
     for (Index v = 0; v < views; ++v)
-      mean += known[v] ? x[v] / count : 0;
-    for (Index v = 0; v < views; ++v)
-      if (known[v])
+      if (known[v] > 0)
         gains(c, v) = std::exp(mean - x[v]);
   }
   return gains(Eigen::all, owner);

@@ -8,11 +8,6 @@
 #include <fresco/core/union_find.h>
 namespace fresco::texture {
 namespace {
-/// Rays of a view that end on a surface, by the side of it.
-struct SideCounts {
-  double front = 0, back = 0;
-};
-
 /// Number of the surface of each face: its lowest face.
 std::vector<int> surfacesOf(const TriangleMesh& mesh)
 {
@@ -34,36 +29,33 @@ std::vector<int> surfacesOf(const TriangleMesh& mesh)
   return out;
 }
 
-/// Faces hit by a grid of rays, those from behind as -1 - face.
-std::vector<int> hitsOf(const RayScene& scene, const Projector& view, double rays)
+/// Faces hit by a grid of rays, and whether from behind.
+std::vector<std::pair<int, bool>> hitsOf(const RayScene& scene, const Projector& view, double rays)
 {
   const CameraModel& camera = view.camera();
   const double step = std::max(1.0, std::sqrt(1.0 * camera.width * camera.height / rays));
-  std::vector<int> hits;
+  std::vector<std::pair<int, bool>> hits;
   for (double y = 0.5 * step; y < camera.height; y += step)
     for (double x = 0.5 * step; x < camera.width; x += step) {
       const Eigen::Vector3f ray = view.ray({x, y});
       if (const RayHit hit = scene.intersect({view.center(), ray}); hit.face >= 0)
-        hits.push_back(hit.normal.dot(ray) < 0 ? hit.face : -1 - hit.face);
+        hits.emplace_back(hit.face, hit.normal.dot(ray) >= 0);
     }
   return hits;
 }
 
-/// By surface, in the slot of its number.
-std::vector<SideCounts> countSides(const std::vector<int>& surfaces, const RayScene& scene,
-                                   const std::vector<Projector>& views)
+/// 2xF, rays that end on the front and on the back of a surface, in the column of its number.
+Eigen::Array2Xd countSides(const std::vector<int>& surfaces, const RayScene& scene, const std::vector<Projector>& views)
 {
   constexpr double of_view = 50000, of_all = 4e6; // rays: 250 along a side, seconds
   const double rays = std::min(of_view, of_all / std::max<double>(views.size(), 1));
-  std::vector<std::vector<int>> hits(views.size());
+  std::vector<std::vector<std::pair<int, bool>>> hits(views.size());
   parallelFor(
       views.size(), 0, [&](Index v) { hits[v] = hitsOf(scene, views[v], rays); }, 1);
-  std::vector<SideCounts> counts(surfaces.size());
-  for (const std::vector<int>& list : hits)
-    for (const int hit : list) {
-      SideCounts& count = counts[surfaces[hit < 0 ? -1 - hit : hit]];
-      ++(hit < 0 ? count.back : count.front);
-    }
+  Eigen::Array2Xd counts = Eigen::Array2Xd::Zero(2, surfaces.size());
+  for (const auto& list : hits)
+    for (const auto& [face, from_behind] : list)
+      ++counts(from_behind, surfaces[face]);
   return counts;
 }
 } // namespace
@@ -75,16 +67,15 @@ std::vector<char> insideOutFaces(const TriangleMesh& mesh, const RayScene& scene
   constexpr double all = 0.98;     // of a surface: rays along its rim may pass by what stands before it
   constexpr double much = 0.2;     // of what photographs see: a closed mesh shows nothing from behind
   const std::vector<int> surfaces = surfacesOf(mesh);
-  const std::vector<SideCounts> counts = countSides(surfaces, scene, views);
+  const Eigen::Array2Xd counts = countSides(surfaces, scene, views);
   std::vector<char> marked(surfaces.size(), 0);
   double back = 0, seen = 0;
   for (std::size_t f = 0; f < surfaces.size(); ++f) {
-    const SideCounts& count = counts[surfaces[f]];
-    const double rays = count.front + count.back;
-    marked[f] = rays >= least_rays && count.back >= all * rays;
+    const double behind = counts(1, surfaces[f]), rays = counts(0, surfaces[f]) + behind;
+    marked[f] = rays >= least_rays && behind >= all * rays;
     if (surfaces[f] == static_cast<int>(f)) {
       seen += rays;
-      back += marked[f] ? 0 : count.back;
+      back += marked[f] ? 0 : behind;
     }
   }
   const auto turned = std::count(marked.begin(), marked.end(), 1);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <fresco/core/parallel.h>
 #include <fresco/core/statistics.h>
+#include <map>
 namespace fresco::texture {
 namespace {
 /// Longest side of a patch, mesh units.
@@ -31,15 +32,11 @@ float longestEdge(const TriangleMesh& mesh, const std::vector<Projector>& views,
 Eigen::VectorXi viewsOfFaces(const PatchMesh& patches, const Eigen::VectorXi& view, Index faces)
 {
   Eigen::VectorXi out = Eigen::VectorXi::Constant(faces, -1);
-  std::vector<std::pair<int, float>> areas; // of the views of one face
+  std::map<int, float> areas; // of the views of one face
   for (Index i = 0; i < view.size(); ++i) {
     if (i == 0 || patches.parent[i] != patches.parent[i - 1])
       areas.clear();
-    const auto at = std::find_if(areas.begin(), areas.end(), [&](const auto& a) { return a.first == view[i]; });
-    if (at == areas.end())
-      areas.emplace_back(view[i], patches.areas[i]);
-    else
-      at->second += patches.areas[i];
+    areas[view[i]] += patches.areas[i];
     out[patches.parent[i]] = std::max_element(areas.begin(), areas.end(), [](const auto& a, const auto& b) {
                                return a.second < b.second;
                              })->first;
@@ -87,10 +84,7 @@ double diagonalOf(const TriangleMesh& mesh) { return boxOf(mesh).sizes().norm();
 
 WholeSurface measureSurface(const TriangleMesh& mesh, const ViewList& views, double most_patches)
 {
-  WholeSurface out;
-  out.longest_edge = longestEdge(mesh, views.projectors, most_patches);
-  out.typical_depth = typicalDepth(mesh.vertices, views.projectors);
-  return out;
+  return {{}, {}, longestEdge(mesh, views.projectors, most_patches), typicalDepth(mesh.vertices, views.projectors)};
 }
 
 std::vector<DepthMap> coarseMaps(const VisibilityInput& input)
