@@ -163,5 +163,37 @@ TEST(TextureUnseen, WhatStoodInTwoOfThreePhotographsIsNoMajority)
   });
   EXPECT_EQ(red, 0);
 }
+
+/// Four photographs from one place, before which a bar stands that the mesh has not, against three from elsewhere.
+TEST(TextureUnseen, PhotographsFromOnePlaceAreOneWitness)
+{
+  TriangleMesh mesh, with_bar;
+  appendBox({-1, -1, -1}, {1, 1, 1}, true, mesh);
+  with_bar = mesh;
+  appendBox({0.6F, -0.08F, -0.3F}, {0.66F, 0.08F, 0.3F}, false, with_bar);
+  const auto light = [](const Eigen::Vector3d& p) {
+    return p.x() < 0.7 && p.cwiseAbs().maxCoeff() < 0.7 ? Eigen::Vector3d(40, 40, 40)
+                                                        : Eigen::Vector3d(0.4 * waves(p).array() + 100);
+  };
+  std::vector<TextureView> views;
+  const auto look = [&](const Eigen::Vector3d& eye, const Eigen::Vector3d& at) {
+    views.push_back(photograph(with_bar, light, camera(300, 300, 150), lookAt(eye, at)));
+  };
+  for (const double y : {-0.3, -0.1, 0.1, 0.3})
+    look({-0.5, 0, 0}, {1, y, 0});
+  for (const Eigen::Vector3d& eye :
+       {Eigen::Vector3d(0, 0.8, -0.3), Eigen::Vector3d(0, -0.8, 0), Eigen::Vector3d(0, 0.9, 0.5)})
+    look(eye, {1, 0, 0});
+  TextureOptions options = withThreads(2);
+  options.refine = false;
+  const TextureResult result = reconstructTexture(mesh, views, options);
+  double worst = 0;
+  forPlaces(mesh, 3000, [&](Index f, const Eigen::Vector3d& weights) {
+    const Eigen::Vector3d p = pointAt(mesh, f, weights);
+    if (p.x() > 0.999 && std::abs(p.y()) < 0.15 && std::abs(p.z()) < 0.4)
+      worst = std::max(worst, (colorAt(result.model, f, weights) - light(p)).cwiseAbs().maxCoeff());
+  });
+  EXPECT_LT(worst, 30);
+}
 } // namespace
 } // namespace fresco::test

@@ -15,20 +15,40 @@ float trustOf(float expected) { return 1 / (1 + (expected / one_octave) * (expec
 
 /// A view's opinion of a patch.
 struct Vote {
-  Eigen::Vector3f color;
+  Eigen::Vector3f color, towards; ///< towards the camera
   float weight;
 };
 
-/// @param weights of the candidates; empty: all the same
-std::vector<Vote> votesOf(const Candidates& candidates, Index patch, const Photometry& photometry,
-                          const std::vector<float>& weights)
+/// What votes are taken from.
+struct VoteInput {
+  const PatchMesh& patches;
+  const Candidates& candidates;
+  const Photometry& photometry;
+  const VisibilityInput& input;
+};
+
+/// Views from nearly one direction are one witness: what stands before the patch and is not in the mesh hides it from all
+/// of them.
+/// @param expected differences of the candidates; empty: not known
+std::vector<Vote> votesOf(const VoteInput& of, Index patch, const std::vector<float>& expected)
 {
   constexpr float trusted = 0.1f; // of the best quality: views that show much less blur the colour
+  constexpr float apart = 0.03f;  // 1 - cosine, 14 degrees: of an arm rest's width and height above its seat
+  const auto& [patches, candidates, photometry, input] = of;
   const float best = candidates.bestQuality(patch);
+  const Eigen::Vector3f middle = patches.middle(patch);
   std::vector<Vote> out;
   for (Index c = candidates.begin[patch]; c < candidates.begin[patch + 1]; ++c)
     if (const Candidate& candidate = candidates.list[c]; candidate.quality() >= trusted * best && !candidate.clipped)
-      out.push_back({candidate.corrected(photometry), weights.empty() ? 1.f : weights[c]});
+      out.push_back({candidate.corrected(photometry),
+                     (input.views.projectors[candidate.view].center() - middle).normalized(),
+                     expected.empty() ? 1.f : trustOf(expected[c])});
+  for (Vote& v : out) {
+    float alike = 1;
+    for (const Vote& other : out)
+      alike += &other == &v ? 0 : std::max(0.f, 1 - (1 - v.towards.dot(other.towards)) / apart);
+    v.weight /= alike;
+  }
   return out;
 }
 
@@ -70,61 +90,59 @@ Consensus consensusOf(std::vector<Vote> votes)
   return out;
 }
 
-/// Mean with the same view's values on neighbouring patches.
-std::vector<float> smoothedOnce(const PatchMesh& patches, const Candidates& candidates, const std::vector<float>& value,
-                                int threads)
+/// Means with the same view's values on neighbouring patches: what differs is a region; single patches differ by small
+/// errors of alignment.
+std::vector<float> smoothed(const VoteInput& of, std::vector<float> value)
 {
-  std::vector<float> out(value.size());
-  parallelFor(patches.size(), threads, [&](Index i) {
-    for (Index c = candidates.begin[i]; c < candidates.begin[i + 1]; ++c) {
-      float sum = value[c], count = 1;
-      for (int side = 0; side < 3; ++side)
-        if (const int other = patches.neighbors(side, i); other >= 0)
-          if (const Candidate* same = candidates.find(other, candidates.list[c].view)) {
-            sum += value[same - candidates.list.data()];
-            ++count;
-          }
-      out[c] = sum / count;
-    }
-  });
-  return out;
+  const PatchMesh& patches = of.patches;
+  const Candidates& candidates = of.candidates;
+  for (int round = 0; round < 2; ++round) {
+    const std::vector<float> before = value;
+    parallelFor(patches.size(), of.input.options.threads, [&](Index i) {
+      for (Index c = candidates.begin[i]; c < candidates.begin[i + 1]; ++c) {
+        float count = 1;
+        for (int side = 0; side < 3; ++side)
+          if (const int other = patches.neighbors(side, i); other >= 0)
+            if (const Candidate* same = candidates.find(other, candidates.list[c].view)) {
+              value[c] += before[same - candidates.list.data()];
+              ++count;
+            }
+        value[c] /= count;
+      }
+    });
+  }
+  return value;
 }
 
-/// What differs is a region; single patches differ by small errors of alignment.
-std::vector<float> smoothed(const PatchMesh& patches, const Candidates& candidates, const std::vector<float>& value,
-                            int threads)
+/// @param expected differences of the candidates; empty: not known
+ColorDifferences differencesFromConsensus(const VoteInput& of, const std::vector<float>& expected)
 {
-  return smoothedOnce(patches, candidates, smoothedOnce(patches, candidates, value, threads), threads);
-}
-
-/// @param weights of the candidates' votes; empty: all the same
-ColorDifferences differencesFromConsensus(const PatchMesh& patches, const Candidates& candidates,
-                                          const Photometry& photometry, const std::vector<float>& weights, int threads)
-{
-  ColorDifferences out{std::vector<float>(candidates.list.size(), -1.f), std::vector<float>(patches.size(), 0.f)};
+  const Candidates& candidates = of.candidates;
+  const Index patches = of.patches.size();
+  ColorDifferences out{std::vector<float>(candidates.list.size(), -1.f), std::vector<float>(patches, 0.f)};
   constexpr float none = 1, all = 3; // margins: two against one may show the same wrong thing
-  parallelFor(patches.size(), threads, [&](Index i) {
-    const Consensus consensus = consensusOf(votesOf(candidates, i, photometry, weights));
+  parallelFor(patches, of.input.options.threads, [&](Index i) {
+    const Consensus consensus = consensusOf(votesOf(of, i, expected));
     if (consensus.margin == 0)
       return;
     out.certainty[i] = std::clamp((consensus.margin - none) / (all - none), 0.f, 1.f);
     for (Index c = candidates.begin[i]; c < candidates.begin[i + 1]; ++c)
-      out.values[c] = differenceOf(candidates.list[c].corrected(photometry), consensus.color);
+      out.values[c] = differenceOf(candidates.list[c].corrected(of.photometry), consensus.color);
   });
   return out;
 }
 
 /// Of a candidate that no consensus judges. Where two views contradict each other, their difference is that of the one
 /// whose own photograph speaks against it.
-float inferredDifference(const Candidates& candidates, Index patch, Index candidate, const Photometry& photometry,
-                         const std::vector<float>& expected)
+float inferredDifference(const VoteInput& of, Index patch, Index candidate, const std::vector<float>& expected)
 {
+  const Candidates& candidates = of.candidates;
   if (candidates.count(patch) != 2)
     return expected[candidate];
   const Index other = 2 * candidates.begin[patch] + 1 - candidate;
   const float own = trustOf(expected[candidate]), others = trustOf(expected[other]);
-  const float apart =
-      differenceOf(candidates.list[candidate].corrected(photometry), candidates.list[other].corrected(photometry));
+  const float apart = differenceOf(candidates.list[candidate].corrected(of.photometry),
+                                   candidates.list[other].corrected(of.photometry));
   return expected[candidate] + apart * std::max(0.f, (others - own) / (others + own));
 }
 } // namespace
@@ -137,24 +155,22 @@ PhotoConsistency photoConsistency(const PatchMesh& patches, const Candidates& ca
   const float darkest = photometry.gains.cols() > 0 ? photometry.gains.row(1).maxCoeff() : 1;
   constexpr float certain = 3 * one_octave,
                   certain_around = 45; // grey levels: few surfaces differ so by the light alone
-  const int threads = input.options.threads;
-  const ColorDifferences first = differencesFromConsensus(patches, candidates, photometry, {}, threads);
+  const VoteInput of{patches, candidates, photometry, input};
+  const ColorDifferences first = differencesFromConsensus(of, {});
   const std::vector<float> expected = differencesInPictures(patches, candidates, first, input);
-  std::vector<float> trust(expected.size());
-  std::transform(expected.begin(), expected.end(), trust.begin(), trustOf);
-  std::vector<float> difference = differencesFromConsensus(patches, candidates, photometry, trust, threads).values;
-  const std::vector<float> around = smoothed(patches, candidates, expected, threads);
+  std::vector<float> difference = differencesFromConsensus(of, expected).values;
+  const std::vector<float> around = smoothed(of, expected);
   PhotoConsistency out;
   out.foreign.resize(difference.size());
   for (Index i = 0; i < patches.size(); ++i)
     for (Index c = candidates.begin[i]; c < candidates.begin[i + 1]; ++c) {
       if (difference[c] < 0)
-        difference[c] = inferredDifference(candidates, i, c, photometry, expected);
+        difference[c] = inferredDifference(of, i, c, expected);
       out.foreign[c] = first.certainty[i] < 1 && (expected[c] > certain || around[c] > certain_around);
     }
-  difference = smoothed(patches, candidates, difference, threads);
+  difference = smoothed(of, std::move(difference));
   out.penalties.resize(difference.size());
-  parallelFor(difference.size(), threads, [&](Index c) {
+  parallelFor(difference.size(), input.options.threads, [&](Index c) {
     const float octaves = difference[c] / one_octave;
     const Candidate& shown = candidates.list[c];
     out.penalties[c] = std::min(octaves * octaves, most_octaves) +
