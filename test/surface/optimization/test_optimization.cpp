@@ -164,6 +164,23 @@ TEST(Optimization, PointsThatAreNamedTwiceAreNoLessNoisy)
   EXPECT_NEAR(filterSurface(mesh, twice).noise, expected, 0.1 * expected);
 }
 
+TEST(Optimization, NeighboursThatErrAlikeAreNoLessNoisy)
+{
+  PointSet
+      points; // each with a companion a tenth of the spacing away and as far off; faces are smaller than that spacing
+  const TriangleMesh mesh = test::sphere(1.f, 6);
+  const Eigen::Matrix3Xf once = test::sphere(1.f, 4).vertices;
+  std::mt19937 random(12);
+  std::normal_distribution<float> noise(0.f, 0.01f);
+  points.points.resize(3, 2 * once.cols());
+  for (Index i = 0; i < once.cols(); ++i) {
+    const float radius = 1.f + noise(random);
+    points.points.col(2 * i) = radius * once.col(i);
+    points.points.col(2 * i + 1) = radius * (once.col(i) + 0.007f * once.col(i).unitOrthogonal()).normalized();
+  }
+  EXPECT_NEAR(filterSurface(mesh, points).noise, 0.01, 0.002);
+}
+
 TEST(Optimization, BendsOfAFewCellsStayRound)
 {
   for (const float noise : {0.f, 0.01f, 0.03f})

@@ -211,10 +211,6 @@ DataPoints findCorrespondences(const MeshGraph& graph, const Positions& x, const
     if (set.hasNormals())
       data.normals.col(i) = normal(column);
   });
-  for (Index f = 0; f < graph.faceCount(); ++f)
-    for (int j = begin[f] + 1; j < begin[f + 1]; ++j)
-      if (data.points.col(j) != data.points.col(j - 1))
-        data.pairs.push_back(j++);
   return data;
 }
 

@@ -15,7 +15,6 @@ struct DataPoints {
   Points points;          ///< 3xN, working frame
   Points normals;         ///< 3xN or 3x0
   std::vector<int> face;  ///< N, the face that each corresponds to
-  std::vector<int> pairs; ///< data at another place on the same face at the start as the datum before, each datum once
   std::vector<int> votes; ///< by face: points closest to it that look to its side, less those that look to the other
   Index left_out = 0;     ///< points of the input that are not here
 

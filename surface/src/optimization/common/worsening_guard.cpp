@@ -49,12 +49,12 @@ VertexValues<3> fitAround(const OptimizationProblem& problem, const FacePoints& 
 // explains, nothing where they are by `worse`, or where there are none.
 float partByFit(const Eigen::Vector3f& fit, float explained)
 {
-  // A surface with so many free parameters a vertex follows the noise of n data a vertex, which are nearer to it for
-  // that by half of parameters / n. Smoothing may take as much. Measured: docs/measurements/optimization.md.
-  constexpr double parameters = 1.0, most_worse = 0.25;
+  // A surface with a free parameter a vertex follows the noise of n data a vertex, which are nearer to it for that by
+  // half of 1 / n. Smoothing may take as much. Measured: docs/measurements/optimization.md.
+  constexpr double most_worse = 0.25;
   if (!(fit[2] > 0.f))
     return 0.f;
-  const double worse = 1.0 + std::min(most_worse, 0.5 * parameters * corners / fit[2]);
+  const double worse = 1.0 + std::min(most_worse, 0.5 * corners / fit[2]);
   return ramp(fit[1] / std::max(fit[0], explained * fit[2]), worse, 1.0);
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fresco/surface/core/normal_filtering.h>
 
+#include "optimization/common/data_noise.h"
 #include "optimization/common/inversion_guard.h"
 #include "optimization/normal_filtering/curved_data.h"
 #include "optimization/normal_filtering/edge_flips.h"
@@ -92,10 +93,9 @@ void keepEnergyDown(const OptimizationProblem& problem, const QuadraticEnergy& e
   move *= linear < 0.0 && square > 0.0 ? std::min(1.0, -linear / square) : 0.0;
 }
 
-// One iteration, of which `part` is done: less where it is near the tolerance. `noise` is that of the last one, and
-// negative in the first. Both are replaced.
+// One iteration, of which `part` is done: less where it is near the tolerance, and replaced by that.
 NormalFilteringStep improve(OptimizationProblem& problem, const NormalFilteringOptions& options, double& part,
-                            double& noise)
+                            double noise, bool is_first)
 {
   constexpr int solver_rounds = 20; // of conjugate gradients: data change their faces before more would pay
   const int threads = options.threads;
@@ -103,16 +103,11 @@ NormalFilteringStep improve(OptimizationProblem& problem, const NormalFilteringO
   const FacePoints lists = sharePoints(problem.graph, problem.x, problem.data, threads);
   NormalFilterOptions filter;
   filter.threads = threads;
-  const double normal_weight = noise < 0.0 ? 0.0 : normalWeight(noise);
+  const double normal_weight = is_first ? 0.0 : normalWeight(noise); // first, creases are found without blunt normals
   Eigen::Matrix3Xf normals =
       filterNormals(problem.graph, areas, dataNormals(problem, areas, lists, normal_weight, threads), filter);
-  if (noise < 0.0) {
-    const Eigen::Matrix3Xf own = areas.cast<float>().colwise().normalized();
-    noise = noiseOf(problem.data, lists, dataResiduals(problem, lists, own, threads));
-  }
   followCurvedData(problem, areas, lists, noise, normals, threads);
   const Eigen::VectorXf residuals = dataResiduals(problem, lists, normals, threads);
-  noise = noiseOf(problem.data, lists, residuals);
   const QuadraticEnergy energy =
       makeEnergy(problem, lists, normals, residuals, weightsFor(problem, noise, options), threads);
   Positions move = solveMoves(energy, problem.graph, problem.x, solver_rounds, threads);
@@ -171,7 +166,7 @@ private:
   {
     if (!result_.steps.empty())
       followFaces(problem_.graph, problem_.x, problem_.data, options_.threads);
-    result_.steps.push_back(improve(problem_, options_, part, result_.noise));
+    result_.steps.push_back(improve(problem_, options_, part, result_.noise, result_.steps.empty()));
   }
 
   OptimizationProblem& problem_;
@@ -187,7 +182,7 @@ NormalFilteringResult filterSurface(const TriangleMesh& mesh, const PointSet& po
   report(progress, "correspondences", 0.0);
   OptimizationProblem problem = makeProblem(mesh, points, options.threads);
   NormalFilteringResult result;
-  result.noise = -1.0; // not known yet
+  result.noise = dataNoise(problem.data, options.threads);
   Filtering filtering(problem, options, result);
   filtering.iterate(progress);
   if (options.flip)

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <fresco/core/parallel.h>
 #include <fresco/core/robust_weights.h>
-#include <fresco/core/statistics.h>
 namespace fresco::optimization {
 namespace {
 using Eigen::Matrix3d;
@@ -127,13 +126,6 @@ VertexTerm vertexTerm(const OptimizationProblem& problem, const std::vector<Face
   term.target = (nearness * directions * (middle - problem.x.col(v))).cast<float>();
   return term;
 }
-
-// Deviation of Gaussian values with these magnitudes; 0 without values.
-double robustDeviation(std::vector<float>& magnitudes)
-{
-  return magnitudes.empty() ? 0.0 : mad_to_sigma * median(magnitudes);
-}
-
 } // namespace
 
 Eigen::VectorXf dataResiduals(const OptimizationProblem& problem, const FacePoints& lists,
@@ -148,23 +140,6 @@ Eigen::VectorXf dataResiduals(const OptimizationProblem& problem, const FacePoin
     }
   });
   return residuals;
-}
-
-double noiseOf(const DataPoints& data, const FacePoints& lists, const Eigen::VectorXf& residuals)
-{
-  constexpr double least_pairs = 0.05; // of the data: enough of them for a median that holds for all
-  Eigen::VectorXf means = Eigen::VectorXf::Zero(data.size());
-  for (Index j = 0; j < residuals.size(); ++j)
-    means[lists.order[j]] += lists.share[j] * residuals[j];
-  std::vector<float> magnitudes;
-  for (const int i : data.pairs)
-    magnitudes.push_back(std::abs(means[i] - means[i - 1]));
-  if (magnitudes.size() > least_pairs * data.size())
-    return robustDeviation(magnitudes) / std::sqrt(2.0);
-  magnitudes.assign(means.begin(), means.end());
-  for (float& magnitude : magnitudes)
-    magnitude = std::abs(magnitude);
-  return robustDeviation(magnitudes);
 }
 
 Eigen::Matrix3Xf dataNormals(const OptimizationProblem& problem, const Eigen::Matrix3Xd& areas, const FacePoints& lists,

@@ -16,11 +16,6 @@ struct TermWeights {
 Eigen::VectorXf dataResiduals(const OptimizationProblem& problem, const FacePoints& lists,
                               const Eigen::Matrix3Xf& normals, int threads);
 
-/// Deviation of the data from the surface, from the differences between the residuals of data that began on the same
-/// face, so that what the mesh does not follow yet is not taken for noise; where few faces have several, from the
-/// residuals themselves.
-double noiseOf(const DataPoints& data, const FacePoints& lists, const Eigen::VectorXf& residuals);
-
 /// Mean normal of the data of each face that face its way, as long as the area that they stand for times
 /// `normal_weight`.
 /// @param areas 3xF area vectors

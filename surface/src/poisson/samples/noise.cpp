@@ -13,7 +13,7 @@ namespace {
 /// Samples along the curve that share an estimate: some 600 pairs for two medians, and still local.
 constexpr Index run_length = 256;
 
-/// What the samples of a run lie off each other's tangent planes. The variances are divided by the squared distance of
+/// What the samples of a run lie off planes through each other. The variances are divided by the squared distance of
 /// close pairs, so that dense and sparse runs next to each other can be averaged.
 struct Offsets {
   double close = 0;            ///< variance, of the closest third of the pairs
@@ -30,23 +30,31 @@ struct Pair {
 
 using Pairs = std::vector<Pair>;
 
-/// Pairs of samples begin..end - 1 with those that follow them.
+/// Samples begin..end - 1 of a run, some of them with those that follow them.
 Pairs pairsOfRun(const Array<Sample>& samples, Index begin, Index end)
 {
   constexpr Index partners = 12, step = 5; // every fifth sample with the next twelve: enough pairs, near and far
   constexpr float least_cosine = 0.9f;
+  const auto isAlike = [&](Index i, Index j) { return samples[i].normal.dot(samples[j].normal) > least_cosine; };
   Pairs pairs;
-  for (Index i = begin; i < end; i += step)
+  for (Index i = begin; i < end; i += step) {
+    // Across the mean of the normals around: the errors of two normals would count as shape, which grows with distance.
+    Eigen::Vector3f normal = Eigen::Vector3f::Zero();
+    for (Index j = std::max(begin, i - partners / 2); j <= i + partners / 2 && j < end; ++j)
+      if (isAlike(i, j))
+        normal += samples[j].normal;
+    normal.normalize();
     for (Index j = i + 1; j <= i + partners && j < end; ++j) {
       const Sample &a = samples[i], &b = samples[j];
       const Eigen::Vector3f apart = b.position - a.position;
       const float reach = 3.f * std::sqrt(a.area + b.area) + 3.f, squared = apart.squaredNorm();
       if (squared > reach * reach)
         continue;
-      const float offset = std::abs(apart.dot(a.normal + b.normal)) * 0.5f;
-      const bool alike = a.normal.dot(b.normal) > least_cosine;
+      const float offset = std::abs(apart.dot(normal));
+      const bool alike = isAlike(i, j);
       pairs.push_back({alike ? std::max(0.f, squared - offset * offset) : squared, offset, alike});
     }
+  }
   return pairs;
 }
 
