@@ -44,6 +44,12 @@ endfunction()
 # Templates of Eigen that several files of a module use are instantiated once for twelve files. Names of a module's files
 # are unlike for that, those of the innermost namespaces too.
 option(FRESCO_UNITY "Compile files of a module together: less time from nothing, more after a change of one file" ON)
+if(FRESCO_UNITY AND NOT CMAKE_JOB_POOL_COMPILE) # a compiler takes up to 2 GB then; Ninja starts no more than fit
+  cmake_host_system_information(RESULT fresco_memory QUERY TOTAL_PHYSICAL_MEMORY)
+  math(EXPR fresco_jobs "${fresco_memory} / 2000 + 1")
+  set_property(GLOBAL APPEND PROPERTY JOB_POOLS compile=${fresco_jobs})
+  set(CMAKE_JOB_POOL_COMPILE compile)
+endif()
 function(fresco_unite target)
   if(FRESCO_UNITY AND NOT FRESCO_SANITIZE)
     set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 12)
