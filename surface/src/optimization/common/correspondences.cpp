@@ -87,17 +87,20 @@ Assigned assignFaces(const MeshGraph& graph, const Positions& x, const PointSet&
   return assigned;
 }
 
-std::vector<int> sortedByFace(const std::vector<int>& faces, Index face_count, std::vector<int>& begin)
+FacePoints sortedByFace(const std::vector<int>& faces, Index face_count)
 {
+  FacePoints lists;
+  std::vector<int>& begin = lists.begin;
   begin.assign(face_count + 1, 0);
   for (const int f : faces)
     ++begin[f + 1];
   std::partial_sum(begin.begin(), begin.end(), begin.begin());
-  std::vector<int> order(faces.size()), next(begin.begin(), begin.end() - 1);
+  std::vector<int> next(begin.begin(), begin.end() - 1);
+  lists.order.resize(faces.size());
   int i = 0;
   for (const int f : faces)
-    order[next[f]++] = i++;
-  return order;
+    lists.order[next[f]++] = i++;
+  return lists;
 }
 
 // Where on its triangle the closest point lies: inside (feature 0), on edge `corner` (1) or on the corner itself (2).
@@ -195,8 +198,7 @@ DataPoints findCorrespondences(const MeshGraph& graph, const Positions& x, const
       assigned.faces[i] = sharing.most();
     }
   });
-  std::vector<int> begin;
-  const std::vector<int> order = sortedByFace(assigned.faces, graph.faceCount(), begin);
+  const std::vector<int> order = sortedByFace(assigned.faces, graph.faceCount()).order;
   DataPoints data;
   const Index count = order.size();
   data.left_out = set.size() - count;
@@ -224,8 +226,7 @@ void followFaces(const MeshGraph& graph, const Positions& x, DataPoints& data, i
 
 FacePoints pointsOfFaces(const DataPoints& data, Index faces)
 {
-  FacePoints lists;
-  lists.order = sortedByFace(data.face, faces, lists.begin);
+  FacePoints lists = sortedByFace(data.face, faces);
   lists.share.assign(lists.order.size(), 1.f);
   return lists;
 }
