@@ -2,7 +2,6 @@
 #include "assembly/cluster_union.h"
 #include "assembly/part_check.h"
 #include "assembly/scan_assembly.h"
-#include "graph/alias_check.h"
 #include "graph/equal_rooms.h"
 #include "registration/look_alike_scenes.h"
 #include <fresco/registration/core/point_to_plane_registration.h>
@@ -36,24 +35,6 @@ struct Scene {
     pairs.push_back({a, b, {hypothesis}, false, {}});
   }
 };
-
-// Two equal rooms in a row: what a third scan says of them counts only if it could be joined itself.
-TEST(ClusterJoins, LinksThatCannotBeJoinedSayNothing)
-{
-  constexpr Index room_a = 0, room_b = 2, door_b = 3;
-  Scene scene(test::roomsInARow(false).scene);
-  const Eigen::Isometry3d in_a = Eigen::Translation3d(0, -test::row_pitch, 0) * scene.scanned.truth[room_b];
-  scene.addPair(room_b, door_b, scene.pose(room_b, door_b), 0.3);
-  scene.addPair(room_a, door_b, scene.pose(room_a, door_b), 0.3);
-  scene.addPair(room_a, room_b, scene.scanned.truth[room_a].inverse() * in_a, 0.9);
-  const std::vector<ScanCluster> clusters = startingClusters(scene.input(), {});
-  const ClusterJoin join{room_b, door_b, scene.pose(room_b, door_b), 0.3};
-  EXPECT_TRUE(hasAliasByChain(scene.input(), clusters, join));
-  for (PairAlignment& pair : scene.pairs)
-    if (pair.a == room_a)
-      pair.hypotheses[0].check.violation = 0.03;
-  EXPECT_FALSE(hasAliasByChain(scene.input(), clusters, join));
-}
 
 // A scan of a third room that fits in both of two equal ones shows that there are two: scans that were joined by their
 // likeness are parted.

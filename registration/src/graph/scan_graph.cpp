@@ -169,11 +169,9 @@ bool GraphBuilder::tryJoin(const Candidate& candidate)
     return false;
   T = *fitting;
   const ScanCluster &first = graph_.clusters[a], &second = graph_.clusters[b];
-  const ClusterJoin proposed{a, b, T, candidate.hypothesis->check.overlap};
   const bool single = first.scans.size() == 1 || second.scans.size() == 1; // of which contestedScans() will tell
   const bool by_scan = hasAliasByScan(input_, first, second, T);
-  if (by_scan || hasAliasByChain(input_, graph_.clusters, proposed) ||
-      (!single && isContested(input_, first, second, T))) {
+  if (by_scan || (!single && isContested(input_, first, second, T))) {
     aliased_[candidate.pair] = by_scan ? RefusalReason::repeats : RefusalReason::second_place;
     return false;
   }
