@@ -25,7 +25,7 @@ void fields(Archive& archive, ScanLevel& level)
 template <typename Archive>
 void fields(Archive& archive, ScanAlias& alias)
 {
-  archive(alias.T, alias.certain, alias.likeness, alias.violation, alias.partial);
+  archive(alias.T, alias.certain, alias.partial);
 }
 
 template <typename Archive>

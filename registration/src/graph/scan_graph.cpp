@@ -44,7 +44,6 @@ private:
   }
   double noiseViolation() const { return std::max(noise_violation, input_.usual_violation); }
   std::optional<Eigen::Isometry3d> fittingPose(Index a, Index b, const Eigen::Isometry3d& T_a_b) const;
-  bool unconvincing(const Candidate& candidate) const;
   bool joinUnambiguous();
   bool joinAmbiguous();
   bool mostAgree(Index scan, const PairAlignment& candidate) const;
@@ -90,33 +89,16 @@ Eigen::Isometry3d GraphBuilder::clusterPose(const Candidate& candidate) const
   return pose(candidate.pair->a) * candidate.hypothesis->T_a_b * pose(candidate.pair->b).inverse();
 }
 
-// Whether both scans fit to themselves at a wrong place about as well as to each other, overlaps and violations alike.
-bool GraphBuilder::unconvincing(const Candidate& candidate) const
-{
-  const PairCheck& check = candidate.hypothesis->check;
-  double likeness = 1.0;
-  for (const Index scan : {candidate.pair->a, candidate.pair->b}) {
-    double most = 0.0;
-    for (const ScanAlias& motion : input_.scans[scan].aliases)
-      if (!clearlyWorse(motion.violation, check.violation))
-        most = std::max(most, motion.likeness);
-    likeness = std::min(likeness, most);
-  }
-  return likeness > 0.0 && (check.overlap < likeness || clearlyWorse(check.violation, 0.0));
-}
-
 // Whether a second pair between the same clusters says the same.
 bool GraphBuilder::supported(const Candidate& candidate, const Eigen::Isometry3d& T_first_second) const
 {
   const Index first = places_[candidate.pair->a].cluster, second = places_[candidate.pair->b].cluster;
-  const bool only_best = unconvincing(candidate);
   for (const PairAlignment& pair : input_.pairs) {
     const Index a = places_[pair.a].cluster, b = places_[pair.b].cluster;
     if (&pair == candidate.pair || !((a == first && b == second) || (a == second && b == first)))
       continue;
     for (const VerifiedHypothesis& hypothesis : pair.hypotheses) {
-      // What another pair holds merely possible does not make an unconvincing one certain.
-      if (doubtful(pair, hypothesis.check) || (only_best && &hypothesis != &pair.hypotheses[0]))
+      if (doubtful(pair, hypothesis.check))
         continue;
       const Eigen::Isometry3d T = clusterPose({&pair, &hypothesis});
       if (poseDistance(a == first ? T : T.inverse(), T_first_second, input_.scans[pair.a].size) < slack())
@@ -156,14 +138,10 @@ bool GraphBuilder::tryJoin(const Candidate& candidate)
   if (a == b)
     return false;
   Eigen::Isometry3d T = clusterPose(candidate);
-  const bool unsure = unconvincing(candidate);
-  const bool weak = candidate.hypothesis->support < strong_overlap ||
-                    doubtful(*candidate.pair, candidate.hypothesis->check) || unsure;
-  if (weak && !supported(candidate, T)) {
-    if (unsure)
-      aliased_[candidate.pair] = RefusalReason::repeats;
+  const bool weak =
+      candidate.hypothesis->support < strong_overlap || doubtful(*candidate.pair, candidate.hypothesis->check);
+  if (weak && !supported(candidate, T))
     return false;
-  }
   const std::optional<Eigen::Isometry3d> fitting = fittingPose(a, b, T);
   if (!fitting)
     return false;

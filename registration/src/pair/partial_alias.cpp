@@ -156,7 +156,7 @@ ScanAliases findPartialAliases(const PreparedScan& scan, PoseHypotheses starts)
       if (!fitsPartially(scan, T))
         T = bestAlongWeakest(scan, T, check_level);
       if (fitsPartially(scan, T)) {
-        found.push_back({T, true, 0.0, 0.0, true});
+        found.push_back({T, true, true});
         break;
       }
     }

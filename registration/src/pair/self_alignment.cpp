@@ -11,13 +11,8 @@ namespace {
 ScanAlias toAlias(const VerifiedHypothesis& own)
 {
   constexpr double certain_overlap = 0.5; // with itself: less, and the scan is laid where it saw nothing
-  const bool wide = own.check.overlap > certain_overlap;
-  ScanAlias alias;
-  alias.T = own.T_a_b;
-  alias.certain = wide && own.check.violation < 2.0 * noise_violation && own.check.color.value_or(1.0) > alias_color;
-  alias.violation = own.check.violation;
-  alias.likeness = wide && own.check.violation <= VerificationOptions().max_violation ? own.check.overlap : 0.0;
-  return alias;
+  return {own.T_a_b, own.check.overlap > certain_overlap && own.check.violation < 2.0 * noise_violation &&
+                         own.check.color.value_or(1.0) > alias_color};
 }
 
 // Of poses of a scan on itself, the identity among them; partial ones, from motions of their own, where none is certain.

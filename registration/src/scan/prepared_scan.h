@@ -24,10 +24,8 @@ struct ScanLevel : SurfacePoints {
 /// A motion other than the identity that maps a part of a scan onto another part of it: two places that look alike.
 struct ScanAlias {
   Eigen::Isometry3d T = Eigen::Isometry3d::Identity(); ///< in the scan's working frame
-  bool certain = false;   ///< nothing that the scan saw speaks against it; else it is worth a try
-  double likeness = 0.0;  ///< overlap of the scan with itself, if the motion would pass as a pair's; else 0
-  double violation = 0.0; ///< of the scan with itself, 0..1
-  bool partial = false;   ///< whether little of the second place was seen, as through two doors
+  bool certain = false; ///< nothing that the scan saw speaks against it; else it is worth a try
+  bool partial = false; ///< whether little of the second place was seen, as through two doors
 };
 using ScanAliases = std::vector<ScanAlias, Eigen::aligned_allocator<ScanAlias>>;
 
