@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "assembly/cluster_fits.h"
-#include "graph/cluster_poses.h"
 #include "graph/place_check.h"
 namespace fresco::registration {
 namespace {
@@ -110,19 +109,5 @@ ClusterFits ClusterFitter::find(const ScanCluster& first, const ScanCluster& sec
   for (const ClusterFit& fit : uncontradicted(first, second, rivals))
     found.push_back(fit);
   return found;
-}
-
-ClusterFit ClusterFitter::settled(const ScanCluster& first, const ScanCluster& second, ClusterFit fit) const
-{
-  constexpr double least_overlap = 0.1;
-  fit.evidence = judge_.judge(first, second, fit.T);
-  if (!isContradicted(fit.evidence) || isHopeless(fit.evidence) || fit.overlap < least_overlap)
-    return fit;
-  const Eigen::Isometry3d T = settledPose(input_, first, second, fit.T);
-  if (!isSame(second, T, fit.T, 2.0))
-    return fit;
-  fit.T = T;
-  fit.evidence = judge_.judge(first, second, T);
-  return fit;
 }
 } // namespace fresco::registration

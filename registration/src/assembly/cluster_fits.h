@@ -55,10 +55,6 @@ public:
   /// joined, their rivals, and those that a pair is certain of.
   ClusterFits find(const ScanCluster& first, const ScanCluster& second) const;
 
-  /// Judges a rough fit. A pair may slide along a corridor; all scans together hold it. As it is where a small motion
-  /// mends nothing.
-  ClusterFit settled(const ScanCluster& first, const ScanCluster& second, ClusterFit fit) const;
-
   /// Whether a cluster is at the same place with either of two motions. @param tolerances see GraphOptions
   bool isSame(const ScanCluster& moving, const Eigen::Isometry3d& T, const Eigen::Isometry3d& other,
               double tolerances) const;

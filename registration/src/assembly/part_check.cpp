@@ -68,8 +68,7 @@ bool PartCheck::fitsElsewhere(const ClusterPart& placed) const
     const double least = std::max(rough.pairs < 2 ? least_of_one : least_overlap, least_share * seen_here);
     if (!rough.certain && rough.overlap < least)
       continue;
-    const ClusterFit fit = fitter_.settled(placed.rest, placed.part, rough);
-    if (!isHere(fit) && isUndecided(placed.here, fit.evidence, fit.certain))
+    if (!isHere(rough) && isUndecided(placed.here, judge_.judge(placed.rest, placed.part, rough.T), rough.certain))
       return true;
   }
   return false;
@@ -82,9 +81,9 @@ bool PartCheck::isClaimed(const ScanCluster& claimer, const ClusterPart& placed)
   for (const ClusterFit& rough : fitter_.rough(claimer, placed.part, ClusterFitter::Use::contest)) {
     if (!rough.certain && !(doubtful && rough.sound))
       continue;
-    const ClusterFit fit = fitter_.settled(claimer, placed.part, rough);
-    if (fit.evidence.agree >= least_share * placed.here.agree && isUndecided(placed.here, fit.evidence, fit.certain) &&
-        isContradicted(judge_.judge(placed.rest, claimer, fit.T.inverse())))
+    const FreeSpaceEvidence there = judge_.judge(claimer, placed.part, rough.T);
+    if (there.agree >= least_share * placed.here.agree && isUndecided(placed.here, there, rough.certain) &&
+        isContradicted(judge_.judge(placed.rest, claimer, rough.T.inverse())))
       return true;
   }
   return false;
