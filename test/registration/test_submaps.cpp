@@ -126,24 +126,6 @@ TEST(Submaps, ThirdGroupsKeepApartWhatFitsInThem)
   }
 }
 
-// It has to be confirmed by a good share of what confirms the other one; the fewer points contradict it, the smaller.
-TEST(Submaps, PlacesWithoutContradictionRivalFromLess)
-{
-  constexpr double unit = 3000.0; // points of a scan
-  SubmapPlace clean, contradicted;
-  contradicted.evidence.violating = 0.05;
-  const auto leastConfirmed = [&](SubmapPlace other, SubmapPlace place) {
-    place.confirmed = 2.0;
-    for (other.confirmed = 0.0; other.confirmed < place.confirmed && !rivals(other, place, unit);)
-      other.confirmed += 0.01;
-    return other.confirmed;
-  };
-  EXPECT_LT(leastConfirmed(clean, contradicted), 0.8 * leastConfirmed(clean, clean));
-  EXPECT_EQ(leastConfirmed(contradicted, contradicted), leastConfirmed(clean, clean));
-  EXPECT_EQ(leastConfirmed(contradicted, clean), leastConfirmed(clean, clean));
-  EXPECT_GT(leastConfirmed(clean, contradicted), 0.1);
-}
-
 TEST(FreeSpaceEvidence, EachPointIsConfirmedOnce)
 {
   const Scene scene(test::scanTwoRooms());

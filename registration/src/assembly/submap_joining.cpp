@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "assembly/submap_joining.h"
 #include "assembly/cluster_fits.h"
-#include "graph/alias_check.h"
 #include "graph/cluster_poses.h"
-#include "graph/place_check.h"
 #include "scan/lists.h"
 #include <algorithm>
 #include <memory>
@@ -12,7 +10,6 @@ namespace {
 // Of the points that the best place confirms, those of a second one that make it doubtful. Of two equal rooms, the wrong
 // one may be seen twice as well as the right one.
 constexpr double rival_share = 0.4;
-constexpr double clean_share = 0.25;    // likewise, of a second place that free space contradicts clearly less
 constexpr double least_confirmed = 1.5; // of one scan's points; at less, wrong places are found without a rival, too
 
 using SubmapPlaces = std::vector<SubmapPlace, Eigen::aligned_allocator<SubmapPlace>>;
@@ -46,8 +43,6 @@ private:
   }
   Joins likelyJoins() const;
   bool fitsThird(std::size_t stays, std::size_t moves, const SubmapPlace& place) const;
-  bool isContested(const Join& join) const;
-  bool contradictsOther(const Join& join, const Joins& accepted) const;
   Joins soundJoins();
   void join(const Joins& joins);
 
@@ -124,26 +119,10 @@ bool SubmapJoiner::fitsThird(std::size_t stays, std::size_t moves, const SubmapP
     if (third == stays || third == moves)
       continue;
     const SubmapPlaces others = placesOf(third, moves);
-    if (!others.empty() && rivals(others[0], place, judge_.unit()) && !agrees(third, others[0]))
+    if (!others.empty() && others[0].confirmed >= rival_share * place.confirmed && !agrees(third, others[0]))
       return true;
   }
   return false;
-}
-
-bool SubmapJoiner::isContested(const Join& join) const
-{
-  return hasAliasByScan(input_, groups_[join.first].cluster, groups_[join.second].cluster, join.place.T) ||
-         fitsThird(join.first, join.second, join.place) || fitsThird(join.second, join.first, reversed(join.place));
-}
-
-// Whether a join brings its smaller group where free space contradicts one that is to join the same larger group.
-bool SubmapJoiner::contradictsOther(const Join& join, const Joins& accepted) const
-{
-  return std::any_of(accepted.begin(), accepted.end(), [&](const Join& other) {
-    return other.first == join.first &&
-           isContradicted(judge_.judge(groups_[other.second].cluster, groups_[join.second].cluster,
-                                       other.place.T.inverse() * join.place.T));
-  });
 }
 
 // Of all likely joins those that stand together: a group that moves takes part in one only.
@@ -152,10 +131,10 @@ SubmapJoiner::Joins SubmapJoiner::soundJoins()
   std::vector<char> stays(groups_.size(), 0), moves(groups_.size(), 0);
   Joins accepted;
   for (const Join& candidate : likelyJoins()) {
-    if (moves[candidate.first] || moves[candidate.second] || stays[candidate.second] ||
-        contradictsOther(candidate, accepted))
+    if (moves[candidate.first] || moves[candidate.second] || stays[candidate.second])
       continue;
-    if (isContested(candidate)) {
+    if (fitsThird(candidate.first, candidate.second, candidate.place) ||
+        fitsThird(candidate.second, candidate.first, reversed(candidate.place))) {
       refuse(groups_[candidate.first].cluster, groups_[candidate.second].cluster, RefusalReason::claimed,
              candidate.place.evidence);
       continue;
@@ -215,12 +194,6 @@ void SubmapJoiner::run(ScanGraph& graph, const Progress& progress)
   sortBySize(graph.clusters, 0);
 }
 } // namespace
-
-bool rivals(const SubmapPlace& other, const SubmapPlace& place, double unit)
-{
-  const bool cleaner = contradictsMore(place.evidence, other.evidence, unit);
-  return other.confirmed >= (cleaner ? clean_share : rival_share) * place.confirmed;
-}
 
 void joinSubmaps(const GraphInput& input, const PlanFrames& frames, ScanGraph& graph, const Progress& progress)
 {

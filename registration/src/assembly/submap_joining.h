@@ -11,10 +11,6 @@ struct SubmapPlace {
   FreeSpaceEvidence evidence;
 };
 
-/// Whether enough confirms another place to make one doubtful. Less is enough where free space contradicts it clearly
-/// less. @param unit see FreeSpaceJudge
-bool rivals(const SubmapPlace& other, const SubmapPlace& place, double unit);
-
 /// Joins clusters as wholes where no pair of their scans tells: all places of one in another that their floor plans
 /// lead to are looked at. The best joins if it is clearly the best, and if neither cluster has a place in a third one
 /// that stands against it. Clusters are largest first, before and after.
