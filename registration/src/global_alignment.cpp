@@ -53,7 +53,6 @@ private:
   void alignPairs(const std::vector<RankedPair>& round);
   void correctViewpoints();
   GraphInput graphInput() const;
-  ScanGraph decidedGraph() const;
   bool hangsTogether() const { return result_.graph.clusters.size() <= 1; }
 
   std::vector<PreparedScan>& scans_;
@@ -130,9 +129,7 @@ void GlobalAligner::assembleByPlans(const std::vector<RankedPair>& pairs, const 
     scans_[k].aliases = std::move(aliases[k]);
   sharePartialAliases(scans_, result_.pairs);
   report(progress, "assemble", 0.7);
-  result_.graph = assembleScans(graphInput());
-  if (hasFew() && !hangsTogether())
-    result_.graph = assembleUnited(graphInput(), result_.graph, decidedGraph());
+  result_.graph = hasFew() ? buildScanGraph(graphInput(), known_) : assembleScans(graphInput());
 }
 
 void GlobalAligner::describe(const Progress& progress)
@@ -209,14 +206,6 @@ void GlobalAligner::correctViewpoints()
 
 GraphInput GlobalAligner::graphInput() const { return {scans_, result_.pairs, graphOptions(options_)}; }
 
-// Without those scans between whose places nothing decides.
-ScanGraph GlobalAligner::decidedGraph() const
-{
-  ScanGraph graph = buildScanGraph(graphInput(), known_);
-  splitUndecided(graphInput(), graph);
-  return graph;
-}
-
 // Up to so many scans are aligned in rounds: of more, these place hardly more, some wrongly, in six times the time.
 bool GlobalAligner::hasFew() const
 {
@@ -277,10 +266,6 @@ void GlobalAligner::alignInRounds(const Progress& progress)
   }
   if (!frames_.empty() && !hasFew()) // whole clusters tell more than the pairs, which place some of these wrongly
     result_.graph = assembleScans(graphInput());
-  else if (!manyPlaces())
-    splitUndecided(graphInput(), result_.graph);
-  if (hasAllPlans() && !hangsTogether())
-    result_.graph = assembleUnited(graphInput(), result_.graph, assembleScans(graphInput()));
 }
 
 GlobalAlignment GlobalAligner::run(const Progress& progress)

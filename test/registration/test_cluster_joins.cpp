@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "assembly/cluster_union.h"
 #include "assembly/part_check.h"
 #include "assembly/scan_assembly.h"
 #include "graph/equal_rooms.h"
@@ -66,77 +65,6 @@ ScanCluster clusterOf(const Scene& scene, const std::vector<Index>& scans)
   for (const Index scan : scans)
     cluster.poses.push_back(scene.pose(scans[0], scan));
   return cluster;
-}
-
-struct UnionCase {
-  ScanGraph first, second;
-  std::vector<std::vector<Index>> united; // all clusters that are expected, sorted
-};
-
-class ClusterUnion : public testing::Test {
-protected:
-  ClusterUnion() : scene_(test::roomsInARow(false).scene), judge_(scene_.scans) {}
-
-  void expectUnion(const UnionCase& given) const
-  {
-    std::vector<std::vector<Index>> found;
-    for (const auto& [cluster, parts] : uniteClusters(scene_.input(), judge_, given.first, given.second)) {
-      for (std::size_t k = 0; k < cluster.scans.size(); ++k) {
-        const Eigen::Isometry3d T_first = cluster.poses[0].inverse() * cluster.poses[k];
-        EXPECT_LT((T_first.matrix() - scene_.pose(cluster.scans[0], cluster.scans[k]).matrix()).norm(), 1e-9);
-      }
-      found.push_back(cluster.scans);
-      std::sort(found.back().begin(), found.back().end());
-    }
-    std::sort(found.begin(), found.end());
-    EXPECT_EQ(found, given.united);
-  }
-  ScanCluster of(const std::vector<Index>& scans) const { return clusterOf(scene_, scans); }
-  // The last scan is so far from its place.
-  ScanCluster slid(const std::vector<Index>& scans, double along) const
-  {
-    ScanCluster cluster = of(scans);
-    cluster.poses.back() = scene_.scanned.truth[scans[0]].inverse() * Eigen::Translation3d(0, along, 0) *
-                           scene_.scanned.truth[scans.back()];
-    return cluster;
-  }
-
-  const Scene scene_;
-  const FreeSpaceJudge judge_;
-};
-
-TEST_F(ClusterUnion, GraphsThatShareScansAreUnitedWhateverTheirFrames)
-{
-  expectUnion({{{of({0, 1}), of({3, 2}), of({4}), of({5})}},
-               {{of({1, 3}), of({5, 4}), of({0}), of({2})}},
-               {{0, 1, 2, 3}, {4}, {5}}});
-}
-
-TEST_F(ClusterUnion, WhatOnlyTheSecondGraphHoldsTogetherStaysAlone)
-{
-  expectUnion({{{of({0}), of({1}), of({2})}}, {{of({0, 1})}}, {{0}, {1}, {2}}});
-  expectUnion({{{of({0}), of({1}), of({2})}}, {{of({0, 1, 2})}}, {{0}, {1}, {2}}});
-}
-
-TEST_F(ClusterUnion, WhoStaysAloneKeepsTheReason)
-{
-  for (const RefusalReason reason : {RefusalReason::none, RefusalReason::claimed}) {
-    ScanCluster alone = of({2});
-    alone.refusal.reason = reason;
-    const std::vector<JoinedCluster> united = uniteClusters(scene_.input(), judge_, {{of({0, 1}), alone}}, {});
-    ASSERT_EQ(united.size(), 2u);
-    EXPECT_EQ(united.back().cluster.refusal.reason, reason);
-  }
-}
-
-TEST_F(ClusterUnion, WhatPlacesASharedScanElsewhereIsLeftOut)
-{
-  expectUnion({{{of({0, 1}), of({2}), of({3})}}, {{slid({0, 2, 1}, test::row_pitch)}}, {{0, 1}, {2}, {3}}});
-}
-
-TEST_F(ClusterUnion, WhatFreeSpaceContradictsIsLeftOut)
-{
-  expectUnion({{{of({0, 1}), of({2})}}, {{slid({1, 2}, -0.5 * test::row_pitch)}}, {{0, 1}, {2}}});
 }
 
 // The second of three rooms whose doors open on different things, taken for the first one, and where it is.

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "assembly/scan_assembly.h"
-#include "assembly/cluster_union.h"
 #include "assembly/part_check.h"
 #include "graph/alias_check.h"
 #include "graph/cluster_poses.h"
@@ -21,14 +20,10 @@ class Assembler {
 public:
   explicit Assembler(const GraphInput& input)
       : input_(input), judge_(input.scans), fitter_(input, judge_), parts_(judge_, fitter_)
-  {}
-
-  void startAlone()
   {
     for (const ScanCluster& cluster : startingClusters(input_, {}))
       groups_.push_back({next_id_++, cluster});
   }
-  void startUnited(const ScanGraph& first, const ScanGraph& second);
 
   void joinAll()
   {
@@ -80,15 +75,6 @@ private:
   Index next_id_ = 0;
   GroupFits<ClusterFits> fits_;
 };
-
-void Assembler::startUnited(const ScanGraph& first, const ScanGraph& second)
-{
-  for (JoinedCluster& united : uniteClusters(input_, judge_, first, second)) {
-    if (united.parts.size() > 1)
-      settle(input_, {}, united.cluster);
-    groups_.push_back({next_id_++, united.cluster, united.parts});
-  }
-}
 
 void Assembler::findAllFits()
 {
@@ -313,15 +299,8 @@ ScanGraph Assembler::checked()
 ScanGraph assembleScans(const GraphInput& input)
 {
   Assembler assembler(input);
-  assembler.startAlone();
   assembler.joinAll();
   return assembler.checked();
 }
 
-ScanGraph assembleUnited(const GraphInput& input, const ScanGraph& first, const ScanGraph& second)
-{
-  Assembler assembler(input);
-  assembler.startUnited(first, second);
-  return assembler.checked();
-}
 } // namespace fresco::registration

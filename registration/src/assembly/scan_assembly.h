@@ -8,8 +8,4 @@ namespace fresco::registration {
 /// a way that contradicts the join. In the end, parts of clusters that also fit elsewhere in them are split off. Every
 /// usable scan has free space and saw around, and no two share a frame from the start.
 ScanGraph assembleScans(const GraphInput& input);
-
-/// Unites two graphs of the same scans, see uniteClusters(), and splits off what also fits elsewhere: of two ways to join
-/// scans, either finds what the other one does not.
-ScanGraph assembleUnited(const GraphInput& input, const ScanGraph& first, const ScanGraph& second);
 } // namespace fresco::registration

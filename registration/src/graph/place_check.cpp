@@ -205,17 +205,6 @@ bool isContested(const GraphInput& input, const ScanCluster& cluster, const Scan
          });
 }
 
-std::vector<Index> scansOfEither(const GraphInput& input, const ScanCluster& cluster, const ScanCluster& other)
-{
-  return membersWhere(input, cluster, [&](const ScanCluster& others, const ScanCluster& member) {
-    if (!sawAround(input.scans[member.scans[0]]))
-      return false;
-    const ClusterPose here = PlaceSearch(input, others, member).judged({});
-    const ClusterPoses places = findPlaces(input, other, member);
-    return std::any_of(places.begin(), places.end(), [&](const auto& place) { return contests(place, here); });
-  });
-}
-
 ClusterPoses findPlaces(const GraphInput& input, const ScanCluster& cluster, const ScanCluster& moving)
 {
   return PlaceSearch(input, cluster, moving).run();

@@ -23,9 +23,6 @@ ClusterPoses findPlaces(const GraphInput& input, const ScanCluster& cluster, con
 bool isContested(const GraphInput& input, const ScanCluster& cluster, const ScanCluster& moving,
                  const Eigen::Isometry3d& T);
 
-/// Members of a cluster that fit into another one as well as among its own other scans.
-std::vector<Index> scansOfEither(const GraphInput& input, const ScanCluster& cluster, const ScanCluster& other);
-
 /// The one that no other contests, if there is one that suffices.
 /// @param most_violation of it
 const ClusterPose* uncontested(const ClusterPoses& places, double least_overlap, double most_violation);

@@ -305,25 +305,4 @@ ScanGraph buildScanGraph(const GraphInput& input, const ScanCluster& known)
 {
   return GraphBuilder(input, known).build();
 }
-
-void splitUndecided(const GraphInput& input, ScanGraph& graph)
-{
-  std::vector<ScanCluster>& clusters = graph.clusters;
-  std::vector<char> undecided(input.scans.size(), 0);
-  for (std::size_t c = 1; c < clusters.size(); ++c)
-    for (std::size_t other = 0; other < clusters.size(); ++other)
-      if (c != other && clusters[c].scans.size() > 1 && clusters[other].scans.size() >= clusters[c].scans.size())
-        for (const Index scan : scansOfEither(input, clusters[c], clusters[other]))
-          undecided[scan] = 1;
-  for (std::size_t c = 1; c < clusters.size(); ++c)
-    for (std::size_t k = clusters[c].scans.size(); k-- > 0 && clusters[c].scans.size() > 1;) {
-      const Index scan = clusters[c].scans[k];
-      if (!undecided[scan])
-        continue;
-      clusters[c].scans.erase(clusters[c].scans.begin() + k);
-      clusters[c].poses.erase(clusters[c].poses.begin() + k);
-      clusters.push_back({{scan}, {Eigen::Isometry3d::Identity()}, {RefusalReason::claimed, clusters[c].scans[0]}});
-    }
-  sortBySize(clusters, clusters.empty() ? 0 : 1);
-}
 } // namespace fresco::registration

@@ -42,8 +42,4 @@ std::vector<ScanCluster> startingClusters(const GraphInput& input, const ScanClu
 /// without a problem take part.
 /// @param known scans that already share a frame; may be empty
 ScanGraph buildScanGraph(const GraphInput& input, const ScanCluster& known);
-
-/// Scans beside the first cluster that fit into another one, not smaller, as well become alone: nothing tells which of
-/// equal rooms they are in.
-void splitUndecided(const GraphInput& input, ScanGraph& graph);
 } // namespace fresco::registration
