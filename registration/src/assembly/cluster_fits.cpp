@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "assembly/cluster_fits.h"
-#include "graph/place_check.h"
 namespace fresco::registration {
 namespace {
 // Whether pairs say enough of a place to join two clusters by it. A few that all have a better one elsewhere do not: from
@@ -54,7 +53,7 @@ void ClusterFitter::add(const ScanCluster& second, const ClusterFit& fit, Cluste
   fits.push_back(fit);
 }
 
-ClusterFits ClusterFitter::rough(const ScanCluster& first, const ScanCluster& second, Use use) const
+ClusterFits ClusterFitter::rough(const ScanCluster& first, const ScanCluster& second) const
 {
   ClusterFits fits;
   std::map<Index, std::size_t> positions;
@@ -68,7 +67,7 @@ ClusterFits ClusterFitter::rough(const ScanCluster& first, const ScanCluster& se
         continue;
       for (const VerifiedHypothesis& hypothesis : pair->hypotheses) {
         if (hypothesis.check.violation > pane_violation || hypothesis.check.color.value_or(1.0) < input_.least_color ||
-            (use == Use::join && contradictsOneRoom(hypothesis.check, input_.usual_violation)))
+            contradictsOneRoom(hypothesis.check, input_.usual_violation))
           continue;
         ClusterFit fit;
         fit.T = first.poses[i] * (turned ? hypothesis.T_a_b.inverse() : hypothesis.T_a_b) *

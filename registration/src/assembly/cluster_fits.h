@@ -41,12 +41,8 @@ public:
   /// Both have to outlive it.
   ClusterFitter(const GraphInput& input, const FreeSpaceJudge& judge) : input_(input), judge_(judge) {}
 
-  /// What places are for. A pair whose scans would contradict that they see one room joins nothing there, but its place
-  /// may contest another.
-  enum class Use { join, contest };
-
   /// All that pairs lead to, distinct. Their evidence is not judged.
-  ClusterFits rough(const ScanCluster& first, const ScanCluster& second, Use use = Use::join) const;
+  ClusterFits rough(const ScanCluster& first, const ScanCluster& second) const;
 
   /// Those that free space does not contradict.
   ClusterFits uncontradicted(const ScanCluster& first, const ScanCluster& second, const ClusterFits& rough) const;

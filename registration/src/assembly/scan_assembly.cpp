@@ -1,15 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "assembly/scan_assembly.h"
-#include "assembly/part_check.h"
+#include "assembly/cluster_fits.h"
 #include "graph/alias_check.h"
 #include "graph/cluster_poses.h"
-#include "graph/place_check.h"
 #include "scan/lists.h"
 #include <algorithm>
 namespace fresco::registration {
 namespace {
-constexpr double one_room = 0.8; // overlap, or share of what agrees elsewhere, of scans of one room
-
 // Whether what pairs say of another place is as sure as what they say of a join.
 bool isAsSure(const ClusterFit& other, const ClusterFit& join)
 {
@@ -18,8 +15,7 @@ bool isAsSure(const ClusterFit& other, const ClusterFit& join)
 
 class Assembler {
 public:
-  explicit Assembler(const GraphInput& input)
-      : input_(input), judge_(input.scans), fitter_(input, judge_), parts_(judge_, fitter_)
+  explicit Assembler(const GraphInput& input) : input_(input), judge_(input.scans), fitter_(input, judge_)
   {
     for (const ScanCluster& cluster : startingClusters(input_, {}))
       groups_.push_back({next_id_++, cluster});
@@ -30,13 +26,12 @@ public:
     while (joinBest())
       ;
   }
-  ScanGraph checked();
+  ScanGraph graph() const;
 
 private:
   struct Group {
     Index id; // changes with its members
     ScanCluster cluster;
-    std::vector<std::vector<Index>> parts = {}; // the scans of the groups that it was joined of, and of theirs
   };
   struct Join {
     std::size_t first, second; // groups
@@ -52,25 +47,16 @@ private:
   }
   RefusalReason refusal(const Join& candidate) const;
   bool hasSecondPlace(const Join& join) const;
-  bool fitsThird(std::size_t stays, std::size_t moves, const ClusterFit& fit, bool by_chains) const;
-  bool areApart(std::size_t stays, std::size_t third, const ClusterFit& moved, const ClusterFit& other,
-                bool by_chains) const;
-  bool fitsInstead(std::size_t stays, std::size_t moves, std::size_t third, const ClusterFit& moved,
-                   const ClusterFit& other) const;
+  bool fitsThird(std::size_t stays, std::size_t moves, const ClusterFit& fit) const;
   bool yields(std::size_t stays, std::size_t moves, std::size_t third, const ClusterFit& moved,
               const ClusterFit& other) const;
   Joins likelyJoins() const;
   bool joinBest();
   void join(const Join& join);
-  bool isClaimed(std::size_t group, const ClusterPart& placed) const;
-  IsometryVector twinMotions(std::size_t group) const;
-  bool splitContested(std::size_t group);
-  void split(std::size_t group, const std::vector<Index>& listed);
 
   const GraphInput& input_;
   FreeSpaceJudge judge_;
   ClusterFitter fitter_;
-  PartCheck parts_;
   std::vector<Group> groups_;
   Index next_id_ = 0;
   GroupFits<ClusterFits> fits_;
@@ -92,48 +78,20 @@ bool Assembler::hasSecondPlace(const Join& join) const
 }
 
 // Whether a group that moves has a place in a third one, and the first and the third cannot both be where that leads to.
-bool Assembler::fitsThird(std::size_t stays, std::size_t moves, const ClusterFit& fit, bool by_chains) const
+bool Assembler::fitsThird(std::size_t stays, std::size_t moves, const ClusterFit& fit) const
 {
+  const auto are_apart = [&](std::size_t third, const ClusterFit& other) {
+    return isContradicted(judge_.judge(groups_[stays].cluster, groups_[third].cluster, fit.T * other.T.inverse()));
+  };
   for (std::size_t third = 0; third < groups_.size(); ++third) {
     if (third == stays || third == moves)
       continue;
     for (const ClusterFit& other : fitsOf(third, moves))
-      if (isAsSure(other, fit) && rivals(other, fit, judge_.unit()) && areApart(stays, third, fit, other, by_chains) &&
-          !fitsInstead(stays, moves, third, fit, other) && !yields(stays, moves, third, fit, other))
+      if (isAsSure(other, fit) && rivals(other, fit, judge_.unit()) && are_apart(third, other) &&
+          !yields(stays, moves, third, fit, other))
         return true;
   }
   return false;
-}
-
-// Whether free space contradicts the first and the third group where a fit in either brings them, or, if these places
-// agree as scans of one room do, a fourth group does: of three equal rooms, a scan may have seen that two are apart.
-bool Assembler::areApart(std::size_t stays, std::size_t third, const ClusterFit& moved, const ClusterFit& other,
-                         bool by_chains) const
-{
-  ClusterFit composed = moved;
-  composed.T = moved.T * other.T.inverse();
-  composed.evidence = judge_.judge(groups_[stays].cluster, groups_[third].cluster, composed.T);
-  if (isContradicted(composed.evidence) || !by_chains)
-    return isContradicted(composed.evidence);
-  if (composed.evidence.agree <= one_room * std::max(moved.evidence.agree, other.evidence.agree))
-    return false;
-  return fitsThird(stays, third, composed, false) || fitsThird(third, stays, reversed(composed), false);
-}
-
-// Whether the third group fits in the first one, and the two fits there explain more than the one of the third with
-// what moves, which then is a look-alike: it would bring what moves to a place that free space contradicts.
-bool Assembler::fitsInstead(std::size_t stays, std::size_t moves, std::size_t third, const ClusterFit& moved,
-                            const ClusterFit& other) const
-{
-  bool explains = false;
-  for (const ClusterFit& own : fitsOf(stays, third)) {
-    if (!own.certain)
-      continue;
-    if (!isContradicted(judge_.judge(groups_[stays].cluster, groups_[moves].cluster, own.T * other.T)))
-      return false;
-    explains = explains || own.evidence.agree + moved.evidence.agree > other.evidence.agree;
-  }
-  return explains;
 }
 
 // Whether the third group's claim to what moves yields to a certain fit where more surfaces agree: if the third group
@@ -173,8 +131,8 @@ RefusalReason Assembler::refusal(const Join& candidate) const
     return RefusalReason::repeats;
   if (hasSecondPlace(candidate))
     return RefusalReason::second_place;
-  return fitsThird(candidate.first, candidate.second, candidate.fit, true) ||
-                 fitsThird(candidate.second, candidate.first, reversed(candidate.fit), true)
+  return fitsThird(candidate.first, candidate.second, candidate.fit) ||
+                 fitsThird(candidate.second, candidate.first, reversed(candidate.fit))
              ? RefusalReason::claimed
              : RefusalReason::none;
 }
@@ -197,9 +155,6 @@ bool Assembler::joinBest()
 void Assembler::join(const Join& join)
 {
   Group &first = groups_[join.first], &second = groups_[join.second];
-  first.parts.push_back(first.cluster.scans);
-  first.parts.push_back(second.cluster.scans);
-  first.parts.insert(first.parts.end(), second.parts.begin(), second.parts.end());
   append(first.cluster, second.cluster, join.fit.T);
   first.id = next_id_++;
   groups_.erase(groups_.begin() + join.second);
@@ -208,86 +163,8 @@ void Assembler::join(const Join& join)
     group.cluster.refusal = {}; // joinBest() tells anew
 }
 
-// Whether another group has a certain place for a part of a group. Whatever was said against its claim while the groups
-// grew: it has found no other place.
-bool Assembler::isClaimed(std::size_t group, const ClusterPart& placed) const
+ScanGraph Assembler::graph() const
 {
-  return std::any_of(groups_.begin(), groups_.end(), [&](const Group& claimer) {
-    return claimer.id != groups_[group].id && parts_.isClaimed(claimer.cluster, placed);
-  });
-}
-
-// Motions from one place of another group to a second one where it fits as well: from a room to an equal one.
-IsometryVector Assembler::twinMotions(std::size_t group) const
-{
-  IsometryVector motions;
-  for (std::size_t other = 0; other < groups_.size(); ++other) {
-    if (other == group)
-      continue;
-    const ClusterFits fits = fitsOf(group, other);
-    for (const ClusterFit& from : fits)
-      for (const ClusterFit& to : fits)
-        if (rivals(to, from, judge_.unit()) && !fitter_.isSame(groups_[other].cluster, from.T, to.T, 3.0))
-          motions.push_back(to.T * from.T.inverse());
-  }
-  return motions;
-}
-
-// What was joined first may be contested by what joined later. @return whether a part was split off
-bool Assembler::splitContested(std::size_t group)
-{
-  if (groups_[group].parts.empty())
-    return false;
-  findAllFits();
-  const IsometryVector motions = twinMotions(group);
-  const ScanCluster& cluster = groups_[group].cluster;
-  std::vector<std::vector<Index>>& parts = groups_[group].parts;
-  std::stable_sort(parts.begin(), parts.end(), [](const auto& x, const auto& y) { return x.size() < y.size(); });
-  const std::vector<char> contested = mapTasks(parts.size(), input_.options.threads, [&](Index k) {
-    const auto [part, rest] = divide(cluster, parts[k]);
-    if (part.scans.empty() || part.scans.size() > rest.scans.size())
-      return false;
-    const ClusterPart placed{part, rest, judge_.judge(rest, part, Eigen::Isometry3d::Identity())};
-    return PartCheck::isMisplaced(placed) || parts_.fitsElsewhere(placed) || parts_.mayBeMoved(placed, motions) ||
-           isClaimed(group, placed);
-  });
-  const auto first = std::find(contested.begin(), contested.end(), 1);
-  if (first == contested.end())
-    return false;
-  split(group, parts[first - contested.begin()]);
-  return true;
-}
-
-// Scans that see the same room as the part may be the wrong ones as well, and become alone. What only the part held
-// together falls apart.
-void Assembler::split(std::size_t group, const std::vector<Index>& listed)
-{
-  const auto [part, rest] = divide(groups_[group].cluster, listed);
-  std::vector<Index> alone;
-  for (std::size_t i = 0; i < rest.scans.size(); ++i)
-    for (std::size_t k = 0; k < part.scans.size(); ++k)
-      if (checkRoughly(input_.scans[rest.scans[i]], input_.scans[part.scans[k]],
-                       rest.poses[i].inverse() * part.poses[k], check_level)
-              .overlap > one_room) {
-        alone.push_back(rest.scans[i]);
-        break;
-      }
-  const std::vector<std::vector<Index>> parts = std::move(groups_[group].parts);
-  groups_.erase(groups_.begin() + group);
-  const ScanCluster left = divide(rest, alone).second;
-  for (const ScanCluster& held : parts_.heldTogether(left))
-    groups_.insert(groups_.begin() + group, {next_id_++, held, parts});
-  groups_.push_back({next_id_++, part, parts});
-  const Refusal contested{RefusalReason::claimed, rest.scans.empty() ? -1 : rest.scans[0]};
-  groups_.back().cluster.refusal = contested;
-  for (const Index scan : alone)
-    groups_.push_back({next_id_++, {{scan}, {Eigen::Isometry3d::Identity()}, contested}});
-}
-
-ScanGraph Assembler::checked()
-{
-  for (std::size_t g = 0; g < groups_.size();)
-    g += splitContested(g) ? 0 : 1;
   ScanGraph graph;
   for (const Group& group : groups_)
     graph.clusters.push_back(group.cluster);
@@ -300,7 +177,7 @@ ScanGraph assembleScans(const GraphInput& input)
 {
   Assembler assembler(input);
   assembler.joinAll();
-  return assembler.checked();
+  return assembler.graph();
 }
 
 } // namespace fresco::registration
