@@ -42,6 +42,32 @@ TEST(VolumetricLaws, UnscreenedSolutionIsTheIndicatorFunction)
     }
 }
 
+/// The integral of V . grad 1 is 0. Else empty space would have sources, and chi would rise or fall there.
+TEST(VolumetricLaws, RightHandSidesSumUpToZero)
+{
+  std::vector<Index> upper;
+  const PointSet all = sphere(60000);
+  for (Index i = 0; i < all.size(); ++i)
+    if (all.points(2, i) > 0.3f)
+      upper.push_back(i);
+  for (const int depth : {5, 6, 7}) {
+    Samples samples = gatherSamples(selectPoints(all, upper), atDepth(depth));
+    const Octree tree = buildOctree(samples.codes, depth, 4, 1);
+    estimateDensity(tree, Density(tree, samples, 1), 1.f, samples, 1);
+    const Constraints constraints = splatNormals(tree, finestLevel(samples, 1), normalsOf(samples, 1), 1);
+    double sum = 0, absolute = 0;
+    for (Index b = 0; b < tree.levels[4].size(); ++b) {
+      float held[nodes_per_brick];
+      constraints.fine[4].loadHeld(tree.levels[4], b, held);
+      for (const float value : held) {
+        sum += value;
+        absolute += std::abs(value);
+      }
+    }
+    EXPECT_LT(std::abs(sum), 1e-5 * absolute) << depth;
+  }
+}
+
 /// Each row of weights sums to one, has the derivative of its values, and stands for hat functions averaged evenly: linear
 /// functions are kept.
 template <typename Weights>

@@ -110,11 +110,17 @@ private:
         visit(first(dx), y, z, last(dx) - first(dx) + 1);
   }
 
+  /// What no brick holds goes to the border beside it: chi is given there, but coarser depths get the sum. Else normals
+  /// would not cancel, and empty space would have sources.
   void addAlone(const BrickLevel& level, Index brick, int x, int y, int z, NodeField& field) const
   {
-    if (const float value = data_[index(x, y, z)]; value != 0.f)
-      if (const NodePlace place = findNode(level, brick, x, y, z); std::max(place.own, place.rim) >= 0)
-        field.at(place) += value;
+    if (const float value = data_[index(x, y, z)]; value != 0.f) {
+      NodePlace place = findNode(level, brick, x, y, z);
+      if (std::max(place.own, place.rim) < 0)
+        place = findNode(level, brick, std::clamp(x, 0, brick_cells), std::clamp(y, 0, brick_cells),
+                         std::clamp(z, 0, brick_cells));
+      field.at(place) += value;
+    }
   }
 
   std::array<float, side * side * side> data_;

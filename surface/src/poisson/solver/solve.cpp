@@ -8,6 +8,7 @@
 #include "poisson/solver/transfer.h"
 #include <algorithm>
 #include <cmath>
+#include <utility>
 namespace fresco::poisson {
 SampleLevels sampleLevels(SampleLevel&& finest, const Array<Eigen::Vector3f>& normals, const Octree& tree, int threads)
 {
@@ -24,12 +25,8 @@ LevelSystem systemOf(const PoissonProblem& problem, int depth, const VolumetricO
   const Octree& tree = problem.tree;
   const BrickLevel& level = tree.levels[depth];
   const SampleLevel& joined = problem.levels[std::min(depth + 1, tree.depth)];
-  return {level,
-          joined,
-          expectedValues(level, problem.levels[depth], joined, tree.depth, options.threads),
-          tree.depth,
-          options.point_weight,
-          options.threads};
+  Array<float> expected = expectedValues(level, problem.levels[depth], joined, tree.depth, options.threads);
+  return {level, joined, std::move(expected), tree.depth, options.point_weight, options.threads};
 }
 
 /// The depths at which the octree is complete.
