@@ -185,18 +185,9 @@ def turned(R, vector):
     return (np.eye(3) + np.sin(angle) * K + (1 - np.cos(angle)) * K @ K) @ R
 
 
-def blurred(light, deviation):
-    """along the rows, as of a hand that moves"""
-    reach = int(3 * deviation)
-    weights = np.exp(-0.5 * (np.arange(-reach, reach + 1) / max(deviation, 1e-9)) ** 2)
-    padded = np.pad(light, ((0, 0), (reach, reach), (0, 0)), "edge")
-    return sum(w * padded[:, k:k + light.shape[1]] for k, w in enumerate(weights / weights.sum()))
-
-
-def write_room(folder, views, width, height, seed=1, exposure=1.0, shift=0.0, turn=0.0, blur=(0, 1)):
+def write_room(folder, views, width, height, seed=1, exposure=1.0, shift=0.0, turn=0.0):
     """@param exposure  factors of the photographs lie between 1 / this and this
-    @param shift, turn  deviation of the written cameras, metres and degrees
-    @param blur         deviation in pixels, of every so manieth photograph"""
+    @param shift, turn  deviation of the written cameras, metres and degrees"""
     lights = os.path.join(os.path.dirname(folder), "lights")  # of all faults together
     for sub in ("cameras", "images", "truth_images"):
         os.makedirs(f"{folder}/{sub}", exist_ok=True)
@@ -215,8 +206,6 @@ def write_room(folder, views, width, height, seed=1, exposure=1.0, shift=0.0, tu
         Image.fromarray((255 * light + 0.5).clip(0, 255).astype(np.uint8)).save(f"{folder}/truth_images/view_{k:03}.png",
                                                                               compress_level=1)
         factor = exposure ** random.uniform(-1, 1) * (1 + (0.1 * random.uniform(-1, 1, 3) if exposure > 1 else 0))
-        if blur[0] and k % blur[1] == 0:
-            light = blurred(light, blur[0])
         noise = np.random.default_rng(k).normal(0, 1.5, light.shape)
         Image.fromarray((255 * light * factor + noise + 0.5).clip(0, 255).astype(np.uint8)).save(
             f"{folder}/images/view_{k:03}.jpg", quality=95, subsampling=0)

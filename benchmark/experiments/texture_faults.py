@@ -16,6 +16,7 @@ import subprocess
 import fine_room
 import numpy as np
 from PIL import Image
+from scipy.ndimage import shift
 
 KEEP_OUT = 7
 
@@ -35,7 +36,7 @@ def grown(mask):
     return out
 
 
-def with_border(picture):
+def with_border(picture, _):
     """black, and soft by resampling"""
     out = picture.copy()
     out[beyond_pincushion(*picture.shape[:2])] = 0
@@ -44,12 +45,12 @@ def with_border(picture):
     return out
 
 
-def with_alpha(picture):
+def with_alpha(picture, _):
     alpha = np.where(beyond_pincushion(*picture.shape[:2]), 0, 255)
     return np.dstack([picture * (alpha[..., None] > 0), alpha])
 
 
-def with_fringe(picture):
+def with_fringe(picture, _):
     """chromatic aberration beside what is clipped, 5 pixels of 1280"""
     clipped = picture.min(2) >= 250
     near = clipped
@@ -58,6 +59,17 @@ def with_fringe(picture):
     out = picture.copy()
     out[near & ~clipped] += [60, 0, 60]
     return np.minimum(out, 255)
+
+
+def smeared_third(picture, number):
+    """every third as by a hand that moves in a random direction; the sensor's noise comes after"""
+    if number % 3:
+        return picture
+    random = np.random.default_rng(number)
+    angle, length = random.uniform(0, np.pi), 8
+    steps = np.linspace(-0.5, 0.5, 4 * length + 1) * length
+    moved = sum(shift(picture, (t * np.sin(angle), t * np.cos(angle), 0), order=1, mode="nearest") for t in steps)
+    return (moved / len(steps) + random.normal(0, 1.5, picture.shape) + 0.5).clip(0, 255)
 
 
 FAULTS = [  # name, options of fresco_scan and of fine_room (None: not there), deviation of the mesh's vertices in metres, what
@@ -72,7 +84,7 @@ FAULTS = [  # name, options of fresco_scan and of fine_room (None: not there), d
     ("black borders of undistortion", "", {}, 0, with_border),
     ("alpha of undistortion", "", {}, 0, with_alpha),
     ("exposures, violet fringe at what is clipped", "-exposure 0.75", {"exposure": 2}, 0, with_fringe),
-    ("every 3rd photograph moved by 4 pixels", None, {"blur": (4, 3)}, 0, None),
+    ("every 3rd photograph smeared by 8 pixels", "", {}, 0, smeared_third),
 ]
 
 
@@ -132,10 +144,10 @@ def write_noisy(mesh, deviation, out):
 
 def change_photographs(folder, change):
     """in place, as PNG files"""
-    for name in os.listdir(f"{folder}/images"):
+    for number, name in enumerate(sorted(os.listdir(f"{folder}/images"))):
         picture = np.array(Image.open(f"{folder}/images/{name}").convert("RGB")).astype(float)
         os.remove(f"{folder}/images/{name}")
-        Image.fromarray(change(picture).astype(np.uint8)).save(f"{folder}/images/{os.path.splitext(name)[0]}.png",
+        Image.fromarray(change(picture, number).astype(np.uint8)).save(f"{folder}/images/{os.path.splitext(name)[0]}.png",
                                                                compress_level=1)
     lines = open(f"{folder}/cameras/images.txt").read()
     open(f"{folder}/cameras/images.txt", "w").write(lines.replace(".jpg", ".png"))

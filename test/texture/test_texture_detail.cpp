@@ -102,6 +102,48 @@ TEST(TextureDetail, NotWherePhotographsAreNotKnownToAgree)
   EXPECT_TRUE(sameAtlases(reconstructTexture(mesh, views, painted), reconstructTexture(mesh, views, asked)));
 }
 
+/// As by a hand that moves askew while the shutter is open; then noise of the sensor.
+void smear(int pixels, Image& photo)
+{
+  std::mt19937 random(7);
+  std::normal_distribution<double> noise(0, 2);
+  const Image still = photo;
+  for (int y = 0; y < photo.height; ++y)
+    for (int x = 0; x < photo.width; ++x)
+      for (int c = 0; c < 3; ++c) {
+        double sum = 0;
+        for (int k = 0; k < pixels; ++k)
+          sum += still.pixel(std::clamp(x + k - pixels / 2, 0, photo.width - 1),
+                             std::clamp(y + k - pixels / 2, 0, photo.height - 1))[c];
+        photo.pixel(x, y)[c] = static_cast<std::uint8_t>(std::clamp(sum / pixels + noise(random), 0.0, 255.0));
+      }
+}
+
+/// Two rings of photographs, the second one nearer and darker. Smeared by so many pixels.
+std::vector<TextureView> farAndNear(const TriangleMesh& mesh, int smeared)
+{
+  std::vector<TextureView> views = photographsAround(mesh, fine, 4);
+  const Pattern darker = [](const Eigen::Vector3d& p) { return Eigen::Vector3d(0.7 * fine(p)); };
+  for (TextureView& view : photographsAround(mesh, darker, 3.6)) {
+    smear(smeared, view.image);
+    views.push_back(std::move(view));
+  }
+  return views;
+}
+
+TEST(TextureDetail, SharpPhotographsAreTakenBeforeNearerOnesThatAreSmeared)
+{
+  const TriangleMesh mesh = cube();
+  for (const int smeared : {1, 8}) {
+    const auto views = farAndNear(mesh, smeared);
+    const TextureResult result = reconstructTexture(mesh, views, withRounds(2, 1));
+    const int half = static_cast<int>(views.size()) / 2;
+    for (Index f = 0; f < mesh.faceCount(); ++f)
+      EXPECT_EQ(result.face_view[f] >= half, smeared == 1) << f; // darkness and noise are not blur
+    EXPECT_TRUE(sameAtlases(result, reconstructTexture(mesh, views, withRounds(2, 4))));
+  }
+}
+
 TEST(TextureDetail, PatchMapIsTheProjection)
 {
   PatchMesh patches;

@@ -349,7 +349,7 @@ TEST(TextureViews, OfManyViewsThoseThatShowAPatchBestAreKept)
         const float resolution = size(random);
         Candidate candidate{};
         candidate.view = v;
-        candidate.resolution = resolution;
+        candidate.quality = resolution;
         batch.back().push_back({static_cast<int>(p), candidate});
         added[p].emplace_back(-resolution, v);
       }
@@ -366,7 +366,7 @@ TEST(TextureViews, OfManyViewsThoseThatShowAPatchBestAreKept)
     ASSERT_EQ(kept.count(p), static_cast<Index>(added[p].size())) << p;
     for (const auto& [quality, view] : added[p]) {
       ASSERT_NE(kept.find(p, view), nullptr) << p; // found only where views are in order
-      EXPECT_EQ(kept.find(p, view)->resolution, -quality);
+      EXPECT_EQ(kept.find(p, view)->quality, -quality);
     }
   }
   EXPECT_EQ(CandidateTable::mostPerPatch(100000, 60), 60); // a usual room: all

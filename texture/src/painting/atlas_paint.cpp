@@ -6,12 +6,6 @@
 #include <fresco/core/parallel.h>
 namespace fresco::texture {
 namespace {
-void store(const Eigen::Vector3f& color, std::uint8_t* pixel)
-{
-  for (int c = 0; c < 3; ++c)
-    pixel[c] = std::clamp(color[c], 0.f, 255.f) + 0.5f;
-}
-
 /// A view at work: only its own photograph is held.
 struct PaintedView {
   const PaintSources& sources;
@@ -127,7 +121,7 @@ void paintShare(const PaintScene& scene, const PaintedView& view, const PaintedS
       if (const float weight = share.weights.dot(corners); weight > 0)
         color += weight * (sampler(center) + share.offsets * corners);
     }
-    store(color, pixel);
+    storeColor(color, pixel);
   });
 }
 } // namespace
@@ -160,8 +154,8 @@ void paintTexels(const PaintScene& scene, const PaintSources& sources,
         return;
       const PatchSampler sampler(scene, frame.map, view, texels[runs[r]].patch);
       for (std::size_t k = runs[r]; k < runs[r + 1]; ++k)
-        store(sampler(frame.place(texels[k].x, texels[k].y)),
-              atlases[frame.chart.atlas].pixel(frame.chart.x + texels[k].x, frame.chart.y + texels[k].y));
+        storeColor(sampler(frame.place(texels[k].x, texels[k].y)),
+                   atlases[frame.chart.atlas].pixel(frame.chart.x + texels[k].x, frame.chart.y + texels[k].y));
     });
   });
 }
@@ -196,7 +190,7 @@ void paintUnseen(const PaintScene& scene, const Points& colors, std::vector<Imag
     frame.forTexels([&](const Eigen::Vector2f& center, int x, int y) {
       x += frame.chart.x;
       y += frame.chart.y;
-      store(corners * frame.inside(center), atlases[frame.chart.atlas].pixel(x, y));
+      storeColor(corners * frame.inside(center), atlases[frame.chart.atlas].pixel(x, y));
       *masks[frame.chart.atlas].pixel(x, y) = 255;
     });
   });

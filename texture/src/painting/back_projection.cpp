@@ -49,7 +49,7 @@ private:
     constexpr float least_weight = 0.1f; // of the best view's: less than a third of its resolution adds only blur
     float best = 0, sum = 0;
     for (Index c = all.begin[patch]; c < all.begin[patch + 1]; ++c) {
-      const float quality = all.list[c].quality() * std::exp2(-sources_.penalties[c]);
+      const float quality = all.list[c].quality * std::exp2(-sources_.penalties[c]);
       weights_[c] = quality * quality;
       best = std::max(best, weights_[c]);
     }
@@ -175,9 +175,7 @@ private:
     Image& atlas = atlases_[frame.chart.atlas];
     frame.forTexels([&](const Eigen::Vector2f&, int x, int y) {
       std::uint8_t* p = atlas.pixel(frame.chart.x + x, frame.chart.y + y);
-      const Eigen::Vector4f& value = values[next++];
-      for (int c = 0; c < 3; ++c)
-        p[c] = std::clamp(p[c] + value[c], 0.f, 255.f) + 0.5f;
+      storeColor(Eigen::Vector3f(p[0], p[1], p[2]) + values[next++].head<3>(), p);
     });
   }
 

@@ -76,7 +76,7 @@ private:
     const Candidates& all = sources_.candidates;
     std::vector<std::pair<float, int>> ranked; // quality, view
     for (Index c = all.begin[patch_]; c < all.begin[patch_ + 1]; ++c)
-      ranked.emplace_back(all.list[c].quality() * std::exp2(-sources_.penalties[c]), all.list[c].view);
+      ranked.emplace_back(all.list[c].quality * std::exp2(-sources_.penalties[c]), all.list[c].view);
     std::stable_sort(ranked.begin(), ranked.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
     for (const auto& [quality, view] : ranked) {
       std::vector<char> mixed(choice.size(), 0);

@@ -16,10 +16,8 @@ Image asRgb(const Image& in)
   if (in.channels == 3)
     return in;
   Image out(in.width, in.height, 3);
-  for (int y = 0; y < in.height; ++y)
-    for (int x = 0; x < in.width; ++x)
-      for (int c = 0; c < 3; ++c)
-        out.pixel(x, y)[c] = in.pixel(x, y)[in.channels >= 3 ? c : 0];
+  for (std::size_t i = 0; i < out.data.size(); ++i)
+    out.data[i] = in.data[i / 3 * in.channels + (in.channels >= 3 ? i % 3 : 0)];
   return out;
 }
 
@@ -192,34 +190,28 @@ Image withinReach(Image mask)
   return mask;
 }
 
-namespace {
-constexpr int taps = 4; // of the cubic
-
-/// Rows weighted and added first: number 3 * a + c of tap a and channel c.
-void addRow(const std::uint8_t* row, float weight, simd::Float4 (&sum)[3])
-{
-  for (int i = 0; i < 3; ++i)
-    sum[i] += weight * simd::floatsOf(row + 4 * i);
-}
-} // namespace
-
 Eigen::Vector3f samplePhoto(const Image& photo, float x, float y)
 {
   const float u = std::clamp(x - 0.5f, 0.f, photo.width - 1.f), v = std::clamp(y - 0.5f, 0.f, photo.height - 1.f);
   const int i = u, j = v;
   const Eigen::Vector4f wx = cubicWeights(u - i), wy = cubicWeights(v - j);
-  simd::Float4 rows[3] = {};
+  constexpr int taps = 4;    // of the cubic
+  simd::Float4 rows[3] = {}; // weighted and added first: number 3 * a + c of tap a and channel c
+  const auto addRow = [&](const std::uint8_t* row, float weight) {
+    for (int k = 0; k < 3; ++k)
+      rows[k] += weight * simd::floatsOf(row + 4 * k);
+  };
   const bool inside = i >= 1 && i + 2 < photo.width;
   for (int b = 0; b < taps; ++b) {
     const int row = std::clamp(j + b - 1, 0, photo.height - 1);
     if (inside) {
-      addRow(photo.pixel(i - 1, row), wy[b], rows);
+      addRow(photo.pixel(i - 1, row), wy[b]);
       continue;
     }
     std::uint8_t pixels[3 * taps];
     for (int a = 0; a < taps; ++a)
       std::copy_n(photo.pixel(std::clamp(i + a - 1, 0, photo.width - 1), row), 3, pixels + 3 * a);
-    addRow(pixels, wy[b], rows);
+    addRow(pixels, wy[b]);
   }
   float sum[3 * taps];
   std::memcpy(sum, rows, sizeof sum);

@@ -64,4 +64,11 @@ Eigen::Vector3f samplePhoto(const Image& photo, float x, float y);
 
 /// The same by bilinear interpolation.
 Eigen::Vector3f samplePhotoQuickly(const Image& photo, float x, float y);
+
+/// Rounded to a pixel's three bytes.
+inline void storeColor(const Eigen::Vector3f& color, std::uint8_t* pixel)
+{
+  for (int c = 0; c < 3; ++c)
+    pixel[c] = std::clamp(color[c], 0.f, 255.f) + 0.5f;
+}
 } // namespace fresco::texture

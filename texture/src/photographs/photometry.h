@@ -39,7 +39,9 @@ struct Photometry {
   std::vector<int> lens;               ///< V, into `falloff`; -1 where all is let through
   std::vector<LensFalloff> falloff;    ///< of each lens
   std::vector<ResponseCurve> response; ///< of each lens
+  Eigen::VectorXf sharpness;           ///< V, octaves of the contrast that fine texture has; empty: not known
 
+  float sharpnessOf(int view) const { return sharpness.size() == 0 ? 0.f : sharpness[view]; }
   LensFalloff falloffOf(int view) const { return lens.empty() || lens[view] < 0 ? LensFalloff{} : falloff[lens[view]]; }
 
   /// Null where it is straight.

@@ -66,9 +66,7 @@ Image cutPanorama(const Image& wrapped, const ViewPart& part)
       if (part.given->mirrored)
         ray.x() = -ray.x();
       const Eigen::Vector2f at = project(panorama, ray).cast<float>();
-      const Eigen::Vector3f color = samplePhoto(wrapped, at.x() + wrapped_columns, at.y());
-      for (int c = 0; c < 3; ++c)
-        out.pixel(x, y)[c] = std::clamp(color[c], 0.f, 255.f) + 0.5f;
+      storeColor(samplePhoto(wrapped, at.x() + wrapped_columns, at.y()), out.pixel(x, y));
     }
   return out;
 }

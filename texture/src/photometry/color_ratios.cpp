@@ -17,10 +17,20 @@ Eigen::Vector3f logColor(const Candidate& c)
   return Eigen::Vector3f(c.color[0], c.color[1], c.color[2]).array().log();
 }
 
+/// NaN unless both are clearly more than noise: an outline of what stands before a plain surface is no sharpness.
+/// @param log_light of the first view over the second
+float contrastRatio(const Candidate& first, const Candidate& second, float log_light)
+{
+  constexpr float noise = 24; // square of half grey levels
+  const float a = first.contrast * first.contrast, b = second.contrast * second.contrast;
+  return std::min(a, b) < 4 * noise ? NAN : std::log2((a + noise) / (b + noise)) - 2 * float(M_LOG2E) * log_light;
+}
+
 ColorRatio ratioOf(const Candidate& first, const Candidate& second)
 {
   const Eigen::Vector3f a = logColor(first), b = logColor(second);
-  return {a - b, 0.5f * (a + b), {first.squaredRadius(), second.squaredRadius()}};
+  const float contrast = contrastRatio(first, second, (a - b).mean());
+  return {a - b, 0.5f * (a + b), {first.squaredRadius(), second.squaredRadius()}, contrast};
 }
 
 void addPatch(const Candidates& candidates, const std::vector<int>& owner, Index patch, ColorRatios& pairs)
@@ -30,11 +40,11 @@ void addPatch(const Candidates& candidates, const std::vector<int>& owner, Index
   const Candidate* list = candidates.of(patch);
   const float best = candidates.bestQuality(patch);
   for (Index i = 0; i < candidates.count(patch); ++i) {
-    if (list[i].quality() < trusted * best || !isClear(list[i]))
+    if (list[i].quality < trusted * best || !isClear(list[i]))
       continue;
     for (Index j = i + 1; j < candidates.count(patch); ++j)
       if (const int a = owner[list[i].view], b = owner[list[j].view];
-          a != b && list[j].quality() >= trusted * best && isClear(list[j])) {
+          a != b && list[j].quality >= trusted * best && isClear(list[j])) {
         auto& ratios = pairs[{a, b}];
         if (ratios.size() < most_samples)
           ratios.push_back(ratioOf(list[i], list[j]));

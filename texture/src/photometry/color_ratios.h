@@ -8,6 +8,7 @@ struct ColorRatio {
   Eigen::Vector3f log_ratio; ///< of the first view's colour over the second's
   Eigen::Vector3f log_mean;  ///< mean of the colours' logarithms, as photographed
   float radius[2];           ///< squared, in either photograph
+  float contrast;            ///< octaves of the first's relative variance within the patch over the second's; NaN: none
 };
 
 /// By the pair of views' owners.

@@ -62,7 +62,7 @@ void bringTogether(const SurfaceSamples& samples, int threads, Points& values, P
       Candidate candidate{};
       candidate.view = patch.scan;
       candidate.color = {std::uint8_t(color[0]), std::uint8_t(color[1]), std::uint8_t(color[2])};
-      candidate.resolution = 1;
+      candidate.quality = 1;
       candidates.list.push_back(candidate);
     }
     candidates.begin.push_back(candidates.list.size());

@@ -55,7 +55,6 @@ void paintPhotographs(const PaintScene& scene, const PaintSources& sources, Eige
   paintTexels(scene, sources, beside.by_view, result.model.atlases);
   fillUnknown(scene, beside.unknown, result.model.atlases, result.masks);
 }
-
 } // namespace
 
 void Steps::begin(const std::string& step, double share)

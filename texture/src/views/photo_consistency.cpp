@@ -39,7 +39,7 @@ std::vector<Vote> votesOf(const VoteInput& of, Index patch, const std::vector<fl
   const Eigen::Vector3f middle = patches.middle(patch);
   std::vector<Vote> out;
   for (Index c = candidates.begin[patch]; c < candidates.begin[patch + 1]; ++c)
-    if (const Candidate& candidate = candidates.list[c]; candidate.quality() >= trusted * best && !candidate.clipped)
+    if (const Candidate& candidate = candidates.list[c]; candidate.quality >= trusted * best && !candidate.clipped)
       out.push_back({candidate.corrected(photometry),
                      (input.views.projectors[candidate.view].center() - middle).normalized(),
                      expected.empty() ? 1.f : trustOf(expected[c])});
@@ -170,11 +170,19 @@ PhotoConsistency photoConsistency(const PatchMesh& patches, const Candidates& ca
     }
   difference = smoothed(of, std::move(difference));
   out.penalties.resize(difference.size());
-  parallelFor(difference.size(), input.options.threads, [&](Index c) {
-    const float octaves = difference[c] / one_octave;
-    const Candidate& shown = candidates.list[c];
-    out.penalties[c] = std::min(octaves * octaves, most_octaves) +
-                       (shown.clipped ? clipped_octaves + 2 * std::log2(darkest / photometry.gains(1, shown.view)) : 0);
+  // below 0.4 octaves, contrast differs by the directions seen from
+  parallelFor(patches.size(), input.options.threads, [&](Index i) {
+    const auto at = [&](Index c) { return photometry.sharpnessOf(candidates.list[c].view); };
+    float sharpest = -HUGE_VALF;
+    for (Index c = candidates.begin[i]; c < candidates.begin[i + 1]; ++c)
+      sharpest = std::max(sharpest, at(c));
+    for (Index c = candidates.begin[i]; c < candidates.begin[i + 1]; ++c) {
+      const float octaves = difference[c] / one_octave;
+      const Candidate& shown = candidates.list[c];
+      out.penalties[c] =
+          std::min(octaves * octaves, most_octaves) + std::max(0.f, sharpest - at(c) - 0.4f) +
+          (shown.clipped ? clipped_octaves + 2 * std::log2(darkest / photometry.gains(1, shown.view)) : 0);
+    }
   });
   return out;
 }

@@ -30,7 +30,7 @@ Labels labelsOf(const PatchMesh& patches, const ViewCosts& costs)
   for (Index i = 0; i < patches.size(); ++i) {
     kept.clear();
     for (Index c = costs.candidates.begin[i]; c < costs.candidates.begin[i + 1]; ++c)
-      kept.push_back({costs.candidates.list[c].view, costs.extra[c] - std::log2(costs.candidates.list[c].quality())});
+      kept.push_back({costs.candidates.list[c].view, costs.extra[c] - std::log2(costs.candidates.list[c].quality)});
     std::sort(kept.begin(), kept.end(),
               [](const Label& a, const Label& b) { return a.cost != b.cost ? a.cost < b.cost : a.view < b.view; });
     kept.resize(std::min(kept.size(), most_labels));

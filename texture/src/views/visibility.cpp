@@ -83,11 +83,9 @@ public:
           penalty += limits_.pose_uncertainty * outline_penalty;
         else if (isAtRim(patch, farthest, rim, outline_))
           penalty += limits_.pose_uncertainty * rim_penalty;
-        const float resolution = view_.focal() * cosine / (0.5f * (patch.nearest + patch.farthest));
         Candidate candidate = colored(*photo, i);
         candidate.view = number;
-        candidate.penalty = 16 * penalty;
-        candidate.resolution = resolution;
+        candidate.quality = view_.focal() * cosine / (0.5f * (patch.nearest + patch.farthest)) * std::exp2(-penalty);
         seen.push_back({static_cast<int>(i), candidate});
       }
     return seen;
@@ -129,16 +127,18 @@ private:
     const Eigen::Matrix3f at = corners(i);
     const Eigen::Vector2f middle = at.topRows<2>().rowwise().mean();
     Eigen::Vector3f sum = samplePhotoQuickly(photo, middle.x(), middle.y());
-    float brightest = sum.maxCoeff();
+    float brightest = sum.maxCoeff(), squares = sum.squaredNorm();
     for (int k = 0; k < 3; ++k) {
       const Eigen::Vector2f p = 0.5f * (middle + at.col(k).head<2>());
       const Eigen::Vector3f color = samplePhotoQuickly(photo, p.x(), p.y());
       brightest = std::max(brightest, color.maxCoeff());
+      squares += color.squaredNorm();
       sum += color;
     }
     Candidate out{};
     for (int c = 0; c < 3; ++c)
       out.color[c] = sum[c] / 4 + 0.5f;
+    out.contrast = std::min(255.f, 2 * std::sqrt(std::max(0.f, squares - sum.squaredNorm() / 4) / 9) + 0.5f);
     out.clipped = brightest >= clipped;
     out.radius = storedRadius(squaredRadius(view_.camera(), middle));
     return out;
@@ -204,9 +204,8 @@ void CandidateTable::keep(const Candidate& candidate, Candidate* first, Index& c
   if (count == most_) {
     Candidate* worst = first; // of equal ones the last
     for (Candidate* c = first + 1; c < last; ++c)
-      if (!(c->quality() > worst->quality()))
-        worst = c;
-    if (!(candidate.quality() > worst->quality()))
+      worst = c->quality > worst->quality ? worst : c;
+    if (!(candidate.quality > worst->quality))
       return;
     std::move(worst + 1, last, worst);
     --last;
@@ -220,7 +219,7 @@ float Candidates::bestQuality(Index patch) const
 {
   float best = 0;
   for (Index c = begin[patch]; c < begin[patch + 1]; ++c)
-    best = std::max(best, list[c].quality());
+    best = std::max(best, list[c].quality);
   return best;
 }
 

@@ -16,10 +16,11 @@ struct Candidate {
   std::uint32_t clipped : 1;         ///< a part of the patch is overexposed
   std::uint32_t radius : 8;          ///< of the patch's middle in the photograph, see storedRadius()
   std::array<std::uint8_t, 3> color; ///< mean over the patch in the photograph
-  std::uint8_t penalty; ///< octaves / 16 by which the view is to be trusted less: outlines, the image's border
-  float resolution;     ///< pixels per mesh unit in the direction seen most obliquely
+  std::uint8_t contrast;             ///< half grey levels, deviation within the patch
+  /// Pixels per mesh unit in the direction seen most obliquely, less where the view is to be trusted less: outlines, the
+  /// image's border.
+  float quality;
 
-  float quality() const { return resolution * std::exp2(penalty * (-1 / 16.f)); }
   float squaredRadius() const { return static_cast<float>(radius) / radius_steps; }
   Eigen::Vector3f corrected(const Photometry& photometry) const
   {
