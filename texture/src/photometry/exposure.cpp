@@ -3,66 +3,65 @@
 #include "photometry/lens_calibration.h"
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <fresco/core/robust_weights.h>
 #include <fresco/core/statistics.h>
 namespace fresco::texture {
 namespace {
-/// Logarithms of the views, with mean 0, whose differences are the medians of their pairs.
-/// @param outlier pairs off by more count less (Cauchy): of exposures by 3 %, of contrasts by 0.3 octaves
-/// @param valueOf difference at a place that both views show; NaN: none
-template <typename ValueOf>
-Eigen::VectorXd solvePairs(const ColorRatios& pairs, Index views, double outlier, const ValueOf& valueOf)
+/// A row for the logarithm of the light of each channel and one for the octaves of contrast of the views, each with mean 0,
+/// whose differences are the medians of their pairs.
+Eigen::Array4Xd solvePairs(const ColorRatios& pairs, Index views)
 {
   constexpr std::size_t least_samples = 12; // per pair of views, for a median to count
   constexpr int rounds = 10;                // of reweighting
-  constexpr double regularization = 1e-3;   // holds views without partners at 0; nothing beside a pair's weight
+  // of pairs, off by more count less (Cauchy): light by 3 %, contrasts, of variances within patches, by ten times as much
+  constexpr double outlier = 0.03;
   struct Equation {
     int first, second;
     double difference, weight;
   };
-  std::vector<Equation> equations;
+  std::array<std::vector<Equation>, 4> equations;
   for (const auto& [key, ratios] : pairs) {
-    std::vector<float> values;
+    std::array<std::vector<float>, 4> values;
     for (const ColorRatio& ratio : ratios)
-      if (const float value = valueOf(ratio); std::isfinite(value))
-        values.push_back(value);
-    if (values.size() >= least_samples)
-      equations.push_back({key.first, key.second, median(values), std::sqrt(values.size())});
+      for (int row = 0; row < 4; ++row)
+        if (const float value = row < 3 ? ratio.log_ratio[row] : ratio.contrast; std::isfinite(value))
+          values[row].push_back(value);
+    for (int row = 0; row < 4; ++row)
+      if (const std::size_t count = values[row].size(); count >= least_samples)
+        equations[row].push_back({key.first, key.second, median(values[row]), std::sqrt(count)});
   }
-  Eigen::VectorXd x = Eigen::VectorXd::Zero(views);
-  for (int round = 0; round < rounds; ++round) {
-    Eigen::MatrixXd A = regularization * Eigen::MatrixXd::Identity(views, views);
-    Eigen::VectorXd b = Eigen::VectorXd::Zero(views);
-    for (const Equation& e : equations) {
-      const double error = x[e.first] - x[e.second] - e.difference;
-      const double w = round == 0 ? e.weight : e.weight * cauchyWeight(error * error / (outlier * outlier));
-      A(e.first, e.first) += w;
-      A(e.second, e.second) += w;
-      A(e.first, e.second) -= w;
-      A(e.second, e.first) -= w;
-      b[e.first] += w * e.difference;
-      b[e.second] -= w * e.difference;
+  Eigen::Array4Xd out(4, views);
+  for (int row = 0; row < 4; ++row) {
+    Eigen::VectorXd x = Eigen::VectorXd::Zero(views);
+    for (int round = 0; round < rounds; ++round) {
+      Eigen::MatrixXd A = 1e-3 * Eigen::MatrixXd::Identity(views, views); // holds views without partners at 0
+      Eigen::VectorXd b = Eigen::VectorXd::Zero(views);
+      for (const Equation& e : equations[row]) {
+        const double error = (x[e.first] - x[e.second] - e.difference) / (row < 3 ? outlier : 10 * outlier);
+        const double w = round == 0 ? e.weight : e.weight * cauchyWeight(error * error);
+        A(e.first, e.first) += w;
+        A(e.second, e.second) += w;
+        A(e.first, e.second) -= w;
+        A(e.second, e.first) -= w;
+        b[e.first] += w * e.difference;
+        b[e.second] -= w * e.difference;
+      }
+      x = A.ldlt().solve(b);
     }
-    x = A.ldlt().solve(b);
+    out.row(row) = x.transpose();
   }
-  return x;
+  return out;
 }
 
-Points solveGains(const ColorRatios& pairs, const std::vector<int>& owner)
-{
-  Points gains(3, owner.empty() ? 0 : 1 + *std::max_element(owner.begin(), owner.end()));
-  for (int c = 0; c < 3; ++c) {
-    const auto valueOf = [c](const ColorRatio& ratio) { return ratio.log_ratio[c]; };
-    gains.row(c) = (-solvePairs(pairs, gains.cols(), 0.03, valueOf).array()).exp().cast<float>();
-  }
-  return gains(Eigen::all, owner);
-}
+Points gainsOf(const Eigen::Array4Xd& levels) { return (-levels.topRows<3>()).exp().cast<float>(); }
 } // namespace
 
 Points solveGains(const Candidates& candidates, const std::vector<int>& owner)
 {
-  return solveGains(collectColorRatios(candidates, owner), owner);
+  const Index owners = owner.empty() ? 0 : 1 + *std::max_element(owner.begin(), owner.end());
+  return gainsOf(solvePairs(collectColorRatios(candidates, owner), owners))(Eigen::all, owner);
 }
 
 Photometry solvePhotometry(const Candidates& candidates, const std::vector<int>& lenses, const std::vector<int>& owner)
@@ -78,9 +77,9 @@ Photometry solvePhotometry(const Candidates& candidates, const std::vector<int>&
   out.lens = lenses;
   calibrateLenses(pairs, lens_of_owner, out);
   correctRatios(out, lens_of_owner, pairs);
-  out.gains = solveGains(pairs, owner);
-  const auto contrastOf = [](const ColorRatio& ratio) { return ratio.contrast; };
-  out.sharpness = solvePairs(pairs, lens_of_owner.size(), 0.3, contrastOf)(owner).cast<float>();
+  const Eigen::Array4Xd levels = solvePairs(pairs, lens_of_owner.size());
+  out.gains = gainsOf(levels)(Eigen::all, owner);
+  out.sharpness = levels.row(3).transpose()(owner).matrix().cast<float>();
   return out;
 }
 
