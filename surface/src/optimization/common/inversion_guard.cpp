@@ -32,10 +32,8 @@ Vector3d areaAround(const MeshGraph& graph, const Positions& x, Index f)
 {
   Vector3d sum = Vector3d::Zero();
   for (int k = 0; k < 3; ++k)
-    for (const int g : facesAround(graph, graph.faces(k, f))) {
-      const auto corner = graph.faces.col(g);
-      sum += (x.col(corner[1]) - x.col(corner[0])).cross(x.col(corner[2]) - x.col(corner[0]));
-    }
+    for (const int g : facesAround(graph, graph.faces(k, f)))
+      sum += areaVector(graph, x, g);
   return sum;
 }
 

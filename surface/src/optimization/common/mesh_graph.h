@@ -90,6 +90,10 @@ constexpr double small_area = 0.1;
 /// 3xF: areaVector() of every face, zero for degenerate ones.
 Eigen::Matrix3Xd areaVectors(const MeshGraph& graph, const Positions& x, int threads);
 
+/// Leaves of values along the boundary the waves that are longer than about twenty vertices, unchanged, where `part` is 1,
+/// and all of them where it is 0. Taubin 1995, "A signal processing approach to fair surface design".
+void smoothAlongBoundary(const MeshGraph& graph, const Eigen::VectorXf& part, Positions& values, int threads);
+
 /// Mean over edges.
 double meanEdgeLength(const MeshGraph& graph, const Positions& x, int threads);
 } // namespace fresco::optimization

@@ -76,7 +76,8 @@ TriangleMesh movedMesh(const TriangleMesh& mesh, const OptimizationProblem& prob
   moved.faces = problem.graph.faces;
   const Eigen::Vector3d shift = problem.frame.center - mesh.origin;
   parallelFor(mesh.vertexCount(), threads, [&](Index v) {
-    if (problem.x.col(v) != problem.start.col(v) && facesAround(problem.graph, v).size() > 0)
+    if ((problem.graph.border[v] || problem.x.col(v) != problem.start.col(v)) && problem.coverage.vertex[v] &&
+        facesAround(problem.graph, v).size() > 0)
       moved.vertices.col(v) = (problem.frame.unit * problem.x.col(v) + shift).cast<float>();
   });
   if (mesh.normals.cols() > 0)
@@ -115,6 +116,8 @@ OptimizationProblem makeProblem(const TriangleMesh& mesh, const PointSet& points
           reach, " mean edge lengths) of the mesh");
   problem.coverage = findCoverage(problem.graph, problem.x, problem.data,
                                   sharePoints(problem.graph, problem.x, problem.data, threads), threads);
+  smoothAlongBoundary(problem.graph, problem.coverage.nearness, problem.start, threads);
+  problem.x = problem.start;
   problem.start_distance = dataDistances(problem.graph, problem.x, problem.data, threads);
   return problem;
 }

@@ -122,7 +122,9 @@ void undoWorsening(OptimizationProblem& problem, double noise, int threads)
   parallelFor(part.size(), threads, [&](Index v) {
     // Data do not tell where a surface ends, so its boundary moves across it only.
     const Vector3d way = problem.x.col(v) - problem.start.col(v), end = endDirection(problem, v);
-    problem.x.col(v) = problem.start.col(v) + part[v] * (way - way.dot(end) * end);
+    problem.x.col(v) = part[v] * (way - way.dot(end) * end);
   });
+  smoothAlongBoundary(problem.graph, problem.coverage.nearness, problem.x, threads);
+  problem.x += problem.start;
 }
 } // namespace fresco::optimization
