@@ -29,15 +29,13 @@ struct SearchedMesh {
 void repeatFromOutside(const SearchedMesh& mesh, const Eigen::Matrix3Xd& queries, const Points& normals,
                        std::vector<ClosestPoint>& found, double reach, int threads)
 {
-  const auto& graph = mesh.graph;
-  const auto& x = mesh.x;
   parallelFor(queries.cols(), threads, [&](Index i) {
     ClosestPoint& answer = found[i];
     const Vector3d normal = normals.col(i).cast<double>();
-    if (answer.face < 0 || !normal.allFinite() || areaVector(graph, x, answer.face).dot(normal) >= 0.0)
+    if (answer.face < 0 || !normal.allFinite() || areaVector(mesh.graph, mesh.x, answer.face).dot(normal) >= 0.0)
       return;
     answer = mesh.tree.closest(queries.col(i) + normal, reach);
-    if (answer.face < 0 || areaVector(graph, x, answer.face).dot(normal) < 0.0)
+    if (answer.face < 0 || areaVector(mesh.graph, mesh.x, answer.face).dot(normal) < 0.0)
       answer.face = -1;
   });
 }
@@ -134,7 +132,12 @@ public:
     constexpr int longest_walk = 16; // faces; a step moves the mesh by less than 16 edges
     for (int step = 0; step < longest_walk; ++step) {
       const int last = face_;
-      tryNeighbours(featureOf(foot_));
+      const auto [feature, corner] = featureOf(foot_);
+      if (feature == 1)
+        consider(graph_.across(face_, corner));
+      else if (feature == 2)
+        for (const int f : facesAround(graph_, graph_.faces(corner, face_)))
+          consider(f);
       if (face_ == last)
         break;
     }
@@ -142,15 +145,6 @@ public:
   }
 
 private:
-  void tryNeighbours(const ClosestFeature& closest)
-  {
-    if (closest.feature == 1)
-      consider(graph_.across(face_, closest.corner));
-    else if (closest.feature == 2)
-      for (const int f : facesAround(graph_, graph_.faces(closest.corner, face_)))
-        consider(f);
-  }
-
   void consider(int face)
   {
     if (face < 0 || face == face_)

@@ -82,17 +82,6 @@ std::vector<double> spacingOf(const MeshGraph& graph, const DataPoints& data, co
   return second;
 }
 
-std::vector<double> vertexAreas(const MeshGraph& graph, const Positions& x, int threads)
-{
-  const Eigen::Matrix3Xd normals = areaVectors(graph, x, threads);
-  std::vector<double> areas(graph.vertexCount(), 0.0);
-  parallelFor(graph.vertexCount(), threads, [&](Index v) {
-    for (const int f : facesAround(graph, v))
-      areas[v] += normals.col(f).norm() / 6.0;
-  });
-  return areas;
-}
-
 struct NearDatum {
   int datum;
   double share, distance;
@@ -140,17 +129,20 @@ public:
         feet_.col(j) = footOn(graph_, x_, f, data_.points.col(lists_.order[j]).cast<double>());
     });
     const Eigen::VectorXd around = countAround();
-    const std::vector<double> areas = vertexAreas(graph_, x_, threads_);
-    std::vector<double> rate(areas.size()); // of a datum on the vertex
+    const Eigen::RowVectorXd areas = areaVectors(graph_, x_, threads_).colwise().norm() / 6.0; // of a face, per corner
+    std::vector<double> rate(graph_.vertexCount()); // of a datum on the vertex
     coverage_.nearest = nearestData(graph_, x_, data_, lists_, threads_);
     const std::vector<double> spacing = spacingOf(graph_, data_, coverage_.nearest);
     findNearness(spacing);
     for (Index v = 0; v < graph_.vertexCount(); ++v) {
       constexpr double enough = 0.5; // of a datum: takes the whole area
       const double own = ramp(around[v], 0.0, enough);
-      rate[v] = areas[v] / std::max(around[v], enough);
+      double area = 0.0;
+      for (const int f : facesAround(graph_, v))
+        area += areas[f];
+      rate[v] = area / std::max(around[v], enough);
       if (own < 1.0)
-        giveToNearest(v, (1.0 - own) * areas[v], spacing);
+        giveToNearest(v, (1.0 - own) * area, spacing);
     }
     for (Index f = 0; f < graph_.faceCount(); ++f)
       for (int j = lists_.begin[f]; j < lists_.begin[f + 1]; ++j)

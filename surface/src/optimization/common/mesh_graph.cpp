@@ -145,23 +145,21 @@ Eigen::Matrix3Xd areaVectors(const MeshGraph& graph, const Positions& x, int thr
 
 void smoothAlongBoundary(const MeshGraph& graph, const Eigen::VectorXf& part, Positions& values, int threads)
 {
-  constexpr int rounds = 80; // leave a wave of 20 vertices as it is, a quarter of one of 7, nothing of one of 5
-  constexpr double shrink = 0.5, grow = 1.0 / (0.05 - 1.0 / shrink); // 0.05 = 1 - cos(2 pi / 20)
-  std::vector<std::array<int, 3>> curve;                             // vertices, each between its two neighbours
+  constexpr double factors[] = {0.5, 1.0 / (0.05 - 1.0 / 0.5)}; // shrink, grow; 0.05 = 1 - cos(2 pi / 20)
+  std::vector<std::array<int, 3>> curve;                        // vertices, each between its two neighbours
   for (int v = 0; v < graph.vertexCount(); ++v) {
-    std::vector<int> knot;
+    std::vector<int> beside;
     for (const int e : edgesAround(graph, v))
-      if (graph.border[v] && graph.edge_faces[e][0] >= 0 && graph.edge_faces[e][1] < 0)
-        knot.push_back(graph.otherVertex(e, v));
-    if (knot.size() == 2)
-      curve.push_back({knot[0], v, knot[1]});
+      if (graph.edge_faces[e][0] >= 0 && graph.edge_faces[e][1] < 0)
+        beside.push_back(graph.otherVertex(e, v));
+    if (beside.size() == 2)
+      curve.push_back({beside[0], v, beside[1]});
   }
   Positions step(3, curve.size());
-  for (int round = 0; round < rounds; ++round) {
+  for (int round = 0; round < 80; ++round) { // leave a wave of 20 vertices, a quarter of one of 7, nothing of one of 5
     parallelFor(curve.size(), threads, [&](Index i) {
-      const auto [before, v, after] = curve[i];
-      step.col(i) =
-          (round % 2 == 0 ? shrink : grow) * part[v] * (0.5 * (values.col(before) + values.col(after)) - values.col(v));
+      const auto [a, v, b] = curve[i];
+      step.col(i) = factors[round % 2] * part[v] * (0.5 * (values.col(a) + values.col(b)) - values.col(v));
     });
     parallelFor(curve.size(), threads, [&](Index i) { values.col(curve[i][1]) += step.col(i); });
   }

@@ -11,25 +11,6 @@
 #include <utility>
 namespace fresco::optimization {
 namespace {
-
-void validate(const TriangleMesh& mesh, const PointSet& points)
-{
-  require(mesh.faceCount() > 0, "optimisation: the mesh has no faces");
-  validateMesh(mesh);
-  validatePointSet(points);
-  require(points.size() > 0, "optimisation: no points");
-}
-
-void requireMemory(Index faces, Index points)
-{
-  constexpr std::size_t megabyte = 1000000;
-  const std::size_t needed = optimizationMemory(faces, points), there = machineMemory();
-  if (needed > there)
-    throw std::runtime_error(concat("optimisation: ", faces, " faces and ", points, " points take about ",
-                                    needed / megabyte, " MB of memory, there are ", there / megabyte,
-                                    "; a mesh of larger cells takes less"));
-}
-
 // Mean of the vertices that faces name.
 Eigen::Vector3d middleOf(const TriangleMesh& mesh, const MeshGraph& graph)
 {
@@ -90,8 +71,16 @@ OptimizationProblem makeProblem(const TriangleMesh& mesh, const PointSet& points
 {
   constexpr double reach =
       6.0; // mean edge lengths, twice the outlier distance: beyond, a datum has no weight to speak of
-  validate(mesh, points);
-  requireMemory(mesh.faceCount(), points.size());
+  require(mesh.faceCount() > 0, "optimisation: the mesh has no faces");
+  validateMesh(mesh);
+  validatePointSet(points);
+  require(points.size() > 0, "optimisation: no points");
+  constexpr std::size_t megabyte = 1000000;
+  const std::size_t needed = optimizationMemory(mesh.faceCount(), points.size()), there = machineMemory();
+  if (needed > there)
+    throw std::runtime_error(concat("optimisation: ", mesh.faceCount(), " faces and ", points.size(),
+                                    " points take about ", needed / megabyte, " MB of memory, there are ",
+                                    there / megabyte, "; a mesh of larger cells takes less"));
   OptimizationProblem problem;
   problem.graph = buildGraph(mesh.faces, mesh.vertexCount(), threads);
   const Eigen::Vector3d middle = middleOf(mesh, problem.graph);
@@ -116,6 +105,7 @@ OptimizationProblem makeProblem(const TriangleMesh& mesh, const PointSet& points
           reach, " mean edge lengths) of the mesh");
   problem.coverage = findCoverage(problem.graph, problem.x, problem.data,
                                   sharePoints(problem.graph, problem.x, problem.data, threads), threads);
+  // In more detail than their distance data do not tell where a surface ends.
   smoothAlongBoundary(problem.graph, problem.coverage.nearness, problem.start, threads);
   problem.x = problem.start;
   problem.start_distance = dataDistances(problem.graph, problem.x, problem.data, threads);
@@ -135,14 +125,6 @@ void finish(const TriangleMesh& mesh, OptimizationProblem& problem, int threads,
   result.restored_vertices =
       repairInverted(problem.graph, problem.start, problem.coverage.nearness, problem.x, threads);
   result.mesh = movedMesh(mesh, problem, threads);
-}
-
-double rmsMove(const Positions& move, const std::vector<char>& counts, int threads)
-{
-  const double sum =
-      parallelSum(move.cols(), threads, 0.0, [&](Index v) { return counts[v] ? move.col(v).squaredNorm() : 0.0; });
-  const double number = std::count(counts.begin(), counts.end(), char{1});
-  return number > 0 ? std::sqrt(sum / number) : 0.0;
 }
 } // namespace fresco::optimization
 

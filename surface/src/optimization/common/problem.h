@@ -23,7 +23,4 @@ OptimizationProblem makeProblem(const TriangleMesh& mesh, const PointSet& points
 
 /// Puts back what is inverted at the end, and fills what `result` says of mesh and points.
 void finish(const TriangleMesh& mesh, OptimizationProblem& problem, int threads, NormalFilteringResult& result);
-
-/// RMS of the columns where `counts` is set.
-double rmsMove(const Positions& move, const std::vector<char>& counts, int threads);
 } // namespace fresco::optimization

@@ -79,7 +79,10 @@ NormalFilteringStep describe(const OptimizationProblem& problem, const Quadratic
   step.fit = terms.fit;
   step.smoothness = terms.smoothness;
   step.tangential = terms.tangential;
-  step.move = rmsMove(move, problem.coverage.vertex, threads);
+  const std::vector<char>& counts = problem.coverage.vertex;
+  const double sum =
+      parallelSum(move.cols(), threads, 0.0, [&](Index v) { return counts[v] ? move.col(v).squaredNorm() : 0.0; });
+  step.move = std::sqrt(sum / std::max<Index>(1, std::count(counts.begin(), counts.end(), char{1})));
   return step;
 }
 
