@@ -9,6 +9,7 @@
 #include <map>
 #include <random>
 #include <utility>
+#include <vector>
 namespace fresco {
 namespace {
 constexpr float radius = 15.f; // edges of the grid
@@ -33,7 +34,7 @@ std::pair<TriangleMesh, PointSet> raggedDisc(float noise)
     }
   }
   PointSet points;
-  points.points.resize(3, 4 * n * n);
+  points.points.resize(3, n * n); // 0.65 edges apart
   for (Index i = 0; i < points.points.cols(); ++i) {
     const float r = radius * std::sqrt((i + 0.5f) / points.points.cols()), angle = 2.399963f * i; // a sunflower
     points.points.col(i) << r * std::cos(angle), r * std::sin(angle), 0.02f * gaussian(random);
@@ -82,6 +83,34 @@ TEST(Boundary, StaysWhereItIsSmooth)
   EXPECT_NEAR(rimOf(same).radius, rimOf(mesh).radius, 0.02);
   EXPECT_NEAR(rimOf(same).length, 2 * pi * radius, 0.01 * 2 * pi * radius);
   EXPECT_NEAR(surfaceArea(same), pi * radius * radius, 0.003 * pi * radius * radius);
+}
+
+// A square whose data are closer than its vertices has sharp corners as long as the data say so.
+TEST(Boundary, MovesNoFartherThanDataAreApart)
+{
+  constexpr int n = 21;
+  TriangleMesh square;
+  square.vertices.resize(3, n * n);
+  for (int i = 0; i < n * n; ++i)
+    square.vertices.col(i) << i % n, i / n, 0;
+  std::vector<Eigen::Vector3i> faces;
+  for (int i = 0; i < n * (n - 1); ++i)
+    if (i % n < n - 1)
+      for (const Eigen::Vector3i& face : {Eigen::Vector3i(i, i + 1, i + n + 1), Eigen::Vector3i(i, i + n + 1, i + n)})
+        faces.push_back(face);
+  square.faces = Eigen::Map<const Eigen::Matrix3Xi>(faces[0].data(), 3, faces.size());
+  std::vector<double> moved;
+  for (const int per_edge : {1, 5}) {
+    const int side = per_edge * (n - 1);
+    PointSet points;
+    points.points.resize(3, side * side);
+    for (int i = 0; i < side * side; ++i)
+      points.points.col(i) << (i % side + 0.5f) / per_edge, (i / side + 0.5f) / per_edge, 0;
+    const TriangleMesh smooth = filterSurface(square, points).mesh;
+    moved.push_back((smooth.vertices - square.vertices).colwise().norm().maxCoeff());
+    EXPECT_LT(moved.back(), 1.5 / per_edge);
+  }
+  EXPECT_GT(moved[0], 0.4);
 }
 
 TEST(Boundary, SameBitsForAnyNumberOfThreads)

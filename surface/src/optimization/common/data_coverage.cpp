@@ -122,6 +122,7 @@ public:
   {
     coverage_.vertex.assign(graph_.vertexCount(), 0);
     coverage_.nearness.setZero(graph_.vertexCount());
+    coverage_.rate.resize(graph_.vertexCount());
     coverage_.point_weight.setZero(data_.size());
     feet_.resize(3, lists_.order.size());
     parallelFor(graph_.faceCount(), threads_, [&](Index f) {
@@ -130,7 +131,6 @@ public:
     });
     const Eigen::VectorXd around = countAround();
     const Eigen::RowVectorXd areas = areaVectors(graph_, x_, threads_).colwise().norm() / 6.0; // of a face, per corner
-    std::vector<double> rate(graph_.vertexCount()); // of a datum on the vertex
     coverage_.nearest = nearestData(graph_, x_, data_, lists_, threads_);
     const std::vector<double> spacing = spacingOf(graph_, data_, coverage_.nearest);
     findNearness(spacing);
@@ -140,7 +140,7 @@ public:
       double area = 0.0;
       for (const int f : facesAround(graph_, v))
         area += areas[f];
-      rate[v] = area / std::max(around[v], enough);
+      coverage_.rate[v] = area / std::max(around[v], enough);
       if (own < 1.0)
         giveToNearest(v, (1.0 - own) * area, spacing);
     }
@@ -148,7 +148,7 @@ public:
       for (int j = lists_.begin[f]; j < lists_.begin[f + 1]; ++j)
         for (int k = 0; k < 3; ++k)
           coverage_.point_weight[lists_.order[j]] +=
-              static_cast<float>(lists_.share[j] * feet_(k, j) * rate[graph_.faces(k, f)]);
+              static_cast<float>(lists_.share[j] * feet_(k, j) * coverage_.rate[graph_.faces(k, f)]);
     return std::move(coverage_);
   }
 

@@ -7,6 +7,7 @@ struct DataCoverage {
   std::vector<char> vertex;     ///< V, 1 where data are near
   Eigen::VectorXf nearness;     ///< V, 1 near data; falls to 0 where `vertex` does
   std::vector<int> nearest;     ///< V, the nearest datum along the mesh; -1 = none
+  Eigen::VectorXd rate;         ///< V, area of a datum there
   Eigen::VectorXf point_weight; ///< per datum, area that it stands for; 0 where it covers nothing
   double spacing = 0;           ///< between data, median; mean edge lengths
 };

@@ -69,8 +69,7 @@ TriangleMesh movedMesh(const TriangleMesh& mesh, const OptimizationProblem& prob
 
 OptimizationProblem makeProblem(const TriangleMesh& mesh, const PointSet& points, int threads)
 {
-  constexpr double reach =
-      6.0; // mean edge lengths, twice the outlier distance: beyond, a datum has no weight to speak of
+  constexpr double reach = 6.0; // mean edge lengths, twice the outlier distance: beyond, a datum hardly has weight
   require(mesh.faceCount() > 0, "optimisation: the mesh has no faces");
   validateMesh(mesh);
   validatePointSet(points);
@@ -107,7 +106,10 @@ OptimizationProblem makeProblem(const TriangleMesh& mesh, const PointSet& points
                                   sharePoints(problem.graph, problem.x, problem.data, threads), threads);
   // In more detail than their distance data do not tell where a surface ends.
   smoothAlongBoundary(problem.graph, problem.coverage.nearness, problem.start, threads);
-  problem.x = problem.start;
+  const Positions way = problem.start - problem.x;
+  const Eigen::ArrayXd moves = way.colwise().norm(), spacing = problem.coverage.rate.cwiseSqrt();
+  problem.x += way * (spacing / moves.max(1e-12)).min(1.0).matrix().asDiagonal();
+  problem.start = problem.x;
   problem.start_distance = dataDistances(problem.graph, problem.x, problem.data, threads);
   return problem;
 }
