@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "global_alignment.h"
+#include "assembly/part_exchange.h"
 #include "assembly/scan_assembly.h"
 #include "assembly/submap_joining.h"
 #include "graph/cluster_poses.h"
@@ -287,8 +288,10 @@ GlobalAlignment GlobalAligner::run(const Progress& progress)
   const GraphInput input = graphInput();
   for (ScanCluster& cluster : result_.graph.clusters)
     closeLoops(input, known_, cluster);
-  if (!frames_.empty())
+  if (!frames_.empty()) {
     joinSubmaps(input, frames_, result_.graph, progress);
+    partSecondPlaces(input, known_, result_.graph);
+  }
   for (const PreparedScan& scan : scans_)
     result_.aliases.push_back(scan.aliases);
   result_.people_moved = people_moved;

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "assembly/part_exchange.h"
 #include "assembly/scan_assembly.h"
 #include "pair/partial_alias.h"
 #include "pair/self_alignment.h"
@@ -242,7 +243,10 @@ TEST(FloorPlans, ScansOfEqualRoomsInARowFallApart)
   sharePartialAliases(scans, pairs);
   GraphOptions options;
   options.tolerance = 4.f * scans[0].levels.back().voxel;
-  for (const ScanCluster& cluster : assembleScans({scans, pairs, options}).clusters)
+  const GraphInput input(scans, pairs, options);
+  ScanGraph graph = assembleScans(input);
+  partSecondPlaces(input, {}, graph);
+  for (const ScanCluster& cluster : graph.clusters)
     for (std::size_t k = 1; k < cluster.scans.size(); ++k)
       EXPECT_LT(poseDistance(cluster.poses[0].inverse() * cluster.poses[k],
                              truth(scene, planned, cluster.scans[0], cluster.scans[k]), 2.0),

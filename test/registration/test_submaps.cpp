@@ -132,17 +132,17 @@ TEST(FreeSpaceEvidence, EachPointIsConfirmedOnce)
   const FreeSpaceJudge judge(scene.scans);
   const ScanCluster first = scene.cluster({0, 1}), second = scene.cluster({2, 3});
   const Eigen::Isometry3d T = scene.truth[0].inverse() * scene.truth[2];
-  const double confirmed = judge.confirmed(first, second, T);
-  EXPECT_DOUBLE_EQ(confirmed, judge.confirmed(second, first, T.inverse()));
+  const double confirmed = judge.judge(first, second, T).confirmed;
+  EXPECT_DOUBLE_EQ(confirmed, judge.judge(second, first, T.inverse()).confirmed);
   EXPECT_LE(confirmed, judge.judge(first, second, T).agree);
   // Seen by one more scan from the same place, no other point of the second cluster is confirmed.
   ScanCluster twice = first;
   twice.scans.push_back(first.scans[0]);
   twice.poses.push_back(first.poses[0]);
   const ScanCluster again{{first.scans[0]}, {first.poses[0]}};
-  const double seen_of_it = judge.confirmed(twice, second, T) - confirmed;
+  const double seen_of_it = judge.judge(twice, second, T).confirmed - confirmed;
   EXPECT_GT(seen_of_it, 0.0);
-  EXPECT_LT(seen_of_it, judge.confirmed(again, second, T));
+  EXPECT_LT(seen_of_it, judge.judge(again, second, T).confirmed);
 }
 } // namespace
 } // namespace fresco::registration

@@ -15,7 +15,7 @@ bool isConvincing(const ClusterFit& fit)
 bool isJoinable(const ClusterFit& fit)
 {
   constexpr double least_agreement = 0.5; // of a scan's points: a quarter of two
-  return isConvincing(fit) && fit.evidence.agree >= least_agreement;
+  return isConvincing(fit) && fit.evidence.confirmed >= least_agreement;
 }
 
 bool isSeenAsWell(const ClusterFit& other, const ClusterFit& fit)
@@ -25,8 +25,8 @@ bool isSeenAsWell(const ClusterFit& other, const ClusterFit& fit)
 
 bool rivals(const ClusterFit& other, const ClusterFit& fit, double unit)
 {
-  constexpr double least_share = 0.25; // of the surfaces that agree at this place: less, and chance explains them
-  return other.evidence.agree >= least_share * fit.evidence.agree &&
+  constexpr double least_share = 0.25; // of what is confirmed at this place: less, and chance explains it
+  return other.evidence.confirmed >= least_share * fit.evidence.confirmed &&
          !contradictsMore(other.evidence, fit.evidence, unit) && isSeenAsWell(other, fit);
 }
 

@@ -26,13 +26,12 @@ public:
     while (joinBest())
       ;
   }
-  ScanGraph checked();
+  ScanGraph graph() const;
 
 private:
   struct Group {
     Index id; // changes with its members
     ScanCluster cluster;
-    std::vector<std::vector<Index>> parts = {}; // the scans of the groups that it was joined of, and of theirs
   };
   struct Join {
     std::size_t first, second; // groups
@@ -54,15 +53,12 @@ private:
   Joins likelyJoins() const;
   bool joinBest();
   void join(const Join& join);
-  IsometryVector twinMotions(std::size_t group) const;
-  bool mayBeMoved(const ScanCluster& rest, const ScanCluster& part, const IsometryVector& motions) const;
-  bool splitContested(std::size_t group);
-  void split(std::size_t group, const std::vector<Index>& listed);
 
   const GraphInput& input_;
   FreeSpaceJudge judge_;
   ClusterFitter fitter_;
   std::vector<Group> groups_;
+  std::vector<std::vector<Index>> parts_; // scans of groups that were joined
   Index next_id_ = 0;
   GroupFits<ClusterFits> fits_;
 };
@@ -99,12 +95,12 @@ bool Assembler::fitsThird(std::size_t stays, std::size_t moves, const ClusterFit
   return false;
 }
 
-// Whether the third group's claim to what moves yields to a certain fit where more surfaces agree: if the third group
+// Whether the third group's claim to what moves yields to a certain fit where more is confirmed: if the third group
 // fits as well in a fourth one that cannot be there, it is explained without the claim.
 bool Assembler::yields(std::size_t stays, std::size_t moves, std::size_t third, const ClusterFit& moved,
                        const ClusterFit& other) const
 {
-  if (!moved.certain || moved.evidence.agree <= other.evidence.agree)
+  if (!moved.certain || moved.evidence.confirmed <= other.evidence.confirmed)
     return false;
   for (std::size_t home = 0; home < groups_.size(); ++home) {
     if (home == stays || home == moves || home == third)
@@ -117,7 +113,7 @@ bool Assembler::yields(std::size_t stays, std::size_t moves, std::size_t third, 
   return false;
 }
 
-// Most agreement first.
+// What most confirms first.
 Assembler::Joins Assembler::likelyJoins() const
 {
   Joins joins;
@@ -126,7 +122,7 @@ Assembler::Joins Assembler::likelyJoins() const
       for (const ClusterFit& fit : fitsOf(i, k))
         if (isJoinable(fit))
           joins.push_back({i, k, fit});
-  sortFalling(joins, [](const Join& join) { return join.fit.evidence.agree; });
+  sortFalling(joins, [](const Join& join) { return join.fit.evidence.confirmed; });
   return joins;
 }
 
@@ -160,9 +156,8 @@ bool Assembler::joinBest()
 void Assembler::join(const Join& join)
 {
   Group &first = groups_[join.first], &second = groups_[join.second];
-  first.parts.push_back(first.cluster.scans);
-  first.parts.push_back(second.cluster.scans);
-  first.parts.insert(first.parts.end(), second.parts.begin(), second.parts.end());
+  parts_.push_back(first.cluster.scans);
+  parts_.push_back(second.cluster.scans);
   append(first.cluster, second.cluster, join.fit.T);
   first.id = next_id_++;
   groups_.erase(groups_.begin() + join.second);
@@ -171,87 +166,10 @@ void Assembler::join(const Join& join)
     group.cluster.refusal = {}; // joinBest() tells anew
 }
 
-// Motions from one place of another group to a second one where it fits as well: from a room to an equal one.
-IsometryVector Assembler::twinMotions(std::size_t group) const
+ScanGraph Assembler::graph() const
 {
-  IsometryVector motions;
-  for (std::size_t other = 0; other < groups_.size(); ++other) {
-    if (other == group)
-      continue;
-    const ClusterFits fits = fitsOf(group, other);
-    for (const ClusterFit& from : fits)
-      for (const ClusterFit& to : fits)
-        if (rivals(to, from, judge_.unit()) && !fitter_.isSame(groups_[other].cluster, from.T, to.T, 3.0))
-          motions.push_back(to.T * from.T.inverse());
-  }
-  return motions;
-}
-
-// Whether a part may as well be where one of the motions leads it. Agreement hardly counts: of equal rooms, the wrong one
-// may be seen best.
-bool Assembler::mayBeMoved(const ScanCluster& rest, const ScanCluster& part, const IsometryVector& motions) const
-{
-  constexpr double least_agreement = 0.3; // of a scan's points: less, and chance explains it
-  const FreeSpaceEvidence here = judge_.judge(rest, part, Eigen::Isometry3d::Identity());
-  return std::any_of(motions.begin(), motions.end(), [&](const Eigen::Isometry3d& T) {
-    const FreeSpaceEvidence there = judge_.judge(rest, part, T);
-    return there.agree >= least_agreement && there.violating <= noise_violation * there.agree &&
-           !isContradicted(there) && !contradictsMore(there, here, judge_.unit());
-  });
-}
-
-// What was joined first may be contested by what joined later. @return whether a part was split off
-bool Assembler::splitContested(std::size_t group)
-{
-  if (groups_[group].parts.empty())
-    return false;
-  findAllFits();
-  const IsometryVector motions = twinMotions(group);
-  const ScanCluster& cluster = groups_[group].cluster;
-  std::vector<std::vector<Index>>& parts = groups_[group].parts;
-  std::stable_sort(parts.begin(), parts.end(), [](const auto& x, const auto& y) { return x.size() < y.size(); });
-  const std::vector<char> contested = mapTasks(parts.size(), input_.options.threads, [&](Index k) {
-    const auto [part, rest] = divide(cluster, parts[k]);
-    return !part.scans.empty() && part.scans.size() <= rest.scans.size() && mayBeMoved(rest, part, motions);
-  });
-  const auto first = std::find(contested.begin(), contested.end(), 1);
-  if (first == contested.end())
-    return false;
-  split(group, parts[first - contested.begin()]);
-  return true;
-}
-
-// Scans that see the same room as the part may be the wrong ones as well, and become alone.
-void Assembler::split(std::size_t group, const std::vector<Index>& listed)
-{
-  constexpr double one_room = 0.8; // overlap
-  const auto [part, rest] = divide(groups_[group].cluster, listed);
-  std::vector<Index> alone;
-  for (std::size_t i = 0; i < rest.scans.size(); ++i)
-    for (std::size_t k = 0; k < part.scans.size(); ++k)
-      if (checkRoughly(input_.scans[rest.scans[i]], input_.scans[part.scans[k]],
-                       rest.poses[i].inverse() * part.poses[k], check_level)
-              .overlap > one_room) {
-        alone.push_back(rest.scans[i]);
-        break;
-      }
-  const std::vector<std::vector<Index>> parts = std::move(groups_[group].parts);
-  const Refusal contested{RefusalReason::claimed, rest.scans[0]};
-  const ScanCluster left = divide(rest, alone).second;
-  groups_.erase(groups_.begin() + group);
-  if (!left.scans.empty())
-    groups_.insert(groups_.begin() + group, {next_id_++, left, parts});
-  groups_.push_back({next_id_++, part, parts});
-  groups_.back().cluster.refusal = contested;
-  for (const Index scan : alone)
-    groups_.push_back({next_id_++, {{scan}, {Eigen::Isometry3d::Identity()}, contested}});
-}
-
-ScanGraph Assembler::checked()
-{
-  for (std::size_t g = 0; g < groups_.size();)
-    g += splitContested(g) ? 0 : 1;
   ScanGraph graph;
+  graph.parts = parts_;
   for (const Group& group : groups_)
     graph.clusters.push_back(group.cluster);
   sortBySize(graph.clusters, 0);
@@ -263,7 +181,7 @@ ScanGraph assembleScans(const GraphInput& input)
 {
   Assembler assembler(input);
   assembler.joinAll();
-  return assembler.checked();
+  return assembler.graph();
 }
 
 } // namespace fresco::registration

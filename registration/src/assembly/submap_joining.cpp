@@ -12,8 +12,6 @@ namespace {
 constexpr double rival_share = 0.4;
 constexpr double least_confirmed = 1.5; // of one scan's points; at less, wrong places are found without a rival, too
 
-using SubmapPlaces = std::vector<SubmapPlace, Eigen::aligned_allocator<SubmapPlace>>;
-
 class SubmapJoiner {
 public:
   SubmapJoiner(const GraphInput& input, const PlanFrames& frames)
@@ -30,19 +28,19 @@ private:
   };
   struct Join {
     std::size_t first, second; // groups, the larger one first
-    SubmapPlace place;
+    ClusterFit place;
   };
   using Joins = std::vector<Join, Eigen::aligned_allocator<Join>>;
 
   void add(const ScanCluster& cluster);
-  SubmapPlaces findPlaces(const Group& first, const Group& second) const;
+  ClusterFits findPlaces(const Group& first, const Group& second) const;
   // Of the second group in the first; best first.
-  SubmapPlaces placesOf(std::size_t first, std::size_t second) const
+  ClusterFits placesOf(std::size_t first, std::size_t second) const
   {
     return places_.of(groups_[first].id, groups_[second].id);
   }
   Joins likelyJoins() const;
-  bool fitsThird(std::size_t stays, std::size_t moves, const SubmapPlace& place) const;
+  bool fitsThird(std::size_t stays, std::size_t moves, const ClusterFit& place) const;
   Joins soundJoins();
   void join(const Joins& joins);
 
@@ -51,8 +49,9 @@ private:
   FreeSpaceJudge judge_;
   ClusterFitter fitter_;
   std::vector<Group> groups_;
+  std::vector<std::vector<Index>> parts_; // scans of groups that were joined
   Index next_id_ = 0;
-  GroupFits<SubmapPlaces> places_;
+  GroupFits<ClusterFits> places_;
 };
 
 void SubmapJoiner::add(const ScanCluster& cluster)
@@ -65,7 +64,7 @@ void SubmapJoiner::add(const ScanCluster& cluster)
 }
 
 // By floor plans, and by what pairs of scans tell.
-SubmapPlaces SubmapJoiner::findPlaces(const Group& first, const Group& second) const
+ClusterFits SubmapJoiner::findPlaces(const Group& first, const Group& second) const
 {
   constexpr std::size_t most_by_plans = 32; // of 30 true places 22 are among the first 24, of 28 23 among 64
   constexpr double distinct = 3.0;          // tolerances
@@ -82,12 +81,9 @@ SubmapPlaces SubmapJoiner::findPlaces(const Group& first, const Group& second) c
     if (std::none_of(fits.begin(), fits.end(),
                      [&](const ClusterFit& known) { return fitter_.isSame(second.cluster, known.T, fit.T, distinct); }))
       fits.push_back(fit);
-  SubmapPlaces places;
-  for (const ClusterFit& fit : fits)
-    if (fit.evidence.agree >= rival_share * least_confirmed) // no fewer than are confirmed
-      places.push_back({fit.T, judge_.confirmed(first.cluster, second.cluster, fit.T), fit.evidence});
-  sortFalling(places, &SubmapPlace::confirmed);
-  return places;
+  removeIf(fits, [](const ClusterFit& fit) { return fit.evidence.confirmed < rival_share * least_confirmed; });
+  sortFalling(fits, [](const ClusterFit& fit) { return fit.evidence.confirmed; });
+  return fits;
 }
 
 // Places without a rival between the same groups, most points first. Two single scans stay as their pair has left them.
@@ -96,30 +92,31 @@ SubmapJoiner::Joins SubmapJoiner::likelyJoins() const
   Joins joins;
   for (std::size_t i = 0; i < groups_.size(); ++i)
     for (std::size_t k = i + 1; k < groups_.size(); ++k) {
-      const SubmapPlaces places = placesOf(i, k);
+      const ClusterFits places = placesOf(i, k);
       if (groups_[i].cluster.scans.size() + groups_[k].cluster.scans.size() > 2 && !places.empty() &&
-          places[0].confirmed >= least_confirmed &&
-          (places.size() == 1 || places[1].confirmed < rival_share * places[0].confirmed))
+          places[0].evidence.confirmed >= least_confirmed &&
+          (places.size() == 1 || places[1].evidence.confirmed < rival_share * places[0].evidence.confirmed))
         joins.push_back(groups_[i].cluster.scans.size() >= groups_[k].cluster.scans.size()
                             ? Join{i, k, places[0]}
                             : Join{k, i, reversed(places[0])});
     }
-  sortFalling(joins, [](const Join& join) { return join.place.confirmed; });
+  sortFalling(joins, [](const Join& join) { return join.place.evidence.confirmed; });
   return joins;
 }
 
 // Whether a group that moves has a place in a third one, and free space contradicts the first and the third where that
 // leads to. What the third confirms less than at a place that agrees with the join is explained by that one.
-bool SubmapJoiner::fitsThird(std::size_t stays, std::size_t moves, const SubmapPlace& place) const
+bool SubmapJoiner::fitsThird(std::size_t stays, std::size_t moves, const ClusterFit& place) const
 {
-  const auto agrees = [&](std::size_t third, const SubmapPlace& other) {
+  const auto agrees = [&](std::size_t third, const ClusterFit& other) {
     return !isContradicted(judge_.judge(groups_[stays].cluster, groups_[third].cluster, place.T * other.T.inverse()));
   };
   for (std::size_t third = 0; third < groups_.size(); ++third) {
     if (third == stays || third == moves)
       continue;
-    const SubmapPlaces others = placesOf(third, moves);
-    if (!others.empty() && others[0].confirmed >= rival_share * place.confirmed && !agrees(third, others[0]))
+    const ClusterFits others = placesOf(third, moves);
+    if (!others.empty() && others[0].evidence.confirmed >= rival_share * place.evidence.confirmed &&
+        !agrees(third, others[0]))
       return true;
   }
   return false;
@@ -154,6 +151,8 @@ void SubmapJoiner::join(const Joins& joins)
     ScanCluster& cluster = grown[join.first];
     if (cluster.scans.empty())
       cluster = groups_[join.first].cluster;
+    parts_.push_back(cluster.scans);
+    parts_.push_back(groups_[join.second].cluster.scans);
     append(cluster, groups_[join.second].cluster, join.place.T);
     moved[join.second] = 1;
   }
@@ -183,11 +182,12 @@ void SubmapJoiner::run(ScanGraph& graph, const Progress& progress)
       break;
     join(joins);
   }
+  graph.parts.insert(graph.parts.end(), parts_.begin(), parts_.end());
   graph.clusters.clear();
   for (std::size_t g = 0; g < groups_.size(); ++g) {
     const ScanCluster& cluster = graph.clusters.emplace_back(groups_[g].cluster);
     for (std::size_t k = 0; k < g; ++k)
-      for (const SubmapPlace& place : placesOf(k, g))
+      for (const ClusterFit& place : placesOf(k, g))
         graph.places.push_back({groups_[k].cluster.scans[0], cluster.scans[0],
                                 groups_[k].cluster.poses[0].inverse() * place.T * cluster.poses[0]});
   }

@@ -4,13 +4,6 @@
 #include "graph/free_space_evidence.h"
 #include <fresco/core/progress.h>
 namespace fresco::registration {
-/// Where a cluster may be in another one; free space does not contradict it.
-struct SubmapPlace {
-  Eigen::Isometry3d T = Eigen::Isometry3d::Identity(); ///< frame of the first from that of the second
-  double confirmed = 0.0;                              ///< see FreeSpaceJudge
-  FreeSpaceEvidence evidence;
-};
-
 /// Joins clusters as wholes where no pair of their scans tells: all places of one in another that their floor plans
 /// lead to are looked at. The best joins if it is clearly the best, and if neither cluster has a place in a third one
 /// that stands against it. Clusters are largest first, before and after.

@@ -19,6 +19,7 @@ FreeSpaceEvidence& FreeSpaceEvidence::operator+=(const FreeSpaceEvidence& other)
   agree += other.agree;
   violating += other.violating;
   clustered += other.clustered;
+  confirmed += other.confirmed;
   crowded = crowded || other.crowded;
   return *this;
 }
@@ -74,74 +75,59 @@ FreeSpaceJudge::FreeSpaceJudge(const std::vector<PreparedScan>& scans) : scans_(
 }
 
 FreeSpaceEvidence FreeSpaceJudge::judgeSeen(const PreparedScan& seer, const PreparedScan& seen,
-                                            const Eigen::Isometry3d& T_seer_seen) const
+                                            const Eigen::Isometry3d& T_seer_seen, Marks& confirmed) const
 {
   const ScanLevel& level = seen.levels[check_level];
   const Eigen::Isometry3f T = T_seer_seen.cast<float>();
   using Verdict = ScanFreeSpace::Verdict;
   const std::vector<Verdict> verdicts = judgeLevel(seer, level, T, Grazed::spared);
-  Index agree = 0, violating = 0, clustered = 0;
+  confirmed.resize(verdicts.size(), 0);
+  Index agree = 0, violating = 0, clustered = 0, fresh = 0;
   for (Index i = 0; i < level.points.cols(); ++i) {
     if (verdicts[i] == Verdict::unknown || !isNear(T * level.points.col(i)))
       continue;
-    agree += verdicts[i] == Verdict::agrees ? 1 : 0;
+    if (verdicts[i] == Verdict::agrees) {
+      ++agree;
+      fresh += confirmed[i] ? 0 : 1;
+      confirmed[i] = 1;
+    }
     if (verdicts[i] != Verdict::violates)
       continue;
     ++violating;
     clustered += violatesWithNeighbours(level, verdicts, i) ? 1 : 0;
   }
-  return {agree / unit_, violating / unit_, clustered / unit_, seer.spares_doubtful};
+  return {agree / unit_, violating / unit_, clustered / unit_, fresh / unit_, seer.spares_doubtful};
 }
 
-FreeSpaceEvidence FreeSpaceJudge::judge(Index a, Index b, const Eigen::Isometry3d& T_a_b) const
+FreeSpaceEvidence FreeSpaceJudge::judgePair(Index a, Index b, const Eigen::Isometry3d& T_a_b, Marks& confirmed_a,
+                                            Marks& confirmed_b) const
 {
   FreeSpaceEvidence evidence;
   if (isOutOfReach(T_a_b))
     return evidence;
-  evidence += judgeSeen(scans_[a], scans_[b], T_a_b);
-  evidence += judgeSeen(scans_[b], scans_[a], T_a_b.inverse());
+  evidence += judgeSeen(scans_[a], scans_[b], T_a_b, confirmed_b);
+  evidence += judgeSeen(scans_[b], scans_[a], T_a_b.inverse(), confirmed_a);
   return evidence;
+}
+
+FreeSpaceEvidence FreeSpaceJudge::judge(Index a, Index b, const Eigen::Isometry3d& T_a_b) const
+{
+  Marks confirmed_a, confirmed_b;
+  return judgePair(a, b, T_a_b, confirmed_a, confirmed_b);
 }
 
 FreeSpaceEvidence FreeSpaceJudge::judge(const ScanCluster& first, const ScanCluster& second,
                                         const Eigen::Isometry3d& T_first_second) const
 {
   FreeSpaceEvidence evidence;
+  std::vector<Marks> of_first(first.scans.size()), of_second(second.scans.size());
   for (std::size_t i = 0; i < first.scans.size(); ++i)
     for (std::size_t k = 0; k < second.scans.size(); ++k) {
-      evidence += judge(first.scans[i], second.scans[k], first.poses[i].inverse() * T_first_second * second.poses[k]);
+      evidence += judgePair(first.scans[i], second.scans[k],
+                            first.poses[i].inverse() * T_first_second * second.poses[k], of_first[i], of_second[k]);
       if (isHopeless(evidence) && isContradicted(evidence))
         return evidence;
     }
   return evidence;
-}
-
-double FreeSpaceJudge::confirmedBy(const ScanCluster& seers, const PreparedScan& seen,
-                                   const Eigen::Isometry3d& T_seers_seen) const
-{
-  const ScanLevel& level = seen.levels[check_level];
-  std::vector<char> found(level.points.cols(), 0);
-  for (std::size_t k = 0; k < seers.scans.size(); ++k) {
-    const Eigen::Isometry3d T_seer_seen = seers.poses[k].inverse() * T_seers_seen;
-    if (isOutOfReach(T_seer_seen))
-      continue;
-    const Eigen::Isometry3f T = T_seer_seen.cast<float>();
-    const auto verdicts = judgeLevel(scans_[seers.scans[k]], level, T, Grazed::spared);
-    for (Index i = 0; i < level.points.cols(); ++i)
-      if (verdicts[i] == ScanFreeSpace::Verdict::agrees && isNear(T * level.points.col(i)))
-        found[i] = 1;
-  }
-  return std::count(found.begin(), found.end(), 1) / unit_;
-}
-
-double FreeSpaceJudge::confirmed(const ScanCluster& first, const ScanCluster& second,
-                                 const Eigen::Isometry3d& T_first_second) const
-{
-  double sum = 0.0;
-  for (std::size_t i = 0; i < first.scans.size(); ++i)
-    sum += confirmedBy(second, scans_[first.scans[i]], T_first_second.inverse() * first.poses[i]);
-  for (std::size_t k = 0; k < second.scans.size(); ++k)
-    sum += confirmedBy(first, scans_[second.scans[k]], T_first_second * second.poses[k]);
-  return sum;
 }
 } // namespace fresco::registration

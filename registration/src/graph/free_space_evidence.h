@@ -8,6 +8,7 @@ struct FreeSpaceEvidence {
   double agree = 0.0;     ///< as deep as the other scan measured
   double violating = 0.0; ///< in space that the other saw through
   double clustered = 0.0; ///< of these, that lie there together with their neighbours: no mixed pixels
+  double confirmed = 0.0; ///< as agree, but each point counted once, however many scans see it
   bool crowded = false;   ///< whether people moved between the scans, see PreparedScan::spares_doubtful
   FreeSpaceEvidence& operator+=(const FreeSpaceEvidence& other);
 };
@@ -40,15 +41,12 @@ public:
   FreeSpaceEvidence judge(const ScanCluster& first, const ScanCluster& second,
                           const Eigen::Isometry3d& T_first_second) const;
 
-  /// Points of either that are as deep as a scan of the other measured, each counted once, over the mean number of
-  /// points of a scan. FreeSpaceEvidence::agree counts them for each scan that sees them: of equal rooms, the one that
-  /// more scans saw seems the likelier one.
-  double confirmed(const ScanCluster& first, const ScanCluster& second, const Eigen::Isometry3d& T_first_second) const;
-
 private:
-  double confirmedBy(const ScanCluster& seers, const PreparedScan& seen, const Eigen::Isometry3d& T_seers_seen) const;
-  FreeSpaceEvidence judgeSeen(const PreparedScan& seer, const PreparedScan& seen,
-                              const Eigen::Isometry3d& T_seer_seen) const;
+  using Marks = std::vector<char>; // of the points of a scan, which are confirmed; empty before the first is
+  FreeSpaceEvidence judgeSeen(const PreparedScan& seer, const PreparedScan& seen, const Eigen::Isometry3d& T_seer_seen,
+                              Marks& confirmed) const;
+  FreeSpaceEvidence judgePair(Index a, Index b, const Eigen::Isometry3d& T_a_b, Marks& confirmed_a,
+                              Marks& confirmed_b) const;
   bool isNear(const Eigen::Vector3f& point) const { return point.squaredNorm() <= reach_ * reach_; }
   bool isOutOfReach(const Eigen::Isometry3d& T) const { return T.translation().norm() > 2.5 * reach_; }
   const std::vector<PreparedScan>& scans_;

@@ -13,6 +13,7 @@ using PlanPlaces = std::vector<PlanPlace, Eigen::aligned_allocator<PlanPlace>>;
 struct ScanGraph {
   std::vector<ScanCluster> clusters; ///< every usable scan in one of them, largest first, but `known` before all
   PlanPlaces places = {};            ///< of clusters as wholes, which decided nothing
+  std::vector<std::vector<Index>> parts = {}; ///< scans of clusters that were joined to larger ones
 };
 
 struct GraphOptions {
