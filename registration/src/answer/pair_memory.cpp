@@ -6,7 +6,7 @@
 #include <fresco/io/byte_hash.h>
 namespace fresco::registration {
 namespace {
-constexpr char version[] = "fresco pairs 3"; // to be changed with what is packed, and with what decides
+constexpr char version[] = "fresco pairs 4"; // to be changed with what is packed, and with what decides
 
 std::string heading(const std::string& key, const std::string& content)
 {
