@@ -119,12 +119,12 @@ void undoWorsening(OptimizationProblem& problem, double noise, int threads)
   parallelFor(part.size(), threads,
               [&](Index v) { part[v] = partByFit(fit.col(v), explained) * partBySupport(problem, lists, v); });
   average(problem.graph, part, blend_rings, threads);
+  problem.x = (problem.x - problem.start) * part.cast<double>().asDiagonal();
+  smoothAlongBoundary(problem.graph, problem.coverage.nearness, problem.x, threads);
   parallelFor(part.size(), threads, [&](Index v) {
     // Data do not tell where a surface ends, so its boundary moves across it only.
-    const Vector3d way = problem.x.col(v) - problem.start.col(v), end = endDirection(problem, v);
-    problem.x.col(v) = part[v] * (way - way.dot(end) * end);
+    const Vector3d way = problem.x.col(v), end = endDirection(problem, v);
+    problem.x.col(v) = problem.start.col(v) + way - way.dot(end) * end;
   });
-  smoothAlongBoundary(problem.graph, problem.coverage.nearness, problem.x, threads);
-  problem.x += problem.start;
 }
 } // namespace fresco::optimization
