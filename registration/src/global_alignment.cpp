@@ -288,10 +288,9 @@ GlobalAlignment GlobalAligner::run(const Progress& progress)
   const GraphInput input = graphInput();
   for (ScanCluster& cluster : result_.graph.clusters)
     closeLoops(input, known_, cluster);
-  if (!frames_.empty()) {
+  if (!frames_.empty())
     joinSubmaps(input, frames_, result_.graph, progress);
-    partSecondPlaces(input, known_, result_.graph);
-  }
+  partSecondPlaces(input, known_, result_.graph);
   for (const PreparedScan& scan : scans_)
     result_.aliases.push_back(scan.aliases);
   result_.people_moved = people_moved;

@@ -175,11 +175,7 @@ bool cut(const CandidatePlace& link, std::vector<ScanCluster>& clusters)
   const Index at = clusterOf(clusters, link.scan);
   if (at != clusterOf(clusters, link.beside))
     return false;
-  auto [part, rest] = divide(clusters[at], link.part);
-  part.refusal = {RefusalReason::unsure, link.beside, link.agree, link.contradict};
-  rest.refusal = clusters[at].refusal;
-  clusters[at] = rest;
-  clusters.push_back(part);
+  partCluster(clusters, at, link.part, {RefusalReason::unsure, link.beside, link.agree, link.contradict});
   return true;
 }
 } // namespace

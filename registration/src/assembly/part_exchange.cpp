@@ -2,10 +2,10 @@
 #include "assembly/part_exchange.h"
 #include "assembly/cluster_fits.h"
 #include <algorithm>
-#include <tuple>
+#include <set>
 namespace fresco::registration {
 namespace {
-using Part = std::vector<Index>; // scans
+using Part = std::vector<Index>; // scans, no more than half of a cluster
 
 // Takes parts out of one cluster.
 class PartExchange {
@@ -26,20 +26,19 @@ public:
 
   bool isDoubtful(const Part& listed) const
   {
-    const Eigen::Isometry3d where_it_is = Eigen::Isometry3d::Identity();
     const auto [part, rest] = divide(cluster_, listed);
-    if (part.scans.size() < listed.size() || part.scans.size() > rest.scans.size())
-      return false;
+    ClusterFit here; // where it is: T stays the identity
+    here.evidence = judge_.judge(rest, part, here.T);
+    if (mayBeMoved(rest, part, here.evidence))
+      return true;
     const ClusterFits rough = fitter_.rough(rest, part);
-    ClusterFit here;
-    here.evidence = judge_.judge(rest, part, where_it_is);
-    bool doubtful = mayBeMoved(rest, part, here.evidence);
     for (const ClusterFit& fit : rough)
-      if (fitter_.isSame(part, fit.T, where_it_is, near))
+      if (fitter_.isSame(part, fit.T, here.T, near))
         here.overlap = std::max(here.overlap, fit.overlap);
     for (const ClusterFit& other : fitter_.uncontradicted(rest, part, rough))
-      doubtful = doubtful || (!fitter_.isSame(part, other.T, where_it_is, near) && rivals(other, here, judge_.unit()));
-    return doubtful;
+      if (!fitter_.isSame(part, other.T, here.T, near) && rivals(other, here, judge_.unit()))
+        return true;
+    return false;
   }
 
 private:
@@ -61,42 +60,34 @@ private:
   const ScanCluster& cluster_;
   IsometryVector motions_; // from one place of another cluster to a second one: from a room to an equal one
 };
-
-// Smallest first, each once.
-std::vector<Part> sorted(std::vector<Part> parts)
-{
-  for (Part& part : parts)
-    std::sort(part.begin(), part.end());
-  std::sort(parts.begin(), parts.end(),
-            [](const Part& x, const Part& y) { return std::tuple(x.size(), x) < std::tuple(y.size(), y); });
-  parts.erase(std::unique(parts.begin(), parts.end()), parts.end());
-  return parts;
-}
 } // namespace
 
 void partSecondPlaces(const GraphInput& input, const ScanCluster& known, ScanGraph& graph)
 {
   const FreeSpaceJudge judge(input.scans);
   const ClusterFitter fitter(input, judge);
-  std::vector<Part> parts = sorted(graph.parts);
-  removeIf(parts, [&](const Part& part) {
-    return std::any_of(part.begin(), part.end(), [&](Index scan) { return contains(known, scan); });
-  });
+  const auto holds = [](const ScanCluster& cluster) { return [&](Index scan) { return contains(cluster, scan); }; };
+  std::set<std::pair<std::size_t, Part>> parts; // smallest first
+  for (Part part : graph.parts) {
+    std::sort(part.begin(), part.end());
+    if (std::none_of(part.begin(), part.end(), holds(known)))
+      parts.emplace(part.size(), part);
+  }
   const std::vector<ScanCluster> before = graph.clusters;
   for (std::size_t c = 0; c < before.size(); ++c) {
-    if (before[c].scans.size() < 2)
+    std::vector<Part> own;
+    for (const auto& [size, part] : parts)
+      if (2 * size <= before[c].scans.size() && std::all_of(part.begin(), part.end(), holds(before[c])))
+        own.push_back(part);
+    if (own.empty())
       continue;
     const PartExchange exchange(input, judge, fitter, before, c);
     const std::vector<char> doubtful =
-        mapTasks(parts.size(), input.options.threads, [&](Index p) -> char { return exchange.isDoubtful(parts[p]); });
-    for (std::size_t p = 0; p < parts.size(); ++p) {
-      auto [part, rest] = divide(graph.clusters[c], parts[p]);
-      if (!doubtful[p] || part.scans.empty() || rest.scans.empty())
-        continue;
-      part.refusal = {RefusalReason::second_place, rest.scans[0]};
-      rest.refusal = graph.clusters[c].refusal;
-      graph.clusters[c] = rest;
-      graph.clusters.push_back(part);
+        mapTasks(own.size(), input.options.threads, [&](Index p) -> char { return exchange.isDoubtful(own[p]); });
+    for (std::size_t p = 0; p < own.size(); ++p) {
+      const auto [part, rest] = divide(graph.clusters[c], own[p]); // smaller parts of it may have gone
+      if (doubtful[p] && !part.scans.empty() && !rest.scans.empty())
+        partCluster(graph.clusters, c, part.scans, {RefusalReason::second_place, rest.scans[0]});
     }
   }
   sortBySize(graph.clusters, known.scans.empty() ? 0 : 1);

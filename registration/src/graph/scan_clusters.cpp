@@ -43,6 +43,15 @@ std::pair<ScanCluster, ScanCluster> divide(const ScanCluster& cluster, const std
   return sides;
 }
 
+void partCluster(std::vector<ScanCluster>& clusters, Index at, const std::vector<Index>& listed, const Refusal& refusal)
+{
+  auto [part, rest] = divide(clusters[at], listed);
+  part.refusal = refusal;
+  rest.refusal = clusters[at].refusal;
+  clusters[at] = rest;
+  clusters.push_back(part);
+}
+
 void sortBySize(std::vector<ScanCluster>& clusters, Index first)
 {
   std::stable_sort(clusters.begin() + first, clusters.end(),

@@ -27,6 +27,10 @@ void append(ScanCluster& first, const ScanCluster& second, const Eigen::Isometry
 /// The part of a cluster whose scans are listed, and the rest; the frame stays.
 std::pair<ScanCluster, ScanCluster> divide(const ScanCluster& cluster, const std::vector<Index>& listed);
 
+/// Makes the listed scans of one of the clusters a cluster of their own, which stands last, refused there.
+void partCluster(std::vector<ScanCluster>& clusters, Index at, const std::vector<Index>& listed,
+                 const Refusal& refusal);
+
 /// Largest first.
 /// @param first of those that are sorted; the ones before stay
 void sortBySize(std::vector<ScanCluster>& clusters, Index first);
