@@ -11,6 +11,7 @@
 #include "poisson/samples/noise.h"
 #include "poisson/samples/occupied_cells.h"
 #include "poisson/samples/sample_ghosts.h"
+#include "poisson/samples/scatter.h"
 #include "poisson/solver/constraints.h"
 #include "poisson/solver/hat_function.h"
 #include "poisson/solver/solve.h"
@@ -165,6 +166,7 @@ VolumetricPart reconstruct(Samples&& samples, const VolumetricOptions& options, 
   const Density density(tree, samples, options.threads);
   estimateDensity(tree, density, options.samples_per_node, samples, options.threads);
   estimateNoise(samples, tree.exchange(), options.threads);
+  weighScattered(tree, samples, options.threads);
   report(progress, "normal field", 0.25);
   const SampleGhosts ghosts(tree, samples.codes, options.threads);
   Array<Eigen::Vector3f> normals = normalsOf(samples, options.threads);

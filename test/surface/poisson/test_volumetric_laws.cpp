@@ -129,6 +129,18 @@ TEST(VolumetricLaws, FarOutliersNeitherWasteTheOctreeNorSpoilTheMesh)
   EXPECT_EQ(result.mesh.vertices, expected.mesh.vertices);
 }
 
+/// Without weights of scatter most vertices lie off.
+TEST(VolumetricLaws, ScatteredPointsMakeNoSurface)
+{
+  PointSet points = sphere(40000);
+  addScattered(points, 2000, 1.5f);
+  const VolumetricResult result = reconstructVolumetric(points, atDepth(7));
+  Index off = 0;
+  for (Index v = 0; v < result.mesh.vertexCount(); ++v)
+    off += std::abs(sphereDistance(result.mesh.vertices.col(v).cast<double>())) > 2 * result.cell_size;
+  EXPECT_LT(off, 0.05 * result.mesh.vertexCount());
+}
+
 TEST(VolumetricLaws, PointsGivenAwayGiveTheSameAndAreFreed)
 {
   PointSet points = torus(10000, 0.4, 3);

@@ -75,6 +75,29 @@ inline PointSet box(Index count, unsigned seed)
   return set;
 }
 
+/// Both sides of a rectangle of 1 x 1.4 across the x axis, sampled at random.
+inline PointSet sheet(Index count, float thickness)
+{
+  PointSet sides = box(3 * count, 3);
+  std::vector<Index> kept;
+  for (Index i = 0; i < sides.size(); i += 3)
+    kept.push_back(i);
+  sides = selectPoints(sides, kept);
+  sides.points = Eigen::Vector3f(thickness / 2, 0.5f, 0.7f).asDiagonal() * sides.points;
+  return sides;
+}
+
+/// Appends points anywhere in a cube around the origin, with any normals.
+inline void addScattered(PointSet& points, Index count, float half_side)
+{
+  PointSet scattered = sphere(count);
+  std::mt19937 random(11);
+  std::uniform_real_distribution<float> place(-half_side, half_side);
+  for (Index i = 0; i < count; ++i)
+    scattered.points.col(i) << place(random), place(random), place(random);
+  appendPoints(points, scattered);
+}
+
 /// Mean distance of the vertices to a surface given by its distance function.
 template <typename Distance>
 double meanDistance(const TriangleMesh& mesh, const Distance& distance)
