@@ -13,6 +13,7 @@
 #include "poisson/samples/sample_ghosts.h"
 #include "poisson/samples/scatter.h"
 #include "poisson/solver/constraints.h"
+#include "poisson/solver/expected_values.h"
 #include "poisson/solver/hat_function.h"
 #include "poisson/solver/solve.h"
 #include <algorithm>
@@ -175,6 +176,7 @@ VolumetricPart reconstruct(Samples&& samples, const VolumetricOptions& options, 
   releaseMemory(samples.samples);
   releaseMemory(samples.codes);
   ghosts.addTo(finest);
+  holdThin(tree, ghosts, normals, finest, options.threads);
   SampleLevels levels = sampleLevels(std::move(finest), normals, tree, options.threads);
   Constraints constraints = splatNormals(tree, levels.back(), std::move(normals), options.threads);
   const FreePlaces free_places{options.free_space.get(), samples.cube, samples.origin};

@@ -190,6 +190,17 @@ TEST(VolumetricRanks, AttributesNoiseAndWeightsAreTheSame)
   expectSameOnRanks(attributedTorus(30000, 0.01f), options, 5, {4, 7});
 }
 
+TEST(VolumetricRanks, ScatteredPointsAndThinSheetsAreTheSame)
+{
+  PointSet points = sheet(30000, 0.005f);
+  std::mt19937 random(5);
+  std::normal_distribution<float> offset(0.f, 0.002f);
+  for (Index i = 0; i < points.size(); ++i)
+    points.points(0, i) += offset(random);
+  addScattered(points, 1500, 0.7f);
+  expectSameOnRanks(points, withDepths(8, 3), 5, {2, 5});
+}
+
 TEST(VolumetricRanks, SurfaceClosedFarFromPointsIsTheSame)
 {
   const PointSet open = part(sphere(20000), [](const Eigen::Vector3f& p) { return p.z() > 0.2f || p.x() < -0.3f; });

@@ -263,17 +263,11 @@ double sheetsDistance(const Eigen::Vector3d& p)
 /// Coarse depths, whose cells hold both sides of a sheet, leave the space between the sheets empty.
 TEST(VolumetricScales, NothingGrowsBetweenThinSheets)
 {
-  const PointSet sides = box(400000, 3);
   PointSet points;
   for (const auto& [x, thickness] : {std::pair(0.f, 0.01f), std::pair(0.25f, 0.005f)}) {
-    std::vector<Index> kept;
-    for (Index i = 0; i < sides.size(); ++i)
-      if (std::abs(sides.normals(0, i)) > 0)
-        kept.push_back(i);
-    PointSet sheet = selectPoints(sides, kept);
-    sheet.points = Eigen::Vector3f(thickness / 2, 0.5f, 0.7f).asDiagonal() * sheet.points;
-    sheet.points.row(0).array() += x;
-    appendPoints(points, sheet);
+    PointSet sides = sheet(133333, thickness);
+    sides.points.row(0).array() += x;
+    appendPoints(points, sides);
   }
   for (const float point_weight : {0.f, VolumetricOptions().point_weight})
     for (const int depth : {7, 8, 9}) {
@@ -282,6 +276,26 @@ TEST(VolumetricScales, NothingGrowsBetweenThinSheets)
       const VolumetricResult result = reconstructVolumetric(points, options);
       EXPECT_LT(maxDistance(result.mesh, sheetsDistance), 3.25 * result.cell_size) << depth << ", " << point_weight;
     }
+}
+
+/// Nodes of the grid that see no inside would leave holes.
+TEST(VolumetricScales, SheetsOfHalfACellAreWhole)
+{
+  for (const float noise : {0.f, 0.002f}) {
+    PointSet points = sheet(100000, 0.005f);
+    std::mt19937 random(5);
+    std::normal_distribution<float> offset(0.f, noise);
+    for (Index i = 0; noise > 0 && i < points.size(); ++i)
+      points.points(0, i) += offset(random);
+    VolumetricOptions options;
+    options.cell_size = 0.01;
+    const TriangleMesh mesh = reconstructVolumetric(points, options).mesh;
+    const auto distance = [](const Eigen::Vector3d& p) {
+      return ((p.array().abs() - Eigen::Array3d(0.0025, 0.5, 0.7)).max(0)).matrix().norm();
+    };
+    EXPECT_GT(surfaceArea(mesh), 0.97 * 2 * 1.4) << noise;
+    EXPECT_LT(maxDistance(mesh, distance), 0.02) << noise;
+  }
 }
 
 /// Cells finer than the noise add faces, not roughness. Without the filter it is 4.2 and 12.3 degrees.

@@ -182,7 +182,7 @@ private:
 
 void estimateNoise(Samples& samples, Exchange& exchange, int threads)
 {
-  constexpr float tolerated_mean_noise = 1.f; // of a cell's samples, in cells; less costs detail: docs/measurements
+  constexpr float tolerated_mean_noise = 1.f; // of a cell's samples, in cells; less costs detail
   const Runs runs(samples.samples, exchange, threads);
   const float finest = samples.cube.depth;
   parallelFor(samples.samples.size(), threads, [&](Index i) {

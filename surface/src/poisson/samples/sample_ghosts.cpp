@@ -6,6 +6,7 @@ SampleGhosts::SampleGhosts(const Octree& tree, const Array<std::uint64_t>& codes
   if (!tree.partition)
     return;
   partition_ = tree.partition;
+  finest_ = tree.depth;
   runs_.resize(partition_->ranks());
   const BrickLevel& level = tree.levels[partition_->sharedDepth() + 1];
   const SampleRanges ranges = sampleRanges(level, codes, tree.depth, threads);

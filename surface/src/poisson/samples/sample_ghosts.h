@@ -31,6 +31,16 @@ public:
         appendTo(all, from[r]);
     values.swap(all);
   }
+  /// Takes the ghosts' values from their owners. @param codes of own samples and ghosts
+  template <typename T>
+  void renew(const Array<std::uint64_t>& codes, Array<T>& values) const
+  {
+    if (!partition_)
+      return;
+    const auto [begin, end] = partition_->ownRange(finest_, codes);
+    values = Array<T>(values.begin() + begin, values.begin() + end);
+    addTo(values);
+  }
   void addTo(SampleLevel& finest) const
   {
     addTo(finest.codes);
@@ -39,6 +49,7 @@ public:
 
 private:
   const Partition* partition_ = nullptr;
+  int finest_ = 0;
   std::vector<std::vector<SampleRun>> runs_; ///< by rank: the own samples that are ghosts there
 };
 

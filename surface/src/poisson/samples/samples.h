@@ -72,6 +72,7 @@ struct SampleLevel {
   /// By sample, of those that were joined in it: mean normal, and mean of n . (p - mean p) in cells of the finest depth;
   /// empty at the finest depth and where nobody asks.
   Array<Eigen::Vector4f> fluxes;
+  Array<float> expected; ///< of chi by sample, at the finest depth
   int depth = 0;
 };
 

@@ -13,15 +13,35 @@ struct Sums {
   Eigen::Vector3f normal = Eigen::Vector3f::Zero(), position = Eigen::Vector3f::Zero();
 };
 
+/// How far normals cancel: 0 where their mean has the length `limit` or more, 1 where it has 1/2 less.
+float opposedOf(const Sums& sums, float limit)
+{
+  return sums.area > 0.f ? std::clamp(2.f * (limit - sums.normal.norm() / sums.area), 0.f, 1.f) : 0.f;
+}
+
+constexpr float sides_limit = 0.6f; // more are edges, 0.7
+
+/// Of things and of edges, in part.
+float sharpness(const Sums& sums) { return opposedOf(sums, 1.f); }
+
+/// Half the distance between two sides, in cells; below 0 in a gap.
+float halfThickness(const Sums& sums) { return (sums.moment - sums.normal.dot(sums.position / sums.area)) / sums.area; }
+
 float expectedValue(const Sums& sums)
 {
   constexpr float certain = 0.02f; // cells between the means of the sides: less may be noise
   if (!(sums.area > 0.f))
     return 0.f;
-  const Eigen::Vector3f normal = sums.normal / sums.area;
-  const float m = sums.moment / sums.area - normal.dot(sums.position / sums.area);
-  const float opposed = std::max(0.f, 1.f - 2.f * normal.norm()), around = std::max(0.f, 1.f - 2.f * std::abs(m));
-  return 0.5f * opposed * around * around * m / (std::abs(m) + certain);
+  const float m = halfThickness(sums), around = std::max(0.f, 1.f - 2.f * std::abs(m));
+  return 0.5f * opposedOf(sums, sides_limit) * around * around * m / (std::abs(m) + certain);
+}
+
+/// At the finest depth, on both sides of what is thinner than a cell; the sums are of cells of twice that size.
+float thickening(const Sums& sums)
+{
+  constexpr float half_rise = 0.15f; // of chi in half a cell
+  const float thickness = sums.area > 0.f ? 4.f * halfThickness(sums) : 1.f;
+  return thickness > 0.f ? -half_rise * opposedOf(sums, sides_limit) * std::max(0.f, 1.f - thickness) : 0.f;
 }
 
 /// The cells around the nodes of a brick.
@@ -32,8 +52,8 @@ public:
         scale_(std::ldexp(1.f, level.depth - finest))
   {}
 
-  /// What is expected at the nodes of a brick, by nodeIndex(). False: 0 at all of them.
-  bool load(Index brick, float* nodes) const
+  /// Value of the cells around each node of a brick, by nodeIndex(). False: 0 at all of them.
+  bool load(Index brick, float (*valueOf)(const Sums&), float* nodes) const
   {
     Window window;
     const Neighbors neighbors = level_.neighborsOf(brick);
@@ -47,7 +67,7 @@ public:
     for (int z = 0; z < brick_nodes; ++z)
       for (int y = 0; y < brick_nodes; ++y)
         for (int x = 0; x < brick_nodes; ++x)
-          nodes[nodeIndex(x, y, z)] = expectedValue(around(x, y, z, window));
+          nodes[nodeIndex(x, y, z)] = valueOf(around(x, y, z, window));
     return true;
   }
 
@@ -106,10 +126,10 @@ private:
   const SampleLevel& cells_;
   float scale_; ///< cells of the level per finest cell
 };
-} // namespace
 
-Array<float> expectedValues(const BrickLevel& level, const SampleLevel& cells, const SampleLevel& samples, int finest,
-                            int threads)
+/// Values of the cells around each sample.
+Array<float> valuesAt(const BrickLevel& level, const SampleLevel& cells, const SampleLevel& samples, int finest,
+                      float (*valueOf)(const Sums&), int threads)
 {
   if (cells.fluxes.empty())
     return {};
@@ -120,12 +140,33 @@ Array<float> expectedValues(const BrickLevel& level, const SampleLevel& cells, c
   const float scale = std::ldexp(1.f, level.depth - finest);
   parallelFor(level.size(), threads, [&](Index b) {
     float nodes[nodes_per_brick];
-    if (ranges[b].empty() || !cells_around.load(b, nodes))
+    if (ranges[b].empty() || !cells_around.load(b, valueOf, nodes))
       return;
     const Eigen::Vector3f origin = level.origin(b);
     for (const std::uint32_t i : ranges[b])
       values[i] = HatWeights::inBrick(samples.samples[i].position * scale - origin).interpolate(nodes);
   });
   return values;
+}
+} // namespace
+
+Array<float> expectedValues(const BrickLevel& level, const SampleLevel& cells, const SampleLevel& samples, int finest,
+                            int threads)
+{
+  return valuesAt(level, cells, samples, finest, expectedValue, threads);
+}
+
+void holdThin(const Octree& tree, const SampleGhosts& ghosts, const Array<Eigen::Vector3f>& normals,
+              SampleLevel& finest, int threads)
+{
+  const SampleLevel cells = coarsen(finest, tree, threads, &normals);
+  const auto valuesOf = [&](float (*valueOf)(const Sums&)) {
+    Array<float> values = valuesAt(tree.levels[cells.depth], cells, finest, finest.depth, valueOf, threads);
+    ghosts.renew(finest.codes, values);
+    return values;
+  };
+  finest.expected = valuesOf(thickening);
+  const Array<float> sharp = valuesOf(sharpness);
+  parallelFor(sharp.size(), threads, [&](Index i) { finest.samples[i].noise *= 1.f - sharp[i]; });
 }
 } // namespace fresco::poisson

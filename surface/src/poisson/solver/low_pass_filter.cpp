@@ -13,8 +13,7 @@ struct BrickSums {
   float noise = 0;         ///< of the mean of the samples on one face of a cell, in cells
 };
 
-/// 0 up to the first value, full after the range. Measured on fandisk, igea and a room:
-/// docs/measurements/reconstruction.md.
+/// 0 up to the first value, full after the range. Measured on fandisk, igea and a room.
 float strengthOf(const BrickSums& sums)
 {
   constexpr float first_missing = 0.75f, missing_range = 1.f;

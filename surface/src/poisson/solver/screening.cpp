@@ -7,7 +7,7 @@ namespace fresco::poisson {
 float softnessOf(float surplus, float noise)
 {
   constexpr float first = 0.7f;      // samples per face of a cell from which on they hold harder
-  constexpr float least = 0.2f;      // holding harder still brings out ripples of noise: docs/measurements
+  constexpr float least = 0.2f;      // holding harder still brings out ripples of noise
   constexpr float tolerated = 0.04f; // noise at which nothing changes
   const float per_face = std::exp2(2.f * surplus);
   return std::clamp(first / per_face + noise * noise / (tolerated * tolerated), least, 1.f);

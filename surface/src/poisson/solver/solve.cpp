@@ -25,7 +25,9 @@ LevelSystem systemOf(const PoissonProblem& problem, int depth, const VolumetricO
   const Octree& tree = problem.tree;
   const BrickLevel& level = tree.levels[depth];
   const SampleLevel& joined = problem.levels[std::min(depth + 1, tree.depth)];
-  Array<float> expected = expectedValues(level, problem.levels[depth], joined, tree.depth, options.threads);
+  Array<float> expected = depth == tree.depth
+                              ? joined.expected
+                              : expectedValues(level, problem.levels[depth], joined, tree.depth, options.threads);
   return {level, joined, std::move(expected), tree.depth, options.point_weight, options.threads};
 }
 
