@@ -15,10 +15,6 @@ constexpr int ring_count = 4;
 constexpr Index ring_sizes[] = {8, 16, 32};              // nearest neighbours counted apart, then all
 constexpr float held = 2.5f, close = 1.2f, beyond = 4.f; // deviations of the noise
 
-// Where features stand; the first are of the candidate and the place of its plane.
-constexpr int from_rings = 7, from_spread = from_rings + 6 * ring_count, from_fit = from_spread + 6;
-static_assert(from_fit + 7 == NormalCandidateFeatures::count);
-
 /// ln(n + 1/2)
 float logCount(float count)
 {
@@ -134,30 +130,31 @@ NormalCandidateFeatures::Features NormalCandidateFeatures::of(const NormalCandid
   features[4] = std::log(candidate.share + 0.003f);
   features[5] = std::log(cosine);
   features[6] = std::log(thickness_ / spacing_ + 0.001f);
-  countRings(candidate.direction, features);
-  measureSpread(candidate.direction, features);
-  measureFit(candidate.direction, features);
+  static_assert(7 + 6 * ring_count + 6 + 7 == count);
+  float* at = countRings(candidate.direction, features.data() + 7);
+  at = measureSpread(candidate.direction, at);
+  measureFit(candidate.direction, at);
   return features;
 }
 
-void NormalCandidateFeatures::countRings(const Vector3f& direction, Features& features)
+float* NormalCandidateFeatures::countRings(const Vector3f& direction, float* at)
 {
   constexpr float alike = 0.9f; // cosine
   const ArrayXf inside = (height_.abs() < close).cast<float>();
   const ArrayXf same = ((direction.transpose() * normals_.matrix()).transpose().array() > alike).cast<float>() * held_;
   const ArrayXf other = (held_ - same) * (1 - at_crease_);
   const ArrayXf front = (height_ > beyond).cast<float>(), behind = (height_ < -beyond).cast<float>();
-  int at = from_rings;
   for (int ring = 0; ring < ring_count; ++ring) {
     const Index end = ring < ring_count - 1 ? std::min(ring_sizes[ring], held_.size()) : held_.size();
     for (const ArrayXf* counted :
          std::initializer_list<const ArrayXf*>{&inside, &held_, &same, &other, &front, &behind})
-      features[at++] = logCount(counted->head(end).sum());
+      *at++ = logCount(counted->head(end).sum());
   }
+  return at;
 }
 
 /// Of the neighbours held: the nearest across the beam, and deviations within the plane, in spacings.
-void NormalCandidateFeatures::measureSpread(const Vector3f& direction, Features& features)
+float* NormalCandidateFeatures::measureSpread(const Vector3f& direction, float* at)
 {
   float gap = across_.size() > 0 ? across_.maxCoeff() : 1.f;
   for (Index j = 0; j < across_.size(); ++j)
@@ -173,24 +170,26 @@ void NormalCandidateFeatures::measureSpread(const Vector3f& direction, Features&
   const float ab = (held_ * a * b).sum() / total - mean_a * mean_b;
   const float middle = (aa + bb) / 2, apart = std::hypot((aa - bb) / 2, ab);
   const float longer = std::sqrt(std::max(0.f, middle + apart)), shorter = std::sqrt(std::max(0.f, middle - apart));
-  features[from_spread] = std::log(gap + 0.1f);
-  features[from_spread + 1] = std::log(longer + 0.1f);
-  features[from_spread + 2] = std::log(shorter + 0.1f);
-  features[from_spread + 3] = std::log(std::max(shorter * spacing_ / thickness_, 0.1f));
-  features[from_spread + 4] = std::log(noise_ / spacing_);
-  features[from_spread + 5] = std::log(across_.size() + 1.f);
+  *at++ = std::log(gap + 0.1f);
+  *at++ = std::log(longer + 0.1f);
+  *at++ = std::log(shorter + 0.1f);
+  *at++ = std::log(std::max(shorter * spacing_ / thickness_, 0.1f));
+  *at++ = std::log(noise_ / spacing_);
+  *at++ = std::log(across_.size() + 1.f);
+  return at;
 }
+
 /// How far the neighbours are from the plane, and how far those that it holds agree with it.
-void NormalCandidateFeatures::measureFit(const Vector3f& direction, Features& features)
+void NormalCandidateFeatures::measureFit(const Vector3f& direction, float* at)
 {
   const ArrayXf off = height_.abs().min(beyond);
   const float total = std::max(1.f, held_.sum());
-  features[from_fit] = logCount((held_ * near_across_).sum());
-  features[from_fit + 1] = (off * near_across_).sum() / std::max(1.f, near_across_.sum());
-  features[from_fit + 2] = (off * wide_across_).sum() / std::max(1.f, wide_across_.sum());
-  features[from_fit + 3] = std::sqrt((held_ * height_.square()).sum() / total);
-  features[from_fit + 4] = (held_ * (direction.transpose() * normals_.matrix()).transpose().array()).sum() / total;
-  features[from_fit + 5] = (height_.max(-beyond).min(beyond) * wide_across_).sum() / std::max(1.f, wide_across_.sum());
-  features[from_fit + 6] = at_crease_.size() > 0 ? at_crease_.mean() : 0.f;
+  *at++ = logCount((held_ * near_across_).sum());
+  *at++ = (off * near_across_).sum() / std::max(1.f, near_across_.sum());
+  *at++ = (off * wide_across_).sum() / std::max(1.f, wide_across_.sum());
+  *at++ = std::sqrt((held_ * height_.square()).sum() / total);
+  *at++ = (held_ * (direction.transpose() * normals_.matrix()).transpose().array()).sum() / total;
+  *at++ = (height_.max(-beyond).min(beyond) * wide_across_).sum() / std::max(1.f, wide_across_.sum());
+  *at = at_crease_.size() > 0 ? at_crease_.mean() : 0.f;
 }
 } // namespace fresco::filters

@@ -36,9 +36,9 @@ private:
   void measureSpacing();
   void markNearestAcross();
   float placeOfPlane() const;
-  void countRings(const Eigen::Vector3f& direction, Features& features);
-  void measureFit(const Eigen::Vector3f& direction, Features& features);
-  void measureSpread(const Eigen::Vector3f& direction, Features& features);
+  float* countRings(const Eigen::Vector3f& direction, float* at); ///< @return behind the last one
+  float* measureSpread(const Eigen::Vector3f& direction, float* at);
+  void measureFit(const Eigen::Vector3f& direction, float* at);
 
   Eigen::Vector3f beam_;
   float noise_ = 0, spacing_ = 1;            ///< of the beams, lengths

@@ -117,7 +117,6 @@ private:
   void setCandidates(Index i, const Eigen::Vector3f& ray, const DirectionGrid::Surroundings& around,
                      std::vector<NormalCandidate>& all) const
   {
-    constexpr float same = 0.97f;    // cosine between directions that are one
     constexpr float grazing = 0.08f; // cosine to the beam at least
     const Eigen::Vector3f own = normals_.col(i);
     all.clear();
@@ -127,7 +126,7 @@ private:
     for (std::size_t k = 0; k < around.directions.size(); ++k) {
       const Eigen::Vector3f& direction = around.directions[k];
       const float to_own = direction.dot(own);
-      if (to_own > same)
+      if (to_own > same_direction)
         all.front().share = std::max(all.front().share, around.shares[k]);
       else if (-direction.dot(ray) >= grazing)
         all.push_back({direction, around.shares[k], to_own});

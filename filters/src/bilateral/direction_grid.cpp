@@ -47,7 +47,6 @@ void DirectionGrid::add(const Sample& sample)
 
 DirectionGrid::Surroundings DirectionGrid::surroundingsOf(const Cell& cell) const
 {
-  constexpr float same_around = 0.97f; // the same between directions of neighbouring cells
   constexpr float least_share = 0.05f; // of the weight: of round things no direction has more
   constexpr Index enough = 10;         // points that tell the noise
   std::vector<Direction> all;
@@ -70,7 +69,7 @@ DirectionGrid::Surroundings DirectionGrid::surroundingsOf(const Cell& cell) cons
   std::stable_sort(all.begin(), all.end(), heavier);
   std::vector<Direction> joined;
   for (const Direction& direction : all)
-    join(joined, direction, same_around);
+    join(joined, direction, same_direction);
   Surroundings around;
   for (const Direction& direction : joined)
     if (direction.weight > least_share * total) {

@@ -6,6 +6,8 @@
 #include <unordered_map>
 #include <vector>
 namespace fresco::filters {
+constexpr float same_direction = 0.97f; ///< cosine between directions that are one
+
 /// Which normals are frequent around a place, and how noisy the beams are there. Cells of a grid, each with what lies
 /// in it and in the 26 around it.
 class DirectionGrid {

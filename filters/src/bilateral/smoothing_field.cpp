@@ -23,7 +23,6 @@ std::unique_ptr<PointTree> usableTree(const Points& points, const Points& normal
 
 SmoothingField makeSmoothingField(const Points& points, const Points& normals, const BilateralOptions& options)
 {
-  constexpr int most = 256; // neighbours of a point
   SmoothingField field;
   field.tree = usableTree(points, normals, options.threads);
   field.areas = sampleAreas(*field.tree, 8, options.threads);
@@ -31,7 +30,7 @@ SmoothingField makeSmoothingField(const Points& points, const Points& normals, c
     field.radii = Eigen::VectorXf::Constant(1, 2 * options.sigma_d);
   else
     field.radii = 2 * options.spacings * field.areas.cwiseSqrt();
-  field.lists = compressedRadiusLists(*field.tree, field.radii, most, options.threads);
+  field.lists = compressedRadiusLists(*field.tree, field.radii, most_within, options.threads);
   field.normals.resize(3, field.tree->size());
   for (Index i = 0; i < field.normals.cols(); ++i)
     field.normals.col(i) = normals.col(field.tree->columns()[i]).normalized();

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <cstdint>
 #include <fresco/core/parallel.h>
+#include <fresco/core/point_set.h>
 #include <fresco/core/require.h>
 #include <fresco/filters/core/voxel_thinning.h>
-#include <limits>
 #include <tuple>
 namespace fresco {
 namespace {
@@ -34,20 +34,15 @@ struct Entry {
 /// Finite points with their cells, sorted by cell, then coordinates: what follows does not depend on their order.
 std::vector<Entry> sortedByCell(const Points& points, const Eigen::AlignedBox3f& box, float cell, int threads)
 {
-  constexpr std::uint64_t no_cell = std::numeric_limits<std::uint64_t>::max();
-  std::vector<Entry> entries(points.cols());
+  const std::vector<Index> finite = finiteColumns(points);
+  std::vector<Entry> entries(finite.size());
   const Eigen::Vector3d low = box.min().cast<double>();
-  parallelFor(points.cols(), threads, [&](Index i) {
-    std::uint64_t key = no_cell;
-    if (points.col(i).allFinite()) {
-      key = 0;
-      for (int axis = 0; axis < 3; ++axis)
-        key = key << axis_bits | static_cast<std::uint64_t>((points(axis, i) - low[axis]) / cell);
-    }
-    entries[i] = {key, i};
+  parallelFor(entries.size(), threads, [&](Index k) {
+    std::uint64_t key = 0;
+    for (int axis = 0; axis < 3; ++axis)
+      key = key << axis_bits | static_cast<std::uint64_t>((points(axis, finite[k]) - low[axis]) / cell);
+    entries[k] = {key, finite[k]};
   });
-  entries.erase(std::remove_if(entries.begin(), entries.end(), [](const Entry& e) { return e.cell == no_cell; }),
-                entries.end());
   const auto place = [&](Index i) { return std::tuple(points(0, i), points(1, i), points(2, i), i); };
   std::sort(entries.begin(), entries.end(), [&](const Entry& a, const Entry& b) {
     return a.cell != b.cell ? a.cell < b.cell : place(a.point) < place(b.point);

@@ -14,15 +14,14 @@ constexpr float least_spacing = 0.003f;
 float beamSpacing(const PointTree& directions)
 {
   constexpr Index spacing_samples = 1024;
-  constexpr int around = 8;
   std::vector<float> squared;
   std::vector<Neighbor> found;
   const Index count = std::min(spacing_samples, directions.size());
   for (Index s = 0; s < count; ++s) {
-    directions.nearest(directions.point(s * directions.size() / count), around + 1, found);
+    directions.nearest(directions.point(s * directions.size() / count), beside + 1, found);
     squared.push_back(found.back().squared_distance);
   }
-  return count > 0 ? std::sqrt(median(squared) * 3.1416f / around) : 0.f;
+  return count > 0 ? std::sqrt(median(squared) * 3.1416f / beside) : 0.f;
 }
 
 /// Searches among every m-th beam. Near ones are found together.

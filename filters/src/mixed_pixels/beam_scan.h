@@ -5,6 +5,10 @@
 #include <memory>
 #include <vector>
 namespace fresco::filters {
+constexpr int beside = 8;        ///< nearest beams: those around one in a grid
+constexpr int nearby_beams = 12; ///< and four more, for beams in no order
+constexpr int most_beams = 64;   ///< four rings of a grid, nearly
+
 /// Deviation of the ranges of a scan, by range.
 struct RangeNoise {
   std::vector<float> ranges, deviations; ///< ascending lengths, and lengths > 0: at least one

@@ -8,9 +8,8 @@
 #include <fresco/core/statistics.h>
 namespace fresco::filters {
 namespace {
-constexpr int most_beams = 64;          // of a window
 constexpr float largest_leverage = 9.f; // variance of a continuation / variance of a range
-constexpr std::size_t eighth = 7;       // beam, in a grid a diagonal away
+constexpr float smallest = 1e-6f;       // against division by zero
 
 using Places = std::array<const BeamWindow::Beam*, most_beams>;
 
@@ -73,18 +72,19 @@ RangeNoise plausible(const RangeNoise& measured)
 /// Radians between the beams of a grid that is as dense, whatever the nearest beam is.
 float spacingOf(const std::vector<BeamWindow::Beam>& beams)
 {
-  constexpr float least = 1e-6f;
-  return beams.empty() ? 0.f : std::max(beams[std::min(eighth, beams.size() - 1)].place.norm() * 0.70710678f, least);
+  const std::size_t diagonal = std::min<std::size_t>(beside, beams.size()) - 1;
+  return beams.empty() ? 0.f : std::max(beams[diagonal].place.norm() * 0.70710678f, smallest);
 }
 
 /// Leaves out beams that are much nearer to the middle than others: in a grid none is.
 void leaveOutTwins(std::vector<BeamWindow::Beam>& beams)
 {
-  constexpr float twin = 0.3f; // of the distance of the eighth beam: nearer ones are left out
-  if (beams.size() <= eighth)
+  constexpr float twin = 0.3f; // of the distance of the diagonal beam: nearer ones are left out
+  if (beams.size() < beside)
     return;
-  const float least = twin * beams[eighth].place.norm();
-  beams.erase(beams.begin(), std::find_if(beams.begin(), beams.begin() + eighth,
+  const auto diagonal = beams.begin() + (beside - 1);
+  const float least = twin * diagonal->place.norm();
+  beams.erase(beams.begin(), std::find_if(beams.begin(), diagonal,
                                           [&](const BeamWindow::Beam& beam) { return beam.place.norm() >= least; }));
 }
 } // namespace
@@ -139,8 +139,6 @@ std::optional<Continuation> continueSide(const BeamWindow& window, const WindowS
 
 RangeNoise measureNoise(const BeamScan& scan, int threads)
 {
-  constexpr float least_noise = 1e-6f; // deviation / range, of ranges that have none
-  constexpr int around = 12;
   constexpr std::size_t groups = 16, fewest = 500;                       // beams of a group
   std::vector<std::pair<float, float>> differences(scan.columns.size()); // range on the plane, difference
   parallelRanges(scan.ranges.size(), threads, [&](Index begin, Index end) {
@@ -148,7 +146,7 @@ RangeNoise measureNoise(const BeamScan& scan, int threads)
     Places beams{};
     for (Index i = begin; i < end; ++i) {
       fillWindow(scan, i, scan.lists.first(i), scan.lists.last(i), window);
-      const int count = std::min<int>(around, window.beams.size());
+      const int count = std::min<int>(nearby_beams, window.beams.size());
       for (int k = 0; k < count; ++k)
         beams[k] = &window.beams[k];
       const DepthPlane plane = fitInverseDepth(beams, count);
@@ -168,7 +166,7 @@ RangeNoise measureNoise(const BeamScan& scan, int threads)
     for (std::size_t k = begin; k < end; ++k)
       group.push_back(differences[k].second);
     const float range = differences[(begin + end) / 2].first, middle = quantile(group, 0.5) / 0.6745f;
-    const float deviation = std::max({middle, 0.5f * quantile(group, 0.75) / 1.15f, least_noise * range});
+    const float deviation = std::max({middle, 0.5f * quantile(group, 0.75) / 1.15f, smallest * range});
     if (!noise.ranges.empty() && !(range > noise.ranges.back()))
       continue;
     noise.ranges.push_back(range);

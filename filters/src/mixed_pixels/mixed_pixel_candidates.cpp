@@ -7,9 +7,7 @@
 #include <fresco/core/parallel.h>
 namespace fresco::filters {
 namespace {
-constexpr float beyond_noise = 3;        // deviations: what noise hardly reaches
-constexpr std::size_t nearby_beams = 12; // nearest: those around one in a grid, and four for beams in no order
-constexpr Index reach = 64;              // nearest beams of the second network: four rings of a grid, nearly
+constexpr float beyond_noise = 3; // deviations: what noise hardly reaches
 
 /// Whether a point has nearer and farther ones beside it, and few that a surface could join it with.
 bool isBetween(const BeamWindow& window, float noise, float slope)
@@ -56,7 +54,7 @@ public:
       list_.resize(std::min<std::size_t>(list_.size(), k_ + 1));
       return list_.size() > nearby_beams;
     };
-    listNearest(i, reach);
+    listNearest(i, most_beams);
     if (leaveOut())
       fillFromList(i, near_);
     if (!scan_.thinned)
@@ -69,7 +67,7 @@ public:
   /// ringsAround() over farther beams than those of around().
   auto rings(Index i, const std::vector<float>& scores)
   {
-    listNearest(i, reach);
+    listNearest(i, most_beams);
     fillFromList(i, far_);
     return ringsAround(far_, noise_, scores);
   }

@@ -7,9 +7,7 @@
 namespace fresco::filters {
 using namespace mixed_pixel_features;
 namespace {
-constexpr float circle = 2 * pi;
 constexpr float clear = 4.f;          // deviations that noise does not reach: one normal value in 16,000
-constexpr std::size_t beside = 8;     // nearest beams: those around one in a grid
 constexpr float most_counted = 8.f;   // deviations, where directions are sought: no single jump decides
 constexpr float shortest_way = 1e-9f; // across beams, length: against division by zero
 
@@ -29,8 +27,12 @@ public:
     sideways_ = sides < 0 ? Eigen::Vector2f(-across) : across;
   }
   const Eigen::Vector2f& forward() const { return forward_; } ///< where ranges grow, unit
-  Eigen::Vector2f way(int b) const { return wayAt(b * (circle / bearings)); }
-  Eigen::Vector2f wayAt(float angle) const { return std::cos(angle) * forward_ + std::sin(angle) * sideways_; }
+  /// The k-th of so many directions.
+  Eigen::Vector2f way(int k, int count = bearings) const
+  {
+    const float angle = k * float(2 * pi) / count;
+    return std::cos(angle) * forward_ + std::sin(angle) * sideways_;
+  }
 
 private:
   static Eigen::Vector2f forwardOf(const BeamWindow& window, float noise)
@@ -167,7 +169,7 @@ Eigen::Matrix<float, of_rings, 1> ringsAround(const BeamWindow& window, float no
   int at = 0;
   for (int ring = 1; ring <= rings; ++ring)
     for (int k = 0; k < of_ring; ++k) {
-      const Eigen::Vector2f way = compass.wayAt(k * circle / of_ring);
+      const Eigen::Vector2f way = compass.way(k, of_ring);
       const BeamWindow::Beam& beam = beamAt(window, way, ring);
       found[at] = flattened((beam.range - window.range) / noise);
       found[at + rings * of_ring] = std::max(scores[beam.position], least_score);

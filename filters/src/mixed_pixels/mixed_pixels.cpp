@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <fresco/core/point_set.h>
 #include <fresco/core/require.h>
 #include <fresco/filters/core/mixed_pixels.h>
 namespace fresco {
@@ -12,8 +13,7 @@ namespace {
 /// Marks the columns of mixed pixels.
 void judge(BeamScan scan, const MixedPixelOptions& options, std::vector<char>& mixed)
 {
-  constexpr Index fewest = 12; // points of a viewpoint that can be judged
-  if (Index(scan.columns.size()) <= fewest)
+  if (scan.columns.size() <= nearby_beams) // too few to be judged
     return;
   if (options.noise > 0)
     scan.noise = {{0}, {options.noise}};
@@ -48,10 +48,7 @@ std::vector<Index> withoutRepetitions(const Points& points, std::vector<Index> c
 /// Finite points grouped by equal viewpoints.
 std::vector<std::vector<Index>> groupByViewpoint(const Points& points, const Points& viewpoints)
 {
-  std::vector<Index> finite;
-  for (Index i = 0; i < points.cols(); ++i)
-    if (points.col(i).allFinite())
-      finite.push_back(i);
+  std::vector<Index> finite = finiteColumns(points);
   if (viewpoints.cols() == 1)
     return {finite};
   const auto key = [&](Index i) { return std::array{viewpoints(0, i), viewpoints(1, i), viewpoints(2, i)}; };
@@ -73,7 +70,7 @@ void validate(const Points& points, const Points& viewpoints, const MixedPixelOp
   require(options.angle > 0 && options.angle < 90, "mixed pixels: angle ", options.angle, " is not in 0..90 degrees");
   require(options.noise >= 0 && std::isfinite(options.noise), "mixed pixels: noise ", options.noise,
           " is negative or not finite");
-  require(options.k >= 8 && options.k <= 64, "mixed pixels: k ", options.k, " is not in 8..64");
+  require(options.k >= 8 && options.k <= most_beams, "mixed pixels: k ", options.k, " is not in 8..64");
 }
 } // namespace
 

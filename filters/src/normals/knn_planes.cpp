@@ -9,6 +9,7 @@ namespace {
 constexpr std::size_t most_leaves = 65536; // around a group; beyond, each point is searched for alone
 constexpr float least_width = 6.f;         // radius of a neighbourhood / deviation of the points from the surface
 constexpr int spread = 3;                  // times the neighbours of a point are kept in dense parts
+constexpr float line_breadth = 3.f;        // of a line at most, variances of the points
 
 /// Deviation of the points from their surfaces: the median of planes through the k nearest.
 float surfaceNoise(const PointTree& tree, int k, int threads)
@@ -49,11 +50,10 @@ std::pair<float, float> lesserVariances(const Moments& moments)
 /// @param variance of the points, across their surfaces
 bool isLine(const Moments& moments, float variance)
 {
-  constexpr float least_breadth = 3.f; // below, it is a line
-  constexpr float row_breadth = 6.f;   // below, it is a line if it has no thickness, as a row of beams
-  constexpr float thinnest = 0.1f;     // least variance / squared deviation, of what has a thickness
+  constexpr float thinnest = 0.1f; // least variance / squared deviation, of what has a thickness
   const auto [both, least] = lesserVariances(moments);
-  return both < least_breadth * variance || (both < row_breadth * variance && least < thinnest * variance);
+  // A row of beams has no thickness.
+  return both < line_breadth * variance || (both < 2 * line_breadth * variance && least < thinnest * variance);
 }
 
 /// Search and fit for one group after another.
@@ -156,18 +156,16 @@ private:
   /// @return false if wider ones may have it
   bool settled(Index i, float radius)
   {
-    constexpr float clear_breadth = 12.f; // that of the wider one that takes its place
-    constexpr float thickest = 2.25f;     // of a plane that takes the place of a line
-    constexpr float others = 4.5f;        // of a thin thing and what is around it
+    constexpr float thickest = 2.25f; // of a plane that takes the place of a line
     const std::size_t found = wide_.keptWithin(i, radius), k = evenly_.size();
     float sums[10];
     const int* codes = wide_.sum(sums);
     const Moments moments(found, sums);
-    if (found < k || lesserVariances(moments).first < clear_breadth * variance_)
+    if (found < k || lesserVariances(moments).first < 4 * line_breadth * variance_)
       return false;
     const Plane plane = fitPlane(moments, tree_.point(i));
     if (plane.variance > thickest * variance_)
-      return plane.variance > others * variance_;
+      return plane.variance > 2 * thickest * variance_; // a thin thing and what is around it
     takeEvenly(codes, found);
     for (int& code : evenly_)
       code = group_.codeOf(wide_.position(code));

@@ -13,7 +13,6 @@
 namespace fresco {
 using namespace filters;
 namespace {
-constexpr int fewest = 6; // neighbours within a radius; below, the nearest are taken: a plane with as much again
 void validate(const PointSet& set, const NormalOptions& options)
 {
   validatePointSet(set);
@@ -28,14 +27,13 @@ void validate(const PointSet& set, const NormalOptions& options)
 
 NeighborLists listsWithin(const PointTree& tree, const NormalOptions& options)
 {
-  constexpr int most = 256; // neighbours within a radius; beyond, evenly chosen
-  const NeighborLists nearest = nearestLists(tree, fewest, options.threads);
+  const NeighborLists nearest = nearestLists(tree, fewest_within, options.threads); // a plane with as much again
   Eigen::VectorXf radii = Eigen::VectorXf::Constant(tree.size(), options.radius);
   parallelFor(tree.size(), options.threads, [&](Index i) {
     const float last = (tree.point(*(nearest.last(i) - 1)) - tree.point(i)).norm() * (1 + 1e-5f);
     radii[i] = std::max(radii[i], std::isfinite(last) ? last : 0.f);
   });
-  return radiusLists(tree, radii, most, options.threads);
+  return radiusLists(tree, radii, most_within, options.threads);
 }
 
 /// Lists by column, in that order.
@@ -85,7 +83,7 @@ float confidenceOf(const GroupLists& lists, const std::vector<float>& densities,
   float around = 0;
   for (std::size_t j = 0; j < lists.count(i); ++j)
     around += densities[lists.position(lists.list(i)[j])] / count;
-  const float company = std::clamp((count - 2) / (fewest - 2), 0.f, 1.f);
+  const float company = std::clamp((count - 2) / (fewest_within - 2), 0.f, 1.f);
   return around > 0 ? company * std::min(1.f, densities[i] / around) : 0.f;
 }
 

@@ -59,7 +59,6 @@ template <typename PointInT, typename PointOutT>
 pcl::Indices OrientedNormalEstimation<PointInT, PointOutT>::searchNeighbors(const PointInT& point,
                                                                             const NormalOptions& options) const
 {
-  constexpr std::size_t fewest = 6, most = 256;
   pcl::Indices found;
   std::vector<float> squared;
   if (options.radius == 0) {
@@ -67,13 +66,13 @@ pcl::Indices OrientedNormalEstimation<PointInT, PointOutT>::searchNeighbors(cons
     return found;
   }
   this->tree_->radiusSearch(point, options.radius, found, squared);
-  if (found.size() < fewest)
-    this->tree_->nearestKSearch(point, fewest, found, squared);
-  if (found.size() <= most)
+  if (found.size() < fewest_within)
+    this->tree_->nearestKSearch(point, fewest_within, found, squared);
+  if (found.size() <= most_within)
     return found;
   pcl::Indices some;
-  for (std::size_t j = 0; j < most; ++j)
-    some.push_back(found[j * found.size() / most]);
+  for (std::size_t j = 0; j < most_within; ++j)
+    some.push_back(found[j * found.size() / most_within]);
   return some;
 }
 
