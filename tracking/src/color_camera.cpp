@@ -28,13 +28,11 @@ RgbdCameras with(RgbdCameras cameras, const Parameters& x)
   return cameras;
 }
 
-constexpr float unseen = std::numeric_limits<float>::quiet_NaN();
-
 float intensity(const Plane& gray, const Pinhole& C, const Eigen::Vector3f& q)
 {
   const float u = q.x() / q.z() * C.fx + C.cx, v = q.y() / q.z() * C.fy + C.cy;
   if (!(q.z() > 0.f && u >= 0.f && v >= 0.f && u < gray.width - 1 && v < gray.height - 1))
-    return unseen;
+    return std::numeric_limits<float>::quiet_NaN(); // unseen
   const int x = static_cast<int>(u), y = static_cast<int>(v);
   const float fu = u - x, fv = v - y;
   const float *upper = gray.row(y) + x, *lower = upper + gray.width;
@@ -48,7 +46,6 @@ struct SharedPoints {
 
 SharedPoints sharedPoints(const CalibrationPair& pair, const RgbdCameras& cameras)
 {
-  constexpr float same = 0.02f; // of the depth: else another surface is in front
   const RgbdLevel& fine = pair.current.levels[level];
   const Pinhole K = halved(cameras.depth, fine.depth_halvings);
   const ReferenceLevel points(pair.reference.levels[level], cameras);
@@ -59,7 +56,7 @@ SharedPoints sharedPoints(const CalibrationPair& pair, const RgbdCameras& camera
     const int u = static_cast<int>(std::floor(q.x() / q.z() * K.fx + K.cx + 0.5f));
     const int v = static_cast<int>(std::floor(q.y() / q.z() * K.fy + K.cy + 0.5f));
     if (!(q.z() > 0.f) || u < 0 || v < 0 || u >= fine.depth.width || v >= fine.depth.height ||
-        std::fabs(fine.depth.row(v)[u] - q.z()) > same * q.z())
+        std::fabs(fine.depth.row(v)[u] - q.z()) > one_surface * q.z())
       continue;
     shared.reference.push_back(p);
     shared.current.push_back(q);

@@ -6,7 +6,6 @@
 namespace fresco::tracking {
 namespace {
 constexpr Index fewest_votes = 12; // features that agree on a pose: unrelated images reach some 6
-constexpr std::size_t tried = 24;  // key frames that are compared with each by features
 
 /// Correlation of two coarse images, -1..1.
 double likeness(const RgbdPyramid& a, const RgbdPyramid& b)
@@ -28,13 +27,13 @@ double likeness(const RgbdPyramid& a, const RgbdPyramid& b)
 }
 } // namespace
 
-std::vector<Index> mostAlike(const std::vector<KeyFrame>& key_frames, const RgbdPyramid& frame, std::size_t most)
+std::vector<Index> mostAlike(const std::vector<KeyFrame>& key_frames, const RgbdPyramid& frame)
 {
   std::vector<std::pair<double, Index>> order;
   for (std::size_t k = 0; k < key_frames.size(); ++k)
     order.emplace_back(-likeness(key_frames[k].pyramid, frame), k);
   std::sort(order.begin(), order.end());
-  order.resize(std::min(order.size(), most));
+  order.resize(std::min(order.size(), most_alike));
   std::vector<Index> chosen;
   for (const auto& [unlikeness, k] : order)
     chosen.push_back(k);
@@ -55,7 +54,7 @@ Index closeLoops(TrackingMap& map, int threads, const Progress& progress)
   const Index count = map.key_frames.size();
   std::vector<KeyFrameEdges> found(count);
   const auto look = [&](Index b) {
-    for (const Index a : mostAlike(map.key_frames, map.key_frames[b].pyramid, tried))
+    for (const Index a : mostAlike(map.key_frames, map.key_frames[b].pyramid))
       if (a + 1 < b)
         for (const KeyFrameEdge& edge : alignByFeatures(map, a, b))
           found[b].push_back(edge);

@@ -37,8 +37,7 @@ void Odometry::add(Index frame, RgbdPyramid pyramid)
 
 void Odometry::relocalize()
 {
-  constexpr std::size_t tried = 10;
-  for (const Index a : mostAlike(map_.key_frames, map_.key_frames[current_].pyramid, tried))
+  for (const Index a : mostAlike(map_.key_frames, map_.key_frames[current_].pyramid))
     if (a < current_)
       if (const KeyFrameEdges edges = alignByFeatures(map_, a, current_); !edges.empty()) {
         map_.edges.insert(map_.edges.end(), edges.begin(), edges.end());

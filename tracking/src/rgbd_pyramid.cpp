@@ -6,7 +6,6 @@ namespace fresco::tracking {
 namespace {
 constexpr int finest_width = 400;  // pixels: finer images cost time, and their depths are no less noisy for it
 constexpr int coarsest_width = 40; // pixels: fewer hold no pose
-constexpr float jump = 0.03f;      // of the depth, within 2 x 2 pixels: steeper is an edge
 
 Plane depthPlane(const Image16& image, const DepthRules& rules)
 {
@@ -45,7 +44,7 @@ Plane halfDepth(const Plane& fine)
         least = z > 0.f ? std::min(least, z) : least;
       float sum = 0.f, count = 0.f;
       for (const float z : four) {
-        const bool same = z > 0.f && z <= least * (1.f + jump);
+        const bool same = z > 0.f && z <= least * (1.f + one_surface);
         sum += same ? z : 0.f;
         count += same ? 1.f : 0.f;
       }

@@ -4,6 +4,8 @@
 #include <fresco/tracking/core/rgbd_tracking.h>
 #include <vector>
 namespace fresco::tracking {
+constexpr float one_surface = 0.03f; ///< of the depth: what differs more is another surface
+
 /// Pinhole camera with pixel centres at integers.
 struct Pinhole {
   float fx = 0, fy = 0, cx = 0, cy = 0;

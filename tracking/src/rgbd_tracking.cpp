@@ -6,7 +6,7 @@
 #include "video_reader.h"
 #include <algorithm>
 #include <cmath>
-#include <fresco/core/parallel.h>
+#include <fresco/core/parallel_batches.h>
 #include <fresco/core/require.h>
 #include <optional>
 namespace fresco {
@@ -72,7 +72,6 @@ RgbdCameras findCameras(const VideoReader& reader, const RgbdVideo& video, const
 /// @return why frames could not be read, empty = they were
 std::vector<std::string> trackFrames(TrackingMap& map, const VideoReader& reader, int threads, const Progress& progress)
 {
-  constexpr Index batch = 16; // frames in memory
   Odometry odometry(map, threads);
   std::vector<std::string> problems;
   for (Index begin = 0; begin < reader.count(); begin += batch) {

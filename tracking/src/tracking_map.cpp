@@ -27,9 +27,8 @@ KeyFrameEdges alignBothWays(const TrackingMap& map, const KeyFrameEdge& guess, i
   const DenseAlignment back =
       alignDense(makeReference(b, map.cameras), a, map.cameras, forth.T_reference_current.inverse(), options);
   const Eigen::Isometry3d loop = forth.T_reference_current * back.T_reference_current;
-  constexpr double same_place = 0.03, same_turn = 0.03; // metres, radian
-  if (!isAligned(back) || loop.translation().norm() > same_place ||
-      Eigen::AngleAxisd(loop.linear()).angle() > same_turn)
+  constexpr double same = 0.03; // metres, radian
+  if (!isAligned(back) || loop.translation().norm() > same || Eigen::AngleAxisd(loop.linear()).angle() > same)
     return {};
   return {edgeOf(guess.a, guess.b, forth), edgeOf(guess.b, guess.a, back)};
 }
