@@ -214,7 +214,6 @@ std::vector<Place> findPlaces(const Scene& scene, const std::vector<Eigen::Matri
 std::optional<CameraAlignmentResult> matchedPlace(const Scene& scene, const CameraSet& set, const SparsePoints& points,
                                                   const SurfacePainter& painter, const Progress& progress)
 {
-  constexpr Index fewest_votes = 20;                  // wrong matches come to some 9
   constexpr double most_votes_next = 0.5;             // of what no place but the best explains: the scene may repeat
   constexpr std::pair<double, double> sizes(0.04, 2); // of the model, in units of the surface's radius
   const double unit = scene.model.T_model_cameras.scale, radius = scene.surface.radius();
@@ -222,7 +221,7 @@ std::optional<CameraAlignmentResult> matchedPlace(const Scene& scene, const Came
   const auto found = agreeOnSimilarities(matches, points, {sizes.first * radius * unit, sizes.second * radius * unit},
                                          vote_cell / unit);
   const double alias = double(found[1].votes) / std::max<Index>(1, found[0].votes);
-  if (found[0].votes < fewest_votes || alias > most_votes_next)
+  if (found[0].votes < fewest_known || alias > most_votes_next)
     return {};
   std::vector<Place> places{{found[0].T_surface_cameras * scene.model.T_model_cameras.inverse(), {}, 0}};
   const Similarity matched = places[0].T_surface_model;
@@ -241,12 +240,11 @@ std::optional<CameraAlignmentResult> matchedPlace(const Scene& scene, const Came
 /// The place that shape alone tells.
 CameraAlignmentResult placeByShape(const Scene& scene, const Progress& progress)
 {
-  constexpr std::size_t fewest_normals = 20; // below, nothing tells a rotation
   // Most models show most of a room. The smaller the part, the more places there are for it to fit by chance.
   constexpr std::pair<double, double> sizes[] = {{0.25, 1.4}, {0.08, 0.25}};
   report(progress, "rotation", 0.0);
   std::vector<Eigen::Matrix3d> rotations;
-  if (scene.model.order.size() >= fewest_normals)
+  if (scene.model.order.size() >= fewest_known)
     rotations = findRotations(scene.model, scene.surface, scene.options.threads);
   double most = 0, begin = 0.1;
   for (const auto& range : sizes) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "photograph_matches.h"
+#include "sparse_model.h"
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -68,7 +69,6 @@ bool isSimilar(const Columns& all, const Chosen& three, const std::pair<double, 
 MatchedSimilarity bestOf(const Columns& all, const std::pair<double, double>& scales, double tolerance)
 {
   constexpr int tried = 200000; // with a fortieth of the matches right, three right ones are drawn three times
-  constexpr int rounds = 5;
   std::mt19937 random(1);
   MatchedSimilarity best;
   Chosen inliers;
@@ -85,7 +85,7 @@ MatchedSimilarity bestOf(const Columns& all, const std::pair<double, double>& sc
       best.T_surface_cameras = T;
     }
   }
-  for (int k = 0; k < rounds && inliers.size() >= 3; ++k) {
+  for (int k = 0; k < settling && inliers.size() >= 3; ++k) {
     best.T_surface_cameras = similarityOf(all, inliers);
     inliers = agreeing(all, best.T_surface_cameras, tolerance);
   }
@@ -94,19 +94,19 @@ MatchedSimilarity bestOf(const Columns& all, const std::pair<double, double>& sc
 }
 } // namespace
 
-std::vector<MatchedSimilarity> agreeOnSimilarities(const std::vector<SurfaceMatch>& matches, const SparsePoints& points,
-                                                   const std::pair<double, double>& scales, double tolerance)
+std::array<MatchedSimilarity, 2> agreeOnSimilarities(const std::vector<SurfaceMatch>& matches,
+                                                     const SparsePoints& points,
+                                                     const std::pair<double, double>& scales, double tolerance)
 {
-  constexpr int most = 2;
   Columns all{Eigen::Matrix3Xd(3, matches.size()), Eigen::Matrix3Xd(3, matches.size())};
   for (std::size_t i = 0; i < matches.size(); ++i) {
     all.places.col(i) = matches[i].place;
     all.points.col(i) = points[matches[i].point].position;
   }
-  std::vector<MatchedSimilarity> found;
-  for (int k = 0; k < most; ++k) {
-    found.push_back(bestOf(all, scales, tolerance));
-    const Chosen gone = agreeing(all, found.back().T_surface_cameras, 3 * tolerance);
+  std::array<MatchedSimilarity, 2> found;
+  for (MatchedSimilarity& one : found) {
+    one = bestOf(all, scales, tolerance);
+    const Chosen gone = agreeing(all, one.T_surface_cameras, 3 * tolerance);
     Chosen rest;
     for (Index i = 0, g = 0; i < all.points.cols(); ++i)
       if (g < static_cast<Index>(gone.size()) && gone[g] == i)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include "surface_views.h"
+#include <array>
 #include <fresco/alignment/core/camera_alignment.h>
 #include <fresco/core/progress.h>
 namespace fresco::alignment {
@@ -24,9 +25,10 @@ struct MatchedSimilarity {
   Index votes = 0; ///< cells of sparse points that agree
 };
 
-/// Similarities by random samples of three matches (RANSAC: Fischler & Bolles 1981), most votes first; each of what the
-/// ones before it do not explain.
+/// The best two similarities by random samples of three matches (RANSAC: Fischler & Bolles 1981); the second of what the
+/// first does not explain.
 /// @param scales smallest and largest @param tolerance in units of the cameras' frame
-std::vector<MatchedSimilarity> agreeOnSimilarities(const std::vector<SurfaceMatch>& matches, const SparsePoints& points,
-                                                   const std::pair<double, double>& scales, double tolerance);
+std::array<MatchedSimilarity, 2> agreeOnSimilarities(const std::vector<SurfaceMatch>& matches,
+                                                     const SparsePoints& points,
+                                                     const std::pair<double, double>& scales, double tolerance);
 } // namespace fresco::alignment

@@ -93,7 +93,6 @@ std::vector<Matrix3d> findRotations(const SparseModel& model, const ScanSurface&
   constexpr std::size_t most = 64, most_normals = 300; // a room with walls at right angles has 24
   constexpr double least = 0.5; // of what the best has more than any: half of the directions fit by chance
   constexpr Index sampled = 500;
-  constexpr double apart = 10 * radians_per_degree; // rotations that climb to one maximum
   constexpr double coarse = 8 * radians_per_degree, fine = 3 * radians_per_degree;
   Eigen::Matrix3Xd normals(3, std::min(most_normals, model.order.size()));
   for (Index i = 0; i < normals.cols(); ++i)
@@ -108,7 +107,7 @@ std::vector<Matrix3d> findRotations(const SparseModel& model, const ScanSurface&
   std::vector<Matrix3d> found;
   double best = mean;
   const auto isNew = [&](const Matrix3d& R) {
-    return std::none_of(found.begin(), found.end(), [&](const Matrix3d& F) { return angleBetween(F, R) < apart; });
+    return std::none_of(found.begin(), found.end(), [&](const Matrix3d& F) { return angleBetween(F, R) < coarse; });
   };
   for (std::size_t i = 0; i < ranked.size() && found.size() < most; ++i)
     if (const Matrix3d R = spreadRotation(ranked[i].second, tried); isNew(R))

@@ -50,7 +50,6 @@ ScanSurface::ScanSurface(const PointSet& scans, int threads)
 
 void ScanSurface::buildCells()
 {
-  constexpr double most_cells = 3e7; // 120 MB
   low_ = level_.points.rowwise().minCoeff();
   high_ = level_.points.rowwise().maxCoeff();
   const Eigen::Vector3d size = (high_ - low_).cast<double>();

@@ -4,6 +4,8 @@
 #include <fresco/registration/core/surface_points.h>
 #include <limits>
 namespace fresco::alignment {
+constexpr double most_cells = 2e7; ///< of a grid: bounds the memory
+
 /// The surface of the scans as points of even density with normals (sign arbitrary), around their midst.
 class ScanSurface {
 public:

@@ -77,19 +77,17 @@ Similarity refineSimilarity(const SparseModel& model, const std::vector<Index>& 
                             const RefinementRange& range, const Similarity& T_surface_model)
 {
   constexpr double shrink = 0.75;
-  constexpr int last_steps = 5; // at the smallest tolerance
   Similarity T = T_surface_model;
   for (double tolerance = range.start; tolerance > range.end; tolerance *= shrink)
     T = improved(model, points, surface, {tolerance, tolerance, range.flat}, T);
-  for (int step = 0; step < last_steps; ++step)
+  for (int step = 0; step < settling; ++step)
     T = improved(model, points, surface, range, T);
   return T;
 }
 
 double noiseOf(const SparseModel& model, const ScanSurface& surface, const Similarity& T, double range)
 {
-  constexpr int rounds = 20; // a bound: the range ends to shrink by itself
-  for (int round = 0; round < rounds; ++round) {
+  for (;;) {
     std::vector<double> heights;
     for (Index i = 0; i < model.points.cols(); ++i)
       if (const auto foot = footOf(surface, T * model.points.col(i), T.scale * range);
@@ -99,10 +97,9 @@ double noiseOf(const SparseModel& model, const ScanSurface& surface, const Simil
       return range / 3;
     const double next = 3 * mad_to_sigma * median(heights);
     if (next > 0.98 * range)
-      break;
+      return range / 3;
     range = next;
   }
-  return range / 3;
 }
 
 PlaceCheck checkPlace(const SparseModel& model, const ScanSurface& surface, const Similarity& T, double tolerance)
@@ -131,7 +128,7 @@ PlaceCheck checkPlace(const SparseModel& model, const ScanSurface& surface, cons
   check.support = supported.size() / count;
   check.blocked = blocked / count;
   check.rms = supported.empty() ? 0 : std::sqrt(squares / supported.size()) / T.scale;
-  if (surface.level().colors.cols() > 0 && supported.size() >= 20)
+  if (surface.level().colors.cols() > 0 && supported.size() >= fewest_known)
     check.colors = correlation(model.colors(Eigen::all, supported), surface.level().colors(Eigen::all, feet));
   return check;
 }

@@ -112,8 +112,7 @@ std::vector<VotedSimilarity> voteForSimilarities(const SparseModel& model, const
                                                  const std::pair<double, double>& scales, int threads,
                                                  const Progress& progress)
 {
-  constexpr double step = 1.045;     // moves points at 1.8 radii by a cell
-  constexpr double most_cells = 2e7; // of the votes of one rotation
+  constexpr double step = 1.045; // moves points at 1.8 radii by a cell
   const double box = (surface.high() - surface.low()).cast<double>().prod();
   std::vector<VotedSimilarity> all;
   for (double scale = scales.first; scale < scales.second; scale *= step) {

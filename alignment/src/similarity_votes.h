@@ -10,9 +10,6 @@ struct VotedSimilarity {
   int votes = 0;
 };
 
-/// Cells of the votes in the model's unit: half of its points lie within 12 cells.
-constexpr double vote_cell = 0.08;
-
 /// Scales and shifts for one rotation each, by votes: generalised Hough transform (Ballard 1981). Every point of the model
 /// votes for the shifts that bring it into a cell of the surface with a normal like its own.
 /// @param scales range of the model's unit in units of the surface

@@ -108,7 +108,7 @@ void findNormals(SparseModel& model, int threads)
 
 SparseModel makeSparseModel(const CameraSet& set, const SparsePoints& points, int threads)
 {
-  constexpr double farthest = 6, cell = 0.04; // in median distances: beyond are distant outliers; features of one thing
+  constexpr double farthest = 6; // median distances: beyond are distant outliers
   SparseModel model;
   Eigen::Matrix3Xd places(3, points.size());
   for (std::size_t i = 0; i < points.size(); ++i)
@@ -131,7 +131,7 @@ SparseModel makeSparseModel(const CameraSet& set, const SparsePoints& points, in
     model.seen.col(i) = T * seen.col(kept[i]);
     model.eyes.col(i) = T * nearestEye(set, point);
     model.colors.col(i) = point.color.cast<float>();
-    const Eigen::Vector3i at = (model.points.col(i) / cell).array().floor().cast<int>();
+    const Eigen::Vector3i at = (model.points.col(i) / (0.5 * vote_cell)).array().floor().cast<int>();
     if (taken.insert({at.x(), at.y(), at.z()}).second)
       model.spread.push_back(i);
   }

@@ -116,25 +116,23 @@ SurfaceView SurfacePainter::draw(const CameraModel& camera, const Eigen::Isometr
 
 std::vector<Vector3d> freePlaces(const ScanSurface& surface, std::size_t most)
 {
-  constexpr double free = 0.25, step = 0.3, apart = 0.6, farthest = 3; // of the surface's radius
-  const double radius = surface.radius();
-  const int count = static_cast<int>(farthest / step);
+  constexpr double spacing = 0.3; // of the surface's radius
+  const double step = spacing * surface.radius();
+  const Eigen::Array3i low = (surface.low().cast<double>().array() / step).ceil().cast<int>(),
+                       high = (surface.high().cast<double>().array() / step).floor().cast<int>();
   std::vector<Vector3d> places;
-  for (int z = -count; z <= count; ++z)
-    for (int y = -count; y <= count; ++y)
-      for (int x = -count; x <= count; ++x)
-        if (const Vector3d place = step * radius * Vector3d(x, y, z);
-            (place.array() > surface.low().cast<double>().array()).all() &&
-            (place.array() < surface.high().cast<double>().array()).all() &&
-            surface.level().tree->nearest(place.cast<float>(), static_cast<float>(free * radius)).index < 0)
+  for (int z = low.z(); z <= high.z(); ++z)
+    for (int y = low.y(); y <= high.y(); ++y)
+      for (int x = low.x(); x <= high.x(); ++x)
+        if (const Vector3d place = step * Vector3d(x, y, z);
+            surface.level().tree->nearest(place.cast<float>(), static_cast<float>(step)).index < 0)
           places.push_back(place);
   std::stable_sort(places.begin(), places.end(),
                    [](const Vector3d& a, const Vector3d& b) { return a.squaredNorm() < b.squaredNorm(); });
   std::vector<Vector3d> chosen; // from the midst outwards
   for (const Vector3d& place : places)
-    if (chosen.size() < most && std::none_of(chosen.begin(), chosen.end(), [&](const Vector3d& other) {
-          return (place - other).norm() < apart * radius;
-        }))
+    if (chosen.size() < most && std::none_of(chosen.begin(), chosen.end(),
+                                             [&](const Vector3d& other) { return (place - other).norm() < 2 * step; }))
       chosen.push_back(place);
   return chosen;
 }

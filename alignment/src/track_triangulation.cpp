@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "track_triangulation.h"
+#include "sparse_model.h"
 #include <Eigen/Cholesky>
 #include <cmath>
 #include <fresco/core/parallel.h>
@@ -65,7 +66,6 @@ bool meet(const std::vector<TrackRay>& rays, const Vector3d& place)
 
 Eigen::Matrix3Xd triangulateTracks(const CameraSet& set, const SparsePoints& points, int threads)
 {
-  constexpr int steps = 4; // distances, which the weights hang on, settle at once
   Eigen::Matrix3Xd places(3, points.size());
   parallelFor(places.cols(), threads, [&](Index i) {
     places.col(i) = points[i].position;
@@ -73,7 +73,7 @@ Eigen::Matrix3Xd triangulateTracks(const CameraSet& set, const SparsePoints& poi
     if (!differ(rays))
       return;
     Vector3d place = points[i].position;
-    for (int step = 0; step < steps; ++step)
+    for (int step = 0; step < settling; ++step)
       place = nearestToRays(rays, place);
     if (meet(rays, place))
       places.col(i) = place;
