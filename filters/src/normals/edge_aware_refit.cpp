@@ -10,6 +10,7 @@
 namespace fresco::filters {
 namespace {
 constexpr int passes = 3, passes_without_rays = 2;
+constexpr float same_side = 0.866f; // cosine between planes that form no crease
 
 /// Points with planes of their own, in two arrays for the sake of memory.
 struct Updates {
@@ -33,12 +34,11 @@ Eigen::Vector3f towardsViewer(const Plane& plane, const Eigen::Vector3f& ray)
 /// @param ray unit, away from the viewer
 bool seesSecond(const Plane& a, const Plane& b, const Eigen::Vector3f& point, const Eigen::Vector3f& ray)
 {
-  constexpr float grazing = 0.1f; // cosine between ray and normal; below, the ray tells nothing
   const Eigen::Vector3f a_normal = towardsViewer(a, ray), b_normal = towardsViewer(b, ray);
   const float a_over_b = b_normal.dot(a.center - b.center), b_over_a = a_normal.dot(b.center - a.center);
   const float a_facing = a_normal.dot(ray), b_facing = b_normal.dot(ray);
-  if (!(a_over_b * b_over_a > 0) || a_facing > -grazing || b_facing > -grazing)
-    return false; // neither hollow nor ridge
+  if (!(a_over_b * b_over_a > 0) || a_facing >= 0 || b_facing >= 0)
+    return false; // neither hollow nor ridge, or along the ray
   const bool hollow = a_over_b > 0;
   const float a_depth = a_normal.dot(a.center - point) / a_facing, b_depth = b_normal.dot(b.center - point) / b_facing;
   return (b_depth < a_depth) == hollow;
@@ -109,7 +109,6 @@ private:
   {
     constexpr float clearly_flatter = 2.5f; // ratio of the variances of two fits that tells an edge from chance
     constexpr float flatter = 1.6f; // the same where normals around tell of an edge and rays tell the sides apart
-    constexpr float half_same_side = 0.966f; // planes that differ from a third by no more form no crease
     const int self = lists.codeOf(i);
     const Plane& own = near_[self];
     if (!std::isfinite(own.variance) || lists.count(i) == 0)
@@ -117,7 +116,7 @@ private:
     const Eigen::Vector3f here = all_.point(i);
     const BestPlane found =
         planeKernels().best(near_.data()->normal.data(), lists.list(i), lists.count(i), own.normal.data(), here.data());
-    const bool crease = found.closest < half_same_side;
+    const bool crease = found.closest < same_side;
     const bool rays = set_.viewpoints.cols() > 0;
     const float ratio = rays && crease ? flatter : clearly_flatter;
     const int best = found.score * ratio < own.variance ? lists.list(i)[found.which] : self;
@@ -133,9 +132,8 @@ private:
   /// The code of the best plane to the other side of a crease that is as flat and holds the point; -1 if there is none.
   int otherSide(const GroupLists& lists, Index i, const Plane& first) const
   {
-    constexpr float as_flat = 3.f;      // ratio of the variances of the two sides of a crease at most
-    constexpr float holding = 16.f;     // squared distance of a point that a plane holds / variance at most
-    constexpr float same_side = 0.866f; // cosine between planes that form no crease
+    constexpr float as_flat = 3.f;  // ratio of the variances of the two sides of a crease at most
+    constexpr float holding = 16.f; // squared distance of a point that a plane holds / variance at most
     const Eigen::Vector3f here = all_.point(i);
     int second = -1;
     float best_score = std::numeric_limits<float>::infinity();

@@ -50,9 +50,9 @@ std::pair<float, float> lesserVariances(const Moments& moments)
 /// @param variance of the points, across their surfaces
 bool isLine(const Moments& moments, float variance)
 {
-  constexpr float thinnest = 0.1f; // least variance / squared deviation, of what has a thickness
+  constexpr float thinnest =
+      0.1f; // least variance / squared deviation, of what has a thickness: a row of beams has none
   const auto [both, least] = lesserVariances(moments);
-  // A row of beams has no thickness.
   return both < line_breadth * variance || (both < 2 * line_breadth * variance && least < thinnest * variance);
 }
 
@@ -67,11 +67,10 @@ public:
   /// @param codes of the first point of the tree
   GroupLists fit(Index first_leaf, Index end_leaf, std::uint16_t* codes)
   {
-    constexpr float reach_margin = 1.5f; // how far to look for neighbours / distance expected
     group_.enter(first_leaf, end_leaf);
     encoder_.begin(group_.begin(), group_.end());
     const float expected = group_.expectedReach(k_);
-    group_.gather(std::max(width_, reach_margin * expected), most_leaves);
+    group_.gather(std::max(width_, expected), most_leaves);
     const bool dense = expected < width_;
     thinned_ = false;
     lines_.clear();

@@ -114,10 +114,7 @@ struct NeighborLists {
 
 /// The k nearest (fewer if there are fewer) of every point of the tree, itself included, by distance; positions.
 FRESCO_EXPORT NeighborLists nearestLists(const PointTree& tree, int k, int threads = 0);
-
-/// Neighbours within a radius that a surface is told by: fewer give no plane, of more some do.
-constexpr int fewest_within = 6, most_within = 256;
-
+constexpr int fewest_within = 6, most_within = 256; ///< neighbours within a radius that a surface is told by
 /// All points within radii[i] of point i, itself included, in order of position. Where there are more than
 /// `most` of them, every m-th in the order of the tree, which spreads them evenly; itself stays.
 /// @param radii tree.size() or 1 (for all), by position, length, >= 0
