@@ -38,7 +38,7 @@ TextureResult reconstruct(const TexturedMesh& given, const std::vector<TextureVi
     inside_out = insideOutFaces(result.model.mesh, *rays, projectors, result);
   for (TexturedMesh* m : {&model, &result.model})
     turnFaces(inside_out, *m);
-  warnOfMisfits(views, result);
+  warnOfMisfits(parts, result);
   const ViewList list = viewList(projectors, photos, parts, result);
   const Job job{options, list, steps, result};
   ViewChoice choice;
@@ -65,7 +65,7 @@ MemoryNeed memoryNeed(const std::vector<TextureView>& views, const TextureOption
   for (const TextureView& view : views)
     photographs += pixel * view.camera.width * view.camera.height;
   photographs = std::min(photographs, std::size_t(options.memory) << 20);
-  return {0, photographs + views.size() * most_cells * sizeof(float), 540, 105}; // measured: docs/texture.md
+  return {0, photographs + views.size() * most_cells * sizeof(float), 540}; // measured: docs/texture.md
 }
 } // namespace
 

@@ -1,20 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cameras/camera_refinement.h"
 #include "cameras/camera_adjustment.h"
+#include "photographs/input_checks.h"
 #include <algorithm>
 #include <cmath>
 #include <fresco/core/parallel.h>
 #include <fresco/core/require.h>
 #include <fresco/core/statistics.h>
 #include <iomanip>
-#include <sstream>
 #include <tuple>
 namespace fresco::texture {
 namespace {
 /// Cameras that agree so well are left alone: half a pixel is what matching itself errs by.
 constexpr double agreement_pixels = 0.5;
-constexpr double exact_pixels = 0.3;    // what matching errs by where cameras and mesh are exact
-constexpr Index least_fit_matches = 20; // of a photograph, for a median
+constexpr double exact_pixels = 0.3; // what matching errs by where cameras and mesh are exact
 
 auto numbersOf(const CameraModel& c)
 {
@@ -150,7 +149,7 @@ void describeFits(const std::vector<PhotoMatch>& matches, const CameraState& sta
 void refineCameras(const RefinementInput& input, int threads, const Progress& progress, TextureResult& result)
 {
   constexpr double searches[] = {0.06, 0.025, 0.0125, 0.008}; // of the image's width: shrinks with what is left to find
-  constexpr double least_gain = 0.9, least_pixels = 0.05;     // of the error: a smaller gain may be chance
+  constexpr double least_pixels = 0.05;                       // a smaller gain may be chance
   constexpr std::size_t least_matches = 50;                   // for a median, and for priors not to be all that decides
   double &before = result.disagreement_before, &after = result.disagreement_after;
   const std::size_t views = input.views.size();
@@ -181,7 +180,7 @@ void refineCameras(const RefinementInput& input, int threads, const Progress& pr
       adjust();
     }
   input.photos.setAside(0);
-  result.refined = matches.size() >= least_matches && after < std::min(least_gain * before, before - least_pixels);
+  result.refined = matches.size() >= least_matches && after < std::min(clear_gain * before, before - least_pixels);
   if (!result.refined)
     after = before;
   if (matches.size() >= least_matches)
@@ -217,25 +216,19 @@ std::vector<double> misfits(const TextureResult& result)
   std::vector<double> out(result.cameras.size(), 0);
   const double expected = std::max(agreement_pixels, result.disagreement_after);
   for (std::size_t v = 0; v < result.fits.size(); ++v)
-    if (result.fits[v].matches >= least_fit_matches)
+    if (result.fits[v].matches >= fewest_samples)
       out[v] = std::clamp(std::log2(result.fits[v].median / expected), 0.0, most);
   return out;
 }
 
-void warnOfMisfits(const std::vector<TextureView>& views, TextureResult& result)
+void warnOfMisfits(const std::vector<ViewPart>& parts, TextureResult& result)
 {
-  constexpr int named = 5;
   const std::vector<double> octaves = misfits(result);
-  std::ostringstream list;
-  list << std::fixed << std::setprecision(1);
-  int count = 0;
-  for (std::size_t v = 0; v < octaves.size(); ++v)
-    if (octaves[v] >= 1 && ++count <= named)
-      list << (count > 1 ? ", " : "") << (views[v].path.empty() ? concat("photograph ", v) : views[v].path) << " by "
-           << result.fits[v].median << " pixels";
-  if (count > 0)
-    result.warnings.push_back(concat("photographs that do not fit the others and are avoided: ", list.str(),
-                                     count > named ? concat(" and ", count - named, " more") : ""));
+  const auto off = [&](int view) {
+    return octaves[view] >= 1 ? concat(" by ", std::fixed, std::setprecision(1), result.fits[view].median, " pixels")
+                              : "";
+  };
+  warnOf(parts, off, {"photographs that do not fit the others and are avoided: ", "", ""}, result);
 }
 
 double poseUncertainty(const TextureResult& result)
@@ -250,7 +243,7 @@ std::vector<float> registrationErrors(const TextureResult& result)
 {
   std::vector<float> out;
   for (const PhotographFit& fit : result.fits) {
-    const double median = fit.matches >= least_fit_matches ? fit.median : result.disagreement_after;
+    const double median = fit.matches >= fewest_samples ? fit.median : result.disagreement_after;
     out.push_back(std::max(0.0, median - exact_pixels));
   }
   return out;

@@ -28,8 +28,7 @@ double poseUncertainty(const TextureResult& result);
 std::vector<double> misfits(const TextureResult& result);
 
 /// Warns of the views that are trusted less by an octave or more.
-/// @param views as given
-void warnOfMisfits(const std::vector<TextureView>& views, TextureResult& result);
+void warnOfMisfits(const std::vector<ViewPart>& parts, TextureResult& result);
 
 /// Pixels by which each view is off from the others, beyond what matching itself errs by; empty where that is not known.
 std::vector<float> registrationErrors(const TextureResult& result);

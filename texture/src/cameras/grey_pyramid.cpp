@@ -73,7 +73,7 @@ float greyAt(const Image& image, float x, float y)
 std::vector<Eigen::Vector2f> findCorners(const Image& image, int cells)
 {
   std::vector<Eigen::Vector2f> out;
-  constexpr int corner_border = 12;  // pixels: room for a patch around the corner
+  constexpr int corner_border = 2 * (patch_radius + 1);
   constexpr double least_change = 4; // grey levels per pixel, RMS in the direction of least change: above noise
   const double width = image.width - 2.0 * corner_border, height = image.height - 2.0 * corner_border;
   if (!(width > 0 && height > 0))

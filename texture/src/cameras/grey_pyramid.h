@@ -5,6 +5,8 @@
 #include <fresco/core/types.h>
 #include <vector>
 namespace fresco::texture {
+constexpr int patch_radius = 5; ///< pixels: 11 x 11 are distinct enough, and the surface is still flat over them
+
 /// Grey levels of a photograph, each level half as wide as the one before.
 struct GreyPyramid {
   std::vector<Image> levels; ///< one channel

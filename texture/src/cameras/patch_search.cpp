@@ -9,8 +9,7 @@
 #include <vector>
 namespace fresco::texture {
 namespace {
-/// Pixels: 11 x 11 are distinct enough, and the surface is still flat over them.
-constexpr int radius = 5, side = 2 * radius + 1, count = side * side;
+constexpr int side = 2 * patch_radius + 1, count = side * side;
 
 /// Patch with mean 0 and norm 1.
 using Template = std::array<float, count>;
@@ -31,7 +30,8 @@ bool takeTemplate(const PatchQuery& query, int level, Template& out)
   for (int j = 0; j < side; ++j)
     for (int i = 0; i < side; ++i) {
       const Eigen::Vector2f p =
-          query.pixel_from * scale + query.T_from_to * Eigen::Vector2f(i - radius, j - radius); // offsets scale alike
+          query.pixel_from * scale +
+          query.T_from_to * Eigen::Vector2f(i - patch_radius, j - patch_radius); // offsets scale alike
       if (!(p.x() >= 1 && p.y() >= 1 && p.x() < image.width - 1 && p.y() < image.height - 1))
         return false;
       const float v = out[j * side + i] = greyAt(image, p.x(), p.y());
@@ -102,19 +102,19 @@ private:
 /// Correlation of the template with the patch centred on pixel (x, y); -1 outside the image.
 float correlation(const Template& patch, const Image& image, int x, int y)
 {
-  if (x < radius || y < radius || x >= image.width - radius || y >= image.height - radius)
+  if (x < patch_radius || y < patch_radius || x >= image.width - patch_radius || y >= image.height - patch_radius)
     return -1;
-  return Region(image, {x - radius, y - radius}, {side, side}).correlation(patch, 0, 0);
+  return Region(image, {x - patch_radius, y - patch_radius}, {side, side}).correlation(patch, 0, 0);
 }
 
 Peak findPeak(const Template& patch, const Image& image, Eigen::Vector2i at, int reach)
 {
   Peak peak;
-  const Eigen::Array2i low = (at.array() - reach).max(radius),
-                       high = (at.array() + reach).min(Eigen::Array2i(image.width, image.height) - 1 - radius);
+  const Eigen::Array2i low = (at.array() - reach).max(patch_radius),
+                       high = (at.array() + reach).min(Eigen::Array2i(image.width, image.height) - 1 - patch_radius);
   if ((low > high).any())
     return peak;
-  const Region region(image, low - radius, high - low + side);
+  const Region region(image, low - patch_radius, high - low + side);
   std::vector<float> values;
   for (int y = low.y(); y <= high.y(); ++y)
     for (int x = low.x(); x <= high.x(); ++x) {
@@ -144,7 +144,7 @@ public:
   {
     for (int j = 0; j < wide; ++j)
       for (int i = 0; i < wide; ++i)
-        grey_[j * wide + i] = greyAt(image, place.x() + i - radius - 1, place.y() + j - radius - 1);
+        grey_[j * wide + i] = greyAt(image, place.x() + i - patch_radius - 1, place.y() + j - patch_radius - 1);
   }
 
   /// Of pixel (i, j) of the patch: derivatives in x and y, grey level.
@@ -165,7 +165,7 @@ bool fitPlace(const Template& patch, const Image& image, Eigen::Vector2f& place)
 {
   constexpr int most_steps = 10;
   constexpr float enough = 0.01f, reach = 1; // pixels: far below the scatter of matches; the peak is in the next pixel
-  constexpr int spare = radius + 2;
+  constexpr int spare = patch_radius + 2;
   const Eigen::Vector2f start = place;
   for (int step = 0; step < most_steps; ++step) {
     if (!((place - start).norm() <= reach && place.minCoeff() >= spare && place.x() < image.width - spare &&

@@ -59,9 +59,8 @@ private:
   /// where it is bent or seen too obliquely
   bool lift(Index v, Corner& corner) const
   {
-    constexpr int flat_reach = 6; // pixels: a patch with its border
     const Eigen::Vector3f from = views_[v].center();
-    const double reach = flat_reach / photos_[v].pyramid.scale;
+    const double reach = (patch_radius + 1) / photos_[v].pyramid.scale;
     const Eigen::Vector2d offsets[5] = {{0, 0}, {reach, 0}, {-reach, 0}, {0, reach}, {0, -reach}};
     Eigen::Matrix<double, 3, 5> points;
     for (int k = 0; k < 5; ++k) {
@@ -102,8 +101,7 @@ private:
   /// Views that see most of the corners; fewer and fewer of those that see less, for long baselines.
   std::vector<int> partnersOf(int from, const std::vector<Corner>& corners) const
   {
-    constexpr int sampled = 4;       // every so many corners: enough to rank the views
-    constexpr int least_shared = 12; // corners: fewer give hardly a match
+    constexpr int sampled = 4; // every so many corners: enough to rank the views
     std::vector<int> shared(photos_.size(), 0), order(photos_.size());
     Eigen::Vector2d pixel;
     const Index n = photos_.size(), most = options_.partners;
@@ -116,7 +114,7 @@ private:
     double step = 1;
     for (double rank = 0; rank < n && static_cast<Index>(out.size()) < most; rank += step) {
       const int v = order[rank];
-      if (shared[v] < least_shared)
+      if (shared[v] < fewest_samples)
         break;
       out.push_back(v);
       step *= 1.25;

@@ -2,6 +2,7 @@
 #pragma once
 #include "cameras/grey_pyramid.h"
 #include "photographs/grid.h"
+#include "photographs/photo_store.h"
 #include "photographs/projector.h"
 #include <algorithm>
 #include <fresco/search/ray_scene.h>

@@ -10,6 +10,8 @@
 #include <stdexcept>
 namespace fresco::texture {
 namespace {
+constexpr int tries = 5; // of sides: more hardly save a texel
+
 using BitRow = boost::dynamic_bitset<std::uint64_t>;
 
 struct Run {
@@ -184,7 +186,6 @@ double ownedTexels(const std::vector<Chart>& charts)
 /// Width of the smallest square that `packer` fills, blocks.
 int smallestSquare(Packer& packer, int least, double blocks)
 {
-  constexpr int tries = 5;
   int width = std::max<int>(least, std::ceil(std::sqrt(blocks / 0.9))), best = 0, best_width = width, packed = 0;
   for (int i = 0; i < tries; ++i) {
     packed = width;
@@ -205,7 +206,6 @@ int smallestSquare(Packer& packer, int least, double blocks)
 /// Side of the smallest squares, as few as possible, that `packer` fills; blocks.
 int smallestSquares(Packer& packer, int least, int largest)
 {
-  constexpr int tries = 5;
   packer.pack(largest, largest);
   const int count = packer.atlases();
   int low = least, high = largest; // high is enough

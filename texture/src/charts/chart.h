@@ -5,6 +5,9 @@
 #include <memory>
 #include <vector>
 namespace fresco::texture {
+constexpr int least_atlas = 64;     ///< texels along a side where no photograph tells
+constexpr int largest_atlas = 8192; ///< texels along a side: every graphics card takes it
+
 /// Faces projected along one direction into a rectangle of texels.
 struct Chart {
   std::vector<int> faces; ///< of the mesh, joined by edges, those that decided on the axis first

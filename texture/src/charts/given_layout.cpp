@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "charts/given_layout.h"
 #include "charts/chart_raster.h"
+#include "photographs/photo_store.h"
 #include <Eigen/Geometry>
 #include <Eigen/QR>
 #include <algorithm>
@@ -28,7 +29,7 @@ Image emptyAtlas(const Image& given, double wanted, int longest)
     height *= scale;
   }
   return Image(std::clamp<int>(std::lround(width), least, largest),
-               std::clamp<int>(std::lround(height), least, largest), 3, 128);
+               std::clamp<int>(std::lround(height), least, largest), 3, mid_grey);
 }
 
 /// Side of a square atlas in which the faces have about as many texels as wanted.
@@ -42,8 +43,7 @@ double wantedSide(const FaceGraph& graph, const Eigen::VectorXf& density, const 
     texels += graph.areas[f] * density[f] * density[f];
     share += 0.5 * std::abs(u.x() * v.y() - u.y() * v.x());
   }
-  constexpr double least = 64, largest = 8192; // the largest that every graphics card takes
-  return std::clamp(share > 0 ? std::sqrt(texels / share) : 0, least, largest);
+  return std::clamp<double>(share > 0 ? std::sqrt(texels / share) : 0, least_atlas, largest_atlas);
 }
 
 /// Texel of the face's atlas = map * (vertex, 1), exact on the face's plane.

@@ -11,9 +11,8 @@ PatchMap::PatchMap(const PatchMesh& patches, Index patch, const Eigen::Matrix<do
   places.topRows<2>() = corners.colwise() - origin;
   places.row(2).setOnes();
   corners_ = places.topRows<2>().cast<float>();
-  constexpr double least_area = 1e-12; // square texels
   bool has_area = false;
-  places.computeInverseWithCheck(inverse_, has_area, least_area);
+  places.computeInverseWithCheck(inverse_, has_area);
   if (!has_area) {
     inverse_.setZero();
     inverse_.col(2).setConstant(1.0 / 3);

@@ -3,6 +3,7 @@
 #include "charts/atlas_packing.h"
 #include "charts/chart_layout.h"
 #include "charts/given_layout.h"
+#include "photographs/photo_store.h"
 #include <algorithm>
 #include <cmath>
 #include <fresco/core/require.h>
@@ -10,7 +11,6 @@
 #include <iomanip>
 namespace fresco::texture {
 namespace {
-constexpr int largest_atlas = 8192;   // every graphics card takes it
 constexpr double most_texels = 200e6; // unless a size is asked for: a gigabyte with the masks and what packing wastes
 
 /// Texture coordinates of every face; a vertex has one per chart.
@@ -77,11 +77,9 @@ Eigen::VectorXf wantedDensities(const PatchMesh& patches, Index faces, const Eig
   for (Index f = 0; f < faces; ++f)
     if (area[f] > 0)
       seen.push_back(sum[f] / area[f]);
-  constexpr float oversampling = 1.4f;      // texels per pixel: interpolating a second time would blur otherwise
-  constexpr float unseen_share = 0.25f;     // of the typical density: there is no detail
-  constexpr double side_without_views = 64; // texels along the root of the area: any number does
-  const float typical =
-      seen.empty() ? side_without_views / std::sqrt(patches.areas.cast<double>().sum()) : median(seen);
+  constexpr float oversampling = 1.4f;  // texels per pixel: interpolating a second time would blur otherwise
+  constexpr float unseen_share = 0.25f; // of the typical density: there is no detail
+  const float typical = seen.empty() ? least_atlas / std::sqrt(patches.areas.cast<double>().sum()) : median(seen);
   Eigen::VectorXf out(faces);
   for (Index f = 0; f < faces; ++f)
     out[f] = oversampling * std::max(unseen_share * typical, area[f] > 0 ? sum[f] / area[f] : 0.f);
@@ -174,7 +172,7 @@ std::vector<Chart> makeAtlas(const PatchMesh& patches, const Eigen::VectorXf& re
     for (Chart& chart : group)
       chart.atlas += first;
     for (int a = 0; a < packing.atlases; ++a) {
-      result.model.atlases.emplace_back(packing.side, packing.side, 3, 128);
+      result.model.atlases.emplace_back(packing.side, packing.side, 3, mid_grey);
       result.masks.emplace_back(packing.side, packing.side, 1);
     }
     return packing;

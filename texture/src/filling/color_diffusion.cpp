@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "filling/color_diffusion.h"
 #include "filling/creases.h"
+#include "photographs/photo_store.h"
 #include <fresco/core/grouped.h>
 #include <fresco/core/parallel.h>
 #include <limits>
@@ -100,10 +101,9 @@ Known seenNodes(const PatchMesh& patches, const SmoothCorners& corners, const Po
 /// @return the nodes reached, none of them fixed
 std::vector<int> spread(const Links& links, const std::vector<int>& vertex, Known& known)
 {
-  constexpr float far = std::numeric_limits<float>::infinity();
   using Reached = std::pair<float, int>; // way, node
   std::priority_queue<Reached, std::vector<Reached>, std::greater<>> queue;
-  std::vector<float> way(known.fixed.size(), far);
+  std::vector<float> way(known.fixed.size(), std::numeric_limits<float>::infinity());
   for (std::size_t v = 0; v < way.size(); ++v)
     if (known.fixed[v])
       queue.emplace(way[v] = 0.f, v);
@@ -162,7 +162,6 @@ void smooth(const Links& links, const std::vector<int>& free, int threads, Known
 
 Points diffuseColors(const PatchMesh& patches, const Points& colors, const std::vector<char>& clipped, int threads)
 {
-  constexpr float mid_grey = 128.f;
   const SmoothCorners corners = joinSmoothCorners(patches);
   std::vector<char> seen(patches.size());
   for (Index i = 0; i < patches.size(); ++i)

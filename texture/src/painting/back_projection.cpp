@@ -4,6 +4,7 @@
 #include "painting/photo_residual.h"
 #include <algorithm>
 #include <cmath>
+#include <fresco/core/constants.h>
 #include <fresco/core/parallel.h>
 namespace fresco::texture {
 namespace {
@@ -192,7 +193,7 @@ private:
 /// photographs show a share between `least` and all: pixels average what is fine, and spread it over many texels.
 float gainOf(int round, int rounds)
 {
-  constexpr double least = 0.38, pi = 3.14159265358979;
+  constexpr double least = 0.38;
   return 2 / (1 + least + (1 - least) * std::cos(pi * (round + 0.5) / rounds));
 }
 } // namespace

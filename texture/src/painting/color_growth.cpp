@@ -26,7 +26,7 @@ public:
       for (const std::size_t at : front)
         visitNeighbors(at, [&](std::size_t other) {
           if (part_.states[other] == ColorGrowth::open) {
-            part_.states[other] = listed;
+            part_.states[other] = ColorGrowth::listed;
             next.push_back(other);
           }
         });
@@ -35,8 +35,6 @@ public:
   }
 
 private:
-  static constexpr std::uint8_t listed = 255; ///< open, and in the next front
-
   template <typename Visit>
   void visitNeighbors(std::size_t at, const Visit& visit) const
   {

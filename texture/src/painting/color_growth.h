@@ -5,9 +5,9 @@
 namespace fresco::texture {
 /// Texels of a part of an atlas whose colours continue those around them.
 struct ColorGrowth {
-  enum State : std::uint8_t { open, known, left_alone };
-  Eigen::Vector2i low;              ///< upper left texel of the part
-  int width;                        ///< of the part
+  enum State : std::uint8_t { open, known, left_alone, listed }; ///< listed: open, and in the next front
+  Eigen::Vector2i low;                                           ///< upper left texel of the part
+  int width;                                                     ///< of the part
   bool diagonal;                    ///< whether all 8 texels around one are its neighbours, not only 4
   int rounds;                       ///< at most
   std::vector<std::uint8_t> states; ///< row by row

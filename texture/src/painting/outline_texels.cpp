@@ -3,6 +3,7 @@
 #include "painting/color_growth.h"
 #include "painting/patch_frame.h"
 #include "photographs/grid.h"
+#include "views/vertex_views.h"
 #include <algorithm>
 #include <cmath>
 #include <fresco/core/parallel.h>
@@ -38,13 +39,12 @@ public:
   /// View of each texel, `as_painted` or `none`.
   std::vector<int> run()
   {
-    constexpr float least_weight = 0.02f; // of a view in a blended texel: 5 grey levels of 255 at most
     std::vector<int> choice(frame_.texels(), as_painted);
     const auto& blend = sources_.blend;
     for (Index s = blend.begin[patch_]; s < blend.begin[patch_ + 1]; ++s) {
       const BlendShare& share = blend.list[s];
       forMixed(share.view, [&](std::size_t k, const Eigen::Vector2f& center) {
-        if (share.weights.dot(frame_.inside(center)) > least_weight)
+        if (share.weights.dot(frame_.inside(center)) > least_share)
           choice[k] = none;
       });
     }

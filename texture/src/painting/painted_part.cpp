@@ -14,10 +14,9 @@ Points takeOwn(const PaintScene& scene, const PaintedPart& part, TextureResult& 
 {
   const Eigen::VectorXi all = Eigen::VectorXi::Zero(scene.view.size());
   Points colors = patchColors({scene.patches, scene.charts, all, scene.slots, scene.threads}, result.model.atlases);
-  constexpr float mid_grey = 128; // of patches without texels that have no neighbour with some
   for (Index i = 0; i < part.patches; ++i)
     for (int k = 0; k < 4 && colors(0, i) < 0; ++k)
-      if (k == 3)
+      if (k == 3) // no texels, and no neighbour with some
         colors.col(i).setConstant(mid_grey);
       else if (const int other = scene.patches.neighbors(k, i); other >= 0)
         colors.col(i) = colors.col(other).eval();

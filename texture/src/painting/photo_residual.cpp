@@ -185,7 +185,6 @@ int texelsPerPixel(const Eigen::Matrix2f& steps)
 
 PhotoResidual residualOf(const Prediction& prediction, const Image& photo, const PixelGain& gain, float error)
 {
-  constexpr float largest = 127; // of what is stored
   const std::size_t count = cellCount(photo.width, photo.height);
   Drawing drawn{photo.width, photo.height, std::vector<Eigen::Vector4f>(count, Eigen::Vector4f::Zero())};
   const std::vector<int>& patches = prediction.patches;
@@ -208,10 +207,9 @@ PhotoResidual residualOf(const Prediction& prediction, const Image& photo, const
       for (int c = 0; c < 3; ++c)
         more[c] *= more[c] < 0 ? 1 - clippedShare(p[c]) : 1.f; // the light may have been any brighter
       const float weight = PhotoResidual::per_level * trust * agreementWeight(more.cwiseAbs().maxCoeff(), error);
-      const Eigen::Vector3f stored = (weight * more).cwiseMax(-largest).cwiseMin(largest);
-      const simd::Int4 rounded = simd::rounded(simd::Float4{stored[0], stored[1], stored[2], 0});
+      const simd::Int4 rounded = simd::rounded(weight * simd::Float4{more[0], more[1], more[2], 0});
       for (int c = 0; c < 3; ++c)
-        out.pixels[i][c] = rounded[c];
+        out.pixels[i][c] = std::clamp(rounded[c], -INT8_MAX, INT8_MAX);
     }
   return out;
 }

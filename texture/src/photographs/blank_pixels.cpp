@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "photographs/blank_pixels.h"
 #include "photographs/distance_field.h"
+#include "photographs/photo_store.h"
 #include <algorithm>
 #include <fresco/core/statistics.h>
 #include <map>
@@ -165,8 +166,7 @@ private:
   /// @return whether there were some that had not ended before
   bool endAt(int k, const std::vector<cv::Point>& pixels)
   {
-    constexpr float whole = 0.85f;   // share of the difference further in: below, a pixel is a mixture
-    constexpr std::size_t least = 8; // samples for a median
+    constexpr float whole = 0.85f; // share of the difference further in: below, a pixel is a mixture
     std::vector<std::vector<float>> shares(margins_.size());
     std::vector<std::size_t> flat(margins_.size(), 0);
     bool any = false;
@@ -182,7 +182,7 @@ private:
         }
     for (std::size_t label = 0; label < margins_.size(); ++label) {
       const std::size_t count = shares[label].size();
-      if (count >= least && count > flat[label] && median(shares[label]) >= whole)
+      if (count >= fewest_samples && count > flat[label] && median(shares[label]) >= whole)
         margins_[label] = k - 1;
     }
     return any;
@@ -218,7 +218,7 @@ void hideFilled(const cv::Mat& photo, const Filling& filling, cv::Mat& used)
 /// Colours below what is transparent are mixed into the picture where they are one value.
 void hideTransparent(const cv::Mat& photo, const cv::Mat& alpha, cv::Mat& used)
 {
-  const cv::Mat clear = alpha < 128;
+  const cv::Mat clear = alpha < mid_grey;
   const auto first = std::find(clear.begin<uchar>(), clear.end<uchar>(), 255);
   if (first == clear.end<uchar>())
     return;

@@ -111,39 +111,38 @@ std::string nameOf(const ViewPart& part)
   return part.given->path.empty() ? concat("photograph ", part.view) : part.given->path;
 }
 
-/// Names photographs that have something, the first ones each with what it is.
-/// @param shown shown(view), "" = it has not @return "" if none has
-template <typename Shown>
-std::string namesOf(const std::vector<ViewPart>& parts, const Shown& shown)
+void warnOfPixels(const std::vector<ViewPart>& parts, TextureResult& result)
+{
+  const auto blank = [&](int view) {
+    constexpr double few = 0.01; // outlines that are off by a pixel
+    const double share = result.blank[view];
+    return share > few ? concat(" (", std::fixed, std::setprecision(1), 100 * share, " %)") : "";
+  };
+  const auto fringed = [&](int view) {
+    return result.fringes[view] > 0 ? concat(" (", result.fringes[view], " pixels)") : "";
+  };
+  const std::string none =
+      " pixels that are no picture before the surface, of a border of one value or transparent: not used";
+  const std::string violet = " a violet fringe beside what is overexposed: its colour is not used";
+  warnOf(parts, blank, {"", " has" + none, " have" + none}, result);
+  warnOf(parts, fringed, {"", " has" + violet, " have" + violet}, result);
+}
+} // namespace
+
+void warnOf(const std::vector<ViewPart>& parts, const std::function<std::string(int)>& shown,
+            const std::array<std::string, 3>& what, TextureResult& result)
 {
   constexpr Index named = 3; // the others are in the result
   Index count = 0;
   std::string names;
   for (const ViewPart& part : parts)
-    if (const std::string what = shown(part.view); part.R_part_view.isIdentity(0) && !what.empty() && count++ < named)
-      names += concat(count > 1 ? ", " : "", nameOf(part), " (", what, ")");
-  return count == 0 ? ""
-                    : names + (count > named ? concat(" and ", count - named, " more have")
-                               : count > 1   ? " have"
-                                             : " has");
+    if (const std::string its = shown(part.view); part.R_part_view.isIdentity(0) && !its.empty() && count++ < named)
+      names += concat(count > 1 ? ", " : "", nameOf(part), its);
+  if (count > named)
+    names += concat(" and ", count - named, " more");
+  if (count > 0)
+    result.warnings.push_back(what[0] + names + what[count > 1 ? 2 : 1]);
 }
-
-void warnOfPixels(const std::vector<ViewPart>& parts, TextureResult& result)
-{
-  const std::string blank = namesOf(parts, [&](int view) {
-    constexpr double few = 0.01; // outlines that are off by a pixel
-    const double share = result.blank[view];
-    return share > few ? concat(std::fixed, std::setprecision(1), 100 * share, " %") : "";
-  });
-  if (!blank.empty())
-    result.warnings.push_back(
-        blank + " pixels that are no picture before the surface, of a border of one value or transparent: not used");
-  const std::string fringed =
-      namesOf(parts, [&](int view) { return result.fringes[view] > 0 ? concat(result.fringes[view], " pixels") : ""; });
-  if (!fringed.empty())
-    result.warnings.push_back(fringed + " a violet fringe beside what is overexposed: its colour is not used");
-}
-} // namespace
 
 void validate(const TriangleMesh& mesh, const std::vector<TextureView>& views, const TextureOptions& options)
 {

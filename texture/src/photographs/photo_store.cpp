@@ -120,7 +120,6 @@ Image PhotoStore::mask(Index view)
 {
   const ViewPart& part = views_[view];
   const TextureView& v = *part.given;
-  constexpr int half = 128; // of 255
   Image used = *unblank(view);
   if (!v.mask.empty() || !v.mask_path.empty()) {
     const Image given = asRgb(v.mask.empty() ? readImage(v.mask_path, v.camera) : v.mask);
@@ -128,14 +127,14 @@ Image PhotoStore::mask(Index view)
     if (used.empty())
       used = Image(given.width, given.height, 1, 255);
     for (std::size_t i = 0; i < used.data.size(); ++i)
-      used.data[i] = given.data[3 * i + 1] >= half ? used.data[i] : 0;
+      used.data[i] = given.data[3 * i + 1] >= mid_grey ? used.data[i] : 0;
   }
   if (!part.ofPanorama() || used.empty())
     return used;
   const Image cut = cutPanorama(wrapPanorama(asRgb(used)), part);
   used = Image(cut.width, cut.height, 1);
   for (std::size_t i = 0; i < used.data.size(); ++i)
-    used.data[i] = cut.data[3 * i] >= half ? 255 : 0;
+    used.data[i] = cut.data[3 * i] >= mid_grey ? 255 : 0;
   return used;
 }
 
@@ -183,10 +182,9 @@ void PhotoStore::dropUnlessAll()
 
 Image withinReach(Image mask)
 {
-  constexpr int reach = 2; // pixels, of cubic interpolation
   cv::Mat grey(mask.height, mask.width, CV_8U, mask.data.data());
   if (!mask.empty())
-    cv::erode(grey, grey, cv::Mat::ones(2 * reach + 1, 2 * reach + 1, CV_8U));
+    cv::erode(grey, grey, cv::Mat::ones(2 * interpolation_reach + 1, 2 * interpolation_reach + 1, CV_8U));
   return mask;
 }
 

@@ -56,6 +56,11 @@ private:
   std::mutex mutex_;
 };
 
+constexpr double clear_gain = 0.9;     ///< share of an error that is left: what lowers it less may be chance
+constexpr Index fewest_samples = 12;   ///< for a median to count
+constexpr std::uint8_t mid_grey = 128; ///< where nothing is known; masks and alpha use what is not darker
+constexpr int interpolation_reach = 2; ///< pixels to either side of a place that a colour there is made of
+
 /// 0 also where interpolation would reach what is.
 Image withinReach(Image mask);
 

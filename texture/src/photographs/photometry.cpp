@@ -9,7 +9,7 @@ PixelGain::PixelGain(const Photometry& photometry, int view, const CameraModel& 
   const LensFalloff falloff = photometry.falloffOf(view);
   if (falloff.a.isZero(0))
     return;
-  for (int i = 0; i <= static_cast<int>(last_); ++i)
+  for (int i = 0; i <= 255; ++i) // the largest stored radius
     table_.push_back(std::exp(-falloff.logTransmission(static_cast<float>(i) / radius_steps)));
 }
 

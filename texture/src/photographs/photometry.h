@@ -87,12 +87,12 @@ private:
   {
     if (table_.empty())
       return gain_;
-    const float at = std::min(squaredRadius(camera_, pixel) * radius_steps, last_);
-    const int i = std::min(static_cast<int>(at), static_cast<int>(last_) - 1);
+    const int last = static_cast<int>(table_.size()) - 1;
+    const float at = std::min(squaredRadius(camera_, pixel) * radius_steps, static_cast<float>(last));
+    const int i = std::min(static_cast<int>(at), last - 1);
     return (table_[i] + (at - static_cast<float>(i)) * (table_[i + 1] - table_[i])) * gain_;
   }
 
-  static constexpr float last_ = 255;
   const CameraModel& camera_;
   const ResponseCurve* curve_; ///< null: straight
   Eigen::Vector3f gain_;

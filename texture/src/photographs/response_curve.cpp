@@ -5,7 +5,6 @@
 namespace fresco::texture {
 namespace {
 constexpr int light_steps = 256, value_steps = 1024; // finer where the curve may be steep
-constexpr float flattest = 0.1f;                     // of a logarithm: less light cannot be told from noise
 
 /// Logarithm of light over that of value: its least slope.
 float leastSlope(const ResponseCurve::Coefficients& b)

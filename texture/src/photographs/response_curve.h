@@ -9,6 +9,7 @@ namespace fresco::texture {
 class ResponseCurve {
 public:
   static constexpr int terms = 2;
+  static constexpr float flattest = 0.1f; ///< of a logarithm: less light cannot be told from noise
   using Coefficients = Eigen::Matrix<float, terms, 1>;
 
   ResponseCurve() = default; ///< a value is its light

@@ -6,8 +6,6 @@
 #include <cmath>
 namespace fresco::texture {
 namespace {
-constexpr int wrapped_columns = 2; // reach of cubic interpolation
-
 /// As many pixels per radian in the middle as the panorama has.
 CameraModel cubeSide(const CameraModel& panorama)
 {
@@ -49,9 +47,9 @@ std::vector<ViewPart> partsOf(const std::vector<TextureView>& views)
 
 Image wrapPanorama(const Image& panorama)
 {
-  Image out(panorama.width + 2 * wrapped_columns, panorama.height);
+  Image out(panorama.width + 2 * interpolation_reach, panorama.height);
   cv::Mat to(out.height, out.width, CV_8UC3, out.data.data());
-  cv::copyMakeBorder(matOf(panorama), to, 0, 0, wrapped_columns, wrapped_columns, cv::BORDER_WRAP);
+  cv::copyMakeBorder(matOf(panorama), to, 0, 0, interpolation_reach, interpolation_reach, cv::BORDER_WRAP);
   return out;
 }
 
@@ -66,7 +64,7 @@ Image cutPanorama(const Image& wrapped, const ViewPart& part)
       if (part.given->mirrored)
         ray.x() = -ray.x();
       const Eigen::Vector2f at = project(panorama, ray).cast<float>();
-      storeColor(samplePhoto(wrapped, at.x() + wrapped_columns, at.y()), out.pixel(x, y));
+      storeColor(samplePhoto(wrapped, at.x() + interpolation_reach, at.y()), out.pixel(x, y));
     }
   return out;
 }

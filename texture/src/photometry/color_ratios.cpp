@@ -55,9 +55,8 @@ void addPatch(const Candidates& candidates, const std::vector<int>& owner, Index
 
 ColorRatios collectColorRatios(const Candidates& candidates, const std::vector<int>& owner)
 {
-  constexpr Index most_patches = 40000; // far more than the unknowns ask for
   const Index patches = candidates.begin.size() - 1;
-  const Index taken = std::min(patches, most_patches);
+  const Index taken = std::min(patches, most_compared);
   ColorRatios pairs;
   const Index golden = 0.618 * taken;
   Index step = golden | 1;

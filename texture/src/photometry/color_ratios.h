@@ -3,6 +3,10 @@
 #include "views/visibility.h"
 #include <map>
 namespace fresco::texture {
+constexpr Index most_compared = 40000; ///< places: far more than the unknowns ask for
+constexpr int reweightings = 10;       ///< of least squares
+constexpr double usual_error = 0.03;   ///< of logarithms of light: what is off by more than 3 % counts less (Cauchy)
+
 /// One patch in two views.
 struct ColorRatio {
   Eigen::Vector3f log_ratio; ///< of the first view's colour over the second's

@@ -10,13 +10,9 @@
 namespace fresco::texture {
 namespace {
 /// A row for the logarithm of the light of each channel and one for the octaves of contrast of the views, each with mean 0,
-/// whose differences are the medians of their pairs.
+/// whose differences are the medians of their pairs. Contrasts, of variances within patches, err by ten times as much as light.
 Eigen::Array4Xd solvePairs(const ColorRatios& pairs, Index views)
 {
-  constexpr std::size_t least_samples = 12; // per pair of views, for a median to count
-  constexpr int rounds = 10;                // of reweighting
-  // of pairs, off by more count less (Cauchy): light by 3 %, contrasts, of variances within patches, by ten times as much
-  constexpr double outlier = 0.03;
   struct Equation {
     int first, second;
     double difference, weight;
@@ -29,17 +25,17 @@ Eigen::Array4Xd solvePairs(const ColorRatios& pairs, Index views)
         if (const float value = row < 3 ? ratio.log_ratio[row] : ratio.contrast; std::isfinite(value))
           values[row].push_back(value);
     for (int row = 0; row < 4; ++row)
-      if (const std::size_t count = values[row].size(); count >= least_samples)
+      if (const Index count = values[row].size(); count >= fewest_samples)
         equations[row].push_back({key.first, key.second, median(values[row]), std::sqrt(count)});
   }
   Eigen::Array4Xd out(4, views);
   for (int row = 0; row < 4; ++row) {
     Eigen::VectorXd x = Eigen::VectorXd::Zero(views);
-    for (int round = 0; round < rounds; ++round) {
+    for (int round = 0; round < reweightings; ++round) {
       Eigen::MatrixXd A = 1e-3 * Eigen::MatrixXd::Identity(views, views); // holds views without partners at 0
       Eigen::VectorXd b = Eigen::VectorXd::Zero(views);
       for (const Equation& e : equations[row]) {
-        const double error = (x[e.first] - x[e.second] - e.difference) / (row < 3 ? outlier : 10 * outlier);
+        const double error = (x[e.first] - x[e.second] - e.difference) / (row < 3 ? usual_error : 10 * usual_error);
         const double w = round == 0 ? e.weight : e.weight * cauchyWeight(error * error);
         A(e.first, e.first) += w;
         A(e.second, e.second) += w;

@@ -17,7 +17,6 @@ Response responseTerms(double log_value) { return ResponseCurve::logTerms(std::e
 Response termDifference(const ColorRatio& ratio, double log_light, const Response& b)
 {
   constexpr int iterations = 3; // Newton
-  constexpr double flattest = 0.1;
   Response sum = Response::Zero();
   for (int c = 0; c < 3; ++c) {
     const double mean = ratio.log_mean[c];
@@ -29,7 +28,8 @@ Response termDifference(const ColorRatio& ratio, double log_light, const Respons
         break;
       }
       const double slope = 1 + 0.5 * b.dot((high + low).cwiseProduct(Response(1, 3)));
-      d = std::clamp(d - (d + b.dot(high - low) - log_light) / std::max(slope, flattest), -2.0, 2.0);
+      d = std::clamp(d - (d + b.dot(high - low) - log_light) / std::max<double>(slope, ResponseCurve::flattest), -2.0,
+                     2.0);
     }
   }
   return sum;
@@ -59,8 +59,7 @@ public:
         x_(Eigen::VectorXd::Zero(falloff_terms * lenses_ + views_ +
                                  (std::count(curved.begin(), curved.end(), 1) > 0 ? 2 * lenses_ : 0)))
   {
-    constexpr int rounds = 8; // of reweighting
-    for (int round = 0; round < rounds; ++round) {
+    for (int round = 0; round < reweightings; ++round) {
       const Eigen::VectorXd b = assemble(round > 0);
       x_ = A_.ldlt().solve(b);
     }
@@ -111,7 +110,6 @@ public:
 
 private:
   static constexpr int falloff_terms = 3;
-  static constexpr double outlier = 0.03; // of a logarithm (Cauchy): patches off by more than 3 % count less
 
   /// Of one ratio: log(first / second) = sum of factor * x over coefficients of lenses and two views.
   struct Row {
@@ -129,7 +127,7 @@ private:
   };
 
   int responseAt(int lens) const { return falloff_terms * lenses_ + views_ + 2 * lens; }
-  static double weight(double error) { return cauchyWeight(error * error / (outlier * outlier)); }
+  static double weight(double error) { return cauchyWeight(error * error / (usual_error * usual_error)); }
 
   static std::size_t used(const std::vector<ColorRatio>& ratios)
   {
@@ -169,10 +167,10 @@ private:
     constexpr double usual = 0.5;        // coefficients of a strong lens: corners at 60 %
     constexpr double usual_response = 2; // of a strong tone curve
     A_ = Eigen::MatrixXd::Zero(x_.size(), x_.size());
-    A_.diagonal().setConstant(outlier * outlier / (usual * usual));
+    A_.diagonal().setConstant(usual_error * usual_error / (usual * usual));
     A_.diagonal()
         .tail(x_.size() - falloff_terms * lenses_ - views_)
-        .setConstant(outlier * outlier / (usual_response * usual_response));
+        .setConstant(usual_error * usual_error / (usual_response * usual_response));
     Eigen::VectorXd b = Eigen::VectorXd::Zero(x_.size());
     for (const auto& [views, ratios] : pairs_)
       for (std::size_t k = 0; k < used(ratios); ++k) {

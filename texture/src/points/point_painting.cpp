@@ -26,9 +26,9 @@ std::vector<PatchTexel> paintPatch(const PaintScene& scene, const PointPaint& pa
   frame.forTexels([&](const Eigen::Vector2f& center, int x, int y) {
     Eigen::Vector4f sum =
         paint.gaussian.at(corners * frame.map.weights(center.x(), center.y()), normal, found, paint.values);
-    if (!(sum.w() >= SurfaceGaussian::least)) // a texel of the border may lie in the air
+    if (!(sum.w() > 0)) // a texel of the border may lie in the air
       sum = paint.gaussian.at(corners * frame.inside(center), normal, found, paint.values);
-    if (!(sum.w() >= SurfaceGaussian::least))
+    if (!(sum.w() > 0))
       return unknown.push_back({int(patch), x, y});
     std::uint8_t* pixel = atlas.pixel(frame.chart.x + x, frame.chart.y + y);
     for (int c = 0; c < 3; ++c)
@@ -51,7 +51,7 @@ Eigen::VectorXf patchDensities(const PatchMesh& patches, const SurfaceSamples& s
     for (const Eigen::Vector3f& place : {Eigen::Vector3f(patches.middle(i)), Eigen::Vector3f(corners.col(0)),
                                          Eigen::Vector3f(corners.col(1)), Eigen::Vector3f(corners.col(2))})
       sum += gaussian.at(place, patches.normals.col(i), found, spacing);
-    out[i] = sum.w() >= SurfaceGaussian::least ? sum.w() / sum[0] : 0.f;
+    out[i] = sum.w() > 0 ? sum.w() / sum[0] : 0.f;
   });
   return out;
 }

@@ -8,6 +8,7 @@
 #include "points/point_values.h"
 #include "tiles/tile_atlases.h"
 #include "tiles/tile_traces.h"
+#include "views/visible_surface.h"
 #include <cmath>
 #include <fresco/core/require.h>
 #include <fresco/core/statistics.h>
@@ -25,8 +26,7 @@ void validate(const TriangleMesh& mesh, const PointSet& points, const PointTextu
 /// Patches of a few samples each, so that few samples count for a texel of one.
 double patchSide(const TriangleMesh& mesh, const SurfaceSamples& samples, Index tiles)
 {
-  constexpr double patch_samples = 8;  // along a side
-  constexpr double most_patches = 1e6; // of a tile: bounds the memory
+  constexpr double patch_samples = 8; // along a side
   const double spacing = median(std::vector<float>(samples.spacing.begin(), samples.spacing.end()));
   return std::max(std::sqrt(surfaceArea(mesh) / (0.43 * most_patches * tiles)), patch_samples * spacing);
 }
@@ -132,10 +132,9 @@ PointTextureResult reconstructPointTexture(TriangleMesh mesh, const PointSet& po
     result.model.mesh = std::move(mesh);
     return result;
   }
-  constexpr std::size_t bytes_per_face = 290, bytes_of_tiles = 105, bytes_per_point = 100; // measured: docs/texture.md
-  const MeshTiles tiles =
-      cutIntoTiles(mesh, tileFaces(mesh.faceCount(), options.tile_faces,
-                                   {points.size() * bytes_per_point, 0, bytes_per_face, bytes_of_tiles}));
+  constexpr std::size_t bytes_per_face = 290, bytes_per_point = 100; // measured: docs/texture.md
+  const MeshTiles tiles = cutIntoTiles(
+      mesh, tileFaces(mesh.faceCount(), options.tile_faces, {points.size() * bytes_per_point, 0, bytes_per_face}));
   report(progress, "points on the surface", 0.0);
   const SurfaceSamples samples = sampleSurface(mesh, tiles, points, options.threads);
   if (samples.size() == 0)

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "points/point_values.h"
+#include "photometry/color_ratios.h"
 #include "photometry/exposure.h"
+#include "views/picture_evidence.h"
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
@@ -23,8 +25,7 @@ struct ScanPatch {
 /// Means by scan around places spread over the samples; places that a single scan shows are left out.
 std::vector<std::vector<ScanPatch>> findOverlaps(const SurfaceSamples& samples, const Points& values, int threads)
 {
-  constexpr Index most_places = 40000; // far more than the unknowns ask for
-  const Index places = std::min(samples.size(), most_places);
+  const Index places = std::min(samples.size(), most_compared);
   const SurfaceGaussian around(samples, overlap_radius / SurfaceGaussian::reach);
   std::vector<std::vector<ScanPatch>> overlaps(places);
   parallelFor(places, threads, [&](Index k) {
@@ -97,11 +98,10 @@ struct IntensityModel {
 /// Cauchy-weighted least squares over the differences between scans at the same places.
 IntensityModel fitIntensities(const std::vector<std::vector<ScanPatch>>& overlaps, Index scans, bool with_exponents)
 {
-  constexpr int rounds = 10;              // of reweighting
   constexpr double regularization = 1e-3; // holds scans without partners at 1; nothing beside a pair's weight
   const Index size = scans + 2;
   IntensityModel model{Eigen::VectorXd::Zero(size), 0};
-  for (int round = 0; round < rounds; ++round) {
+  for (int round = 0; round < reweightings; ++round) {
     Eigen::MatrixXd A = regularization * Eigen::MatrixXd::Identity(size, size);
     Eigen::VectorXd b = Eigen::VectorXd::Zero(size), row(size);
     std::vector<double> errors;
@@ -134,13 +134,12 @@ IntensityModel fitIntensities(const std::vector<std::vector<ScanPatch>>& overlap
 void equalizeIntensities(const PointSet& set, const SurfaceSamples& samples, Eigen::VectorXf& values,
                          const PointTextureOptions& options, PointTextureResult& result)
 {
-  constexpr double least_gain = 0.9; // of the error: a smaller gain may be chance
   const Points logs = logarithms(set, samples);
   const Index scans = samples.stations.cols();
   const auto overlaps = findOverlaps(samples, logs, options.threads);
   IntensityModel model = fitIntensities(overlaps, scans, false);
   const IntensityModel full = fitIntensities(overlaps, scans, true);
-  if (full.error < least_gain * model.error)
+  if (full.error < clear_gain * model.error)
     model = full;
   const double mean = model.x.head(scans).mean();
   result.range_exponent = model.x[scans];
@@ -179,7 +178,6 @@ Points greyValues(const PointSet& set, const SurfaceSamples& samples, const Poin
 void replaceStrays(const SurfaceSamples& samples, int threads, Points& values)
 {
   constexpr int neighbors = 9, least_others = 4; // those around a sample of a grid, and itself
-  constexpr float alike = 25;                    // grey levels: noise and the grain of a material stay below
   const Points given = values;
   forNearest(*samples.tree, neighbors, threads, [&](Index at, const int* found, Index count) {
     const std::vector<int>& columns = samples.tree->columns();
@@ -189,7 +187,7 @@ void replaceStrays(const SurfaceSamples& samples, int threads, Points& values)
       const int other = columns[found[k]];
       if (other == i || !(samples.normals.col(i).dot(samples.normals.col(other)) > SurfaceGaussian::same_side))
         continue;
-      if ((given.col(i) - given.col(other)).cwiseAbs().maxCoeff() < alike)
+      if ((given.col(i) - given.col(other)).cwiseAbs().maxCoeff() < one_octave) // noise and the grain of a material
         return;
       sum += given.col(other).homogeneous();
     }

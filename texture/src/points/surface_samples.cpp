@@ -166,7 +166,6 @@ void measureSpacing(int threads, SurfaceSamples& samples)
 
 SurfaceSamples sampleSurface(const TriangleMesh& mesh, const MeshTiles& tiles, const PointSet& points, int threads)
 {
-  constexpr float most_deviations = 4; // of the noise, from the surface
   const Points normals = faceNormals(mesh, threads);
   Feet feet = feetOf(mesh, tiles, points, threads);
   double side = 0;
@@ -177,7 +176,7 @@ SurfaceSamples sampleSurface(const TriangleMesh& mesh, const MeshTiles& tiles, c
   const float rounding = 1e-6f * (mesh.vertices.rowwise().maxCoeff() - mesh.vertices.rowwise().minCoeff()).norm();
   keepFeet(feet, [&](Index i) {
     const auto normal = normals.col(feet.faces[i]);
-    return !(feet.distances[i] > most_deviations * noise + rounding) && normal.squaredNorm() > 0 &&
+    return !(feet.distances[i] > SurfaceGaussian::reach * noise + rounding) && normal.squaredNorm() > 0 &&
            !(front * sideOf(points, feet.points[i], normal) < 0);
   });
   SurfaceSamples samples;

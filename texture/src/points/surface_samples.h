@@ -35,12 +35,11 @@ public:
 
   /// @param found  by gather() around the place
   /// @param values 3xM
-  /// @return sum of weight * value, and the sum of weights, below `least` where nothing is known
+  /// @return sum of weight * value, and the sum of weights, 0 where nothing is known
   Eigen::Vector4f at(const Eigen::Vector3f& place, const Eigen::Vector3f& normal, const std::vector<int>& found,
                      const Points& values) const;
 
   static constexpr float reach = 4.f;      ///< deviations: beyond, a sample does not count
-  static constexpr float least = 3.35e-4f; ///< weight of one sample there
   static constexpr float same_side = 0.5f; ///< cosine: normals of one surface scatter by less than 60 degrees
 
 private:

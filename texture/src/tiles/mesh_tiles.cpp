@@ -107,15 +107,11 @@ TileMesh tileMesh(const TriangleMesh& mesh, const MeshTiles& tiles, Index tile, 
 
 double meanEdge(const TriangleMesh& mesh, float longest)
 {
-  constexpr Index samples = 100000;
-  const Index stride = std::max<Index>(1, mesh.faceCount() / samples);
-  double sum = 0, count = 0;
-  for (Index f = 0; f < mesh.faceCount(); f += stride)
-    for (int k = 0; k < 3; ++k) {
+  double sum = 0;
+  for (Index f = 0; f < mesh.faceCount(); ++f)
+    for (int k = 0; k < 3; ++k)
       sum += std::min<double>(
           longest, (mesh.vertices.col(mesh.faces(k, f)) - mesh.vertices.col(mesh.faces((k + 1) % 3, f))).norm());
-      ++count;
-    }
-  return sum / count;
+  return sum / (3 * mesh.faceCount());
 }
 } // namespace fresco::texture

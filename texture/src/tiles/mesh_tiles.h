@@ -33,6 +33,6 @@ TileMesh tileMesh(const TriangleMesh& mesh, const MeshTiles& tiles, Index tile, 
 /// Mesh of some faces, without normals and fields.
 TriangleMesh meshOf(const TriangleMesh& mesh, const std::vector<int>& faces);
 
-/// Mean length of the edges, of at most so many faces spread over the mesh.
+/// Mean length of the edges, longer ones counted as `longest`.
 double meanEdge(const TriangleMesh& mesh, float longest);
 } // namespace fresco::texture

@@ -59,15 +59,14 @@ private:
     const RayScene rays(mesh);
     placeCameras({mesh, rays, parts_, photos_}, options_, subProgress(progress_, 0.05, 0.15), result_);
     projectors_ = projectorsOf(mesh, parts_, result_.cameras);
-    warnOfMisfits(given_, result_);
+    warnOfMisfits(parts_, result_);
     TextureResult turned;
     if (sameUnits(mesh, given_) && !insideOutFaces(mesh, rays, projectors_, turned).empty())
       result_.warnings.emplace_back(
           "parts of the mesh are turned inside out, and stay so since it is textured in tiles: photographs see them "
           "from behind alone");
     const ViewList list = viewList(projectors_, photos_, parts_, result_);
-    constexpr double most_patches = 1e6; // of a tile
-    whole_ = measureSurface(result_.model.mesh, list, most_patches * tiles_.count());
+    whole_ = measureSurface(result_.model.mesh, list, tiles_.count());
     steps_.begin("exposure", 0.15);
     VisibleSurface surface;
     if (options_.exposure)
@@ -101,7 +100,7 @@ private:
         return;
       hideMasked(photos_.mask(v), whole_.maps[v]);
       if (!whole_.outlines.empty())
-        whole_.outlines[v] = OutlineMask(whole_.maps[v], OutlineMask::pixel_reach, tolerance);
+        whole_.outlines[v] = OutlineMask(whole_.maps[v], interpolation_reach, tolerance);
     };
     parallelFor(projectors_.size(), options_.threads, finish, 1);
   }
@@ -123,11 +122,8 @@ private:
   /// @param pass 0 or 1, of two
   void beginTile(Index tile, int pass)
   {
-    constexpr double first_pass = 0.4; // of the time
-    const double count = tiles_.count(), from = 0.25 + 0.75 * (pass == 0 ? 0 : first_pass),
-                 part = 0.75 * (pass == 0 ? first_pass : 1 - first_pass) / count;
-    steps_.setPart(concat("tile ", tile + 1, " of ", tiles_.count(), ": "), from + part * tile,
-                   from + part * (tile + 1));
+    const double part = 0.375 / tiles_.count(), from = 0.25 + 0.375 * pass + part * tile;
+    steps_.setPart(concat("tile ", tile + 1, " of ", tiles_.count(), ": "), from, from + part);
   }
 
   void chooseAll()

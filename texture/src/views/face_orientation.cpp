@@ -30,8 +30,9 @@ std::vector<int> surfacesOf(const TriangleMesh& mesh)
 }
 
 /// Faces hit by a grid of rays, and whether from behind.
-std::vector<std::pair<int, bool>> hitsOf(const RayScene& scene, const Projector& view, double rays)
+std::vector<std::pair<int, bool>> hitsOf(const RayScene& scene, const Projector& view)
 {
+  constexpr double rays = 50000; // 250 along a side: depth maps take many times as many
   const CameraModel& camera = view.camera();
   const double step = std::max(1.0, std::sqrt(1.0 * camera.width * camera.height / rays));
   std::vector<std::pair<int, bool>> hits;
@@ -47,11 +48,9 @@ std::vector<std::pair<int, bool>> hitsOf(const RayScene& scene, const Projector&
 /// 2xF, rays that end on the front and on the back of a surface, in the column of its number.
 Eigen::Array2Xd countSides(const std::vector<int>& surfaces, const RayScene& scene, const std::vector<Projector>& views)
 {
-  constexpr double of_view = 50000, of_all = 4e6; // rays: 250 along a side, seconds
-  const double rays = std::min(of_view, of_all / std::max<double>(views.size(), 1));
   std::vector<std::vector<std::pair<int, bool>>> hits(views.size());
   parallelFor(
-      views.size(), 0, [&](Index v) { hits[v] = hitsOf(scene, views[v], rays); }, 1);
+      views.size(), 0, [&](Index v) { hits[v] = hitsOf(scene, views[v]); }, 1);
   Eigen::Array2Xd counts = Eigen::Array2Xd::Zero(2, surfaces.size());
   for (const auto& list : hits)
     for (const auto& [face, from_behind] : list)

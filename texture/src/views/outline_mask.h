@@ -5,8 +5,6 @@ namespace fresco::texture {
 /// Where a photograph's pixels lie so near to the outline of something that they mix it with what stands behind.
 class OutlineMask {
 public:
-  static constexpr float pixel_reach = 2; ///< pixels: what cubic interpolation and the pixels' own width mix
-
   OutlineMask() = default; ///< holds nothing
   /// @param reach pixels from the outline
   /// @param step  mesh units by which depth jumps at an outline; bends of one surface, however oblique, are none

@@ -82,8 +82,7 @@ private:
 
 float typicalDepth(const Points& vertices, const std::vector<Projector>& views)
 {
-  constexpr Index samples = 2000; // enough for a median
-  const Index stride = std::max<Index>(1, vertices.cols() / samples);
+  const Index stride = std::max<Index>(1, vertices.cols() / median_samples);
   std::vector<float> depths;
   for (const Projector& view : views)
     for (Index v = 0; v < vertices.cols(); v += stride) {

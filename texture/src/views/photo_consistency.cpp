@@ -5,8 +5,6 @@
 #include <fresco/core/parallel.h>
 namespace fresco::texture {
 namespace {
-constexpr float one_octave = 20; // grey levels of difference that cost an octave: well above noise
-
 /// Difference of two colours, grey levels.
 float differenceOf(const Eigen::Vector3f& a, const Eigen::Vector3f& b) { return (a - b).cwiseAbs().maxCoeff(); }
 
@@ -150,8 +148,8 @@ float inferredDifference(const VoteInput& of, Index patch, Index candidate, cons
 PhotoConsistency photoConsistency(const PatchMesh& patches, const Candidates& candidates, const Photometry& photometry,
                                   const VisibilityInput& input)
 {
-  constexpr float most_octaves = 5;    // by difference: a view that alone shows the patch well keeps a chance
-  constexpr float clipped_octaves = 6; // loses to all that are not; of these, the darkest says most
+  constexpr float most_octaves = 5; // by difference: a view that alone shows the patch well keeps a chance
+  // What is clipped loses to all that is not; of it, the darkest says most.
   const float darkest = photometry.gains.cols() > 0 ? photometry.gains.row(1).maxCoeff() : 1;
   constexpr float certain = 3 * one_octave,
                   certain_around = 45; // grey levels: few surfaces differ so by the light alone
@@ -181,7 +179,7 @@ PhotoConsistency photoConsistency(const PatchMesh& patches, const Candidates& ca
       const Candidate& shown = candidates.list[c];
       out.penalties[c] =
           std::min(octaves * octaves, most_octaves) + std::max(0.f, sharpest - at(c) - 0.4f) +
-          (shown.clipped ? clipped_octaves + 2 * std::log2(darkest / photometry.gains(1, shown.view)) : 0);
+          (shown.clipped ? most_octaves + 1 + 2 * std::log2(darkest / photometry.gains(1, shown.view)) : 0);
     }
   });
   return out;

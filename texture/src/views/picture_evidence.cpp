@@ -78,7 +78,6 @@ private:
   /// Of four samples; those that are not there have none.
   simd::Float4 weightsOf(const Cell& cell, int first, const Place& place) const
   {
-    constexpr float alike = 20, unlike = 3 * alike; // grey levels: deviation of a Gaussian, and where it ends
     const auto squared = [&](const float* values, float own) {
       const simd::Float4 apart = simd::load<simd::Float4>(values + first) - own;
       return apart * apart;
@@ -87,8 +86,8 @@ private:
                        colors = squared(cell.color[0], place.color[0]) + squared(cell.color[1], place.color[1]) +
                                 squared(cell.color[2], place.color[2]);
     const simd::Float4 w = simd::load<simd::Float4>(cell.certainty + first) *
-                           bell(pixels * (0.125f / (cell_ * cell_)) + colors * (0.5f / (alike * alike)));
-    return colors > unlike * unlike ? simd::Float4{} : w;
+                           bell(pixels * (0.125f / (cell_ * cell_)) + colors * (0.5f / (one_octave * one_octave)));
+    return colors > 9 * one_octave * one_octave ? simd::Float4{} : w; // three deviations of the Gaussian
   }
 
   int column(const Eigen::Vector2f& p) const { return std::clamp<int>(p.x() / cell_, 0, columns_ - 1); }

@@ -2,6 +2,8 @@
 #pragma once
 #include "views/visibility.h"
 namespace fresco::texture {
+constexpr float one_octave = 20; ///< grey levels of difference that cost an octave: well above noise
+
 /// How far candidates are from what most views show.
 struct ColorDifferences {
   std::vector<float> values;    ///< of each candidate, grey levels; -1 where too few views see the patch

@@ -15,7 +15,6 @@ void add(std::vector<VertexShare>& shares, int view, float weight)
 /// The largest shares only, by view number, with sum 1.
 void tidy(std::vector<VertexShare>& shares)
 {
-  constexpr float least_weight = 0.03f;  // of the sum: 8 grey levels of 255 at most
   constexpr std::size_t most_shares = 4; // more views hardly meet at a vertex
   float sum = 0;
   for (const VertexShare& s : shares)
@@ -23,7 +22,7 @@ void tidy(std::vector<VertexShare>& shares)
   std::sort(shares.begin(), shares.end(), [](const VertexShare& a, const VertexShare& b) {
     return a.weight != b.weight ? a.weight > b.weight : a.view < b.view;
   });
-  while (!shares.empty() && (shares.size() > most_shares || shares.back().weight < least_weight * sum))
+  while (!shares.empty() && (shares.size() > most_shares || shares.back().weight < least_share * sum))
     shares.pop_back();
   sum = 0;
   for (const VertexShare& s : shares)

@@ -4,6 +4,8 @@
 #include <fresco/core/grouped.h>
 #include <vector>
 namespace fresco::texture {
+constexpr float least_share = 0.02f; ///< of a view in a colour: 5 grey levels of 255 at most
+
 /// Patches at every vertex.
 Groups vertexPatches(const PatchMesh& patches);
 

@@ -6,6 +6,7 @@
 #include <limits>
 namespace fresco::texture {
 namespace {
+constexpr int rounds = 24;              // messages reach as many patches far; sweeps end by themselves long before
 constexpr std::size_t most_labels = 16; // per patch, the best ones: the others lose by their cost anyway
 
 struct Label {
@@ -129,9 +130,8 @@ private:
 void iteratedConditionalModes(const PatchMesh& patches, const Labels& labels, const Eigen::Matrix3Xf& seams,
                               Eigen::VectorXi& view)
 {
-  constexpr int most_sweeps = 20; // a bound: the cost falls with each, so that they end by themselves
   bool changed = true;
-  for (int sweep = 0; sweep < most_sweeps && changed; ++sweep) {
+  for (int sweep = 0; sweep < rounds && changed; ++sweep) {
     changed = false;
     for (Index i = 0; i < patches.size(); ++i) {
       float least = std::numeric_limits<float>::infinity();
@@ -162,7 +162,6 @@ float edgeLength(const PatchMesh& patches, Index patch, int side)
 Eigen::VectorXi selectViews(const PatchMesh& patches, const ViewCosts& costs, double seam, int threads)
 {
   const Labels labels = labelsOf(patches, costs);
-  constexpr int rounds = 24; // messages reach as many patches far
   const float seam_cost = seam;
   Eigen::Matrix3Xf seams = Eigen::Matrix3Xf::Zero(3, patches.size()); // cost of each side
   parallelFor(patches.size(), threads, [&](Index i) {

@@ -5,7 +5,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <fresco/core/parallel.h>
+#include <fresco/core/parallel_batches.h>
 #include <limits>
 namespace fresco::texture {
 namespace {
@@ -65,8 +65,7 @@ public:
     const std::shared_ptr<const Image> photo = input.views.photos.get(number);
     const float misfit = input.views.misfits.empty() ? 0.f : input.views.misfits[number];
     const float radius = limits_.margin / map.step;
-    constexpr float rim_pixels = 2; // reach of cubic interpolation
-    const float rim = rim_pixels / map.step;
+    const float rim = interpolation_reach / map.step;
     const CellBox cells = cellsInUse(map);
     const DepthMap nearest = nearestWithin(map, std::ceil(radius), cells),
                    farthest = farthestWithin(map, std::ceil(rim), cells);
@@ -264,7 +263,6 @@ Candidates findCandidates(const PatchMesh& patches, const VisibilityInput& input
                           std::vector<DepthMap> maps, std::vector<OutlineMask>* outlines)
 {
   const ViewList& views = input.views;
-  constexpr Index batch = 16; // views between two reports
   const Index n = views.used.size();
   CandidateTable table(patches.size(), CandidateTable::mostPerPatch(patches.size(), n));
   std::vector<std::vector<SeenPatch>> seen;
@@ -287,7 +285,7 @@ Candidates findCandidates(const PatchMesh& patches, const VisibilityInput& input
       if (view.mayShow())
         seen[i] = view.run(input, v, map);
       if (outlines)
-        (*outlines)[v] = OutlineMask(map, OutlineMask::pixel_reach, limits.tolerance);
+        (*outlines)[v] = OutlineMask(map, interpolation_reach, limits.tolerance);
     };
     parallelFor(count, input.options.threads, test, 1);
     table.add(seen, input.options.threads);

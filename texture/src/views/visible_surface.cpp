@@ -10,11 +10,10 @@
 namespace fresco::texture {
 namespace {
 /// Longest side of a patch, mesh units.
-float longestEdge(const TriangleMesh& mesh, const std::vector<Projector>& views, double most_patches)
+float longestEdge(const TriangleMesh& mesh, const std::vector<Projector>& views, Index tiles)
 {
   constexpr float patch_pixels = 16; // small against what stands before a surface, many pixels to compare colours by
-  constexpr Index samples = 2000;    // enough for a median
-  const Index stride = std::max<Index>(1, mesh.faceCount() / samples);
+  const Index stride = std::max<Index>(1, mesh.faceCount() / median_samples);
   std::vector<float> sizes; // of a pixel
   for (const Projector& view : views)
     for (Index f = 0; f < mesh.faceCount(); f += stride) {
@@ -22,7 +21,7 @@ float longestEdge(const TriangleMesh& mesh, const std::vector<Projector>& views,
       if (p.z() > 0 && p.x() >= 0 && p.y() >= 0 && p.x() <= view.camera().width && p.y() <= view.camera().height)
         sizes.push_back(p.z() / view.focal());
     }
-  const float least = std::sqrt(surfaceArea(mesh) / (0.43 * most_patches));
+  const float least = std::sqrt(surfaceArea(mesh) / (0.43 * most_patches * tiles));
   if (sizes.empty())
     return std::max<double>(least, 0.05 * diagonalOf(mesh));
   return std::max(least, patch_pixels * median(sizes));
@@ -82,9 +81,9 @@ Eigen::AlignedBox3f boxOf(const TriangleMesh& mesh)
 
 double diagonalOf(const TriangleMesh& mesh) { return boxOf(mesh).sizes().norm(); }
 
-WholeSurface measureSurface(const TriangleMesh& mesh, const ViewList& views, double most_patches)
+WholeSurface measureSurface(const TriangleMesh& mesh, const ViewList& views, Index tiles)
 {
-  return {{}, {}, longestEdge(mesh, views.projectors, most_patches), typicalDepth(mesh.vertices, views.projectors)};
+  return {{}, {}, longestEdge(mesh, views.projectors, tiles), typicalDepth(mesh.vertices, views.projectors)};
 }
 
 std::vector<DepthMap> coarseMaps(const VisibilityInput& input)
@@ -122,10 +121,9 @@ VisibleSurface findVisibleSurface(const TriangleMesh& mesh, const VisibilityInpu
 {
   const bool exact = input.views.pose_uncertainty < 1; // else outlines are too uncertain to be followed closely
   VisibleSurface out;
-  constexpr double most_patches = 1e6; // bounds the memory
   const WholeSurface* whole = input.whole;
-  out.patches = cutFaces(mesh, whole ? whole->longest_edge : longestEdge(mesh, input.views.projectors, most_patches),
-                         input.options.threads);
+  out.patches =
+      cutFaces(mesh, whole ? whole->longest_edge : longestEdge(mesh, input.views.projectors, 1), input.options.threads);
   if (!exact) {
     out.candidates = findCandidates(out.patches, input, progress);
     return out;

@@ -2,6 +2,8 @@
 #pragma once
 #include "views/visibility.h"
 namespace fresco::texture {
+constexpr double most_patches = 1e6; ///< of a mesh or a tile: bounds the memory
+
 /// What the views show of the mesh.
 struct VisibleSurface {
   PatchMesh patches;
@@ -13,8 +15,8 @@ struct VisibleSurface {
 VisibleSurface findVisibleSurface(const TriangleMesh& mesh, const VisibilityInput& input, const Progress& progress);
 
 /// What findVisibleSurface() asks of a surface as a whole, but for its maps.
-/// @param patches that may be there at most, about
-WholeSurface measureSurface(const TriangleMesh& mesh, const ViewList& views, double most_patches);
+/// @param tiles that the mesh is cut into
+WholeSurface measureSurface(const TriangleMesh& mesh, const ViewList& views, Index tiles);
 
 /// shownDepth() of each view in use, in as many cells as fit into 256 MB together.
 std::vector<DepthMap> coarseMaps(const VisibilityInput& input);
