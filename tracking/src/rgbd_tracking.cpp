@@ -74,9 +74,9 @@ std::vector<std::string> trackFrames(TrackingMap& map, const VideoReader& reader
 {
   Odometry odometry(map, threads);
   std::vector<std::string> problems;
-  for (Index begin = 0; begin < reader.count(); begin += batch) {
+  for (Index begin = 0; begin < reader.count(); begin += batch_size) {
     report(progress, "track", double(begin) / reader.count());
-    std::vector<RgbdPyramid> pyramids(std::min(batch, reader.count() - begin));
+    std::vector<RgbdPyramid> pyramids(std::min(batch_size, reader.count() - begin));
     parallelFor(
         pyramids.size(), threads, [&](Index k) { pyramids[k] = reader(begin + k); }, 1);
     for (std::size_t k = 0; k < pyramids.size(); ++k) {

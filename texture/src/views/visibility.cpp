@@ -270,9 +270,9 @@ Candidates findCandidates(const PatchMesh& patches, const VisibilityInput& input
   maps.resize(n);
   if (outlines)
     outlines->resize(n);
-  for (Index first = 0; first < n; first += batch) {
+  for (Index first = 0; first < n; first += batch_size) {
     report(progress, "visibility", 1.0 * first / n);
-    const Index count = std::min(batch, n - first);
+    const Index count = std::min(batch_size, n - first);
     seen.assign(count, {});
     const auto test = [&](Index i) {
       const Index v = first + i;

@@ -9,12 +9,6 @@ namespace fresco::poisson {
 namespace {
 using Places = std::vector<std::uint32_t>; // in the arrays of samples
 
-/// Samples along the Z-order curve.
-struct Curve {
-  Array<std::uint64_t> codes;
-  Array<Sample> samples;
-};
-
 /// The quantity of the header.
 float scatterOf(const Array<Sample>& samples, Places::const_iterator begin, Places::const_iterator end)
 {
@@ -90,19 +84,21 @@ void weighScattered(const Octree& tree, Samples& samples, int threads)
       [&](Index c) { weighCell(samples.codes, samples.samples, tree.depth - top, cells[c], cells[c + 1], left[c]); },
       1);
   Places own;
+  Array<std::uint64_t> codes;
+  Array<Sample> rest;
   for (const Places& of_cell : left)
-    own.insert(own.end(), of_cell.begin(), of_cell.end());
-  Curve rest;
-  for (const std::uint32_t i : own) {
-    rest.codes.push_back(samples.codes[i]);
-    rest.samples.push_back(samples.samples[i]);
-  }
+    for (const std::uint32_t i : of_cell) {
+      own.push_back(i);
+      codes.push_back(samples.codes[i]);
+      rest.push_back(samples.samples[i]);
+    }
   Exchange& exchange = tree.exchange();
   const Index before = exchange.sumBefore(own.size());
-  rest = {gatherAll(exchange, rest.codes.data(), own.size()), gatherAll(exchange, rest.samples.data(), own.size())};
+  codes = gatherAll(exchange, codes.data(), codes.size());
+  rest = gatherAll(exchange, rest.data(), rest.size());
   Places lone;
-  weighCell(rest.codes, rest.samples, tree.depth, 0, rest.codes.size(), lone);
+  weighCell(codes, rest, tree.depth, 0, codes.size(), lone);
   for (std::size_t i = 0; i < own.size(); ++i)
-    samples.samples[own[i]].area = rest.samples[before + i].area;
+    samples.samples[own[i]].area = rest[before + i].area;
 }
 } // namespace fresco::poisson

@@ -52,32 +52,34 @@ public:
         scale_(std::ldexp(1.f, level.depth - finest))
   {}
 
-  /// Value of the cells around each node of a brick, by nodeIndex(). False: 0 at all of them.
-  bool load(Index brick, float (*valueOf)(const Sums&), float* nodes) const
-  {
-    Window window;
-    const Neighbors neighbors = level_.neighborsOf(brick);
-    const Eigen::Vector3f origin = level_.origin(brick);
-    for (int o = 0; o < 27; ++o)
-      if (neighbors[o] >= 0)
-        for (const std::uint32_t i : ranges_[neighbors[o]])
-          add(i, o, origin, window);
-    if (isOneSided(window))
-      return false;
-    for (int z = 0; z < brick_nodes; ++z)
-      for (int y = 0; y < brick_nodes; ++y)
-        for (int x = 0; x < brick_nodes; ++x)
-          nodes[nodeIndex(x, y, z)] = valueOf(around(x, y, z, window));
-    return true;
-  }
-
-private:
   /// Cells -1..4 of a brick on each axis.
   struct Window {
     std::array<Sums, (brick_cells + 2) * (brick_cells + 2) * (brick_cells + 2)> cells;
     Sums& at(int x, int y, int z) { return cells[x + 1 + (brick_cells + 2) * (y + 1 + (brick_cells + 2) * (z + 1))]; }
   };
 
+  /// False: on all nodes of the brick normals agree.
+  bool load(Index brick, Window& window) const
+  {
+    const Neighbors neighbors = level_.neighborsOf(brick);
+    const Eigen::Vector3f origin = level_.origin(brick);
+    for (int o = 0; o < 27; ++o)
+      if (neighbors[o] >= 0)
+        for (const std::uint32_t i : ranges_[neighbors[o]])
+          add(i, o, origin, window);
+    return !isOneSided(window);
+  }
+
+  /// Values of the cells around each node, by nodeIndex().
+  static void valuesOf(Window& window, float (*valueOf)(const Sums&), float* nodes)
+  {
+    for (int z = 0; z < brick_nodes; ++z)
+      for (int y = 0; y < brick_nodes; ++y)
+        for (int x = 0; x < brick_nodes; ++x)
+          nodes[nodeIndex(x, y, z)] = valueOf(around(x, y, z, window));
+  }
+
+private:
   /// Whether no normals around any node cancel by half: those of all cells are within 60 degrees of one direction.
   static bool isOneSided(const Window& window)
   {
@@ -127,46 +129,55 @@ private:
   float scale_; ///< cells of the level per finest cell
 };
 
-/// Values of the cells around each sample.
-Array<float> valuesAt(const BrickLevel& level, const SampleLevel& cells, const SampleLevel& samples, int finest,
-                      float (*valueOf)(const Sums&), int threads)
+/// What is asked of the cells around each sample.
+struct Quantity {
+  float (*of)(const Sums&);
+  Array<float> values; ///< by sample; 0 where no normals cancel
+};
+
+void findAtSamples(const BrickLevel& level, const SampleLevel& cells, const SampleLevel& samples, int finest,
+                   std::vector<Quantity>& wanted, int threads)
 {
-  if (cells.fluxes.empty())
-    return {};
-  Array<float> values(samples.samples.size());
-  parallelFor(values.size(), threads, [&](Index i) { values[i] = 0.f; });
+  for (Quantity& quantity : wanted)
+    quantity.values.assign(samples.samples.size(), 0.f);
   const CellsAround cells_around(level, cells, finest, threads);
   const SampleRanges ranges = sampleRanges(level, samples.codes, samples.depth, threads);
   const float scale = std::ldexp(1.f, level.depth - finest);
   parallelFor(level.size(), threads, [&](Index b) {
-    float nodes[nodes_per_brick];
-    if (ranges[b].empty() || !cells_around.load(b, valueOf, nodes))
+    CellsAround::Window window;
+    if (ranges[b].empty() || !cells_around.load(b, window))
       return;
     const Eigen::Vector3f origin = level.origin(b);
-    for (const std::uint32_t i : ranges[b])
-      values[i] = HatWeights::inBrick(samples.samples[i].position * scale - origin).interpolate(nodes);
+    for (Quantity& quantity : wanted) {
+      float nodes[nodes_per_brick];
+      CellsAround::valuesOf(window, quantity.of, nodes);
+      for (const std::uint32_t i : ranges[b])
+        quantity.values[i] = HatWeights::inBrick(samples.samples[i].position * scale - origin).interpolate(nodes);
+    }
   });
-  return values;
 }
 } // namespace
 
 Array<float> expectedValues(const BrickLevel& level, const SampleLevel& cells, const SampleLevel& samples, int finest,
                             int threads)
 {
-  return valuesAt(level, cells, samples, finest, expectedValue, threads);
+  if (cells.fluxes.empty())
+    return {};
+  std::vector<Quantity> wanted{{expectedValue, {}}};
+  findAtSamples(level, cells, samples, finest, wanted, threads);
+  return std::move(wanted[0].values);
 }
 
 void holdThin(const Octree& tree, const SampleGhosts& ghosts, const Array<Eigen::Vector3f>& normals,
               SampleLevel& finest, int threads)
 {
   const SampleLevel cells = coarsen(finest, tree, threads, &normals);
-  const auto valuesOf = [&](float (*valueOf)(const Sums&)) {
-    Array<float> values = valuesAt(tree.levels[cells.depth], cells, finest, finest.depth, valueOf, threads);
-    ghosts.renew(finest.codes, values);
-    return values;
-  };
-  finest.expected = valuesOf(thickening);
-  const Array<float> sharp = valuesOf(sharpness);
+  std::vector<Quantity> wanted{{thickening, {}}, {sharpness, {}}};
+  findAtSamples(tree.levels[cells.depth], cells, finest, finest.depth, wanted, threads);
+  for (Quantity& quantity : wanted)
+    ghosts.renew(finest.codes, quantity.values);
+  finest.expected = std::move(wanted[0].values);
+  const Array<float>& sharp = wanted[1].values;
   parallelFor(sharp.size(), threads, [&](Index i) { finest.samples[i].noise *= 1.f - sharp[i]; });
 }
 } // namespace fresco::poisson

@@ -23,9 +23,10 @@ namespace fresco::poisson {
 Array<float> expectedValues(const BrickLevel& level, const SampleLevel& cells, const SampleLevel& samples, int finest,
                             int threads);
 
-/// Where both sides of a thing are as near as cells, normals cancel, and the samples alone hold chi. There, and in part at
-/// edges, their noise does not count. What is thinner than a cell, t cells, would fall between the nodes. It is made one
-/// cell thick: at the finest depth, where chi rises by 0.3 in a cell, -0.3 c (1 - t) / 2 is expected.
+/// Where both sides of a thing are as near as cells, normals cancel, and the samples alone hold chi. There, and in part
+/// at edges, their noise does not count. What is thinner than a cell, t cells, would fall between the nodes. It is made
+/// one cell thick: at the finest depth, where chi rises by 0.3 in a cell, -0.3 c (1 - t) / 2 is expected.
+/// Where cells of the finest depth are everywhere (min_depth), solveBase() expects 0.
 /// @param normals of the samples of the finest depth, ghosts among them
 /// @param finest  receives `expected`
 void holdThin(const Octree& tree, const SampleGhosts& ghosts, const Array<Eigen::Vector3f>& normals,
