@@ -91,6 +91,24 @@ TEST(EqualRooms, WhoAgreesNearlyEverywhereIsAlone)
   EXPECT_EQ(parted({})[0].scans.size(), 3u);
 }
 
+// Stations of a survey keep apart. Where rooms have fallen into one, they do not. A place may be measured twice.
+TEST(EqualRooms, StationsThatCrowdAreOfSeveralRooms)
+{
+  for (const double spacing : {0.0, 0.04, 0.1, 0.2, 0.3, 0.5}) { // median ranges
+    Scene scene(test::roomsInARow(true).scene);
+    ScanCluster row;
+    for (Index k = 0; k < static_cast<Index>(scene.scans.size()); ++k) {
+      row.scans.push_back(k);
+      row.poses.emplace_back(Eigen::Translation3d(spacing * scene.scans[0].size * static_cast<double>(k), 0.0, 0.0));
+      if (k > 0)
+        scene.addPair(k - 1, k, row.poses[k - 1].inverse() * row.poses[k], 0.95);
+    }
+    std::vector<ScanCluster> clusters = {row};
+    partEqualRooms(scene.input(), {}, clusters);
+    EXPECT_EQ(clusters.size(), spacing > 0.05 && spacing < 0.25 ? scene.scans.size() : 1u) << spacing;
+  }
+}
+
 constexpr Index seer = 0, last = 9;
 
 // Ten scans of a room. Before the last one, a thing came into the view of the first one, which alone tells free space.
