@@ -140,5 +140,34 @@ TEST(Overexposed, WhatIsClippedHasTheHueOfItsSurroundings)
     EXPECT_LT(dull, 3) << rise;
   }
 }
+
+/// A lamp or the sky: what stood before it in one photograph is not of it, for all that it is not overexposed.
+TEST(Overexposed, WhatMostPhotographsShowClippedIsNoDarkThing)
+{
+  TriangleMesh mesh;
+  appendBox({-1, -1, -1}, {1, 1, 1}, true, mesh);
+  std::vector<TextureView> views;
+  const auto bright = [](const Eigen::Vector3d& p) {
+    const double other = 90 + 40 * std::sin(4 * p.x() + 5 * p.y() + 3 * p.z());
+    return Eigen::Vector3d::Constant(p.x() > 0.999 ? 320 : other);
+  };
+  const auto hidden = [&](const Eigen::Vector3d& p) {
+    return p.x() > 0.999 && p.tail<2>().norm() < 0.5 ? Eigen::Vector3d(40, 90, 30) : bright(p);
+  };
+  const CameraModel wide = camera(side, side, 70);
+  for (const double y : {-0.6, -0.2, 0.2, 0.6})
+    views.push_back(photograph(mesh, bright, wide, lookAt({-0.7, y, 0.3 * y}, {1, 0, 0})));
+  views.push_back(photograph(mesh, hidden, wide, lookAt({-0.2, 0, 0}, {1, 0, 0})));
+  TextureOptions options = withThreads(2);
+  options.refine = false;
+  const TextureResult result = reconstructTexture(mesh, views, options);
+  double darkest = 255;
+  forPlaces(mesh, 3000, [&](Index f, const Eigen::Vector3d& weights) {
+    const Eigen::Vector3d p = pointAt(mesh, f, weights);
+    if (p.x() > 0.999 && p.tail<2>().norm() < 0.45)
+      darkest = std::min(darkest, colorAt(result.model, f, weights).minCoeff());
+  });
+  EXPECT_GT(darkest, 240);
+}
 } // namespace
 } // namespace fresco::test

@@ -15,6 +15,7 @@ float trustOf(float expected) { return 1 / (1 + (expected / one_octave) * (expec
 struct Vote {
   Eigen::Vector3f color, towards; ///< towards the camera
   float weight;
+  bool clipped; ///< the light is as bright as the colour at least
 };
 
 /// What votes are taken from.
@@ -37,10 +38,10 @@ std::vector<Vote> votesOf(const VoteInput& of, Index patch, const std::vector<fl
   const Eigen::Vector3f middle = patches.middle(patch);
   std::vector<Vote> out;
   for (Index c = candidates.begin[patch]; c < candidates.begin[patch + 1]; ++c)
-    if (const Candidate& candidate = candidates.list[c]; candidate.quality >= trusted * best && !candidate.clipped)
+    if (const Candidate& candidate = candidates.list[c]; candidate.quality >= trusted * best)
       out.push_back({candidate.corrected(photometry),
                      (input.views.projectors[candidate.view].center() - middle).normalized(),
-                     expected.empty() ? 1.f : trustOf(expected[c])});
+                     expected.empty() ? 1.f : trustOf(expected[c]), candidate.clipped != 0});
   for (Vote& v : out) {
     float alike = 1;
     for (const Vote& other : out)
@@ -71,14 +72,45 @@ Eigen::Vector3f medianOf(std::vector<Vote>& votes)
 /// What the views say of a patch.
 struct Consensus {
   Eigen::Vector3f color;
-  int margin = 0; ///< views that agree more than that differ; 0 = they are too few, or two that disagree
+  int margin = 0;        ///< views that agree more than that differ; 0 = they are too few, or two that disagree
+  bool at_least = false; ///< nearly all are overexposed: it is at least as bright
+
+  float differenceOf(const Candidate& candidate, const Photometry& photometry) const
+  {
+    const Eigen::Vector3f apart = candidate.corrected(photometry) - color;
+    return at_least ? std::max(0.f, -apart.minCoeff()) : apart.cwiseAbs().maxCoeff();
+  }
 };
 
-Consensus consensusOf(std::vector<Vote> votes)
+/// Of overexposed views. Where they outvote the others and say that it is brighter than these show, it is.
+Consensus leastLight(const std::vector<Vote>& clipped, const std::vector<Vote>& others, const Eigen::Vector3f& color)
 {
-  if (votes.size() < 2)
+  std::vector<Vote> brighter;
+  float more = 0;
+  for (const Vote& v : clipped)
+    if ((v.color - color).maxCoeff() > one_octave) {
+      brighter.push_back(v);
+      more += v.weight;
+    }
+  for (const Vote& v : others)
+    more -= v.weight;
+  if (brighter.size() < 2 || more <= 0)
+    return {};
+  return {medianOf(brighter), std::max(1, int(brighter.size()) - int(others.size())), true};
+}
+
+Consensus consensusOf(const std::vector<Vote>& all)
+{
+  std::vector<Vote> votes, clipped;
+  for (const Vote& v : all)
+    (v.clipped ? clipped : votes).push_back(v);
+  if (votes.empty())
     return {};
   Consensus out{medianOf(votes), 0};
+  if (const Consensus least = leastLight(clipped, votes, out.color); least.at_least)
+    return least;
+  if (votes.size() < 2)
+    return {};
   int agreeing = 0;
   for (const Vote& v : votes)
     agreeing += differenceOf(v.color, out.color) < one_octave;
@@ -117,7 +149,8 @@ ColorDifferences differencesFromConsensus(const VoteInput& of, const std::vector
 {
   const Candidates& candidates = of.candidates;
   const Index patches = of.patches.size();
-  ColorDifferences out{std::vector<float>(candidates.list.size(), -1.f), std::vector<float>(patches, 0.f)};
+  ColorDifferences out{std::vector<float>(candidates.list.size(), -1.f), std::vector<float>(patches, 0.f),
+                       std::vector<char>(patches, 0)};
   constexpr float none = 1, all = 3; // margins: two against one may show the same wrong thing
   parallelFor(patches, of.input.options.threads, [&](Index i) {
     const Consensus consensus = consensusOf(votesOf(of, i, expected));
@@ -125,7 +158,8 @@ ColorDifferences differencesFromConsensus(const VoteInput& of, const std::vector
       return;
     out.certainty[i] = std::clamp((consensus.margin - none) / (all - none), 0.f, 1.f);
     for (Index c = candidates.begin[i]; c < candidates.begin[i + 1]; ++c)
-      out.values[c] = differenceOf(candidates.list[c].corrected(of.photometry), consensus.color);
+      out.values[c] = consensus.differenceOf(candidates.list[c], of.photometry);
+    out.at_least[i] = consensus.at_least;
   });
   return out;
 }
@@ -156,7 +190,8 @@ PhotoConsistency photoConsistency(const PatchMesh& patches, const Candidates& ca
   const VoteInput of{patches, candidates, photometry, input};
   const ColorDifferences first = differencesFromConsensus(of, {});
   const std::vector<float> expected = differencesInPictures(patches, candidates, first, input);
-  std::vector<float> difference = differencesFromConsensus(of, expected).values;
+  ColorDifferences second = differencesFromConsensus(of, expected);
+  std::vector<float> difference = std::move(second.values);
   const std::vector<float> around = smoothed(of, expected);
   PhotoConsistency out;
   out.foreign.resize(difference.size());
@@ -177,9 +212,10 @@ PhotoConsistency photoConsistency(const PatchMesh& patches, const Candidates& ca
     for (Index c = candidates.begin[i]; c < candidates.begin[i + 1]; ++c) {
       const float octaves = difference[c] / one_octave;
       const Candidate& shown = candidates.list[c];
-      out.penalties[c] =
-          std::min(octaves * octaves, most_octaves) + std::max(0.f, sharpest - at(c) - 0.4f) +
-          (shown.clipped ? most_octaves + 1 + 2 * std::log2(darkest / photometry.gains(1, shown.view)) : 0);
+      out.penalties[c] = std::min(octaves * octaves, most_octaves) + std::max(0.f, sharpest - at(c) - 0.4f) +
+                         (shown.clipped && !second.at_least[i]
+                              ? most_octaves + 1 + 2 * std::log2(darkest / photometry.gains(1, shown.view))
+                              : 0);
     }
   });
   return out;

@@ -8,6 +8,7 @@ constexpr float one_octave = 20; ///< grey levels of difference that cost an oct
 struct ColorDifferences {
   std::vector<float> values;    ///< of each candidate, grey levels; -1 where too few views see the patch
   std::vector<float> certainty; ///< of each patch, 0..1
+  std::vector<char> at_least;   ///< of each patch: overexposed views agree that it is brighter than the others show
 };
 
 /// Differences to expect by the photographs alone: what looks like something nearby that other photographs contradict
