@@ -18,6 +18,7 @@ using namespace fresco;
 namespace {
 struct FilterOptions {
   OutlierOptions outliers;
+  ScatterOptions scatter;
   MixedPixelOptions mixed_pixels;
   float cell = 0; // metres
   Eigen::Vector3d viewpoint = Eigen::Vector3d::Zero();
@@ -39,6 +40,10 @@ void FilterOptions::declare(Args& args)
       });
   args.flag("relative", outliers.relative,
             "for -outliers: judge distances against those of the neighbours, so that sparse parts of a scan stay");
+  args.option(
+      "scattered", scatter.k, Range::atLeast(2),
+      "remove points that fill a volume among those spaced as widely as they are, told by this many neighbours; "
+      "16 is common. Sparse surfaces and wires stay");
   args.option("veil", mixed_pixels.angle, Range::above(0).below(90),
               "remove mixed pixels: the points in the air that a laser leaves at depth jumps. What a surface could "
               "join with most of the points next to it stays: the way to them leaves its beam at no less than this "
@@ -53,10 +58,10 @@ void FilterOptions::declare(Args& args)
   args.flag("centroid", centroid, "for -voxel: move the point kept to the centroid");
   args.flag("keep_organized", keep_organized, "removed points become NaN in their place");
   args.flag("removed", removed, "write the points that would be removed instead");
-  args.note(
-      "The steps run in the order veil, outliers, voxel; only those given run. Points that are not finite are always\n"
-      "removed. Every field of the points that stay is kept.\n"
-      "Example: fresco_filter scan.pcd clean.pcd -veil 20 -outliers 16 2 -voxel 0.005");
+  args.note("The steps run in the order veil, scattered, outliers, voxel; only those given run. Points that are not "
+            "finite are always\n"
+            "removed. Every field of the points that stay is kept.\n"
+            "Example: fresco_filter scan.pcd clean.pcd -veil 20 -outliers 16 2 -voxel 0.005");
 }
 
 /// The points of a cloud that are left, with their places in it.
@@ -166,6 +171,7 @@ void filterCloud(CloudFile& file, const std::string& name, const Args& args, con
     lines.push_back(std::string(option) + " removed " + std::to_string(before - rest.columns.size()));
   };
   step("veil", 0.2, [&] { removeMixedPixels(rest, name, args, options); });
+  step("scattered", 0.4, [&] { rest.keep(withoutScatter(rest.set.points, options.scatter)); });
   step("outliers", 0.5, [&] { rest.keep(withoutOutliers(rest.set.points, options.outliers)); });
   step("voxel", 0.8, [&] { thin(rest, file.cloud, options); });
   std::vector<Index> columns = options.removed ? complement(rest.columns, finite) : rest.columns;
@@ -196,7 +202,7 @@ int main(int argc, char** argv)
   return runTool("fresco_filter", [&] {
     FilterOptions options;
     CommonOptions common;
-    Args args("fresco_filter IN OUT [-outliers K SIGMA] [-veil DEG] [-voxel M] [options]",
+    Args args("fresco_filter IN OUT [-scattered K] [-outliers K SIGMA] [-veil DEG] [-voxel M] [options]",
               "Removes isolated points and mixed pixels of a scan, and thins it by voxel.\nIN: " +
                   readableExtensions(FileKind::points) + "; OUT: " + writableExtensions(FileKind::points) + ".");
     ScanOption scan;
@@ -205,7 +211,7 @@ int main(int argc, char** argv)
     common.declare(args);
     const auto files = args.parse(argc, argv, 2);
     requireDistinct({files[1]}, {files[0]});
-    options.outliers.threads = options.mixed_pixels.threads = common.threads;
+    options.outliers.threads = options.scatter.threads = options.mixed_pixels.threads = common.threads;
     if (scan.number == 0 && extension(files[0]) == ".e57" && extension(files[1]) == ".e57")
       return filterScans(files, args, options, common.quiet);
     CloudFile file = readCloud(scan.of(files[0]));

@@ -67,6 +67,74 @@ TEST(Outliers, OddInput)
   EXPECT_THROW(withoutOutliers(points, options), std::invalid_argument);
 }
 
+/// A square, beside it a part of it ten times sparser, a rod over it; then points all over their box.
+Points scatteredOver(Index on_square, Index scattered)
+{
+  Points points = test::randomPoints(on_square + on_square / 10 + scattered, 1);
+  points.row(2).head(on_square).setZero();
+  points.row(0).head(on_square / 10).array() += 2; // the sparse part
+  auto rod = points.middleCols(on_square, on_square / 10);
+  rod.row(1).setConstant(0.3f);
+  rod.row(2) = 0.5f + 0.2f * rod.row(0).array();
+  points.rightCols(scattered).row(0) = points.rightCols(scattered).row(0).array() * 2 + 1;
+  return points;
+}
+
+TEST(Scatter, GoesAndSparseSurfacesAndRodsStay)
+{
+  for (const Index scattered : {6000, 12000}) {
+    const Points points = scatteredOver(60000, scattered);
+    const Index surface = points.cols() - scattered;
+    const auto kept = withoutScatter(points);
+    const Index stay = std::lower_bound(kept.begin(), kept.end(), surface) - kept.begin();
+    EXPECT_GT(stay, 0.995 * surface) << scattered;
+    EXPECT_LT(Index(kept.size()) - stay, 0.05 * scattered) << scattered;
+    EXPECT_GT(std::lower_bound(kept.begin(), kept.end(), 6000) - kept.begin(), 5850) << "the sparse part";
+  }
+  const Points clean = scatteredOver(20000, 0);
+  EXPECT_EQ(withoutScatter(clean).size(), std::size_t(clean.cols()));
+}
+
+TEST(Scatter, IsTheSameAtAnyScaleAndPlaceAndForAnyThreads)
+{
+  const Points points = scatteredOver(5000, 500);
+  const auto kept = withoutScatter(points);
+  ScatterOptions options;
+  options.threads = 3;
+  EXPECT_EQ(withoutScatter(points, options), kept);
+  EXPECT_EQ(withoutScatter(1024 * points), kept);
+  const Eigen::Matrix3f turn = Eigen::AngleAxisf(1, Eigen::Vector3f(1, 2, 2) / 3).toRotationMatrix();
+  std::vector<Index> apart;
+  const auto moved = withoutScatter((turn * points).colwise() + Eigen::Vector3f(3, -2, 1));
+  std::set_symmetric_difference(kept.begin(), kept.end(), moved.begin(), moved.end(), std::back_inserter(apart));
+  EXPECT_LT(apart.size(), 10u) << "rounding";
+  EXPECT_GT(options.dimension, 2);
+  options.dimension = 1e9f; // nothing has it
+  EXPECT_EQ(withoutScatter(points, options).size(), std::size_t(points.cols()));
+}
+
+TEST(Scatter, OddInput)
+{
+  EXPECT_TRUE(withoutScatter(Points(3, 0)).empty());
+  for (const Index few : {1, 2, 17, 18, 40})
+    EXPECT_EQ(withoutScatter(test::randomPoints(few, 1)).size(), std::size_t(few)) << "nothing is sparser than most";
+  EXPECT_EQ(withoutScatter(Points::Ones(3, 100)).size(), 100u);
+  const Points once = scatteredOver(5000, 500);
+  Points twice(3, 2 * once.cols() + 1);
+  twice << once, once, Eigen::Vector3f::Constant(nan);
+  const auto kept = withoutScatter(twice);
+  const Index half = std::lower_bound(kept.begin(), kept.end(), once.cols()) - kept.begin();
+  EXPECT_EQ(Index(kept.size()), 2 * half) << "both of a pair or none";
+  EXPECT_LT(half, once.cols() - 200);
+  EXPECT_GT(half, once.cols() - 550);
+  ScatterOptions options;
+  options.k = 1;
+  EXPECT_THROW(withoutScatter(once, options), std::invalid_argument);
+  options = {};
+  options.dimension = nan;
+  EXPECT_THROW(withoutScatter(once, options), std::invalid_argument);
+}
+
 TEST(MixedPixels, GoAndLegsAndEdgesStay)
 {
   const auto scan = test::scanWithMixedPixels(0.005f, 0.002f, 1);

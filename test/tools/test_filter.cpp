@@ -28,7 +28,7 @@ TEST_F(Filter, KeepsEveryFieldOfThePointsThatStay)
 TEST_F(Filter, StepsAndThreads)
 {
   const std::string in = scanFile("scan.pcd"),
-                    options = " -veil 15 -outliers 12 3 -relative -voxel 0.05 -centroid -quiet ";
+                    options = " -veil 15 -scattered 12 -outliers 12 3 -relative -voxel 0.05 -centroid -quiet ";
   ASSERT_EQ(run(in + " " + path("one.pcd") + options + "-threads 1"), 0) << errors();
   ASSERT_EQ(run(in + " " + path("four.pcd") + options + "-threads 4"), 0) << errors();
   EXPECT_EQ(readFile(path("one.pcd")), readFile(path("four.pcd")));
@@ -52,14 +52,14 @@ TEST_F(Filter, KeepsOrganizedClouds)
   EXPECT_FALSE(kept.cloud.is_dense);
 }
 
-TEST_F(Filter, HelpNamesEveryOption) { expectInHelp({"-outliers K SIGMA", "-veil", "-voxel"}); }
+TEST_F(Filter, HelpNamesEveryOption) { expectInHelp({"-outliers K SIGMA", "-scattered N", "-veil", "-voxel"}); }
 
 TEST_F(Filter, BadInputEndsWithOneLineAndNoFile)
 {
   const std::string good = scanFile("scan.pcd"), out = " " + path("result.pcd");
   expectCommonFailures(good);
   for (const std::string options :
-       {"-outliers 0 1", "-outliers 5", "-veil 90", "-veil x", "-voxel 0", "-voxel -1", "-noise -1"})
+       {"-outliers 0 1", "-outliers 5", "-scattered 1", "-veil 90", "-veil x", "-voxel 0", "-voxel -1", "-noise -1"})
     expectFailure(good + out + " " + options, 2);
   expectFailure(good + out + " -voxel 1e-9", 1);
   expectFailure(text("points.xyz", "0 0 0\n1 1 1\n") + out + " -veil 10", 1);
@@ -69,7 +69,7 @@ TEST_F(Filter, SmallCloudsPass)
 {
   for (const char* const points : few_points) {
     const std::string in = text("few.xyz", points);
-    EXPECT_EQ(run(in + " " + path("few.pcd") + " -viewpoint 0 0 9 -veil 10 -outliers 8 2"), 0) << errors();
+    EXPECT_EQ(run(in + " " + path("few.pcd") + " -viewpoint 0 0 9 -veil 10 -scattered 8 -outliers 8 2"), 0) << errors();
     EXPECT_EQ(readPoints(path("few.pcd")).points, readPoints(in).points) << "too few to tell what is alone";
   }
 }

@@ -19,4 +19,15 @@ struct OutlierOptions {
 /// @return indices of the points that stay, ascending; finite ones only
 /// @throws std::invalid_argument if an option is out of range
 FRESCO_EXPORT std::vector<Index> withoutOutliers(const Points& points, const OutlierOptions& options = {});
+
+struct ScatterOptions {
+  int k = 16;             ///< neighbours that tell the spacing at a point, >= 2; 3 k of its peers tell their dimension
+  float dimension = 2.6f; ///< of what goes: surfaces have 2, a volume 3; more removes less, above 0
+  int threads = 0;        ///< 0 = all cores; the result does not depend on it
+};
+
+/// Scattered points: those that fill a volume among the points spaced as widely as they are, or wider.
+/// @return indices of the points that stay, ascending; finite ones only
+/// @throws std::invalid_argument if an option is out of range
+FRESCO_EXPORT std::vector<Index> withoutScatter(const Points& points, const ScatterOptions& options = {});
 } // namespace fresco
