@@ -89,9 +89,6 @@ Eigen::Isometry3d alignToGrid(const DistanceGrid& grid, const DepthFrame& frame,
     step *= damping;
     T.linear() = rotation(step.head<3>()) * T.linear();
     T.translation() += step.tail<3>();
-    constexpr double rest = 1e-5; // rad and metres per step: a thousandth of the noise of a depth camera
-    if (step.head<3>().norm() < rest && step.tail<3>().norm() < rest)
-      break;
   }
   T.linear() = Eigen::Quaterniond(T.linear()).normalized().toRotationMatrix();
   return T;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+#include "poisson/octree/select.h"
 #include <algorithm>
 #include <fresco/core/parallel.h>
 #include <fresco/core/types.h>
@@ -14,10 +15,10 @@ public:
     constexpr Index ranges_a_thread = 4; // for an even share; each looks at all faces of the chunks that it has part in
     ranges_ = ranges_a_thread * threadCount(threads);
     vertices_ = std::max<Index>(1, (vertices + ranges_ - 1) / ranges_);
-    std::vector<std::vector<Index>> ranges_of_chunk((faces.cols() + chunk - 1) / chunk);
+    std::vector<std::vector<Index>> ranges_of_chunk((faces.cols() + chunk_size - 1) / chunk_size);
     parallelRanges(
-        faces.cols(), threads, [&](Index begin, Index end) { ranges_of_chunk[begin / chunk] = rangesOf(begin, end); },
-        chunk);
+        faces.cols(), threads,
+        [&](Index begin, Index end) { ranges_of_chunk[begin / chunk_size] = rangesOf(begin, end); }, chunk_size);
     chunks_of_range_.resize(ranges_);
     for (std::size_t c = 0; c < ranges_of_chunk.size(); ++c)
       for (const Index range : ranges_of_chunk[c])
@@ -32,7 +33,7 @@ public:
         ranges_, threads_,
         [&](Index range) {
           for (const Index c : chunks_of_range_[range])
-            for (Index f = c * chunk; f < std::min(faces_.cols(), (c + 1) * chunk); ++f)
+            for (Index f = c * chunk_size; f < std::min(faces_.cols(), (c + 1) * chunk_size); ++f)
               for (int k = 0; k < 3; ++k)
                 if (const Index v = faces_(k, f); v >= range * vertices_ && v < (range + 1) * vertices_)
                   visit(v, f, k);
@@ -41,8 +42,6 @@ public:
   }
 
 private:
-  static constexpr Index chunk = 1 << 12;
-
   std::vector<Index> rangesOf(Index begin, Index end) const
   {
     std::vector<char> used(ranges_, 0);

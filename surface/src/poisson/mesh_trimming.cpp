@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "poisson/corners_by_vertex.h"
+#include "poisson/isosurface/edges.h"
 #include "poisson/octree/select.h"
 #include <algorithm>
 #include <fresco/core/array.h>
@@ -10,7 +11,7 @@
 #include <vector>
 namespace fresco {
 namespace {
-using poisson::CornersByVertex;
+using poisson::chunk_size, poisson::CornersByVertex;
 
 /// Mean of each vertex's value and those of its neighbours.
 Eigen::VectorXf smoothed(const TriangleMesh& mesh, const CornersByVertex& corners, const Eigen::VectorXf& values)
@@ -56,20 +57,18 @@ struct Cut {
 class Cuts {
 public:
   Cuts(const Faces& faces, const Eigen::VectorXf& values, const TrimmingOptions& options)
-      : values_(values), least_(options.least), parts_((faces.cols() + chunk - 1) / chunk)
+      : values_(values), least_(options.least), parts_((faces.cols() + chunk_size - 1) / chunk_size)
   {
     parallelRanges(
-        faces.cols(), options.threads, [&](Index begin, Index end) { collect(faces, begin, end); }, chunk);
+        faces.cols(), options.threads, [&](Index begin, Index end) { collect(faces, begin, end); }, chunk_size);
     for (const Part& part : parts_)
       for (const std::uint64_t edge : part.edges)
         add(edge);
   }
 
-  static constexpr Index chunk = 1 << 14; ///< faces whose crossings are collected together
-
   const std::vector<Cut>& cuts() const { return cuts_; }
   /// Corners of what is left of the faces of a chunk.
-  Index cornersOf(Index begin) const { return parts_[begin / chunk].corners; }
+  Index cornersOf(Index begin) const { return parts_[begin / chunk_size].corners; }
   bool keeps(int v) const { return values_[v] >= least_; }
 
   /// put(vertex) for the corners of the triangles that are left of a face. Cuts follow the mesh's vertices.
@@ -102,7 +101,7 @@ private:
 
   void collect(const Faces& faces, Index begin, Index end)
   {
-    Part& part = parts_[begin / chunk];
+    Part& part = parts_[begin / chunk_size];
     for (Index f = begin; f < end; ++f) {
       int n = 0;
       for (int k = 0; k < 3; ++k) {
@@ -120,12 +119,10 @@ private:
   /// Numbers the cut edges in the order of the faces.
   void add(std::uint64_t edge)
   {
-    constexpr float end_margin = 1e-3f; // of an edge of length 1: cuts stay off its ends, so no triangle degenerates
     if (!number_.try_emplace(edge, values_.size() + cuts_.size()).second)
       return;
     const int a = edge >> 32, b = edge & 0xffffffff;
-    cuts_.push_back(
-        {a, b, std::clamp((least_ - values_[a]) / (values_[b] - values_[a]), end_margin, 1.f - end_margin)});
+    cuts_.push_back({a, b, poisson::crossing(values_[a], values_[b], least_)});
   }
 
   const Eigen::VectorXf& values_;
@@ -177,17 +174,17 @@ private:
 Faces trimmedFaces(const Faces& faces, const Cuts& cuts, const KeptVertices& kept, int threads)
 {
   std::vector<Index> first(1, 0);
-  for (Index begin = 0; begin < faces.cols(); begin += Cuts::chunk)
+  for (Index begin = 0; begin < faces.cols(); begin += chunk_size)
     first.push_back(first.back() + cuts.cornersOf(begin));
   Faces result(3, first.back() / 3);
   parallelRanges(
       faces.cols(), threads,
       [&](Index begin, Index end) {
-        int* to = result.data() + first[begin / Cuts::chunk];
+        int* to = result.data() + first[begin / chunk_size];
         for (Index f = begin; f < end; ++f)
           cuts.trim(faces.col(f), [&](int v) { *to++ = kept.newIndex(v); });
       },
-      Cuts::chunk);
+      chunk_size);
   return result;
 }
 } // namespace

@@ -7,6 +7,8 @@
 #include <limits>
 namespace fresco::optimization {
 namespace {
+constexpr double none = std::numeric_limits<double>::infinity();
+
 using Eigen::Vector3d;
 
 // Nearer datum for v, of `datum` and `best`; the smaller index where both are equally far.
@@ -25,8 +27,6 @@ void improve(const DataPoints& data, const Vector3d& v, int datum, int& best, do
 std::vector<int> nearestData(const MeshGraph& graph, const Positions& x, const DataPoints& data,
                              const FacePoints& lists, int threads)
 {
-  constexpr int most_rings = 24; // data so sparse that they are farther apart say nothing of what lies between
-  constexpr double none = std::numeric_limits<double>::infinity();
   std::vector<int> nearest(graph.vertexCount(), -1), next(nearest.size());
   parallelFor(graph.vertexCount(), threads, [&](Index v) {
     double squared = none;
@@ -54,7 +54,6 @@ std::vector<int> nearestData(const MeshGraph& graph, const Positions& x, const D
 // says nothing of the others.
 std::vector<double> spacingOf(const MeshGraph& graph, const DataPoints& data, const std::vector<int>& nearest)
 {
-  constexpr double none = std::numeric_limits<double>::infinity();
   std::vector<double> first(data.size(), none), second(data.size(), none);
   std::vector<int> companion(data.size(), -1);
   const auto tell = [&](int datum, int other, double distance) {
@@ -94,7 +93,7 @@ void findNear(const MeshGraph& graph, const Positions& x, const DataPoints& data
 {
   constexpr double width = 0.25; // mean edge lengths
   near.clear();
-  double least = std::numeric_limits<double>::infinity(), sum = 0.0;
+  double least = none, sum = 0.0;
   const auto add = [&](int datum) {
     if (datum < 0 || std::any_of(near.begin(), near.end(), [&](const NearDatum& n) { return n.datum == datum; }))
       return;

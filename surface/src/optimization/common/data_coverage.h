@@ -12,6 +12,8 @@ struct DataCoverage {
   double spacing = 0;           ///< between data, median; mean edge lengths
 };
 
+constexpr int most_rings = 24; ///< data so sparse that they are farther apart say nothing of what lies between
+
 /// Every datum gets a part of the area of the vertices of its face; vertices without data on the faces around them are
 /// given to the nearest datum, along the mesh, or shared by those that are about as near. Vertices much farther from it
 /// than it is from its own neighbours are not covered.

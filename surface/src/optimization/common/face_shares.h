@@ -14,6 +14,8 @@ struct FaceShare {
   float share;
 };
 
+constexpr float rounding = 1e-3f; ///< of mean edge lengths, and of shares that nothing else tells apart
+
 /// The prisms over all faces, which tell quickly that a point is far from one.
 class FacePrisms {
 public:
@@ -36,7 +38,6 @@ public:
   bool mayReach(int f, const Eigen::Vector3f& p, float reach) const
   {
     using namespace simd;
-    constexpr float rounding = 1e-3f; // mean edge lengths
     const float most = reach + rounding, *columns = planes_[f].data();
     const Float4 heights = load<Float4>(columns) * p.x() + load<Float4>(columns + 4) * p.y() +
                            load<Float4>(columns + 8) * p.z() + load<Float4>(columns + 12);
@@ -71,10 +72,9 @@ public:
   /// The same face for the same shares, whichever it began with.
   int most() const
   {
-    constexpr float alike = 1e-3f; // of shares that only rounding tells apart
     const FaceShare* best = &shares_.front();
     for (const FaceShare& s : shares_)
-      if (s.share > best->share + alike || (s.share > best->share - alike && s.face < best->face))
+      if (s.share > best->share + rounding || (s.share > best->share - rounding && s.face < best->face))
         best = &s;
     return best->face;
   }
@@ -125,11 +125,11 @@ private:
   // The more a face is turned away the more it counts as farther off.
   double handicap(int f, const Eigen::Vector3d& normal) const
   {
-    constexpr double seen = 0.25, lengths = 4.0; // cosine; at 90 degrees one edge length farther, at 180 five
+    constexpr double seen = 0.25; // cosine: at 90 degrees one edge length farther, at 180 five
     if (normal.isZero(0.0))
       return 0.0;
     const Eigen::Vector3d area = areaVector(graph_, x_, f);
-    return lengths * std::max(0.0, seen - area.dot(normal) / (area.norm() + small_area));
+    return std::max(0.0, 1 - area.dot(normal) / (area.norm() + small_area) / seen);
   }
 
   static constexpr double width = 0.05; // mean edge lengths: wide against rounding, narrow against a rounded crease

@@ -69,7 +69,7 @@ TriangleMesh movedMesh(const TriangleMesh& mesh, const OptimizationProblem& prob
 
 OptimizationProblem makeProblem(const TriangleMesh& mesh, const PointSet& points, int threads)
 {
-  constexpr double reach = 6.0; // mean edge lengths, twice the outlier distance: beyond, a datum hardly has weight
+  const double reach = 2 * outlier_distance; // mean edge lengths: beyond, a datum hardly has weight
   require(mesh.faceCount() > 0, "optimisation: the mesh has no faces");
   validateMesh(mesh);
   validatePointSet(points);

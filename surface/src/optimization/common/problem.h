@@ -18,6 +18,8 @@ struct OptimizationProblem {
 /// cell at most, about one and a half edges, so that what is off by twice as much is an outlier.
 constexpr double outlier_distance = 3.0;
 
+constexpr double least_noise = 0.01; ///< mean edge lengths: exact data on curved surfaces are off flat faces by as much
+
 /// @throws std::invalid_argument if the mesh or the points are not valid, or no point is near the mesh
 OptimizationProblem makeProblem(const TriangleMesh& mesh, const PointSet& points, int threads);
 

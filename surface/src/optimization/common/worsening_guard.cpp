@@ -107,14 +107,14 @@ Eigen::VectorXf dataDistances(const MeshGraph& graph, const Positions& x, const 
 
 void undoWorsening(OptimizationProblem& problem, double noise, int threads)
 {
-  constexpr int rings = 10, most_rings = 24, blend_rings = 2; // of data, more where they are sparse; of parts
+  constexpr int rings = 10, blend_rings = 2; // of data, more where they are sparse; of parts
   followFaces(problem.graph, problem.x, problem.data, threads);
   const FacePoints lists = pointsOfFaces(problem.data, problem.graph.faceCount());
   VertexValues<3> fit = fitAround(problem, lists, threads);
   const double spacing = std::max(1.0, problem.coverage.spacing);
   average(problem.graph, fit, std::min<int>(most_rings, std::ceil(rings * spacing)), threads);
-  // The mean magnitude of Gaussian values is 0.8 of their deviation; what is nearer than 0.01 edges fits.
-  const float explained = std::max(0.01, 0.8 * noise);
+  // The mean magnitude of Gaussian values is 0.8 of their deviation.
+  const float explained = std::max(least_noise, 0.8 * noise);
   VertexValues<1> part(problem.graph.vertexCount());
   parallelFor(part.size(), threads,
               [&](Index v) { part[v] = partByFit(fit.col(v), explained) * partBySupport(problem, lists, v); });

@@ -39,7 +39,7 @@ double curvature(const std::vector<Datum>& data, double noise)
 {
   constexpr float same_piece = 0.5f; // cosine: beyond 60 degrees a pair lies across a crease
   constexpr double blurred = 0.25;   // mean edge lengths: normals are estimated over so many then that they are blunt
-  constexpr double least_data = 3.0, explained = 0.2, told = 1.0; // data; standard deviations of the ratio
+  constexpr double least_data = 3.0, explained = 0.2; // data; standard deviations of the ratio, of which one tells
   double count = 0;
   for (const Datum& datum : data)
     count += datum.share;
@@ -62,7 +62,7 @@ double curvature(const std::vector<Datum>& data, double noise)
   if (!(noise_squares > 0))
     return 0;
   const double ratio = (flat_squares + noise_squares) / (own_squares + noise_squares), deviation = std::sqrt(2 / count);
-  return ramp(ratio, 1 + explained * deviation, 1 + told * deviation) * enough;
+  return ramp(ratio, 1 + explained * deviation, 1 + deviation) * enough;
 }
 
 /// Of the data on a face and on the faces around it that look the same way; zero where there are none.
@@ -79,7 +79,6 @@ Vector3f normalOfData(const OptimizationProblem& problem, const Eigen::Matrix3Xf
 void followCurvedData(const OptimizationProblem& problem, const Eigen::Matrix3Xd& areas, const FacePoints& lists,
                       double noise, Eigen::Matrix3Xf& normals, int threads)
 {
-  constexpr double least_noise = 0.01; // mean edge lengths: exact data on curved surfaces are off flat faces by as much
   if (!problem.data.hasNormals())
     return;
   const MeshGraph& graph = problem.graph;

@@ -138,9 +138,8 @@ public:
 
   void iterate(const Progress& progress)
   {
-    constexpr double least_part = 0.1; // steps with less gain nothing to speak of
     double part = 1.0;
-    for (int i = 0; i < options_.iterations && part > least_part; ++i) {
+    for (int i = 0; i < options_.iterations && part > 0; ++i) {
       report(progress, "optimize", 0.1 + 0.75 * i / options_.iterations);
       step(part);
       part *= i + 2 < most_steps ? 1.0 : last_part;

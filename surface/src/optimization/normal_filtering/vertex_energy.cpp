@@ -45,8 +45,7 @@ double smoothnessWeight(const OptimizationProblem& problem, Index f)
 Eigen::VectorXf misfitGains(const OptimizationProblem& problem, const FacePoints& lists,
                             const Eigen::VectorXf& residuals, const TermWeights& weights, int threads)
 {
-  constexpr double least_noise = 0.01; // mean edge lengths: exact data on curved surfaces are off flat faces by as much
-  constexpr double significant = 4.0;  // two standard deviations of the mean, squared
+  constexpr double significant = 4.0;   // two standard deviations of the mean, squared
   constexpr double greatest_gain = 30.; // bounds the condition number of the system
   Eigen::VectorXf gains = Eigen::VectorXf::Ones(problem.graph.vertexCount());
   const double noise = std::max(least_noise, weights.noise);

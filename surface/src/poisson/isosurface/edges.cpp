@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "poisson/isosurface/edges.h"
+#include "poisson/octree/select.h"
 #include <algorithm>
 #include <cmath>
 #include <fresco/core/parallel.h>
@@ -89,25 +90,24 @@ CrossedEdges::CrossedEdges(const LevelSet& surface, int threads) : surface_(&sur
 /// Counts by chunks of bricks first, so that the chunks can be numbered side by side.
 void CrossedEdges::numberEdges(Bricks& bricks, int threads)
 {
-  constexpr Index chunk = 1 << 12;
-  std::vector<Index> first((bricks.size() + chunk - 1) / chunk);
+  std::vector<Index> first((bricks.size() + chunk_size - 1) / chunk_size);
   parallelRanges(
       bricks.size(), threads,
       [&](Index begin, Index end) {
         for (Index b = begin; b < end; ++b)
-          first[begin / chunk] += bricks[b].count();
+          first[begin / chunk_size] += bricks[b].count();
       },
-      chunk);
+      chunk_size);
   for (Index& f : first)
     f = std::exchange(count_, count_ + f);
   parallelRanges(
       bricks.size(), threads,
       [&](Index begin, Index end) {
-        Index at = first[begin / chunk];
+        Index at = first[begin / chunk_size];
         for (Index b = begin; b < end; at += bricks[b++].count())
           bricks[b].first = at;
       },
-      chunk);
+      chunk_size);
 }
 
 void CrossedEdges::findCrossings(int depth, int brick)
@@ -221,10 +221,8 @@ int CrossedEdges::vertexOn(EdgePlace edge) const
 /// @param chi at the nodes of the edge's brick
 Eigen::Vector3f CrossedEdges::position(const EdgePlace& edge, const float* chi) const
 {
-  constexpr float end_margin = 1e-3f; // of an edge of length 1: no two vertices coincide
   const int node = nodeIndex(edge.x, edge.y, edge.z);
-  const float a = chi[node], b = chi[node + stepAlong(edge.axis)];
-  const float t = std::clamp((surface_->value - a) / (b - a), end_margin, 1.f - end_margin);
+  const float t = crossing(chi[node], chi[node + stepAlong(edge.axis)], surface_->value);
   const auto corner = surface_->tree->levels[edge.depth].corner(edge.brick);
   Eigen::Vector3f p(corner[0] + edge.x, corner[1] + edge.y, corner[2] + edge.z);
   p[edge.axis] += t;

@@ -2,6 +2,7 @@
 #pragma once
 #include "poisson/octree/node_field.h"
 #include <Eigen/Core>
+#include <algorithm>
 #include <vector>
 namespace fresco::poisson {
 /// chi on the leaves of the octree. Where leaves of different size meet, the values of the finer one are interpolated
@@ -18,6 +19,13 @@ struct LevelSet {
   }
   bool hasLeaves(int depth, Index brick) const;
 };
+
+/// Where a value is crossed from a to b, 0..1; off the ends, so that no two vertices coincide.
+inline float crossing(float a, float b, float value)
+{
+  constexpr float end_margin = 1e-3f;
+  return std::clamp((value - a) / (b - a), end_margin, 1.f - end_margin);
+}
 
 /// @throws std::invalid_argument if so many vertices cannot be numbered
 void requireVertices(Index count);

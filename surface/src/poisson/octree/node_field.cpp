@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "poisson/octree/node_field.h"
 #include "poisson/octree/bytes.h"
+#include "poisson/octree/select.h"
 #include <algorithm>
 #include <cstring>
 #include <fresco/core/machine_memory.h>
@@ -53,8 +54,6 @@ constexpr PartPlaces partPlaces()
 
 constexpr PartPlaces part_places = partPlaces();
 
-constexpr Index chunk = 1 << 12;
-
 /// visit(i, node) for the nodes of a brick's rim and their place in it.
 template <typename Visit>
 void forEachRimNode(unsigned parts, const Visit& visit)
@@ -85,7 +84,7 @@ void copyUpperNodes(const float* nodes, float* upper)
 void findRims(BrickLevel& level, int threads)
 {
   level.rims.resize(level.codes.size());
-  std::vector<Index> first((level.codes.size() + chunk - 1) / chunk);
+  std::vector<Index> first((level.codes.size() + chunk_size - 1) / chunk_size);
   parallelRanges(
       level.size(), threads,
       [&](Index begin, Index end) {
@@ -95,20 +94,20 @@ void findRims(BrickLevel& level, int threads)
           for (int axes = 1; axes < 8; ++axes)
             parts |= (neighbors[upperOffset(axes)] < 0 ? 1u : 0u) << axes;
           level.rims[b].parts = parts;
-          first[begin / chunk] += part_places[parts][0];
+          first[begin / chunk_size] += part_places[parts][0];
         }
       },
-      chunk);
+      chunk_size);
   for (Index& f : first)
     f = std::exchange(level.rim_nodes, level.rim_nodes + f);
   parallelRanges(
       level.size(), threads,
       [&](Index begin, Index end) {
-        Index at = first[begin / chunk];
+        Index at = first[begin / chunk_size];
         for (Index b = begin; b < end; at += part_places[level.rims[b++].parts][0])
           level.rims[b].first = at;
       },
-      chunk);
+      chunk_size);
 }
 
 void NodeField::clear(int threads)

@@ -90,11 +90,10 @@ std::vector<std::uint64_t> bricksAround(const Array<Occupied>& bricks, Index beg
 /// Sorted codes of all bricks with a cell next to an occupied one.
 std::vector<std::uint64_t> dilate(const Array<Occupied>& bricks, int depth, int threads)
 {
-  constexpr Index chunk = 1 << 10; // their neighbours are sorted in the cache; few are found by two chunks
-  std::vector<std::vector<std::uint64_t>> parts((bricks.size() + chunk - 1) / chunk);
+  std::vector<std::vector<std::uint64_t>> parts((bricks.size() + chunk_size - 1) / chunk_size);
   parallelRanges(
       bricks.size(), threads,
-      [&](Index begin, Index end) { parts[begin / chunk] = bricksAround(bricks, begin, end, depth); }, chunk);
+      [&](Index begin, Index end) { parts[begin / chunk_size] = bricksAround(bricks, begin, end, depth); }, chunk_size);
   std::vector<std::size_t> first(1, 0);
   for (const auto& part : parts)
     first.push_back(first.back() + part.size());

@@ -4,14 +4,17 @@
 #include <fresco/core/array.h>
 #include <fresco/core/parallel.h>
 namespace fresco::poisson {
+/// Elements that one task takes at a time: what it counts or sums up is small beside them, and 32 kB of numbers stay in
+/// the cache between two operations.
+constexpr Index chunk_size = 1 << 12;
+
 /// The numbers i of 0..n-1 with holds(i), rising.
 /// @param append_end n follows them, as the end of the last run
 template <typename Predicate>
 Array<std::uint32_t> selectIndices(Index n, int threads, const Predicate& holds, bool append_end = false)
 {
-  constexpr Index chunk = 1 << 14;
-  std::vector<std::size_t> place((n + chunk - 1) / chunk + 1, 0);
-  const auto placeOf = [&](Index begin) -> std::size_t& { return place[begin / chunk]; };
+  std::vector<std::size_t> place((n + chunk_size - 1) / chunk_size + 1, 0);
+  const auto placeOf = [&](Index begin) -> std::size_t& { return place[begin / chunk_size]; };
   parallelRanges(
       n, threads,
       [&](Index begin, Index end) {
@@ -20,7 +23,7 @@ Array<std::uint32_t> selectIndices(Index n, int threads, const Predicate& holds,
           count += holds(i) ? 1 : 0;
         placeOf(begin) = count;
       },
-      chunk);
+      chunk_size);
   std::size_t total = 0;
   for (std::size_t& p : place) {
     const std::size_t count = p;
@@ -36,7 +39,7 @@ Array<std::uint32_t> selectIndices(Index n, int threads, const Predicate& holds,
           if (holds(i))
             indices[at++] = i;
       },
-      chunk);
+      chunk_size);
   if (append_end)
     indices.back() = n;
   return indices;

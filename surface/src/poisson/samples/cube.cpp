@@ -84,8 +84,7 @@ Totals totalsOf(const PointSet& set, const Extent& extent, int threads)
     a.add(b);
     return a;
   };
-  constexpr Index chunk = 1 << 14; // a sum of weights takes as much as two hundred points
-  return parallelReduce(set.size(), threads, Totals(), map, join, chunk);
+  return parallelReduce(set.size(), threads, Totals(), map, join, chunk_size);
 }
 
 /// What a window says of itself.

@@ -85,7 +85,6 @@ Density::Estimate Density::Reader::at(int depth, Index brick, const Eigen::Vecto
   constexpr float plane_weight = 0.55f;
   constexpr float least_weight = 2.f;        // about twenty samples within the kernel; fewer are no estimate
   constexpr float negligible_weight = 0.02f; // as good as no samples
-  constexpr float smallest_weight = 1e-6f;   // a point's is 1 on average; 0 has no logarithm
   const Octree& tree = *density_.tree_;
   float weight = 0, finer_weight = 0;
   int d = depth;
@@ -98,7 +97,7 @@ Density::Estimate Density::Reader::at(int depth, Index brick, const Eigen::Vecto
     }
     brick = tree.levels[d].parents[brick];
   }
-  weight = std::max(weight, smallest_weight);
+  weight = std::max(weight, negligible_weight);
   const float per_face = weight / plane_weight; // samples per face of a cell of depth d
   Estimate estimate;
   estimate.depth = d + 0.5f * std::log2(per_face);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+#include "poisson/octree/select.h"
 #include <Eigen/Core>
 #include <array>
 #include <cmath>
@@ -70,8 +71,7 @@ Eigen::Array2d exactSums(Exchange& exchange, Index n, int threads, const Functio
     a[1].add(b[1]);
     return a;
   };
-  constexpr Index chunk = 1 << 12; // a sum takes as much memory as a hundred values
-  Sums sums = parallelReduce(n, threads, Sums(), map, join, chunk);
+  Sums sums = parallelReduce(n, threads, Sums(), map, join, chunk_size);
   sums[0].share(exchange);
   sums[1].share(exchange);
   return {sums[0].value(), sums[1].value()};

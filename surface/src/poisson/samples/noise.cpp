@@ -60,10 +60,9 @@ Pairs pairsOfRun(const Array<Sample>& samples, Index begin, Index end)
 
 double variance(Pairs::const_iterator begin, Pairs::const_iterator end)
 {
-  constexpr double median_of_difference = 0.6745 * 1.41421356; // of |a - b|, a and b normally distributed, sigma 1
   std::vector<float> offsets;
   std::transform(begin, end, std::back_inserter(offsets), [](const Pair& pair) { return pair.offset; });
-  return std::pow(median(offsets) / median_of_difference, 2);
+  return std::pow(mad_to_sigma * median(offsets), 2) / 2; // of |a - b|, a and b normally distributed
 }
 
 /// Close pairs across an edge are left out. Distant ones count: where there are many, there is more shape than the
@@ -182,14 +181,13 @@ private:
 
 void estimateNoise(Samples& samples, Exchange& exchange, int threads)
 {
-  constexpr float tolerated_mean_noise = 1.f; // of a cell's samples, in cells; less costs detail
   const Runs runs(samples.samples, exchange, threads);
   const float finest = samples.cube.depth;
   parallelFor(samples.samples.size(), threads, [&](Index i) {
     const Index run = (runs.firstSample() + i) / run_length, last = runs.last();
     Sample& s = samples.samples[i];
     s.noise = noiseOf(runs[run], {runs[std::max<Index>(run - 1, 0)], runs[run], runs[std::min(run + 1, last)]});
-    const float cell_squared = s.noise * std::sqrt(s.area) / tolerated_mean_noise;
+    const float cell_squared = s.noise * std::sqrt(s.area); // with a mean noise of one cell; less costs detail
     s.depth = std::min(s.depth, finest - 0.5f * std::log2(std::max(cell_squared, 1e-6f)));
   });
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "poisson/samples/point_sketch.h"
 #include "poisson/octree/bytes.h"
+#include "poisson/octree/select.h"
 #include <algorithm>
 #include <cstring>
 #include <fresco/core/parallel.h>
@@ -27,20 +28,20 @@ std::uint64_t hashOf(const Eigen::Vector3f& position)
 
 void PointSketch::add(const PointSet& set, const std::function<bool(Index)>& takes, int threads)
 {
-  constexpr Index piece = 1 << 18, chunk = 1 << 14; // piece by piece, so that few come that do not stay
-  std::vector<std::vector<Entry>> found(piece / chunk);
+  constexpr Index piece = 1 << 18; // piece by piece, so that few come that do not stay
+  std::vector<std::vector<Entry>> found(piece / chunk_size);
   for (Index first = 0; first < set.size(); first += piece) {
     const auto look = [&](Index begin, Index end) {
-      std::vector<Entry>& entries = found[begin / chunk];
+      std::vector<Entry>& entries = found[begin / chunk_size];
       entries.clear();
       for (Index i = first + begin; i < first + end; ++i)
         if (const std::uint64_t hash = hashOf(set.points.col(i)); hash <= highest_ && takes(i))
           entries.push_back({hash, set.points.col(i)});
     };
     const Index count = std::min(piece, set.size() - first);
-    parallelRanges(count, threads, look, chunk);
-    for (Index begin = 0; begin < count; begin += chunk)
-      entries_.insert(entries_.end(), found[begin / chunk].begin(), found[begin / chunk].end());
+    parallelRanges(count, threads, look, chunk_size);
+    for (Index begin = 0; begin < count; begin += chunk_size)
+      entries_.insert(entries_.end(), found[begin / chunk_size].begin(), found[begin / chunk_size].end());
     if (entries_.size() > 2 * most_entries)
       keepLowest();
   }

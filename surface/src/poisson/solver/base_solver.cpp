@@ -62,11 +62,11 @@ void forEachBoundaryNode(const DenseGrid& grid, const Visit& visit)
 /// Gives the boundary values one sign.
 void closeBoundary(DenseGrid& grid)
 {
-  constexpr double margin = 0.1; // from the level set, which is at -0.05..0.05; chi jumps by 1 at the surface
   double sum = 0;
   forEachBoundaryNode(grid, [&](Index i) { sum += std::clamp(grid.values[i], -0.5, 0.5); });
   const double sign = sum < 0 ? -1 : 1;
-  forEachBoundaryNode(grid, [&](Index i) { grid.values[i] = sign * std::max(sign * grid.values[i], margin); });
+  forEachBoundaryNode(grid,
+                      [&](Index i) { grid.values[i] = sign * std::max<double>(sign * grid.values[i], clear_margin); });
 }
 } // namespace
 

@@ -4,6 +4,10 @@
 #include "poisson/samples/samples.h"
 #include "poisson/solver/constraints.h"
 namespace fresco::poisson {
+/// Of chi from the level set, which is at -0.05..0.05, where no surface may be: on the cube's boundary and where beams
+/// passed. Chi jumps by 1 at the surface.
+constexpr float clear_margin = 0.1f;
+
 /// Solves the depths at which the octree is complete, one after the other, with free (Neumann) boundary: conjugate
 /// gradients on a dense grid. The solution is shifted so that its mean over the samples is 0. Its values on the cube's
 /// boundary are made to have one sign, the prevailing one, so that no level set leaves the cube.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "poisson/solver/dense_solver.h"
+#include "poisson/octree/select.h"
 #include "poisson/solver/expected_values.h"
 #include "poisson/solver/screening.h"
 #include <algorithm>
@@ -49,15 +50,12 @@ std::array<Index, 8> cornerNodes(const DenseGrid& grid, const Eigen::Vector3i& c
   return nodes;
 }
 
-/// Numbers of a vector that one thread takes at a time: 32 kB of each vector stay in the cache between two operations.
-constexpr Index segment = 4096;
-
 /// visit(first, count) for the segments of a vector.
 template <typename Visit>
 void forEachSegment(Index size, int threads, const Visit& visit)
 {
   parallelRanges(
-      size, threads, [&](Index begin, Index end) { visit(begin, end - begin); }, segment);
+      size, threads, [&](Index begin, Index end) { visit(begin, end - begin); }, chunk_size);
 }
 
 template <typename Value, typename Function>
@@ -65,7 +63,7 @@ Value sumOfSegments(Index size, int threads, Value zero, const Function& functio
 {
   return parallelReduce(
       size, threads, zero, [&](Index begin, Index end) { return function(begin, end - begin); },
-      [](Value a, const Value& b) { return a += b; }, segment);
+      [](Value a, const Value& b) { return a += b; }, chunk_size);
 }
 
 /// Products of the residual with its preconditioned self and with itself.

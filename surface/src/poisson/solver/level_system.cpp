@@ -2,6 +2,7 @@
 #include "poisson/solver/level_system.h"
 #include "poisson/octree/splat.h"
 #include "poisson/samples/exact_sum.h"
+#include "poisson/solver/base_solver.h"
 #include "poisson/solver/expected_values.h"
 #include <algorithm>
 #include <cmath>
@@ -35,9 +36,6 @@ bool isSampled(const BrickLevel& level, Index brick)
   constexpr int shallow = 8;
   return level.depth <= shallow || ((level.codes[brick] >> 3) * 0x9E3779B97F4A7C15u) >> 61 == 0;
 }
-
-/// What chi is kept at where beams passed, as much above the level set as the cube's boundary is below it.
-constexpr float least_free = 0.1f;
 } // namespace
 
 /// A brick with what lies around it, in the cache.
@@ -113,7 +111,7 @@ void LevelSystem::Block::relax(const int* lines)
         sum[i] -= line(&rows[k][lines[i] * brick_cells]) * line(at[i] + steps[k]);
   for (int i = 0; i < count; ++i) {
     const int own = lines[i] * brick_cells;
-    const Line value = sum[i] * line(&inverse[own]), bound = Line{} + least_free;
+    const Line value = sum[i] * line(&inverse[own]), bound = Line{} + clear_margin;
     const Line relaxed = (value < bound) & fixed_lanes[bounded >> own & 15] ? bound : value;
     line(at[i]) = fixed_lanes[fixed >> own & 15] ? line(at[i]) : relaxed;
   }
@@ -212,7 +210,7 @@ void LevelSystem::findBounded(const FreePlaces& places, const NodeField& x)
     const std::uint64_t fixed = fixedNodes(neighbors);
     const float* values = x.own(b);
     for (int i = 0; i < own_nodes; ++i) {
-      if (values[i] >= least_free || fixed >> i & 1)
+      if (values[i] >= clear_margin || fixed >> i & 1)
         continue;
       const Eigen::Vector3f position = level_.origin(b) + Eigen::Vector3f(i & 3, i >> 2 & 3, i >> 4);
       if (places.isFree(position / scale_, 1 / scale_) && !isNearSample(neighbors, position))

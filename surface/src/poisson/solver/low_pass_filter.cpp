@@ -13,16 +13,16 @@ struct BrickSums {
   float noise = 0;         ///< of the mean of the samples on one face of a cell, in cells
 };
 
-/// 0 up to the first value, full after the range. Measured on fandisk, igea and a room.
+/// 0 up to the first value, full one depth further and from twice the noise on. Measured on fandisk, igea and a room.
 float strengthOf(const BrickSums& sums)
 {
-  constexpr float first_missing = 0.75f, missing_range = 1.f;
-  constexpr float first_noise = 0.05f, noise_range = 0.05f;
+  constexpr float first_missing = 0.75f;  // depths
+  constexpr float first_noise = 0.05f;    // cells
   constexpr float sparse_strength = 0.5f; // not all of a wave, because the samples that are there hold it, too
   if (sums.area <= 0.f)
     return sparse_strength;
-  const float sparse = (sums.missing_depth / sums.area - first_missing) / missing_range;
-  const float noisy = (sums.noise / sums.area - first_noise) / noise_range;
+  const float sparse = sums.missing_depth / sums.area - first_missing;
+  const float noisy = sums.noise / sums.area / first_noise - 1;
   return std::max(sparse_strength * std::clamp(sparse, 0.f, 1.f), std::clamp(noisy, 0.f, 1.f));
 }
 } // namespace
@@ -34,11 +34,10 @@ LowPassFilter::LowPassFilter(const BrickLevel& level, const SampleLevel& samples
   const float scale = std::ldexp(1.f, level.depth - finest);
   std::vector<BrickSums> sums(level.codes.size());
   parallelFor(level.size(), threads, [&](Index b) {
-    constexpr float most_missing = 3.f; // a lone outlier does not decide for a brick
     for (const std::uint32_t i : ranges[b]) {
       const CoarseSample& s = samples.samples[i];
       sums[b].area += s.area;
-      sums[b].missing_depth += s.area * std::clamp(level.depth - s.depth, -1.f, most_missing);
+      sums[b].missing_depth += s.area * std::max(level.depth - s.depth, -1.f);
       sums[b].noise += s.area * s.noise * std::sqrt(s.area) * scale * scale;
     }
   });

@@ -34,7 +34,7 @@ void shareSums(const BrickLevel& fine_level, const BrickLevel& level, NodeField&
   }
 }
 
-constexpr int step_x = 1, step_y = brick_nodes, step_z = brick_nodes * brick_nodes;
+constexpr int step_y = brick_nodes, step_z = brick_nodes * brick_nodes;
 } // namespace
 
 void interpolateToChild(const float* parent, int octant, float* child)
