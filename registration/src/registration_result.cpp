@@ -295,8 +295,7 @@ void Description::describeHints(const Placement& placement)
 
 void Description::drawOutlines()
 {
-  constexpr float upright = 0.3f; // sine of 17 degrees
-  constexpr Index most = 900;     // points: a wall of 10 m gets some dozens
+  constexpr Index most = 900; // points: a wall of 10 m gets some dozens
   const PlanFrames frames = findPlanFrames(scans_, options_.threads);
   for (std::size_t i = 0; i < scans_.size(); ++i) {
     if (!scans_[i].problem.empty())
@@ -306,7 +305,7 @@ void Description::drawOutlines()
         frames[i] ? frames[i]->T_plan_scan.linear().row(2).transpose().eval() : Eigen::Vector3f::UnitZ().eval();
     std::vector<Index> chosen;
     for (Index k = 0; k < level.points.cols(); ++k)
-      if (std::abs(level.normals.col(k).dot(up)) < upright)
+      if (std::abs(level.normals.col(k).dot(up)) < std::sqrt(1 - facing * facing))
         chosen.push_back(k);
     const Index step = std::max<Index>(1, static_cast<Index>(chosen.size()) / most);
     scan(i).up = up.cast<double>();

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "answer/places.h"
+#include "pair/partial_alias.h"
 #include "scan/lists.h"
 #include <algorithm>
 #include <fresco/core/require.h>
@@ -82,13 +83,12 @@ Places PlaceFinder::ofClusters(const ScanCluster& cluster, const ScanCluster& mo
 // Of a place that was found for whole clusters, the two scans that overlap most there.
 void PlaceFinder::nameNearest(const ScanCluster& first, const ScanCluster& second, Place& place) const
 {
-  constexpr double reach = 2.5; // of a scan's size: beyond, hardly anything is shared
   const Eigen::Isometry3d T = clusterPose(first, second, place);
   for (std::size_t i = 0; i < first.scans.size(); ++i)
     for (std::size_t k = 0; k < second.scans.size(); ++k) {
       const PreparedScan &a = scans_[first.scans[i]], &b = scans_[second.scans[k]];
       const Eigen::Isometry3d T_a_b = first.poses[i].inverse() * T * second.poses[k];
-      if (T_a_b.translation().norm() > reach * a.size)
+      if (T_a_b.translation().norm() > next_door * a.size)
         continue;
       const PairCheck check = checkRoughly(a, b, T_a_b, check_level);
       if (check.overlap <= place.fit.overlap)

@@ -35,6 +35,8 @@ bool isSeenAsWell(const ClusterFit& other, const ClusterFit& fit);
 /// Whether one place makes another doubtful. @param unit see FreeSpaceJudge
 bool rivals(const ClusterFit& other, const ClusterFit& fit, double unit);
 
+constexpr double near_tolerances = 3.0; ///< between two places that are the same, see ClusterFitter::isSame()
+
 /// Finds places of clusters in each other by the hypotheses of pairs of their scans.
 class ClusterFitter {
 public:

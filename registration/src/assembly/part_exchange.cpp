@@ -20,7 +20,7 @@ public:
     for (std::size_t k = 0; k < clusters.size(); ++k)
       for (const ClusterFit& from : fits[k])
         for (const ClusterFit& to : fits[k])
-          if (rivals(to, from, judge.unit()) && !fitter.isSame(clusters[k], from.T, to.T, near))
+          if (rivals(to, from, judge.unit()) && !fitter.isSame(clusters[k], from.T, to.T, near_tolerances))
             motions_.push_back(to.T * from.T.inverse());
   }
 
@@ -33,17 +33,15 @@ public:
       return true;
     const ClusterFits rough = fitter_.rough(rest, part);
     for (const ClusterFit& fit : rough)
-      if (fitter_.isSame(part, fit.T, here.T, near))
+      if (fitter_.isSame(part, fit.T, here.T, near_tolerances))
         here.overlap = std::max(here.overlap, fit.overlap);
     for (const ClusterFit& other : fitter_.uncontradicted(rest, part, rough))
-      if (!fitter_.isSame(part, other.T, here.T, near) && rivals(other, here, judge_.unit()))
+      if (!fitter_.isSame(part, other.T, here.T, near_tolerances) && rivals(other, here, judge_.unit()))
         return true;
     return false;
   }
 
 private:
-  static constexpr double near = 3.0; // tolerances
-
   // How much is confirmed hardly counts: of equal rooms, the wrong one may be seen best.
   bool mayBeMoved(const ScanCluster& rest, const ScanCluster& part, const FreeSpaceEvidence& here) const
   {

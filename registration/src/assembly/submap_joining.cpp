@@ -7,9 +7,6 @@
 #include <memory>
 namespace fresco::registration {
 namespace {
-// Of the points that the best place confirms, those of a second one that make it doubtful. Of two equal rooms, the wrong
-// one may be seen twice as well as the right one.
-constexpr double rival_share = 0.4;
 constexpr double least_confirmed = 1.5; // of one scan's points; at less, wrong places are found without a rival, too
 
 class SubmapJoiner {
@@ -66,22 +63,22 @@ void SubmapJoiner::add(const ScanCluster& cluster)
 // By floor plans, and by what pairs of scans tell.
 ClusterFits SubmapJoiner::findPlaces(const Group& first, const Group& second) const
 {
-  constexpr std::size_t most_by_plans = 32; // of 30 true places 22 are among the first 24, of 28 23 among 64
-  constexpr double distinct = 3.0;          // tolerances
+  constexpr std::size_t most_of_groups = 32; // of 30 true places 22 are among the first 24, of 28 23 among 64
   const auto uncontradicted = [&](const ClusterFits& rough) {
     return fitter_.uncontradicted(first.cluster, second.cluster, rough);
   };
   ClusterFits fits = uncontradicted(fitter_.rough(first.cluster, second.cluster)), by_plans;
   const std::optional<Submap>&a = *first.submap, &b = *second.submap;
   if (a && b && first.cluster.scans.size() + second.cluster.scans.size() > 2) // of two scans the pair has told all
-    for (const Eigen::Isometry3d& T : matchSubmaps(*a, *b, most_by_plans))
+    for (const Eigen::Isometry3d& T : matchSubmaps(*a, *b, most_of_groups))
       if (!isHopeless(judge_.judge(first.cluster, second.cluster, T)))
         by_plans.emplace_back().T = refineSubmap(*a, *b, T);
   for (const ClusterFit& fit : uncontradicted(by_plans))
-    if (std::none_of(fits.begin(), fits.end(),
-                     [&](const ClusterFit& known) { return fitter_.isSame(second.cluster, known.T, fit.T, distinct); }))
+    if (std::none_of(fits.begin(), fits.end(), [&](const ClusterFit& known) {
+          return fitter_.isSame(second.cluster, known.T, fit.T, near_tolerances);
+        }))
       fits.push_back(fit);
-  removeIf(fits, [](const ClusterFit& fit) { return fit.evidence.confirmed < rival_share * least_confirmed; });
+  removeIf(fits, [](const ClusterFit& fit) { return fit.evidence.confirmed < chance_share * least_confirmed; });
   sortFalling(fits, [](const ClusterFit& fit) { return fit.evidence.confirmed; });
   return fits;
 }
@@ -95,7 +92,7 @@ SubmapJoiner::Joins SubmapJoiner::likelyJoins() const
       const ClusterFits places = placesOf(i, k);
       if (groups_[i].cluster.scans.size() + groups_[k].cluster.scans.size() > 2 && !places.empty() &&
           places[0].evidence.confirmed >= least_confirmed &&
-          (places.size() == 1 || places[1].evidence.confirmed < rival_share * places[0].evidence.confirmed))
+          (places.size() == 1 || places[1].evidence.confirmed < chance_share * places[0].evidence.confirmed))
         joins.push_back(groups_[i].cluster.scans.size() >= groups_[k].cluster.scans.size()
                             ? Join{i, k, places[0]}
                             : Join{k, i, reversed(places[0])});
@@ -115,7 +112,7 @@ bool SubmapJoiner::fitsThird(std::size_t stays, std::size_t moves, const Cluster
     if (third == stays || third == moves)
       continue;
     const ClusterFits others = placesOf(third, moves);
-    if (!others.empty() && others[0].evidence.confirmed >= rival_share * place.evidence.confirmed &&
+    if (!others.empty() && others[0].evidence.confirmed >= chance_share * place.evidence.confirmed &&
         !agrees(third, others[0]))
       return true;
   }

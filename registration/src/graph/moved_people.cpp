@@ -46,7 +46,6 @@ bool peopleMoved(std::vector<PreparedScan>& scans, const std::vector<PairAlignme
   constexpr double least_overlap = 0.35; // less, and the pose is hardly ever right
   // Floors of 8 to 16 scans with people have 0.1 and more, as a rule 0.4; of 55 without them one has a pair in 32.
   constexpr double least_share = 0.1;
-  constexpr Index fewest = 2;
   std::vector<const PairAlignment*> overlapping;
   for (const PairAlignment& pair : pairs)
     if (!pair.hypotheses.empty() && pair.hypotheses[0].check.overlap >= least_overlap)
@@ -61,6 +60,6 @@ bool peopleMoved(std::vector<PreparedScan>& scans, const std::vector<PairAlignme
     all += free[k] != 0 ? 1 : 0;
     by_people += free[k] != 0 && free_with_people[k] == 0 ? 1 : 0;
   }
-  return by_people >= fewest && by_people >= least_share * all;
+  return by_people >= fewest_pairs && by_people >= least_share * all;
 }
 } // namespace fresco::registration

@@ -11,8 +11,7 @@ bool isSound(const PairAlignment& pair, const VerifiedHypothesis& hypothesis)
 
 double leastColor(const std::vector<PairAlignment>& pairs)
 {
-  constexpr double telling_color = 0.6; // correlation that a quarter of the pairs reaches: the scans' colours are good
-  constexpr double color_share = 0.5;   // of it, at least: lights and exposure change less between scans
+  constexpr double color_share = 0.5; // of what a quarter of the pairs has: lights and exposure change less
   std::vector<double> colors;
   for (const PairAlignment& pair : pairs)
     if (!pair.hypotheses.empty() && pair.hypotheses[0].check.color)
@@ -20,7 +19,7 @@ double leastColor(const std::vector<PairAlignment>& pairs)
   if (colors.empty())
     return -1.0;
   const double upper = rankedValue(colors, 3 * colors.size() / 4);
-  return upper > telling_color ? color_share * upper : -1.0;
+  return upper > good_color ? color_share * upper : -1.0;
 }
 
 double usualViolation(const std::vector<PairAlignment>& pairs)

@@ -2,8 +2,11 @@
 #pragma once
 #include "pair/pair_alignment.h"
 namespace fresco::registration {
-/// Of the overlap at another place: less, and chance explains it. Of equal rooms, the wrong one may be seen best.
+/// Of the overlap, or of the points that are confirmed, at another place: less, and chance explains it. Of equal rooms, the
+/// wrong one may be seen best.
 constexpr double chance_share = 0.4;
+
+constexpr Index fewest_pairs = 2; ///< that tell something: one may be wrong itself
 
 /// Whether a pose is the best of its pair, hardly by chance, and nothing that the two see contradicts it.
 bool isSound(const PairAlignment& pair, const VerifiedHypothesis& hypothesis);

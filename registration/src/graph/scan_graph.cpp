@@ -195,7 +195,6 @@ bool GraphBuilder::joinAmbiguous()
 // Whether most pairs of a scan, and two at least, see it where the candidate does.
 bool GraphBuilder::mostAgree(Index scan, const PairAlignment& candidate) const
 {
-  constexpr Index fewest = 2; // one may be wrong
   const auto partner = [&](const PairAlignment& pair) { return pair.a == scan ? pair.b : pair.a; };
   const auto seen = [&](const PairAlignment& pair) {
     const Eigen::Isometry3d& T = pair.hypotheses[0].T_a_b;
@@ -209,7 +208,7 @@ bool GraphBuilder::mostAgree(Index scan, const PairAlignment& candidate) const
                       poseDistance(seen(*pair), seen(candidate), input_.scans[scan].size) < slack();
     (same ? agree : others) += 1;
   }
-  return agree >= fewest && agree > others;
+  return agree >= fewest_pairs && agree > others;
 }
 
 // Scans that know nothing of free space join last, one at a time, and hold no two others together.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "graph/viewpoint_check.h"
+#include "graph/pair_evidence.h"
 #include "scan/viewpoint_search.h"
 #include <algorithm>
 namespace fresco::registration {
@@ -7,13 +8,9 @@ namespace {
 // What the pairs say of the free space of one scan.
 struct ViewpointEvidence {
   double violations = 0.0; // sum over pairs of what the scan's free space says of the other
-  int pairs = 0;
+  Index pairs = 0;
 
-  bool contradicts(double limit) const
-  {
-    constexpr int fewest_pairs = 2; // one may be wrong itself
-    return pairs >= fewest_pairs && violations > pairs * limit;
-  }
+  bool contradicts(double limit) const { return pairs >= fewest_pairs && violations > pairs * limit; }
 };
 
 std::vector<ViewpointEvidence> collectEvidence(Index scan_count, const std::vector<PairAlignment>& pairs)

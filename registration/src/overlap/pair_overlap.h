@@ -56,6 +56,7 @@ struct PairCheck {
 constexpr double noise_violation = 0.002; ///< of a pair: mixed pixels do not cause more
 constexpr double pane_violation = 0.01;   ///< of a pair: some may have seen a pane
 constexpr double strong_overlap = 0.25;   ///< of a pair: hardly by chance
+constexpr double good_color = 0.6;        ///< correlation: below, colours of one place differ by more than light
 
 /// @param level index into PreparedScan::levels: the finer, the smaller the errors of the pose and the misplaced
 /// surfaces that count as violations

@@ -56,7 +56,6 @@ private:
 FoundHypotheses findHypotheses(const DescribedScan& a, const DescribedScan& b, const PairGeometry& pair,
                                const PairAlignmentOptions& options)
 {
-  constexpr std::size_t most_by_plans = 16;
   constexpr std::size_t most_by_planes = 200; // the right one is among the first hundred where a tenth overlaps
   constexpr std::size_t most_matches = 1500;  // of features
   Sc2PcrOptions sc2_pcr;
@@ -91,7 +90,6 @@ PairAlignmentOptions pairOptions(const ScanRegistrationOptions& options)
 
 PairAlignment alignPair(const DescribedScan& a, const DescribedScan& b, const PairAlignmentOptions& options)
 {
-  constexpr double telling_overlap = 0.2; // twice the least: a pose that free space alone speaks against
   const PairGeometry pair(a.scan, b.scan);
   const FoundHypotheses found = findHypotheses(a, b, pair, options);
   PairAlignment alignment;
@@ -101,7 +99,8 @@ PairAlignment alignPair(const DescribedScan& a, const DescribedScan& b, const Pa
   const PoseHypotheses& popular_first = found.features;
   if (alignment.hypotheses.empty() && !popular_first.empty() && popular_first[0].votes >= many_votes) {
     const VerifiedHypothesis popular = verifyHypothesis(pair, popular_first[0]);
-    if (popular.check.violation > options.verification.max_violation && popular.check.overlap >= telling_overlap)
+    if (popular.check.violation > options.verification.max_violation &&
+        popular.check.overlap >= 2 * options.verification.min_overlap) // free space alone speaks against it
       alignment.rejected = {popular};
   }
   return alignment;
@@ -109,10 +108,9 @@ PairAlignment alignPair(const DescribedScan& a, const DescribedScan& b, const Pa
 
 PairAlignment alignByPlans(const PlannedScan& a, const PlannedScan& b, const VerificationOptions& options)
 {
-  constexpr std::size_t most_poses = 16; // of 28 pairs of four floors 26 are right with 8, 27 with 16, 27 with 32
   const PairGeometry pair(a.scan, b.scan);
   FoundHypotheses found;
-  found.planes = matchPlans(a.plan, b.plan, most_poses);
+  found.planes = matchPlans(a.plan, b.plan, most_by_plans);
   PairAlignment alignment;
   alignment.hypotheses = verifyHypotheses(pair, found, options);
   alignment.ambiguous = isAmbiguous(pair, alignment.hypotheses);

@@ -52,8 +52,8 @@ constexpr double comparable_overlap = 0.3; // share of the best support: less, a
 // Whether scans that do not overlap would explain what was found about as well.
 bool isChance(const PairCheck& check)
 {
-  constexpr double chance_overlap = 0.1; // that a pose without contradiction has by chance
-  return check.overlap * std::exp(-check.violation / violation_scale) < comparable_overlap * chance_overlap;
+  return check.overlap * std::exp(-check.violation / violation_scale) <
+         comparable_overlap * VerificationOptions{}.min_overlap;
 }
 
 // How well scans agree at a pose before its refinement: alignmentScore() of few samples without colours, 0 where it is

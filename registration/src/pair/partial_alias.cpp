@@ -8,8 +8,7 @@
 #include <optional>
 namespace fresco::registration {
 namespace {
-constexpr double far_range = 1.5;     // of the scan's size: what lies beyond may have been seen through an opening
-constexpr double least_overlap = 0.1; // of a scan with itself: less is no evidence of a second place
+constexpr double far_range = 1.5; // of the scan's size: what lies beyond may have been seen through an opening
 
 // Features that are far from every place the scan was seen from.
 std::vector<Index> farFeatures(const ScanFeatures& features, const PreparedScan& scan)
@@ -70,15 +69,14 @@ bool fitsPartially(const PreparedScan& scan, const Eigen::Isometry3d& T)
     return false;
   const PairCheck check = checkPair(scan, scan, T, check_level);
   const double agreeing = check.overlap * static_cast<double>(scan.levels[check_level].points.cols());
-  return check.overlap >= least_overlap && check.violation < noise_violation && agreeing >= fewest_points &&
-         static_cast<double>(check.violating_points) <= most_strays * agreeing &&
-         check.color.value_or(1.0) > alias_color;
+  return check.overlap >= VerificationOptions{}.min_overlap && check.violation < noise_violation &&
+         agreeing >= fewest_points && static_cast<double>(check.violating_points) <= most_strays * agreeing &&
+         check.color.value_or(1.0) > good_color;
 }
 
 // The best of those that lead to a place near enough to be told.
 void keepLikely(const PreparedScan& scan, PoseHypotheses& hypotheses)
 {
-  constexpr double next_door = 3.0;        // of the scan's size: a place further off is seen too badly to be told
   constexpr std::size_t most_refined = 15; // bounds the time
   const auto unlikely = [&](const PoseHypothesis& hypothesis) {
     const double distance = hypothesis.T_a_b.translation().norm();
@@ -148,7 +146,8 @@ ScanAliases findPartialAliases(const PreparedScan& scan, PoseHypotheses starts)
     const bool known = std::any_of(tried.begin(), tried.end(), [&](const Eigen::Isometry3d& other) {
       return poseDistance(along, other, scan.size) < scan.levels[1].voxel;
     });
-    if (known || check.violation > hopeless_violation || check.overlap < least_overlap || !isElsewhere(scan, along))
+    if (known || check.violation > hopeless_violation || check.overlap < VerificationOptions{}.min_overlap ||
+        !isElsewhere(scan, along))
       continue;
     tried.push_back(along);
     for (const Eigen::Isometry3d& start : {rough, along}) {

@@ -3,7 +3,7 @@
 #include "pair/pair_alignment.h"
 namespace fresco::registration {
 constexpr double alias_distance = 0.5; ///< of a scan's size: nearer places that look alike are one place
-constexpr double alias_color = 0.6;    ///< correlation of two places: below, their colours differ more than light does
+constexpr double next_door = 3.0;      ///< of a scan's size: a place further off is seen too badly to be told
 
 /// Whether a motion of a scan leads to another place.
 bool isElsewhere(const PreparedScan& scan, const Eigen::Isometry3d& T);

@@ -126,11 +126,10 @@ Eigen::Isometry3f shiftedBy(const PlanShift& shift, float cell)
 PlanGrid makePlanGrid(float height, double extent, int most_side)
 {
   constexpr float cells_per_height = 8.f;
-  constexpr int least_side = 64;
   PlanGrid grid;
   grid.height = height;
   grid.cell = height / cells_per_height;
-  grid.side = least_side;
+  grid.side = 1;
   while (grid.side < most_side && grid.side * grid.cell < extent)
     grid.side *= 2;
   return grid;

@@ -4,6 +4,9 @@
 #include <complex>
 #include <fresco/registration/core/sc2_pcr.h>
 namespace fresco::registration {
+/// Poses of two plans: of 28 pairs of four floors 26 are right with 8, 27 with 16, 27 with 32.
+constexpr std::size_t most_by_plans = 16;
+
 /// Cells by the height of scanners, enough for `extent` (length) or as many along an edge as there may be.
 PlanGrid makePlanGrid(float height, double extent, int most_side);
 

@@ -12,7 +12,7 @@ ScanAlias toAlias(const VerifiedHypothesis& own)
 {
   constexpr double certain_overlap = 0.5; // with itself: less, and the scan is laid where it saw nothing
   return {own.T_a_b, own.check.overlap > certain_overlap && own.check.violation < 2.0 * noise_violation &&
-                         own.check.color.value_or(1.0) > alias_color};
+                         own.check.color.value_or(1.0) > good_color};
 }
 
 // Of poses of a scan on itself, the identity among them; partial ones, from motions of their own, where none is certain.
@@ -53,11 +53,10 @@ ScanAliases findAliases(const PreparedScan& scan, const ScanFeatures& features)
 
 ScanAliases findAliasesByPlan(const PlannedScan& scan)
 {
-  constexpr std::size_t most_aliases = 16;
   if (scan.plan.empty() || !sawAround(scan.scan))
     return {};
   FoundHypotheses found;
-  found.planes = matchPlans(scan.plan, scan.plan, most_aliases);
+  found.planes = matchPlans(scan.plan, scan.plan, most_by_plans);
   return findAliases(scan.scan, found, [&] { return found.planes; });
 }
 

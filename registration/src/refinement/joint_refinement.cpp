@@ -12,8 +12,6 @@
 #include <numeric>
 namespace fresco::registration {
 namespace {
-constexpr float final_distance = 2.f; // voxels of a level: correspondences at its end, neighbours of the right cell
-
 // What one task handles.
 struct PairSamples {
   std::size_t pair;

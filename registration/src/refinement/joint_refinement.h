@@ -11,6 +11,8 @@ using ScanPointers = std::vector<const PreparedScan*>;
 constexpr float reach_voxels =
     20.f; ///< how far start poses may be off unless said, finest voxels: a fifth of the range
 
+constexpr float near_voxels = 4.f; ///< finest ones: poses are mostly nearer, and other walls and rooms are further off
+
 struct JointOptions {
   float max_distance = 0.f;  ///< between corresponding points in the first iterations, length
   float min_overlap = 0.05f; ///< pairs below this share are left out, 0..1

@@ -245,8 +245,7 @@ void refineWithin(const Reach& reach, const std::vector<PreparedScan>& scans, co
 
 Reach nearReach(const ScanRegistrationOptions& options)
 {
-  constexpr float near_reach = 4.f; // voxels: poses are mostly nearer, and other walls and rooms are further off
-  return {std::min(options.max_distance, near_reach * options.voxel), check_level};
+  return {std::min(options.max_distance, near_voxels * options.voxel), check_level};
 }
 } // namespace
 

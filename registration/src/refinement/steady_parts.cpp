@@ -34,7 +34,6 @@ std::optional<FreeMotion> findUnsteadyMotion(const ScanPointers& members, const 
                                              const LooseCut& cut, JointOptions options)
 {
   constexpr double loose_share = 0.1; // of information: with more, whole walls hold
-  constexpr float reach = 4.f;        // of counterparts, finest voxels
   constexpr Index fewer_samples = 1500;
   const std::optional<WeakestMotion> weakest = findWeakestMotion(cut.information);
   if (!weakest || weakest->share > loose_share)
@@ -44,7 +43,7 @@ std::optional<FreeMotion> findUnsteadyMotion(const ScanPointers& members, const 
   options.fixed = across.fixed;
   options.excluded = across.excluded;
   options.anchors.clear();
-  options.max_distance = reach * voxel;
+  options.max_distance = near_voxels * voxel;
   options.samples = std::min(options.samples, fewer_samples);
   options.first_level = check_level;
   options.covariances = options.cuts = false;

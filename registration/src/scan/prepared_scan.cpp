@@ -50,10 +50,9 @@ Index countUsable(const std::vector<PreparedScan>& scans)
 
 void prepareManySearches(ScanLevel& level)
 {
-  constexpr float reach = 2.f; // voxels, for correspondences
   const bool fits = level.points.cwiseAbs().maxCoeff() < NearestGrid::most_cells * level.voxel;
   if (fits && !level.search)
-    level.grid = std::make_shared<NearestGrid>(*level.tree, reach * level.voxel, level.voxel);
+    level.grid = std::make_shared<NearestGrid>(*level.tree, final_distance * level.voxel, level.voxel);
 }
 
 void prepareManySearches(PreparedScan& scan)

@@ -49,6 +49,8 @@ struct PreparedScan {
 /// Level on which two scans are compared: fine enough for furniture, coarser than the errors of a measured pose.
 constexpr int check_level = level_count - 2;
 
+constexpr float final_distance = 2.f; ///< voxels of a level: correspondences at its end, neighbours of the right cell
+
 /// Whether it saw enough, 0.4 of all directions, to rule out wrong places of others.
 inline bool sawAround(const PreparedScan& scan)
 {
