@@ -67,10 +67,9 @@ Index memberOf(const Placement& placement, Index scan)
 }
 
 // Takes back pairs that only coarse surfaces hold where these do not hold well: parts that all other pairs hold together, one
-// scan of which may be off by more than `most_deviation` of its size.
+// scan of which may be off by more than a finest voxel: joint refinement resolves no less.
 void refuseLooseParts(const std::vector<PreparedScan>& scans, const std::vector<char>& coarse, Placement& placement)
 {
-  constexpr double most_deviation = 1.0 / voxels_per_size; // what joint refinement resolves at best
   UnionFind parts(placement.members.size());
   const auto forAccepted = [&](bool wanted, const auto& body) {
     for (std::size_t k = 0; k < placement.pairs.size(); ++k)
@@ -80,7 +79,7 @@ void refuseLooseParts(const std::vector<PreparedScan>& scans, const std::vector<
   forAccepted(false, [&](PairResult&, Index a, Index b) { parts.join(a, b); });
   std::vector<char> loose(placement.members.size(), 0);
   for (std::size_t m = 0; m < loose.size(); ++m)
-    if (positionDeviation(placement.joint, m) > most_deviation * scans[placement.members[m]].size)
+    if (positionDeviation(placement.joint, m) * voxels_per_size > scans[placement.members[m]].size)
       loose[parts.root(m)] = 1;
   forAccepted(true, [&](PairResult& pair, Index a, Index b) {
     pair.accepted = parts.root(a) == parts.root(b) || (!loose[parts.root(a)] && !loose[parts.root(b)]);

@@ -5,12 +5,8 @@
 #include <cmath>
 #include <fresco/core/constants.h>
 #include <fresco/core/statistics.h>
-#include <limits>
 namespace fresco::registration {
 namespace {
-constexpr float infinity = std::numeric_limits<float>::infinity();
-constexpr float float_pi = pi;
-
 struct ViewpointGroup {
   Eigen::Vector3f center;
   std::vector<Index> members;
@@ -60,13 +56,13 @@ ScanFreeSpace::Map ScanFreeSpace::buildMap(const Points& points, const std::vect
 {
   constexpr double coherent_share = 0.05; // of the range: a surface seen at a slant varies by so much within a cell
   const Index cells = 6 * side_ * side_;
-  Map map{center, std::vector<float>(cells, infinity), std::vector<float>(cells, 0.f), std::vector<char>(cells, 0), {},
+  Map map{center, std::vector<float>(cells, HUGE_VALF), std::vector<float>(cells, 0.f), std::vector<char>(cells, 0), {},
           0.f};
   std::vector<std::vector<float>> ranges(cells);
-  const float spread = float_pi / 2.f / side_;
+  const float spread = float(pi) / 2.f / side_;
   std::array<Eigen::Vector2f, 8> ring;
   for (int step = 0; step < 8; ++step)
-    ring[step] = {std::cos(step * float_pi / 4.f), std::sin(step * float_pi / 4.f)};
+    ring[step] = {std::cos(step * float(pi) / 4.f), std::sin(step * float(pi) / 4.f)};
   for (const Index i : members) {
     const Eigen::Vector3f ray = points.col(i) - center;
     const float range = ray.norm();
@@ -111,7 +107,7 @@ void ScanFreeSpace::prepareManyJudgements()
 bool ScanFreeSpace::isGrazed(const CellRay& ray, const Eigen::Vector3f& normal) const
 {
   constexpr float least_cosine = 0.3f;
-  const float half_cell = float_pi / 4.f / side_; // angle
+  const float half_cell = float(pi) / 4.f / side_; // angle
   const float cosine = std::abs(normal.dot(ray.from_center)) / ray.range;
   return !normal.isZero() && cosine < least_cosine && (!ray.is_own || ray.gap * cosine <= half_cell * ray.range);
 }
@@ -127,7 +123,7 @@ ScanFreeSpace::Verdict ScanFreeSpace::judgePoint(const Eigen::Vector3f& point, c
     if (!(range > slack.absolute) || range > map.reach + margin)
       continue;
     const Index cell = cubeCell(ray, side_);
-    if (map.nearest[cell] == infinity || range > map.farthest[cell] + margin)
+    if (map.nearest[cell] == HUGE_VALF || range > map.farthest[cell] + margin)
       continue;
     // With several viewpoints the point is on a surface if one of them measured it there.
     if (range >= map.nearest[cell] - margin)

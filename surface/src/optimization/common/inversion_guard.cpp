@@ -12,8 +12,7 @@ using Eigen::Vector3d;
 // How much of `move` face f can take: all, or up to where nearly nothing is left of its area.
 double partAllowed(const MeshGraph& graph, const Positions& x, const Positions& move, const Vector3d& normal, Index f)
 {
-  // A face that is small or inverted may lose `slack` more. A tenth is left of others.
-  constexpr double slack = 0.5 * small_area, least_share = 0.1;
+  constexpr double least_share = 0.1; // is left of a face; what is small or inverted may lose half of a small area more
   const auto corner = [&](const Positions& of, int k) -> Vector3d { return of.col(graph.faces(k, f)); };
   const Vector3d e1 = corner(x, 1) - corner(x, 0), e2 = corner(x, 2) - corner(x, 0),
                  m1 = corner(move, 1) - corner(move, 0), m2 = corner(move, 2) - corner(move, 0);
@@ -21,7 +20,7 @@ double partAllowed(const MeshGraph& graph, const Positions& x, const Positions& 
   // out: whether the area comes back before it is gone would be decided at once.
   const double before = e1.cross(e2).dot(normal), linear = (e1.cross(m2) + m1.cross(e2)).dot(normal),
                square = std::min(0.0, m1.cross(m2).dot(normal));
-  const double most_lost = before - std::min(least_share * before, before - slack);
+  const double most_lost = before - std::min(least_share * before, before - 0.5 * small_area);
   // The least t > 0 with linear t + square t^2 = -most_lost, in a form without cancellation.
   const double denominator = -linear + std::sqrt(linear * linear - 4.0 * square * most_lost);
   return denominator > 2.0 * most_lost ? 2.0 * most_lost / denominator : 1.0;
