@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "poisson/isosurface/polygon.h"
 #include <Eigen/Geometry>
-#include <limits>
+#include <cmath>
 namespace fresco::poisson {
 namespace {
 /// Polygons with more corners, which are rare, get a centre vertex: the search for the best triangles takes their cube.
@@ -85,7 +85,6 @@ void CellPolygons::triangulatePolygon(const Eigen::Matrix3Xf& positions, Array<i
 /// Least total area, by dynamic programming over the corner intervals.
 bool CellPolygons::cheapestTriangles(const Eigen::Matrix3Xf& positions, Array<int>& faces) const
 {
-  constexpr float forbidden = std::numeric_limits<float>::infinity();
   const int n = polygon_.size();
   float cost[most_corners][most_corners];
   int middle[most_corners][most_corners];
@@ -96,7 +95,7 @@ bool CellPolygons::cheapestTriangles(const Eigen::Matrix3Xf& positions, Array<in
   for (int length = 1; length < n; ++length)
     for (int i = 0; i + length < n; ++i) {
       const int j = i + length;
-      cost[i][j] = length == 1 ? 0.f : forbidden;
+      cost[i][j] = length == 1 ? 0.f : HUGE_VALF;
       const bool side = length == 1 || length == n - 1;
       if (length == 1 || (!side && shareFace(i, j)))
         continue;
@@ -108,7 +107,7 @@ bool CellPolygons::cheapestTriangles(const Eigen::Matrix3Xf& positions, Array<in
         }
       }
     }
-  if (!(cost[0][n - 1] < forbidden))
+  if (!(cost[0][n - 1] < HUGE_VALF))
     return false;
   int stack[most_corners][2] = {{0, n - 1}}, depth = 1;
   while (depth > 0) {

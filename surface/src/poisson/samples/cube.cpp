@@ -45,17 +45,16 @@ void shareKind(Exchange& exchange, Extent& extent)
 {
   constexpr int n = 6;
   using Numbers = Eigen::Matrix<double, n, 1>;
-  constexpr double lowest = -std::numeric_limits<double>::infinity();
-  Eigen::Matrix<double, n, 2> kind = Eigen::Matrix<double, n, 2>::Constant(lowest);
+  Eigen::Matrix<double, n, 2> kind = Eigen::Matrix<double, n, 2>::Constant(-HUGE_VAL);
   if (extent.all > 0) {
     Numbers own;
     own << extent.colors, extent.intensities, static_cast<int>(extent.weights.source), extent.origin;
     kind << own, -own;
   }
   exchange.largest(kind.data(), kind.size());
-  require(kind.col(0) == -kind.col(1) || kind.col(0)[0] == lowest,
+  require(kind.col(0) == -kind.col(1) || kind.col(0)[0] == -HUGE_VAL,
           "volumetric reconstruction: the points of the ranks have unlike attributes or origins");
-  if (kind.col(0)[0] == lowest)
+  if (kind.col(0)[0] == -HUGE_VAL)
     return;
   extent.colors = kind(0, 0) > 0;
   extent.intensities = kind(1, 0) > 0;
