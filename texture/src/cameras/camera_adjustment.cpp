@@ -115,8 +115,7 @@ public:
     constexpr int passes = 3;
     CameraState state = stateOf(x_);
     for (int pass = 0; pass < passes; ++pass) {
-      constexpr double least = 0.15; // pixels: what matching itself errs by
-      scale_ = std::max(least, 1.5 * median(matchErrors(matches_, state)));
+      scale_ = std::max(exact_pixels, 1.5 * median(matchErrors(matches_, state)));
       descend(state);
     }
     return state;
@@ -152,18 +151,15 @@ private:
 
   void descend(CameraState& state)
   {
-    constexpr int most_steps = 15;      // a bound: the descent ends by itself
     constexpr double least_gain = 1e-4; // relative, of the cost: what is left is below the scatter of the matches
-    double damping = 1e-4, cost = costOf(state, x_);
-    for (int step = 0; step < most_steps; ++step) {
-      const double before = cost;
+    double damping = 1e-4, cost = costOf(state, x_), before = 0;
+    do {
+      before = cost;
       linearize(state);
       while (damping < 1e6 && !tryStep(damping, state, cost))
         damping *= 10;
       damping = std::max(1e-8, damping / 10);
-      if (before - cost < least_gain * before)
-        break;
-    }
+    } while (before - cost > least_gain * before);
   }
 
   /// @return false, with nothing changed, if the step does not lower the cost

@@ -2,6 +2,8 @@
 #pragma once
 #include "cameras/photo_match.h"
 namespace fresco::texture {
+constexpr double exact_pixels = 0.3; ///< what matching errs by where cameras and mesh are exact
+
 /// How far cameras may be off; standard deviations.
 struct AdjustmentPrior {
   double pose_shift = 0.02; ///< mesh units, each view

@@ -13,7 +13,6 @@ namespace fresco::texture {
 namespace {
 /// Cameras that agree so well are left alone: half a pixel is what matching itself errs by.
 constexpr double agreement_pixels = 0.5;
-constexpr double exact_pixels = 0.3; // what matching errs by where cameras and mesh are exact
 
 auto numbersOf(const CameraModel& c)
 {
@@ -62,7 +61,6 @@ std::vector<MatchPhoto> prepare(PhotoStore& photos, const std::vector<ViewPart>&
   const Index count = views.size();
   constexpr Index most_pixels = 1 << 20;  // of a photograph that is searched: bounds the time
   constexpr Index least_pixels = 1 << 16; // coarser, half a pixel is too much of the photograph
-  constexpr std::size_t levels = 4;       // the widest search becomes one of few pixels
   constexpr int corner_cells = 400; // per photograph: many times the unknowns of a camera where a fifth is matched
   constexpr double with_halvings = 4.0 / 3;
   const double share = 0.5 * photos.mostBytes() / (with_halvings * count);
@@ -76,7 +74,7 @@ std::vector<MatchPhoto> prepare(PhotoStore& photos, const std::vector<ViewPart>&
   photos.setAside(bytes + (fine ? fine_bytes : 0));
   std::vector<MatchPhoto> out(count);
   const auto prepareOne = [&](Index v) {
-    out[v].pyramid = buildPyramid(*photos.get(v), {pixels, levels, fine});
+    out[v].pyramid = buildPyramid(*photos.get(v), {pixels, fine});
     out[v].corners = findCorners(out[v].pyramid.levels[0], corner_cells);
     applyMask(withinReach(photos.mask(v)), out[v]);
   };
@@ -169,12 +167,11 @@ void refineCameras(const RefinementInput& input, int threads, const Progress& pr
     state = adjustCameras(thinned(matches, views), initial, priorFor(medianDistance(matches, initial)), threads);
     after = medianError(matches, state);
   };
-  constexpr std::size_t rounds = std::size(searches);
-  if (match(searches[rounds - 1]) && medianError(matches, initial) < agreement_pixels)
+  if (match(*std::rbegin(searches)) && medianError(matches, initial) < agreement_pixels)
     adjust(); // nothing lies farther away than what was found
   else
-    for (std::size_t round = 0; round < rounds; ++round) {
-      report(progress, "camera refinement", double(round) / rounds);
+    for (std::size_t round = 0; round < std::size(searches); ++round) {
+      report(progress, "camera refinement", double(round) / std::size(searches));
       if (!match(searches[round]))
         break;
       adjust();
@@ -212,12 +209,11 @@ void placeCameras(const RefinementInput& input, const TextureOptions& options, c
 
 std::vector<double> misfits(const TextureResult& result)
 {
-  constexpr double most = 4; // octaves: what no other photograph shows is still painted
   std::vector<double> out(result.cameras.size(), 0);
   const double expected = std::max(agreement_pixels, result.disagreement_after);
   for (std::size_t v = 0; v < result.fits.size(); ++v)
     if (result.fits[v].matches >= fewest_samples)
-      out[v] = std::clamp(std::log2(result.fits[v].median / expected), 0.0, most);
+      out[v] = std::max(std::log2(result.fits[v].median / expected), 0.0);
   return out;
 }
 

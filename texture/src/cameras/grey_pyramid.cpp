@@ -56,7 +56,7 @@ GreyPyramid buildPyramid(const Image& photo, const PyramidSize& size)
     out.scale *= 0.5;
   }
   out.levels.push_back(std::move(level));
-  while (out.levels.size() < size.levels && std::min(out.levels.back().width, out.levels.back().height) >= 64)
+  while (std::min(out.levels.back().width, out.levels.back().height) >= 64)
     out.levels.push_back(halved(out.levels.back()));
   return out;
 }

@@ -16,7 +16,6 @@ struct GreyPyramid {
 
 struct PyramidSize {
   Index most_pixels; ///< of level 0
-  std::size_t levels;
   bool fine;
 };
 GreyPyramid buildPyramid(const Image& photo, const PyramidSize& size);

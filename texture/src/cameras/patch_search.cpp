@@ -209,7 +209,6 @@ bool findPatch(const PatchQuery& query, Eigen::Vector2f& place)
   constexpr float coarse_search = 10;       // pixels of the coarsest level: as far as a patch is itself
   constexpr int fine_search = 2;            // pixels, from one level to the next: a pixel of the last, and one more
   constexpr float least_correlation = 0.8f; // of the finest level
-  constexpr float least_on_the_way = 0.7f;  // of coarser ones, whose pixels mix in what lies beside
   constexpr float least_lead = 0.05f;       // over the second best match: repeated structure is ambiguous
   int level = 0;
   const int levels = std::min(query.from.levels.size(), query.to.levels.size());
@@ -225,8 +224,7 @@ bool findPatch(const PatchQuery& query, Eigen::Vector2f& place)
     const Eigen::Vector2i at = (place * scale).array().floor().cast<int>();
     const int reach = level == first ? std::ceil(query.search * scale) : fine_search;
     const Peak peak = findPeak(patch, image, at, reach);
-    if (peak.value < (level == 0 ? least_correlation : least_on_the_way) ||
-        (level == first && peak.value < peak.second + least_lead))
+    if (peak.value < (level == 0 ? least_correlation : 0) || (level == first && peak.value < peak.second + least_lead))
       return false;
     place = Eigen::Vector2f(peak.x + 0.5f, peak.y + 0.5f) / scale;
     if (level == 0)

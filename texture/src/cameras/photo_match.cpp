@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cameras/photo_match.h"
 #include "cameras/patch_search.h"
+#include "views/patch_mesh.h"
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
@@ -10,7 +11,6 @@
 namespace fresco::texture {
 namespace {
 constexpr double depth_agreement = 0.02; // share of the distance: a mesh may err so much and be the same surface
-constexpr double least_cosine = 0.25;    // 75 degrees: beyond, pixels smear over four times their size
 
 struct Corner {
   Eigen::Vector2d pixel; ///< of the photograph
@@ -76,7 +76,7 @@ private:
     if (corner.normal.dot(ray) > 0)
       corner.normal = -corner.normal;
     const Eigen::Matrix<double, 1, 5> off = corner.normal.transpose() * (points.colwise() - corner.point);
-    return -corner.normal.dot(ray.normalized()) > least_cosine &&
+    return -corner.normal.dot(ray.normalized()) > steep_cosine &&
            off.cwiseAbs().maxCoeff() < 0.5 * depth_agreement * ray.norm();
   }
 
@@ -92,7 +92,7 @@ private:
     if (!(p.z() > 0 && p.x() > 0 && p.y() > 0 && p.x() < camera.width && p.y() < camera.height))
       return false;
     const Eigen::Vector3f ray = corner.point.cast<float>() - views_[v].center();
-    if (!(-corner.normal.dot(ray.cast<double>().normalized()) > least_cosine))
+    if (!(-corner.normal.dot(ray.cast<double>().normalized()) > steep_cosine))
       return false;
     pixel = p.head<2>().cast<double>();
     return scene_.intersect({views_[v].center(), ray}).distance > 1 - depth_agreement;

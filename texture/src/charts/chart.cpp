@@ -109,8 +109,7 @@ private:
   /// The neighbour that shares the longest border and can take all faces of chart c; -1 = none.
   int hostOf(int c) const
   {
-    constexpr float merge_cosine = 0.25f; // 75 degrees: accepted, since each small chart would cost a border
-    std::map<int, int> shared;            // edges per neighbour
+    std::map<int, int> shared; // edges per neighbour
     for (const int f : charts_[c].faces)
       for (int k = 0; k < 3; ++k)
         if (const int other = graph_.neighbors(k, f); other >= 0 && chart_[other] >= 0 && chart_[other] != c)
@@ -118,7 +117,7 @@ private:
     int best = -1, most = 0;
     for (const auto& [host, edges] : shared) {
       const auto turned = [&, axis = charts_[host].axis](int f) {
-        return graph_.normals.col(f).dot(axis) > merge_cosine;
+        return graph_.normals.col(f).dot(axis) > steep_cosine; // accepted: each small chart would cost a border
       };
       if (edges > most && std::all_of(charts_[c].faces.begin(), charts_[c].faces.end(), turned)) {
         best = host;

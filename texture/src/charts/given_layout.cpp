@@ -20,16 +20,16 @@ Eigen::Vector2f coordinate(const TexturedMesh& model, int k, Index face)
 /// @param wanted side in texels of an atlas that has no size
 Image emptyAtlas(const Image& given, double wanted, int longest)
 {
-  constexpr int least = 16, largest = 16384; // texels: smaller ones stand for a colour
-  const bool sized = std::min(given.width, given.height) >= least;
+  constexpr int largest = 16384; // texels; images smaller than the least stand for a colour
+  const bool sized = std::min(given.width, given.height) >= least_atlas;
   double width = sized ? given.width : wanted, height = sized ? given.height : wanted;
   if (longest > 0) {
     const double scale = longest / std::max(width, height);
     width *= scale;
     height *= scale;
   }
-  return Image(std::clamp<int>(std::lround(width), least, largest),
-               std::clamp<int>(std::lround(height), least, largest), 3, mid_grey);
+  return Image(std::clamp<int>(std::lround(width), least_atlas, largest),
+               std::clamp<int>(std::lround(height), least_atlas, largest), 3, mid_grey);
 }
 
 /// Side of a square atlas in which the faces have about as many texels as wanted.

@@ -2,8 +2,6 @@
 #pragma once
 #include "views/patch_mesh.h"
 namespace fresco::texture {
-inline constexpr float crease_cosine = 0.77f; ///< of 40 degrees: normals of patches on scanned planes differ by less
-
 /// The corners of patches, joined where the surface goes on smoothly around their vertex: a vertex on a crease has one
 /// node for each side, any other has one.
 struct SmoothCorners {

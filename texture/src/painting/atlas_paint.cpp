@@ -21,7 +21,7 @@ public:
       : map_(map), photo_(view.photo), gain_(view.gain)
   {
     for (int k = 0; k < 3; ++k)
-      least_[k] = goesOn(scene, patch, (k + 1) % 3) ? -far_beyond : inset(k);
+      least_[k] = goesOn(scene, patch, (k + 1) % 3) ? -HUGE_VALF : inset(k);
     constexpr float most = 16; // samples each way: enough for any mean
     const float pixels_per_texel = map.middleSteps().colwise().norm().maxCoeff();
     steps_ = std::isfinite(pixels_per_texel) ? std::lround(std::clamp(pixels_per_texel, 1.f, most)) : 1;
@@ -44,8 +44,6 @@ public:
   }
 
 private:
-  static constexpr float far_beyond = 1e3f;
-
   /// Weight of corner k at edge_pixels from the side opposite of it: nearer to an edge, pixels mix with what is beyond.
   float inset(int k) const
   {
@@ -207,9 +205,8 @@ std::vector<TexelSlot> texelSlots(const std::vector<Chart>& charts, Index patche
 
 bool goesOn(const PaintScene& scene, Index patch, int side)
 {
-  constexpr float straight = 0.95f; // 18 degrees: less than a pixel off over the border's width
   const int other = scene.patches.neighbors(side, patch);
   return other >= 0 && scene.view[other] >= 0 &&
-         scene.patches.normals.col(other).dot(scene.patches.normals.col(patch)) > straight;
+         scene.patches.normals.col(other).dot(scene.patches.normals.col(patch)) > crease_cosine;
 }
 } // namespace fresco::texture

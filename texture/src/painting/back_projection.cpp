@@ -154,7 +154,7 @@ private:
     PatchFrame frame(scene_, patch);
     Eigen::Vector3f least; // of the corners' weights
     for (int k = 0; k < 3; ++k)
-      least[k] = goesOn(scene_, patch, (k + 1) % 3) ? -1e3f : 0.f;
+      least[k] = goesOn(scene_, patch, (k + 1) % 3) ? -HUGE_VALF : 0.f;
     sums.values.clear();
     const Candidates& all = sources_.candidates;
     for (Index c = all.begin[patch]; c < all.begin[patch + 1]; ++c) {

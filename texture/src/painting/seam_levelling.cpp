@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "painting/seam_levelling.h"
 #include "painting/conjugate_gradient.h"
+#include "views/picture_evidence.h"
 #include <algorithm>
 #include <cmath>
 #include <fresco/core/parallel.h>
+#include <fresco/core/robust_weights.h>
 namespace fresco::texture {
 namespace {
 class Levelling {
@@ -66,11 +68,10 @@ private:
     right_.col(j) -= weight * difference;
   }
 
-  /// What two views at a vertex differ by is to go. Steps larger than `implausible` rather come from something that
-  /// moved or stood in the way.
+  /// What two views at a vertex differ by is to go. Steps of more than two octaves rather come from something that moved or
+  /// stood in the way.
   void addSeams(std::size_t v)
   {
-    constexpr float implausible = 40; // grey levels: more than exposure leaves
     const auto& list = shares_[v];
     for (std::size_t a = 0; a < list.size(); ++a)
       for (std::size_t b = a + 1; b < list.size(); ++b) {
@@ -87,7 +88,7 @@ private:
         if (!(count > 0))
           continue;
         step /= count;
-        const float trust = 1 / (1 + step.squaredNorm() / (implausible * implausible));
+        const float trust = cauchyWeight(step.squaredNorm() / (4 * one_octave * one_octave));
         addEquation(out_.begin[v] + a, out_.begin[v] + b, 4 * trust * std::min(list[a].weight, list[b].weight), step);
       }
   }

@@ -194,8 +194,6 @@ private:
   std::vector<int> margins_; ///< by label
 };
 
-constexpr int resampled = 4; // pixels over which resampling mixes at most
-
 bool reachesAllCorners(const cv::Mat& filled)
 {
   const int right = filled.cols - 1, bottom = filled.rows - 1;
@@ -211,7 +209,7 @@ void hideFilled(const cv::Mat& photo, const Filling& filling, cv::Mat& used)
     return;
   Transition transition(photo, filled, filling);
   const bool vignette = filling.value == Color(0, 0, 0) && reachesAllCorners(filled);
-  transition.measure(vignette ? std::min(photo.cols, photo.rows) / 6 : resampled);
+  transition.measure(vignette ? std::min(photo.cols, photo.rows) / 6 : 2 * interpolation_reach);
   transition.hide(used);
 }
 
@@ -227,7 +225,7 @@ void hideTransparent(const cv::Mat& photo, const cv::Mat& alpha, cv::Mat& used)
   if (10 * cv::countNonZero(filling.within(photo, faint) & clear) < 9 * cv::countNonZero(clear))
     return;
   Transition transition(photo, clear, filling);
-  transition.measure(resampled);
+  transition.measure(2 * interpolation_reach);
   transition.hide(used);
 }
 } // namespace

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "photographs/color_fringe.h"
 #include "photographs/distance_field.h"
+#include "photographs/photo_store.h"
 #include <Eigen/Core>
 #include <algorithm>
 namespace fresco::texture {
@@ -51,13 +52,12 @@ int fringeWidth(const Image& given)
 
 Image withoutFringe(const Image& given, int width)
 {
-  constexpr int spare = 2; // pixels: its edge is soft
   Image out = given;
   const cv::Mat photo = matOf(given);
   const DistanceField around(clippedOf(photo));
-  around.forNear(width + spare, [&](const cv::Point& p, int distance) {
+  around.forNear(width + interpolation_reach, [&](const cv::Point& p, int distance) {
     const Color& color = photo.at<Color>(p);
-    const cv::Point q = around.further(p, width + spare + 1 - distance / 2);
+    const cv::Point q = around.further(p, width + interpolation_reach + 1 - distance / 2);
     const Color beyond = q.x >= 0 ? photo.at<Color>(q) : Color(0, 0, 0); // unknown: grey
     if (violet(color) > std::max(0, violet(beyond)))
       for (const int c : {0, 2})

@@ -79,9 +79,8 @@ void warnOfRotations(const std::vector<ViewPart>& parts, TextureResult& result)
 /// Places inside of the faces, some thousands.
 Points placesOf(const TriangleMesh& mesh)
 {
-  constexpr Index most = 4000;
-  const Index stride = std::max<Index>(1, mesh.faceCount() / most),
-              rows = std::ceil(std::sqrt(2.0 * most / mesh.faceCount()));
+  const Index stride = std::max<Index>(1, mesh.faceCount() / median_samples),
+              rows = std::ceil(std::sqrt(2.0 * median_samples / mesh.faceCount()));
   std::vector<Eigen::Vector3f> places;
   for (Index f = 0; f < mesh.faceCount(); f += stride)
     for (Index i = 0; i < rows; ++i)

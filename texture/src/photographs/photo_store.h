@@ -58,6 +58,7 @@ private:
 
 constexpr double clear_gain = 0.9;     ///< share of an error that is left: what lowers it less may be chance
 constexpr Index fewest_samples = 12;   ///< for a median to count
+constexpr Index median_samples = 2000; ///< of a view or a pair of views: more hardly change a median
 constexpr std::uint8_t mid_grey = 128; ///< where nothing is known; masks and alpha use what is not darker
 constexpr int interpolation_reach = 2; ///< pixels to either side of a place that a colour there is made of
 

@@ -7,9 +7,9 @@ namespace fresco::texture {
 namespace {
 bool isClear(const Candidate& c)
 {
-  constexpr int darkest = 12, brightest = 240; // grey levels: beyond, a value says little of the light
+  constexpr int extreme = 12; // grey levels from black and white: there a value says little of the light
   return !c.clipped &&
-         std::all_of(c.color.begin(), c.color.end(), [](int v) { return v >= darkest && v <= brightest; });
+         std::all_of(c.color.begin(), c.color.end(), [](int v) { return v >= extreme && v <= 255 - extreme; });
 }
 
 Eigen::Vector3f logColor(const Candidate& c)
@@ -35,8 +35,7 @@ ColorRatio ratioOf(const Candidate& first, const Candidate& second)
 
 void addPatch(const Candidates& candidates, const std::vector<int>& owner, Index patch, ColorRatios& pairs)
 {
-  constexpr float trusted = 0.2f;            // of the best quality: views that show much less blur the colour
-  constexpr std::size_t most_samples = 1000; // per pair of views: more hardly change a median
+  constexpr float trusted = 0.2f; // of the best quality: views that show much less blur the colour
   const Candidate* list = candidates.of(patch);
   const float best = candidates.bestQuality(patch);
   for (Index i = 0; i < candidates.count(patch); ++i) {
@@ -46,7 +45,7 @@ void addPatch(const Candidates& candidates, const std::vector<int>& owner, Index
       if (const int a = owner[list[i].view], b = owner[list[j].view];
           a != b && list[j].quality >= trusted * best && isClear(list[j])) {
         auto& ratios = pairs[{a, b}];
-        if (ratios.size() < most_samples)
+        if (Index(ratios.size()) < median_samples)
           ratios.push_back(ratioOf(list[i], list[j]));
       }
   }

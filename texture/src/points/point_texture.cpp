@@ -83,7 +83,6 @@ void paintWhole(const Paint& paint, TextureResult& result)
 void paintTiles(const Paint& paint, const MeshTiles& tiles, const AtlasSink& take, const Progress& progress,
                 TextureResult& result)
 {
-  constexpr float halo_patches = 4; // colours of unseen surface go on from there
   const TriangleMesh& mesh = result.model.mesh;
   const float halo = halo_patches * meanEdge(mesh, 0.75 * paint.patch_side);
   TileAtlases atlases(take, result);

@@ -2,6 +2,7 @@
 #include "points/point_values.h"
 #include "photometry/color_ratios.h"
 #include "photometry/exposure.h"
+#include "views/patch_visibility.h"
 #include "views/picture_evidence.h"
 #include <Eigen/Cholesky>
 #include <algorithm>
@@ -78,7 +79,6 @@ void bringTogether(const SurfaceSamples& samples, int threads, Points& values, P
 /// Logarithms of a sample's intensity, range and cosine of incidence; not finite where there is none.
 Points logarithms(const PointSet& set, const SurfaceSamples& samples)
 {
-  constexpr float least_cosine = 0.05f; // 87 degrees: beyond, the angle is that of the noise
   Points out(3, samples.size());
   for (Index i = 0; i < samples.size(); ++i) {
     const Eigen::Vector3f beam = samples.stations.col(samples.scan[i]) - samples.places.col(i);

@@ -4,6 +4,10 @@
 #include <fresco/core/mesh.h>
 #include <vector>
 namespace fresco::texture {
+/// Around a tile: messages of view selection have faded so far away, offsets of levelling by half, and colours of unseen
+/// surface go on from there.
+constexpr float halo_patches = 12;
+
 /// The faces of a mesh in groups of neighbours, by bisection of their middles.
 struct MeshTiles {
   Array<int> order;                       ///< F, faces tile by tile, ascending within each

@@ -13,8 +13,6 @@
 #include <fresco/core/statistics.h>
 namespace fresco::texture {
 namespace {
-constexpr float halo_patches = 12; // messages of view selection have faded so far away, offsets of levelling by half
-
 Eigen::AlignedBox3f widened(const Eigen::AlignedBox3f& box, float by)
 {
   return {box.min().array() - by, box.max().array() + by};

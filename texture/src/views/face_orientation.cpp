@@ -62,16 +62,15 @@ Eigen::Array2Xd countSides(const std::vector<int>& surfaces, const RayScene& sce
 std::vector<char> insideOutFaces(const TriangleMesh& mesh, const RayScene& scene, const std::vector<Projector>& views,
                                  TextureResult& result)
 {
-  constexpr double least_rays = 3; // to be seen at all
-  constexpr double all = 0.98;     // of a surface: rays along its rim may pass by what stands before it
-  constexpr double much = 0.2;     // of what photographs see: a closed mesh shows nothing from behind
+  constexpr double all = 0.98; // of a surface: rays along its rim may pass by what stands before it
+  constexpr double much = 0.2; // of what photographs see: a closed mesh shows nothing from behind
   const std::vector<int> surfaces = surfacesOf(mesh);
   const Eigen::Array2Xd counts = countSides(surfaces, scene, views);
   std::vector<char> marked(surfaces.size(), 0);
   double back = 0, seen = 0;
   for (std::size_t f = 0; f < surfaces.size(); ++f) {
     const double behind = counts(1, surfaces[f]), rays = counts(0, surfaces[f]) + behind;
-    marked[f] = rays >= least_rays && behind >= all * rays;
+    marked[f] = rays > 0 && behind >= all * rays;
     if (surfaces[f] == static_cast<int>(f)) {
       seen += rays;
       back += marked[f] ? 0 : behind;

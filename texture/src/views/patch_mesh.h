@@ -3,6 +3,9 @@
 #include <fresco/core/mesh.h>
 #include <vector>
 namespace fresco::texture {
+constexpr float steep_cosine = 0.25f;  ///< of 75 degrees: beyond, pixels smear over four times their size
+constexpr float crease_cosine = 0.77f; ///< of 40 degrees: normals of patches on scanned planes differ by less
+
 /// The input mesh with its large faces cut into patches, each small enough to be seen or hidden as a whole.
 struct PatchMesh {
   Points vertices;            ///< 3xV, those of the mesh first

@@ -15,8 +15,6 @@ struct VisibilityLimits {
 /// The tolerance is the same length in all views, so that near views are not penalized more than far ones.
 VisibilityLimits limitsFor(const PatchMesh& patches, const VisibilityInput& input);
 
-constexpr Index median_samples = 2000; ///< in each view: enough for a median
-
 /// Median distance of the surface within the images, from what stands before it or not; mesh units.
 float typicalDepth(const Points& vertices, const std::vector<Projector>& views);
 

@@ -185,8 +185,7 @@ PhotoConsistency photoConsistency(const PatchMesh& patches, const Candidates& ca
   constexpr float most_octaves = 5; // by difference: a view that alone shows the patch well keeps a chance
   // What is clipped loses to all that is not; of it, the darkest says most.
   const float darkest = photometry.gains.cols() > 0 ? photometry.gains.row(1).maxCoeff() : 1;
-  constexpr float certain = 3 * one_octave,
-                  certain_around = 45; // grey levels: few surfaces differ so by the light alone
+  constexpr float certain = 50; // grey levels: few surfaces differ so by the light alone
   const VoteInput of{patches, candidates, photometry, input};
   const ColorDifferences first = differencesFromConsensus(of, {});
   const std::vector<float> expected = differencesInPictures(patches, candidates, first, input);
@@ -199,7 +198,7 @@ PhotoConsistency photoConsistency(const PatchMesh& patches, const Candidates& ca
     for (Index c = candidates.begin[i]; c < candidates.begin[i + 1]; ++c) {
       if (difference[c] < 0)
         difference[c] = inferredDifference(of, i, c, expected);
-      out.foreign[c] = first.certainty[i] < 1 && (expected[c] > certain || around[c] > certain_around);
+      out.foreign[c] = first.certainty[i] < 1 && std::max(expected[c], around[c]) > certain;
     }
   difference = smoothed(of, std::move(difference));
   out.penalties.resize(difference.size());

@@ -47,11 +47,9 @@ Labels labelsOf(const PatchMesh& patches, const ViewCosts& costs)
 /// Length of a patch's side as far as a seam along it would show.
 float visibleLength(const PatchMesh& patches, Index patch, int side)
 {
-  constexpr float crease_share = 0.1f;                  // of a seam's cost at a crease: shading changes there anyway
-  constexpr float crease_from = 0.7f, crease_to = 0.3f; // cosines of the normals: 46 and 73 degrees
+  constexpr float crease_share = 0.1f; // of a seam's cost at a crease: shading changes there anyway
   const float cosine = patches.normals.col(patch).dot(patches.normals.col(patches.neighbors(side, patch)));
-  const float straight = std::clamp((cosine - crease_to) / (crease_from - crease_to), 0.f, 1.f);
-  return edgeLength(patches, patch, side) * (crease_share + (1 - crease_share) * straight);
+  return edgeLength(patches, patch, side) * (cosine > crease_cosine ? 1 : crease_share);
 }
 
 /// Min-sum messages of the Potts model over the patches' edges; all are renewed at once from those of the last round,

@@ -12,7 +12,6 @@ namespace {
 // Octaves by which a view is trusted less, if poses are uncertain.
 constexpr float outline_penalty = 5; // near the outline of what stands before: taken where nothing else shows it
 constexpr float rim_penalty = 2;     // at its own outline, where pixels mix with what lies behind
-constexpr float beside_penalty = 1;  // where a pixel next to it shows something a little nearer
 
 /// @param step length by which depth jumps at an outline
 bool isNearOutline(const Footprint& patch, const DepthMap& nearest, float radius, float step)
@@ -77,7 +76,7 @@ public:
           continue;
         float penalty = misfit + borderPenalty(view_.camera(), patch.corners.rowwise().mean() * map.step);
         if (visibility == Visibility::beside)
-          penalty += limits_.pose_uncertainty * beside_penalty;
+          penalty += limits_.pose_uncertainty; // a pixel next to it shows something a little nearer
         if (isNearOutline(patch, nearest, radius, outline_))
           penalty += limits_.pose_uncertainty * outline_penalty;
         else if (isAtRim(patch, farthest, rim, outline_))
